@@ -53,7 +53,7 @@ template <class Owned>
 void measure(const std::string& name, const Owned& owned, int queries, std::FILE* csv) {
   const auto image = owned.view();
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   const std::vector<double> isovalues = isovalues_of(owned, queries);
   const double plain = [&] {
     double sum = 0;
@@ -72,7 +72,7 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
     const std::uint64_t before = memory_bytes("VmRSS");
     reset_peak_memory();
     const double start = worked_seconds();
-    auto index = build_active_tiles(image, method, {.threads = 1, .progress = {}});
+    auto index = build_active_tiles(image, method, {.work = {.threads = 1}});
     const double build = worked_seconds() - start;
     const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
     std::vector<Query> done;

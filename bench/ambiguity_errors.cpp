@@ -34,7 +34,7 @@ void measure(const char* name, std::size_t count, std::size_t samples, bool padd
     for (std::size_t w = 0; w < kWays.size(); ++w) {
       ExtractOptions options;
       options.ambiguity = kWays[w].second;
-      options.threads = 1;
+      options.work.threads = 1;
       const MeshReport report = check(extract<float>(image.view(), 0.0, options));
       wrong[w] += report.euler != expected.euler || static_cast<std::int64_t>(report.components) != expected.components;
       unsound[w] += report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts > 0;

@@ -156,7 +156,7 @@ void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
                   }});
   list.push_back({"`extract_facets`", [&] {
                     ExtractOptions options;
-                    options.threads = subject.threads;
+                    options.work.threads = subject.threads;
                     const auto facets = extract_facets<double>(subject.image, subject.isovalue, options);
                     return counted(facets.vertices.size(), "0-facets");
                   }});
@@ -197,7 +197,7 @@ template <Value T>
 std::vector<Operation> operations_on(Subject<T>& subject) {
   std::vector<Operation> list;
   ExtractOptions options;
-  options.threads = subject.threads;
+  options.work.threads = subject.threads;
   list.push_back({"`extract`", [&, options] {
                     return counted(extract<double>(subject.image, subject.isovalue, options).simplices.size(),
                                    "tetrahedra");
@@ -260,7 +260,7 @@ void run(Subject<T>& subject, int repetitions, const std::string& only) {
 template <Value T>
 void run_file(const Image<T, 4>& image, double isovalue, unsigned threads, int repetitions, const std::string& only) {
   ExtractOptions options;
-  options.threads = threads;
+  options.work.threads = threads;
   Subject<T> subject{image, isovalue, threads, extract<double>(image, isovalue, options), 0, 0, nullptr, {}, {}};
   if (subject.contour.vertices.empty()) throw Error(ErrorCode::EmptyResult, "the contour is empty");
   const auto [least, most] = std::minmax_element(subject.contour.vertices.begin(), subject.contour.vertices.end(),

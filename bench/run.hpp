@@ -14,7 +14,7 @@ namespace tegl::bench {
 /// The library has an option for the number of threads.
 template <class Options>
 concept Threaded = requires(Options options) {
-  options.threads = 1;
+  options.work.threads = 1;
 };
 inline constexpr bool kHasThreads = Threaded<ExtractOptions>;
 
@@ -39,7 +39,7 @@ Options with_normals(Options options, bool normals) {
 template <class Options = ExtractOptions>
 Options with_threads(Options options, int threads) {
   if constexpr (Threaded<Options>)
-    options.threads = static_cast<decltype(options.threads)>(threads);
+    options.work.threads = static_cast<decltype(options.work.threads)>(threads);
   else if (threads != 1)
     throw Error(ErrorCode::InvalidArgument, std::to_string(threads) + " threads; the library has one");
   return options;

@@ -79,7 +79,7 @@ void for_each_search(const Image<T, N>& image, const Arguments& arguments, const
       Search search;
       search.options.method = method;
       search.options.neighbourhood = neighbourhood;
-      search.options.threads = 1;
+      search.options.work.threads = 1;
       give_back_memory();  // memory of earlier images
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
@@ -137,7 +137,7 @@ void measure_picks(const OwnedImage<T, N>& owned, int picks) {
   std::mt19937_64 random(1);
   const auto share = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   std::vector<double> tiles, seconds;
   double whole = 0;
   for (int i = 0; i < picks; ++i) {

@@ -108,7 +108,7 @@ void measure(std::size_t count, Ambiguity ambiguity, Triangulation triangulation
     ExtractOptions options;
     options.ambiguity = ambiguity;
     options.triangulation = triangulation;
-    options.threads = 1;
+    options.work.threads = 1;
     const auto image = image_of<float>(field);
     const Surface contour = extract<double>(image.view(), 0.0, options);
     const auto found = intersecting_pairs(contour);

@@ -203,7 +203,7 @@ struct Way {
     ExtractOptions options;
     options.ambiguity = ambiguity;
     options.triangulation = triangulation;
-    options.threads = 1;
+    options.work.threads = 1;
     return options;
   }
 };

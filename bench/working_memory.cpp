@@ -17,7 +17,7 @@ double per_cent(const OwnedImage<float, N>& image, Triangulation triangulation, 
   ExtractOptions options;
   options.triangulation = triangulation;
   options.normals = normals;
-  options.threads = threads;
+  options.work.threads = threads;
   const auto bytes = static_cast<double>(test::bytes_beside(image, 0.0, options));
   return 100.0 * bytes / static_cast<double>(image.values.size() * sizeof(float));
 }

@@ -18,7 +18,8 @@ void add_shape_normals(AnyContour& contour, const std::string& kind, const Extra
       [&]<int N, class Real>(Contour<N, Real>& c) {
         if constexpr (N <= 4) {
           // The extraction has already reported progress up to 1.
-          const WorkOptions work{options.threads, [&](double) { return !options.progress || options.progress(1.0); }};
+          const WorkOptions work{options.work.threads,
+                                 [&](double) { return !options.work.progress || options.work.progress(1.0); }};
           if (kind == "geometric") {
             c.normals = geometric_normals(c, NormalWeights::angle, work);
             return;

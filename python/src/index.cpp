@@ -72,8 +72,8 @@ std::unique_ptr<AnyIndex> build(const AnyImage& image, const std::string& method
                                 const py::object& progress) {
   Call call(progress);
   ActiveTilesOptions options;
-  options.threads = threads;
-  options.progress = call.progress();
+  options.work.threads = threads;
+  options.work.progress = call.progress();
   const auto chosen = named<ActiveMethod>("method", method, method_names());
   return call.run(
       [&] { return index_of(image, [&](const auto& view) { return build_active_tiles(view, chosen, options); }); });
@@ -83,10 +83,10 @@ std::unique_ptr<AnyIndex> load(const std::string& path, const AnyImage& image, u
                                const py::object& progress) {
   Call call(progress);
   ActiveTilesOptions options;
-  options.threads = threads;
-  options.progress = call.progress();
+  options.work.threads = threads;
+  options.work.progress = call.progress();
   return call.run([&] {
-    const FileLock lock(options.progress);
+    const FileLock lock(options.work.progress);
     return index_of(image, [&](const auto& view) { return read_active_tiles(path, view, options); });
   });
 }

@@ -92,8 +92,8 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
   result.gradient = normals == "sobel" ? GradientKind::sobel : GradientKind::differences;
   result.close = py::cast<bool>(arguments["close"]);
   result.epsilon = py::cast<double>(arguments["epsilon"]);
-  result.threads = py::cast<unsigned>(arguments["threads"]);
-  result.progress = call.progress();
+  result.work.threads = py::cast<unsigned>(arguments["threads"]);
+  result.work.progress = call.progress();
   return result;
 }
 

@@ -189,7 +189,7 @@ TEST(Guides, TasksTakeAFewLines) {
   const auto user_gave_up = [] { return false; };
   // [progress]
   tegl::ExtractOptions options;
-  options.progress = [&](double done) {
+  options.work.progress = [&](double done) {
     fraction = done;
     return !user_gave_up();  // false ends the extraction with ErrorCode::Cancelled
   };

@@ -62,7 +62,7 @@ inline std::vector<NamedOptions> all_ways() {
   for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
     for (NamedOptions way : all_estimators()) {
       way.options.triangulation = triangulation;
-      way.options.threads = 1;
+      way.options.work.threads = 1;
       way.name += triangulation == Triangulation::compact ? ", compact" : ", barycentric";
       result.push_back(std::move(way));
     }

@@ -234,20 +234,20 @@ class ContourCommand final : public Command {
 
   /// Extracts the contour of one isovalue, without an index.
   void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
-    options.progress = bar.stage("contour");
+    options.work.progress = bar.stage("contour");
     if (result.picked) return pick(image, options, bar, result);
     ExtractStats& stats = result.stats.emplace();
     if (const auto method = options_.polygon_triangulation()) {
       auto polygons = triangulated_polygons(
           image, {*result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()}, *method,
           bar, stats);
-      result.mesh =
-          std::visit([&](auto& contour) { return with_additions(std::move(contour), options.threads, bar); }, polygons);
+      result.mesh = std::visit(
+          [&](auto& contour) { return with_additions(std::move(contour), options.work.threads, bar); }, polygons);
       return;
     }
     result.mesh =
         extract_any<Mesh>(image, *result.isovalue, options, options_.single_precision(), stats,
-                          [&](auto contour) { return with_additions(std::move(contour), options.threads, bar); });
+                          [&](auto contour) { return with_additions(std::move(contour), options.work.threads, bar); });
   }
 
   /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
@@ -312,7 +312,7 @@ class ContourCommand final : public Command {
         picked.distance = report.distance;
         picked.tiles = report.tiles;
         picked.components = report.components;
-        return with_additions(std::move(contour), options.threads, bar);
+        return with_additions(std::move(contour), options.work.threads, bar);
       };
       return options_.single_precision()
                  ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options, &report))
@@ -337,16 +337,16 @@ class ContourCommand final : public Command {
     const auto of_owned = [&](const auto& owned) {
       Stopwatch watch;
       const auto view = owned.view();
-      const auto active = read_active_tiles(index_, view, {.threads = options.threads, .progress = bar.stage("index")});
+      const auto active = read_active_tiles(index_, view, {.work = {options.work.threads, bar.stage("index")}});
       results.front().seconds.read += watch.lap();
       for (ContourResult& result : results) {
-        options.progress = bar.stage("contour");
+        options.work.progress = bar.stage("contour");
         ExtractStats& stats = result.stats.emplace();
-        result.mesh =
-            options_.single_precision()
-                ? with_additions(extract<float>(view, *result.isovalue, options, *active, &stats), options.threads, bar)
-                : with_additions(extract<double>(view, *result.isovalue, options, *active, &stats), options.threads,
-                                 bar);
+        result.mesh = options_.single_precision()
+                          ? with_additions(extract<float>(view, *result.isovalue, options, *active, &stats),
+                                           options.work.threads, bar)
+                          : with_additions(extract<double>(view, *result.isovalue, options, *active, &stats),
+                                           options.work.threads, bar);
       }
     };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
@@ -415,7 +415,7 @@ class ContourCommand final : public Command {
       result.input = inputs();
       result.variable = input.info.variable;
     }
-    options.progress = bar.stage("stream");
+    options.work.progress = bar.stage("stream");
     const StreamOptions streaming{options, options_.single_precision(), options_.allows_empty(),
                                   compress_.compression()};
     for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));

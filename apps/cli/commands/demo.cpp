@@ -206,7 +206,7 @@ class DemoCommand final : public Command {
     Stopwatch watch;
     ExtractOptions options;
     options.triangulation = Triangulation::barycentric;
-    options.progress = bar.stage("contour");
+    options.work.progress = bar.stage("contour");
     const Contour<4, double> contour = extract<double>(image->view(), kIsovalue, options);
     const double seconds = watch.lap();
     // animation or report

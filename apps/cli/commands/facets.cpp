@@ -171,7 +171,7 @@ void require_output_holds_facets(const fs::path& output, int image_dim) {
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written) {
   ExtractOptions options = work.options;
-  options.progress = bar.stage("facets");
+  options.work.progress = bar.stage("facets");
   Stopwatch watch;
   const auto of_owned = [&](const auto& owned) {
     use_facets<void>(owned, work, options, [&](const auto& facets) {
@@ -194,12 +194,12 @@ std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const 
                             "compact or barycentric",
                             image_dim(image)));
   ExtractOptions options = work.options;
-  options.progress = bar.stage("facets");
+  options.work.progress = bar.stage("facets");
   Stopwatch watch;
   return std::visit(
       [&](const auto& owned) {
         return use_facets<Triangles>(owned, work, options, [&](const auto& facets) -> Triangles {
-          auto contour = triangulate(facets, method, {work.options.threads, bar.stage("triangles")});
+          auto contour = triangulate(facets, method, {work.options.work.threads, bar.stage("triangles")});
           stats = stats_of(facets, watch.lap());
           return contour;
         });

@@ -154,7 +154,7 @@ class IndexCommand final : public Command {
     const ActiveMethod method = *std::find_if(methods.begin(), methods.end(),
                                               [&](ActiveMethod each) { return active_method_name(each) == method_; });
     const std::vector<SeedMethod> seeds = seed_methods();
-    ActiveTilesOptions options{.threads = threads_, .progress = bar.stage("build")};
+    ActiveTilesOptions options{.work = {threads_, bar.stage("build")}};
     options.seed_method =
         *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return seed_method_name(each) == seeds_; });
     options.scan_order = scan_order_;

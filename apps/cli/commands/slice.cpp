@@ -323,7 +323,7 @@ class SliceCommand final : public Command {
   /// Contours only the layers of a cut.
   void cut_slab(const AnyImage& image, ContourResult& result, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
-    options.progress = bar.stage("slice");
+    options.work.progress = bar.stage("slice");
     ExtractStats& stats = result.stats.emplace();
     Stopwatch watch;
     result.mesh = options_.single_precision()
@@ -338,7 +338,7 @@ class SliceCommand final : public Command {
   /// Cuts the contour of the whole image.
   void cut_whole(const AnyImage& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
-    options.progress = bar.stage("contour");
+    options.work.progress = bar.stage("contour");
     ExtractStats stats;
     struct Nothing {};
     (void)extract_any<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), stats,

@@ -15,7 +15,7 @@
 #include "base/progress.hpp"
 #include "input/extraction.hpp"
 #include "output/output.hpp"
-#include "tegl/stream_several.hpp"
+#include "tegl/stream.hpp"
 
 namespace tegl::cli {
 

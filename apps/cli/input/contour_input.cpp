@@ -176,7 +176,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.last_axis = space_of(input.image).axes.back();
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
-  options.progress = bar.stage("contour");
+  options.work.progress = bar.stage("contour");
   result.contour = extract_any<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
                                            result.stats.emplace(), [&](auto contour) {
                                              options_.add_shape_normals(contour);

@@ -118,7 +118,7 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   options.close = close_;
   options.normals = normals_ == "gradient" || normals_ == "sobel";
   options.gradient = normals_ == "sobel" ? GradientKind::sobel : GradientKind::differences;
-  options.threads = threads_;
+  options.work.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {
     throw Error(ErrorCode::InvalidArgument, fmt::format("--epsilon is {}; expected 0 <= epsilon < 0.5", epsilon_));

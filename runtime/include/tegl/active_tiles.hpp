@@ -79,6 +79,7 @@ class TileRowSet {
   void add_all() noexcept;
   /// Adds the rows of `tiles`, in any order. O(tiles).
   template <int N>
+  requires DimensionBetween<N, 2, 5>
   void add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) noexcept;
   /// Whether a row is in the set.
   [[nodiscard]] bool has(std::size_t row) const noexcept { return (words_[row / 64] >> (row % 64) & 1u) != 0; }
@@ -120,7 +121,7 @@ struct IndexedImage {
 
 /// Computes the fingerprint of an image. Reads all values, at memory speed. Errors: Cancelled.
 template <Value T, int N>
-IndexedImage<N> identify(const Image<T, N>& image, unsigned threads = 0, const Progress& progress = {});
+requires DimensionBetween<N, 2, 5> IndexedImage<N> identify(const Image<T, N>& image, const WorkOptions& work = {});
 
 /// A destination for saved indexes: a sequence of bytes. Its exceptions reach the caller.
 class ByteSink {
@@ -219,9 +220,7 @@ enum class SeedMethod : std::uint8_t;  // tegl/seed_set.hpp
 
 /// Options of build_active_tiles.
 struct ActiveTilesOptions {
-  /// Number of threads; 0, or more than the machine has: all of the machine.
-  unsigned threads = 0;
-  Progress progress = {};  ///< see Progress
+  WorkOptions work = {};  ///< number of threads and progress
   /// Only for `seed_set`, as in SeedSetOptions: the method to find seeds (`cover` by default) and the scan order.
   /// Neighbours are tiles that share a face.
   SeedMethod seed_method{};
@@ -231,21 +230,28 @@ struct ActiveTilesOptions {
 /// Builds an index. Time and temporary memory are about linear in the number of tiles. Errors: Cancelled; TooLarge for
 /// an interval tree or a span space of more than 2^32 tiles; those of find_seeds.
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
-                                                   const ActiveTilesOptions& options = {});
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> build_active_tiles(
+    const Image<T, N>& image, ActiveMethod method, const ActiveTilesOptions& options = {});
 
 /// Loads a saved index and verifies that it belongs to the image, by sizes, value type and hash of the values. Errors:
 /// MalformedFile (not an index, damaged, or truncated), UnsupportedFormat (another version or byte order),
 /// InvalidArgument (an index of another image), Cancelled.
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
-                                                  const ActiveTilesOptions& options = {});
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> load_active_tiles(
+    ByteSource& from, const Image<T, N>& image, const ActiveTilesOptions& options = {});
 
 /// A fixed set of tiles, independent of the isovalue, to contour a part of an image with `extract`. They should include
 /// all tiles of a component of the contour; otherwise the contour is open where they end. Tiles with a missing corner
 /// are left out. Errors: InvalidArgument unless the numbers are ascending and in range.
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vector<TileNumber> tiles);
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image,
+                                                                                std::vector<TileNumber> tiles);
+
+/// As `extract` with an index, with counts and times.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                                          const ExtractOptions& options,
+                                                                          const ActiveTiles<N>& active);
 
 /// As `extract` without an index: the same contour, byte by byte. Reads the samples only in rows with active tiles, and
 /// about one sample for every 32 other rows, so the time is proportional to the active rows. The index is trusted: only
@@ -253,9 +259,11 @@ std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vect
 /// if all others had missing corners. With `close` and missing values all samples are read, and the index saves no
 /// time. ExtractStats::find_seconds has the query time of the index. Errors: those of `extract`; InvalidArgument for an
 /// index of an image of other sizes or value type, or for `close` with an index that is not complete.
-template <class Real = float, Value T, int N>
+template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
-                                                            const ExtractOptions& options, const ActiveTiles<N>& active,
-                                                            ExtractStats* stats = nullptr);
+                                                            const ExtractOptions& options,
+                                                            const ActiveTiles<N>& active) {
+  return extract_with_stats<Real>(image, isovalue, options, active).contour;
+}
 
 }  // namespace tegl

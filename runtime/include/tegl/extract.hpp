@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include "tegl/ambiguity.hpp"
 #include "tegl/contour.hpp"
@@ -45,12 +46,12 @@ struct ExtractOptions {
   /// the mean of their normals, of length 1.
   bool normals = false;
   GradientKind gradient = GradientKind::differences;  ///< how the gradient of normals is computed
-  /// Number of threads; 0, or more than the machine has: all of the machine. The result is the same, byte by byte.
-  unsigned threads = 0;
-  /// Called only by the thread that called the extraction, at least once for each slab (the tiles between two layers of
-  /// the last axis) and several times within large slabs. Fractions never decrease. The number of calls depends on the
-  /// threads' speed. The callback may itself use threads (TBB): it is not called again while it waits for them.
-  Progress progress = {};
+  /// Number of threads and progress. More threads than the machine has count as all of the machine. The progress
+  /// callback is called only by the thread that called the extraction, at least once for each slab (the tiles between
+  /// two layers of the last axis) and several times within large slabs. Fractions never decrease. The number of calls
+  /// depends on the threads' speed. The callback may itself use threads (TBB): it is not called again while it waits
+  /// for them.
+  WorkOptions work = {};
 };
 
 /// Counts and times of one extraction.
@@ -63,6 +64,25 @@ struct ExtractStats {
   double generate_seconds = 0;     ///< to write vertices and simplices
   double close_seconds = 0;        ///< to make caps
 };
+
+/// A contour with the counts and times of its extraction.
+template <int N, Coordinate Real = float>
+requires DimensionBetween<N, 2, 5>
+struct Extraction {
+  Contour<N, Real> contour = {};  ///< the contour
+  ExtractStats stats = {};        ///< counts and times
+};
+
+/// The size of a contour with the counts and times of its extraction.
+struct ExtractedSize {
+  ContourSize size = {};    ///< the size
+  ExtractStats stats = {};  ///< counts and times
+};
+
+/// As `extract`, with counts and times.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                                          const ExtractOptions& options = {});
 
 /// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
@@ -82,16 +102,34 @@ struct ExtractStats {
 /// images, 3 ms for noise. Smooth images have few kinds of tiles and spend little time on this; noise spends nearly all
 /// of it there. Up to 256 MiB of built tiles and faces are cached, whatever the number of threads; the tiles of two
 /// slabs are held in memory besides. With `close`, a 5D contour may have simplices of zero size at the border.
-template <class Real = float, Value T, int N>
-Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
-                         ExtractStats* stats = nullptr);
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 5> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
+                                                            const ExtractOptions& options = {}) {
+  return extract_with_stats<Real>(image, isovalue, options).contour;
+}
+
+/// Extracts the contours of several isovalues, one after another: contour i equals
+/// `extract<Real>(image, isovalues[i], options)` byte by byte. Progress covers all contours. Isovalues may be in any
+/// order and may repeat. Errors: those of `extract`, before any contour if an isovalue is not finite. Time: that of
+/// `extract` for each isovalue; an index (tegl/active_tiles.hpp) saves reading the samples each time.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image,
+                                                                                 std::span<const double> isovalues,
+                                                                                 const ExtractOptions& options = {});
+
+/// As `count`, with counts and times.
+template <Value T, int N>
+requires DimensionBetween<N, 2, 5> ExtractedSize count_with_stats(const Image<T, N>& image, double isovalue,
+                                                                  const ExtractOptions& options = {});
 
 /// Counts the vertices and simplices that `extract` would make with these options, exactly. Takes little memory, and
 /// less time than `extract` because nothing is written; with `close` or missing values everything except writing is
 /// done. Errors: those of `extract` except TooLarge.
 template <Value T, int N>
-ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
-                  ExtractStats* stats = nullptr);
+requires DimensionBetween<N, 2, 5> ContourSize count(const Image<T, N>& image, double isovalue,
+                                                     const ExtractOptions& options = {}) {
+  return count_with_stats(image, isovalue, options).size;
+}
 
 /// The types of vertex numbers.
 template <class I>
@@ -111,10 +149,9 @@ struct ContourRoom {
 /// simplices equal those of `extract` byte by byte, except for the width of the numbers. Images with missing values are
 /// processed twice. Errors: those of `extract`; InvalidArgument if `room` is too small. After an error the contents of
 /// the memory are undefined.
-template <Value T, int N, class Real, VertexNumber I>
-requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
-                                                            const ContourRoom<N, Real, I>& room,
-                                                            const ExtractOptions& options = {},
-                                                            ExtractStats* stats = nullptr);
+template <Value T, int N, Coordinate Real, VertexNumber I>
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>& image, double isovalue,
+                                                              const ContourRoom<N, Real, I>& room,
+                                                              const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -26,6 +26,14 @@ struct PickReport {
   std::uint64_t components = 0;     ///< number of components in those tiles, of which one was picked
 };
 
+/// A component of a contour, and how it was found.
+template <int N, Coordinate Real = float>
+requires DimensionBetween<N, 2, 5>
+struct PickedComponent {
+  Contour<N, Real> contour = {};  ///< the component
+  PickReport<N> report = {};      ///< how it was found
+};
+
 /// Extracts the component of {value = isovalue} nearest to a point, given in world coordinates.
 ///
 /// Rule. First, the active tile nearest to the point, in grid steps (of equal distances the one with the lower number).
@@ -39,9 +47,9 @@ struct PickReport {
 /// contour. If components share tiles, as in noise, the tiles of those components are read too. In 5D and with `close`,
 /// the whole contour is extracted and the component selected from it. Errors: those of `extract`; InvalidArgument for a
 /// point outside of the image. Real: float or double. Source: propagation after Bajaj, Pascucci, Schikore 1996.
-template <class Real = float, Value T, int N>
-Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
-                                   const std::type_identity_t<std::array<double, N>>& point,
-                                   const ExtractOptions& options = {}, PickReport<N>* report = nullptr);
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
+    const Image<T, N>& image, double isovalue, const std::type_identity_t<std::array<double, N>>& point,
+    const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -60,8 +60,8 @@ requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
 ///
 /// The points of `facets` keep their numbers. Barycentres come last, with the mean of their polygon's normals if there
 /// are normals. Triangles come polygon by polygon. Errors: TooLarge, Cancelled. O(size).
-template <class Real>
+template <Coordinate Real>
 Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
-                             const WorkOptions& options = {});
+                             const WorkOptions& work = {});
 
 }  // namespace tegl

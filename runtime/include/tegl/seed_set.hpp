@@ -47,19 +47,7 @@ struct SeedSetOptions {
   std::vector<int> scan_order = {};
   /// Only for volume_thinning: keeps constant tiles in the skeleton, as published. They are never active.
   bool keep_constant_tiles = false;
-  /// Number of threads that read the image; the other work is sequential.
-  unsigned threads = 0;
-  Progress progress = {};  ///< see Progress
-};
-
-/// A set of tiles that contains a tile of every component of active tiles, at every isovalue. A component is connected
-/// by steps between active neighbours, as `neighbourhood` defines them.
-struct SeedSet {
-  SeedMethod method = SeedMethod::cover;             ///< the method that found the seeds
-  Neighbourhood neighbourhood = Neighbourhood::all;  ///< the neighbours they propagate to
-  std::vector<TileNumber> tiles = {};                ///< ascending
-  /// Tile i is active if least[i] < T <= greatest[i].
-  std::vector<double> least = {}, greatest = {};  ///< minimum and maximum over each tile's corners
+  WorkOptions work = {};  ///< number of threads that read the image (the other work is sequential), and progress
 };
 
 /// Counts of one find_seeds.
@@ -74,17 +62,29 @@ struct SeedSetStats {
   bool reduced = false;
 };
 
+/// A set of tiles that contains a tile of every component of active tiles, at every isovalue. A component is connected
+/// by steps between active neighbours, as `neighbourhood` defines them.
+struct SeedSet {
+  SeedMethod method = SeedMethod::cover;             ///< the method that found the seeds
+  Neighbourhood neighbourhood = Neighbourhood::all;  ///< the neighbours they propagate to
+  std::vector<TileNumber> tiles = {};                ///< ascending
+  /// Tile i is active if least[i] < T <= greatest[i].
+  std::vector<double> least = {}, greatest = {};  ///< minimum and maximum over each tile's corners
+  SeedSetStats stats = {};                        ///< counts of find_seeds
+};
+
 /// Finds a seed set. Tiles with missing values are never active and never seeds. An image without active tiles has an
 /// empty seed set. Time and memory: about linear in the number of tiles; for `whole2` only if neighbouring tiles have
 /// similar ranges. Errors: TooLarge for 2^32 tiles or more, InvalidArgument for a scan order that is not a permutation
 /// of the axes, Cancelled. Deterministic.
 template <Value T, int N>
-SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options = {}, SeedSetStats* stats = nullptr);
+requires DimensionBetween<N, 2, 5> SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options = {});
 
 /// A lower bound of the size of any seed set with this neighbourhood: a number of components of active tiles, possibly
 /// at different isovalues, no two of which share a tile. It is found greedily, and in images with too many candidate
 /// tiles at a sample of isovalues only: a larger bound may exist. Errors: as find_seeds.
 template <Value T, int N>
-std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options = {});
+requires DimensionBetween<N, 2, 5> std::uint64_t seed_lower_bound(const Image<T, N>& image,
+                                                                  const SeedSetOptions& options = {});
 
 }  // namespace tegl

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Contours of images larger than memory: layers along the last axis are read one by one, and the contour is written in
-// parts.
+// parts. Several isovalues take one pass over the layers.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
+#include <vector>
 
 #include "tegl/extract.hpp"
 #include "tegl/layers.hpp"
@@ -40,17 +42,33 @@ class ContourSink {
   virtual void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) = 0;
 };
 
-/// Size of a streamed contour.
-using StreamedSize = ContourSize;
-
 /// As `extract`, for an image read by layers and a contour written in parts: the same vertices, normals and simplices
 /// with the same numbers, but numbered by 64 bits. Memory: three layers of samples (four with normals, more if layers
 /// are small), the contour between two layers, and the data to separate sheets at missing values or to close the
 /// contour at the image border. Errors: those of `extract` except TooLarge, and exceptions of the reader and the sink.
-template <class Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
-                                                                 const ExtractOptions& options,
-                                                                 ContourSink<N, Real>& sink,
-                                                                 ExtractStats* stats = nullptr);
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
+                                                                  const ExtractOptions& options,
+                                                                  ContourSink<N, Real>& sink);
+
+/// One of the contours of extract_streamed_several: its isovalue and the sink that receives it.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+struct StreamedContour {
+  double isovalue = 0;                   ///< finite
+  ContourSink<N, Real>* sink = nullptr;  ///< receives the contour; not owned
+};
+
+/// As extract_streamed for each isovalue: the same vertices, normals and simplices in the same order. Returns their
+/// sizes, counts and times in the order of `contours`. Layers are read once. All contours advance together, layer by
+/// layer; each is a task of its own for the threads of `options`, whose number does not grow with the number of
+/// contours. The reader is called by the calling thread. Sinks are called by any thread, but never concurrently with
+/// each other or with the reader. Memory: the layers of extract_streamed once, the rest of its memory for each
+/// isovalue. Errors: those of extract_streamed, from the first contour that fails; InvalidArgument for a null sink. The
+/// other contours are then incomplete.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_several(
+    LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
+    const ExtractOptions& options);
 
 }  // namespace tegl

@@ -30,7 +30,6 @@
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream.hpp"
-#include "tegl/stream_several.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tegl/track.hpp"
 #include "tegl/values.hpp"

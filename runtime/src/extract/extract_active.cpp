@@ -25,10 +25,10 @@ void require_index_of(const Image<T, N>& image, const ActiveTiles<N>& active) {
 
 }  // namespace
 
-template <class Real, Value T, int N>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
-                                                            const ExtractOptions& options, const ActiveTiles<N>& active,
-                                                            ExtractStats* stats) {
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                                          const ExtractOptions& options,
+                                                                          const ActiveTiles<N>& active) {
   detail::check_arguments(isovalue, options);
   require_index_of(image, active);
   const bool missing = active.image().any_missing;
@@ -36,7 +36,7 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& i
     throw Error(ErrorCode::InvalidArgument,
                 "the border cannot be closed around chosen tiles; expected an index of all active tiles");
   const bool finds_all = active.is_complete() && options.close && missing;
-  if (active.grid().count() == 0 || finds_all) return extract<Real>(image, isovalue, options, stats);
+  if (active.grid().count() == 0 || finds_all) return extract_with_stats<Real>(image, isovalue, options);
   detail::Stopwatch watch;
   // A skipped row provides no state to its neighbours, which extraction next to missing values needs: then select tiles
   // instead of rows.
@@ -48,14 +48,14 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& i
   detail::ExtractPlan plan;
   plan.selection = &selection;
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  auto contour = detail::extract_any<N, Real>(source, image.grid(), options, stats, plan);
-  if (stats != nullptr) stats->find_seconds += seconds;
-  return contour;
+  auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options, plan);
+  result.stats.find_seconds += seconds;
+  return result;
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                         \
-  template Contour<N, Real> extract<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
-                                                const ActiveTiles<N>&, ExtractStats*);
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                       \
+  template Extraction<N, Real> extract_with_stats<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
+                                                              const ActiveTiles<N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -148,80 +148,77 @@ class MemorySink final : public ContourSink<N, Real> {
 };
 
 template <Value T, int N>
-ContourSize count_by_parts(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
-                           ExtractStats* stats) {
+ExtractedSize count_by_parts(const Image<T, N>& image, double isovalue, const ExtractOptions& options) {
   const ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
   const auto tables = generated_tables<N>(options);
-  ExtractStats done;
   if (!options.close) {
     ImageSource<T, N> source(image, isovalue, options.epsilon);
     CountOutput<N, float> output;
-    done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
-    if (stats != nullptr) *stats = done;
-    if (!output.any_missing) return output.size;
+    const ExtractStats stats = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+    if (!output.any_missing) return {output.size, stats};
   }
   ImageSource<T, N> source(image, isovalue, options.epsilon);
   NoSink<N, float> sink;
   StreamOutput<N, float> output(sink, options.normals);
-  done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
-  if (stats != nullptr) *stats = done;
-  return output.size();
+  const ExtractStats stats = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+  return {output.size(), stats};
 }
 
 }  // namespace
 }  // namespace detail
 
 template <Value T, int N>
-ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& asked, ExtractStats* stats) {
+requires DimensionBetween<N, 2, 5> ExtractedSize count_with_stats(const Image<T, N>& image, double isovalue,
+                                                                  const ExtractOptions& asked) {
   detail::check_arguments(isovalue, asked);
   ExtractOptions options = asked;
   options.normals = false;  // not counted: one per vertex
   if constexpr (N > 4) {
     detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-    return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
+    return detail::count_tiles<N>(source, image.grid(), options);
   } else {
-    return detail::count_by_parts(image, isovalue, options, stats);
+    return detail::count_by_parts(image, isovalue, options);
   }
 }
 
-template <Value T, int N, class Real, VertexNumber I>
-requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
-                                                            const ContourRoom<N, Real, I>& room,
-                                                            const ExtractOptions& options, ExtractStats* stats) {
+template <Value T, int N, Coordinate Real, VertexNumber I>
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>& image, double isovalue,
+                                                              const ContourRoom<N, Real, I>& room,
+                                                              const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   const auto tables = detail::generated_tables<N>(options);
   detail::ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   detail::MemoryOutput<N, Real, I> output(room, options.normals);
-  ExtractStats done = detail::extract_to<N, Real>(source, image.grid(), tables, options, plan, output);
-  ContourSize size = output.size;
+  ExtractedSize result;
+  result.stats = detail::extract_to<N, Real>(source, image.grid(), tables, options, plan, output);
+  result.size = output.size;
   if (output.any_missing) {
     detail::ImageSource<T, N> again(image, isovalue, options.epsilon);
     detail::MemorySink<N, Real, I> sink(room);
     detail::StreamOutput<N, Real> parts(sink, options.normals);
-    done = detail::extract_to<N, Real>(again, image.grid(), tables, options, plan, parts);
-    size = parts.size();
+    result.stats = detail::extract_to<N, Real>(again, image.grid(), tables, options, plan, parts);
+    result.size = parts.size();
   } else if constexpr (sizeof(I) == sizeof(Index)) {
-    detail::check_vertex_count(size.vertices, detail::kMaxVertices);
+    detail::check_vertex_count(result.size.vertices, detail::kMaxVertices);
   }
-  if (stats != nullptr) *stats = done;
-  return size;
+  return result;
 }
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real, I)                                                                    \
-  template ContourSize extract_into<T, N, Real, I>(const Image<T, N>&, double, const ContourRoom<N, Real, I>&, \
-                                                   const ExtractOptions&, ExtractStats*);
-#define TEGL_INSTANTIATE_DIM(T, N)                                                                    \
-  template ContourSize count<T, N>(const Image<T, N>&, double, const ExtractOptions&, ExtractStats*); \
-  TEGL_INSTANTIATE_ONE(T, N, float, std::uint32_t)                                                    \
-  TEGL_INSTANTIATE_ONE(T, N, float, std::uint64_t)                                                    \
-  TEGL_INSTANTIATE_ONE(T, N, double, std::uint32_t)                                                   \
+#define TEGL_INSTANTIATE_ONE(T, N, Real, I)                                                                      \
+  template ExtractedSize extract_into<T, N, Real, I>(const Image<T, N>&, double, const ContourRoom<N, Real, I>&, \
+                                                     const ExtractOptions&);
+#define TEGL_INSTANTIATE_DIM(T, N)                                                                  \
+  template ExtractedSize count_with_stats<T, N>(const Image<T, N>&, double, const ExtractOptions&); \
+  TEGL_INSTANTIATE_ONE(T, N, float, std::uint32_t)                                                  \
+  TEGL_INSTANTIATE_ONE(T, N, float, std::uint64_t)                                                  \
+  TEGL_INSTANTIATE_ONE(T, N, double, std::uint32_t)                                                 \
   TEGL_INSTANTIATE_ONE(T, N, double, std::uint64_t)
-#define TEGL_INSTANTIATE(T)                                                                           \
-  template ContourSize count<T, 5>(const Image<T, 5>&, double, const ExtractOptions&, ExtractStats*); \
-  TEGL_INSTANTIATE_DIM(T, 2)                                                                          \
-  TEGL_INSTANTIATE_DIM(T, 3)                                                                          \
+#define TEGL_INSTANTIATE(T)                                                                         \
+  template ExtractedSize count_with_stats<T, 5>(const Image<T, 5>&, double, const ExtractOptions&); \
+  TEGL_INSTANTIATE_DIM(T, 2)                                                                        \
+  TEGL_INSTANTIATE_DIM(T, 3)                                                                        \
   TEGL_INSTANTIATE_DIM(T, 4)
 TEGL_INSTANTIATE(std::uint8_t)
 TEGL_INSTANTIATE(std::int8_t)

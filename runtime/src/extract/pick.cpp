@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -151,7 +152,7 @@ ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progr
   ExtractOptions inside = options;
   inside.epsilon = 0.25;
   inside.normals = false;
-  inside.progress = progress;
+  inside.work.progress = progress;
   return inside;
 }
 
@@ -191,8 +192,9 @@ Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::Gri
                               const std::type_identity_t<std::array<double, N>>& at, const ExtractOptions& options,
                               std::uint64_t& components, const Choose& choose) {
   using detail::part_of;
-  const Progress& progress = options.progress;
-  const ComponentLabels labels = label_components(contour, {options.threads, part_of(progress, kExtracted, kLabelled)});
+  const Progress& progress = options.work.progress;
+  const ComponentLabels labels =
+      label_components(contour, {options.work.threads, part_of(progress, kExtracted, kLabelled)});
   const std::vector<bool> allowed = choose(labels, part_of(progress, kLabelled, 0.5 * (kLabelled + kChosen)));
   components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
   std::vector<bool> keep(labels.count);
@@ -220,36 +222,35 @@ std::array<double, N> place_in_grid(const detail::GridLocator<N>& locator, const
 
 }  // namespace
 
-template <class Real, Value T, int N>
-Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
-                                   const std::type_identity_t<std::array<double, N>>& point,
-                                   const ExtractOptions& options, PickReport<N>* report) {
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
+    const Image<T, N>& image, double isovalue, const std::type_identity_t<std::array<double, N>>& point,
+    const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   const detail::GridLocator<N> locator(image.grid());
   const std::array<double, N> at = place_in_grid(locator, image.grid(), point);
-  PickReport<N> own;
-  PickReport<N>& found = report != nullptr ? *report : own;
-  found = {};
+  PickReport<N> found;
   ExtractOptions rest = options;
-  rest.progress = detail::part_of(options.progress, kFlooded, kExtracted);
+  rest.work.progress = detail::part_of(options.work.progress, kFlooded, kExtracted);
   const auto all_of = [](const ComponentLabels& labels, const Progress&) {
     return std::vector<bool>(labels.count, true);
   };
   const detail::TileFlood<T, N> flood(image, isovalue);
-  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress)) {
+  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.work.progress)) {
     if (!options.close) {
       auto nothing =
           extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // empty, with names and units
-      detail::tell(options.progress, 1.0);
-      return nothing;
+      detail::tell(options.work.progress, 1.0);
+      return {std::move(nothing), found};
     }
     // The whole contour consists of caps: take the component of the nearest vertex.
-    return nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
+    auto nearest = nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
+    return {std::move(nearest), found};
   }
   bool at_missing = false;
   std::vector<TileNumber> tiles =
-      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads,
-                detail::part_of(options.progress, kNearestShare, kFlooded), &at_missing);
+      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.work.threads,
+                detail::part_of(options.work.progress, kNearestShare, kFlooded), &at_missing);
   std::sort(tiles.begin(), tiles.end());
   found.tiles = tiles.size();
   const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
@@ -272,12 +273,13 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
     return components_in(contour_of(on_steps_of_1, inside_edges(options, extracting), double{}), labels, flood.grid(),
                          tiles, detail::part_of(progress, 0.9, 1.0));
   };
-  return nearest_part(contour_of(image, rest, Real{}), locator, at, options, found.components, allowed);
+  auto nearest = nearest_part(contour_of(image, rest, Real{}), locator, at, options, found.components, allowed);
+  return {std::move(nearest), found};
 }
 
-#define TEGL_INSTANTIATE_REAL(T, N, Real)                                                                           \
-  template Contour<N, Real> extract_component<Real, T, N>(const Image<T, N>&, double, const std::array<double, N>&, \
-                                                          const ExtractOptions&, PickReport<N>*);
+#define TEGL_INSTANTIATE_REAL(T, N, Real)                          \
+  template PickedComponent<N, Real> extract_component<Real, T, N>( \
+      const Image<T, N>&, double, const std::array<double, N>&, const ExtractOptions&);
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N) \
   TEGL_INSTANTIATE_REAL(T, N, float)      \
   TEGL_INSTANTIATE_REAL(T, N, double)

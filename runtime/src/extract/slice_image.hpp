@@ -131,8 +131,9 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const
   detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
   plan.keeps_off_layers = at_layer;
   if (!is_last) plan.part = {axis, layers.first};
-  const Contour<N, Real> contour = detail::extract_any<N, Real>(source, slab.grid(), options, stats, plan);
-  return slice(contour, Hyperplane<N>::across(axis, at));
+  const auto extracted = detail::extract_in_memory<N, Real>(source, slab.grid(), options, plan);
+  if (stats != nullptr) *stats = extracted.stats;
+  return slice(extracted.contour, Hyperplane<N>::across(axis, at));
 }
 
 template <class Real, Value T, int N>

@@ -58,23 +58,22 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
 
 }  // namespace detail
 
-template <class Real, Value T, int N>
-requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
-                                                                 const ExtractOptions& options,
-                                                                 ContourSink<N, Real>& sink, ExtractStats* stats) {
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
+                                                                  const ExtractOptions& options,
+                                                                  ContourSink<N, Real>& sink) {
   detail::check_arguments(isovalue, options);
   detail::LayerRing<T, N> ring(layers);
   detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
   detail::StreamOutput<N, Real> output(sink, options.normals);
-  const ExtractStats done = detail::extract_to<N, Real>(source, layers.grid(), detail::generated_tables<N>(options),
-                                                        options, detail::streaming_plan(layers.grid()), output);
-  if (stats != nullptr) *stats = done;
-  return output.size();
+  const ExtractStats stats = detail::extract_to<N, Real>(source, layers.grid(), detail::generated_tables<N>(options),
+                                                         options, detail::streaming_plan(layers.grid()), output);
+  return {output.size(), stats};
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                              \
-  template StreamedSize extract_streamed<Real, T, N>(LayerReader<T, N>&, double, const ExtractOptions&, \
-                                                     ContourSink<N, Real>&, ExtractStats*);
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                               \
+  template ExtractedSize extract_streamed<Real, T, N>(LayerReader<T, N>&, double, const ExtractOptions&, \
+                                                      ContourSink<N, Real>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

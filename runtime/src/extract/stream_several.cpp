@@ -2,8 +2,6 @@
 //
 // Several streamed extractions from one pass over the layers, a batch of slabs at a time. The caller's thread reads the
 // layers of the next batch once; then each contour's part of the batch is a separate task.
-#include "tegl/stream_several.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -73,16 +71,17 @@ struct OneOfSeveral {
 template <Value T, int N, class Real>
 class SideBySide {
  public:
-  SideBySide(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours, const ExtractOptions& options)
-      : progress_(options.progress),
+  SideBySide(LayerReader<T, N>& layers, std::span<const StreamedContour<N, Real>> contours,
+             const ExtractOptions& options)
+      : progress_(options.work.progress),
         ring_(layers),
-        threads_(options.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.threads),
+        threads_(options.work.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.work.threads),
         at_once_(std::min(threads_, static_cast<unsigned>(std::min<std::size_t>(contours.size(), ~0U)))),
         workers_(at_once_, [] { return Nothing{}; }) {
     for (const auto& contour : contours) {
       ExtractOptions own = options;
-      own.threads = threads_ / at_once_;
-      if (progress_) own.progress = [this](double share) { return tell(share); };
+      own.work.threads = threads_ / at_once_;
+      if (progress_) own.work.progress = [this](double share) { return tell(share); };
       all_.push_back(std::make_unique<One>(ring_, contour, std::move(own), calls_));
     }
   }
@@ -97,9 +96,12 @@ class SideBySide {
     }
   }
 
-  [[nodiscard]] const detail::StreamOutput<N, Real>& output(std::size_t i) const { return all_[i]->output; }
-  [[nodiscard]] ExtractStats stats(std::size_t i) const {
-    return all_[i]->extraction ? all_[i]->extraction->stats() : ExtractStats{};
+  /// In the order of the contours.
+  [[nodiscard]] std::vector<ExtractedSize> results() const {
+    std::vector<ExtractedSize> results;
+    for (const auto& one : all_)
+      results.push_back({one->output.size(), one->extraction ? one->extraction->stats() : ExtractStats{}});
+    return results;
   }
 
  private:
@@ -142,26 +144,23 @@ class SideBySide {
 
 }  // namespace
 
-template <class Real, Value T, int N>
-requires DimensionBetween<N, 2, 4>
-void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
-                              const ExtractOptions& options) {
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_several(
+    LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
+    const ExtractOptions& options) {
   for (const auto& contour : contours) {
     if (contour.sink == nullptr) throw Error(ErrorCode::InvalidArgument, "a contour without a sink; expected one each");
     detail::check_arguments(contour.isovalue, options);
   }
-  if (contours.empty()) return;
+  if (contours.empty()) return {};
   SideBySide<T, N, Real> all(layers, contours, options);
   all.run();
-  for (std::size_t i = 0; i < contours.size(); ++i) {
-    contours[i].size = all.output(i).size();
-    contours[i].stats = all.stats(i);
-  }
+  return all.results();
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                    \
-  template void extract_streamed_several<Real, T, N>(LayerReader<T, N>&, std::span<StreamedContour<N, Real>>, \
-                                                     const ExtractOptions&);
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                  \
+  template std::vector<ExtractedSize> extract_streamed_several<Real, T, N>( \
+      LayerReader<T, N>&, std::span<const StreamedContour<N, Real>>, const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -96,11 +96,11 @@ class FacetExtraction {
         passes_(kPasses + (!is_estimated(options.ambiguity) ? 0
                            : N > 2                          ? 2
                                                             : 1)),
-        reporter_(options.progress, passes_, "passes"),
+        reporter_(options.work.progress, passes_, "passes"),
         rows_(grid.sizes()),
         tables_(options.ambiguity),
         placement_(grid),
-        workers_(options.threads, [this] { return FacetScratch(tables_); }) {
+        workers_(options.work.threads, [this] { return FacetScratch(tables_); }) {
     if (options.normals) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
     faces_.resize(2u << N);

@@ -315,18 +315,18 @@ void make_room(std::vector<PolygonRun>& runs, const FacetHierarchy<3, Real>& fac
 
 }  // namespace
 
-template <class Real>
+template <Coordinate Real>
 Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
-                             const WorkOptions& options) {
+                             const WorkOptions& work) {
   constexpr std::size_t kRun = 1024;
   const std::size_t count = facets.count(2);
   std::vector<PolygonRun> runs((count + kRun - 1) / kRun);
   const PolygonTriangulator<Real> triangulator(facets, method);
   // triangulate runs in parallel
-  detail::ProgressReporter reporter(options.progress, 1, "passes");
+  detail::ProgressReporter reporter(work.progress, 1, "passes");
   reporter.begin_batch(0, 1, 1);
   reporter.begin_pass(std::max<std::size_t>(1, runs.size()));
-  detail::Workers<PolygonScratch> workers(options.threads, [] { return PolygonScratch(); });
+  detail::Workers<PolygonScratch> workers(work.threads, [] { return PolygonScratch(); });
   workers.for_range(runs.size(), 1, [&](std::size_t from, std::size_t to, PolygonScratch& scratch) {
     for (std::size_t r = from; r < to && !reporter.stopped(); ++r) {
       for (std::size_t f = r * kRun; f < std::min(count, (r + 1) * kRun); ++f) triangulator.add(f, scratch, runs[r]);

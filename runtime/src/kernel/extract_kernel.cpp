@@ -61,14 +61,14 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
 }
 
 template <int N, class Real>
-class Extraction final : public SteppedExtraction<N, Real> {
+class TableExtraction final : public SteppedExtraction<N, Real> {
  public:
-  Extraction(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables, const ExtractOptions& options,
-             const ExtractPlan& plan, ContourOutput<N, Real>& output)
+  TableExtraction(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                  const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output)
       : SteppedExtraction<N, Real>(grid),
         source_(source),
         output_(output),
-        reporter_(options.progress, grid.axes[N - 1].size() - 1),
+        reporter_(options.work.progress, grid.axes[N - 1].size() - 1),
         inverted_(options.ambiguity == Ambiguity::high),
         max_vertices_(plan.max_vertices),
         max_vertices_at_once_(plan.max_vertices_at_once),
@@ -84,7 +84,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
         tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes() && !counter_.lists_cubes()),
         pinches_(shape_, counter_),
-        workers_(options.threads,
+        workers_(options.work.threads,
                  [this] {
                    return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
                  }),
@@ -602,7 +602,7 @@ template <int N, class Real>
 ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
                         const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output) {
   if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
-  Extraction<N, Real> extraction(source, grid, tables, options, plan, output);
+  TableExtraction<N, Real> extraction(source, grid, tables, options, plan, output);
   extraction.run();
   return extraction.stats();
 }
@@ -612,22 +612,22 @@ std::unique_ptr<SteppedExtraction<N, Real>> make_extraction(SampleSource<N>& sou
                                                             const TableSet<N>& tables, const ExtractOptions& options,
                                                             const ExtractPlan& plan, ContourOutput<N, Real>& output) {
   if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return nullptr;
-  return std::make_unique<Extraction<N, Real>>(source, grid, tables, options, plan, output);
+  return std::make_unique<TableExtraction<N, Real>>(source, grid, tables, options, plan, output);
 }
 
 template <int N, class Real>
-Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-                                const ExtractOptions& options, ExtractStats* stats, const ExtractPlan& plan) {
-  Contour<N, Real> contour;
+Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                                   const ExtractOptions& options, const ExtractPlan& plan) {
+  Extraction<N, Real> result;
+  Contour<N, Real>& contour = result.contour;
   for (int a = 0; a < N; ++a) {
     contour.axis_names[a] = grid.axes[a].name;
     contour.axis_units[a] = grid.axes[a].unit;
   }
   contour.direction = options.direction;
   MemoryOutput<N, Real> output(contour, options.normals, plan.max_vertices);
-  const ExtractStats done = extract_to(source, grid, tables, options, plan, output);
-  if (stats != nullptr) *stats = done;
-  return contour;
+  result.stats = extract_to(source, grid, tables, options, plan, output);
+  return result;
 }
 
 #define TEGL_INSTANTIATE(N, Real)                                                                                \
@@ -636,8 +636,8 @@ Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, co
   template std::unique_ptr<SteppedExtraction<N, Real>> make_extraction<N, Real>(                                 \
       SampleSource<N>&, const Grid<N>&, const TableSet<N>&, const ExtractOptions&, const ExtractPlan&,           \
       ContourOutput<N, Real>&);                                                                                  \
-  template Contour<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,        \
-                                                    const ExtractOptions&, ExtractStats*, const ExtractPlan&);
+  template Extraction<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,     \
+                                                       const ExtractOptions&, const ExtractPlan&);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

@@ -58,9 +58,9 @@ template <int N, class Real>
 ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
                         const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output);
 
-/// Extracts the contour of `source` over `grid` into memory. `stats` may be null.
+/// Extracts the contour of `source` over `grid` into memory.
 template <int N, class Real>
-Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-                                const ExtractOptions& options, ExtractStats* stats, const ExtractPlan& plan = {});
+Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                                   const ExtractOptions& options, const ExtractPlan& plan = {});
 
 }  // namespace tegl::detail

@@ -116,7 +116,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
     if (pinches.any_missing()) separate(candidates);
   }
 
-  [[nodiscard]] const StreamedSize& size() const noexcept { return size_; }
+  [[nodiscard]] const ContourSize& size() const noexcept { return size_; }
 
  private:
   using WideSimplex = typename ContourSink<N, Real>::Simplex;
@@ -177,7 +177,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
 
   ContourSink<N, Real>& sink_;
   bool with_normals_;
-  StreamedSize size_;
+  ContourSize size_;
   std::uint64_t first_ = 0, before_first_ = 0;
   Buffer<Vertex> vertices_, before_;  ///< of the current part and of the previous one
   Buffer<Vertex> normals_, before_normals_;

@@ -54,14 +54,14 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         options_(options),
         output_(output),
         max_vertices_(plan.max_vertices),
-        reporter_(options.progress, grid.axes[N - 1].size() - 1),
+        reporter_(options.work.progress, grid.axes[N - 1].size() - 1),
         flip_(against_tables(grid, options)),
         shape_(grid.sizes()),
         placement_(grid),
         cube_(N),
         grid_cells_(cube_, options.close),
         finder_(shape_, options.close ? plan.closed_axes : 0),
-        workers_(options.threads, [] { return Nothing{}; }),
+        workers_(options.work.threads, [] { return Nothing{}; }),
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
                tile_bytes, workers_.count()) {
     if (options.normals) placement_.want_normals(source, grid, options);
@@ -509,39 +509,49 @@ class BuiltContour final : public ContourOutput<N, Real> {
   bool normals_;
 };
 
+/// Extracts into `output`. An image without tiles leaves it empty.
+template <int N, class Real>
+ExtractStats build_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                         BuiltContour<N, Real>& output, std::size_t tile_bytes, const ExtractPlan& plan) {
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
+  TileExtraction<N, Real> extraction(source, grid, options, output, tile_bytes, plan);
+  extraction.run();
+  return extraction.stats();
+}
+
 }  // namespace
 
 template <int N, class Real>
-ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                          Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes,
-                          const ExtractPlan& plan) {
-  if (contour != nullptr) {
-    for (int a = 0; a < N; ++a) {
-      contour->axis_names[a] = grid.axes[a].name;
-      contour->axis_units[a] = grid.axes[a].unit;
-    }
-    contour->direction = options.direction;
+Extraction<N, Real> extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                                  std::size_t tile_bytes, const ExtractPlan& plan) {
+  Extraction<N, Real> result;
+  for (int a = 0; a < N; ++a) {
+    result.contour.axis_names[a] = grid.axes[a].name;
+    result.contour.axis_units[a] = grid.axes[a].unit;
   }
-  BuiltContour<N, Real> output(contour, options.normals);
-  ExtractStats done;
-  if (SteppedExtraction<N, Real>::tiles_of(grid) != 0) {
-    TileExtraction<N, Real> extraction(source, grid, options, output, tile_bytes, plan);
-    extraction.run();
-    done = extraction.stats();
-  }
-  if (stats != nullptr) *stats = done;
-  return output.size;
+  result.contour.direction = options.direction;
+  BuiltContour<N, Real> output(&result.contour, options.normals);
+  result.stats = build_tiles(source, grid, options, output, tile_bytes, plan);
+  return result;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                      \
-  template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&, \
-                                              Contour<N, Real>*, ExtractStats*, std::size_t, const ExtractPlan&);
+template <int N>
+ExtractedSize count_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
+  BuiltContour<N, float> output(nullptr, options.normals);
+  const ExtractStats stats = build_tiles(source, grid, options, output, kBuiltTileBytes, {});
+  return {output.size, stats};
+}
+
+#define TEGL_INSTANTIATE(N, Real)                                                                              \
+  template Extraction<N, Real> extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&, \
+                                                      std::size_t, const ExtractPlan&);
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, double)
 TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
 TEGL_INSTANTIATE(5, float)
 TEGL_INSTANTIATE(5, double)
+template ExtractedSize count_tiles<5>(SampleSource<5>&, const Grid<5>&, const ExtractOptions&);
 #undef TEGL_INSTANTIATE
 
 }  // namespace tegl::detail

@@ -13,28 +13,29 @@ namespace tegl::detail {
 /// Maximum bytes of built tiles kept for later use, in addition to those in use.
 inline constexpr std::size_t kBuiltTileBytes = std::size_t{1} << 28;
 
-/// Extracts the contour of `source` over `grid` into memory, triangulated barycentrically. If `contour` is null, only
-/// its size is determined. `plan`'s members on batches and on keeping tiles have no effect. `stats` may be null. An
-/// image without tiles has an empty contour. Throws UnsupportedData for missing values.
+/// Extracts the contour of `source` over `grid` into memory, triangulated barycentrically. `plan`'s members on batches
+/// and on keeping tiles have no effect. An image without tiles has an empty contour. Throws UnsupportedData for missing
+/// values.
 template <int N, class Real>
-ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                          Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes = kBuiltTileBytes,
-                          const ExtractPlan& plan = {});
+Extraction<N, Real> extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                                  std::size_t tile_bytes = kBuiltTileBytes, const ExtractPlan& plan = {});
+
+/// The size of the contour of extract_tiles, which is not written.
+template <int N>
+ExtractedSize count_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options);
 
 /// Whether contours of dimension N are extracted without tables, by building tiles.
 template <int N>
 inline constexpr bool kIsTileByTile = N > 4;
 
-/// Extracts a contour into memory in any dimension. `stats` may be null.
+/// Extracts a contour into memory in any dimension, by tables or by building tiles.
 template <int N, class Real>
-Contour<N, Real> extract_any(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                             ExtractStats* stats, const ExtractPlan& plan = {}) {
-  Contour<N, Real> contour;
+Extraction<N, Real> extract_in_memory(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                                      const ExtractPlan& plan = {}) {
   if constexpr (kIsTileByTile<N>)
-    extract_tiles<N, Real>(source, grid, options, &contour, stats, kBuiltTileBytes, plan);
+    return extract_tiles<N, Real>(source, grid, options, kBuiltTileBytes, plan);
   else
-    contour = extract_source<N, Real>(source, grid, generated_tables<N>(options), options, stats, plan);
-  return contour;
+    return extract_source<N, Real>(source, grid, generated_tables<N>(options), options, plan);
 }
 
 }  // namespace tegl::detail

@@ -27,7 +27,7 @@ class FullScan final : public tegl::ActiveTiles<N> {
       : tegl::ActiveTiles<N>(task.identity),
         image_(task.image),
         shape_(task.image.grid().sizes()),
-        threads_(task.options.threads) {}
+        threads_(task.options.work.threads) {}
 
   [[nodiscard]] ActiveMethod method() const noexcept override { return ActiveMethod::full_scan; }
   [[nodiscard]] std::size_t memory_bytes() const noexcept override { return 0; }

@@ -97,6 +97,7 @@ std::size_t TileRowSet::count() const noexcept {
 }
 
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void TileRowSet::add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) noexcept {
   // Consecutive tiles are often in one row. The row is computed only if the tile is outside the last row, by a
   // multiplication if tile numbers have 32 bits. (Lemire, Kaser, Kurz, Faster Remainder by Direct Computation, 2019.)

@@ -84,7 +84,7 @@ class ChosenTiles final : public tegl::ActiveTiles<N> {
 }  // namespace detail
 
 template <Value T, int N>
-IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progress& progress) {
+requires DimensionBetween<N, 2, 5> IndexedImage<N> identify(const Image<T, N>& image, const WorkOptions& work) {
   IndexedImage<N> result = detail::known_of(image);
   const auto& sizes = result.sizes;
   const std::size_t layers = sizes[N - 1];
@@ -95,12 +95,12 @@ IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progr
     bool missing = false;
   };
   std::vector<Layer> found(layers);
-  detail::Workers<std::vector<T>> workers(threads, [&] { return std::vector<T>(sizes[0]); });
+  detail::Workers<std::vector<T>> workers(work.threads, [&] { return std::vector<T>(sizes[0]); });
   constexpr std::size_t kSamplesAtOnce = std::size_t{1} << 24;
   const std::size_t at_once = std::max<std::size_t>(1, kSamplesAtOnce / (rows * sizes[0]));
   // hash each layer
   for (std::size_t first = 0; first < layers; first += at_once) {
-    if (progress && !progress(static_cast<double>(first) / static_cast<double>(layers)))
+    if (work.progress && !work.progress(static_cast<double>(first) / static_cast<double>(layers)))
       throw Error(ErrorCode::Cancelled, fmt::format("reading of values cancelled at layer {} of {}", first, layers));
     workers.for_range(std::min(at_once, layers - first), 1,
                       [&](std::size_t from, std::size_t to, std::vector<T>& room) {
@@ -130,14 +130,15 @@ IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progr
 }
 
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
-                                                   const ActiveTilesOptions& options) {
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> build_active_tiles(
+    const Image<T, N>& image, ActiveMethod method, const ActiveTilesOptions& options) {
   // A full scan builds nothing, so identification is all of its progress; other methods read the values several times
   // more.
   const double identified = method == ActiveMethod::full_scan ? 1.0 : kIdentifyShare;
-  const IndexedImage<N> identity = identify(image, options.threads, detail::part_of(options.progress, 0, identified));
+  const IndexedImage<N> identity =
+      identify(image, {options.work.threads, detail::part_of(options.work.progress, 0, identified)});
   ActiveTilesOptions rest = options;
-  rest.progress = detail::part_of(options.progress, identified, 1);
+  rest.work.progress = detail::part_of(options.work.progress, identified, 1);
   const detail::IndexTask<T, N> task{image, identity, rest};
   task.tell(0);
   detail::ActiveTilesPtr<N> result;
@@ -163,18 +164,18 @@ std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, Act
 }
 
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
-                                                  const ActiveTilesOptions& options) {
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> load_active_tiles(
+    ByteSource& from, const Image<T, N>& image, const ActiveTilesOptions& options) {
   // compare sizes and type first: computing the digest reads all values
   detail::IndexReader reader(from);
   const ActiveTilesHead head = detail::read_head(reader);
   IndexedImage<N> identity = detail::known_of(image);
   detail::require_same_image(head, identity.sizes, identity.value_type, head.digest);
   constexpr double kReadShare = 0.5;
-  identity = identify(image, options.threads, detail::part_of(options.progress, 0, kReadShare));
+  identity = identify(image, {options.work.threads, detail::part_of(options.work.progress, 0, kReadShare)});
   detail::require_same_image(head, identity.sizes, identity.value_type, identity.digest);
   ActiveTilesOptions rest = options;
-  rest.progress = detail::part_of(options.progress, kReadShare, 1);
+  rest.work.progress = detail::part_of(options.work.progress, kReadShare, 1);
   const detail::IndexTask<T, N> task{image, identity, rest};
   task.tell(0);
   detail::ActiveTilesPtr<N> result;
@@ -201,7 +202,8 @@ std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<
 }
 
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vector<TileNumber> tiles) {
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image,
+                                                                                std::vector<TileNumber> tiles) {
   const TileGrid<N> grid(image.grid().sizes());
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     if (tiles[i] >= grid.count())
@@ -216,7 +218,7 @@ std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vect
 }
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                             \
-  template IndexedImage<N> identify<T, N>(const Image<T, N>&, unsigned, const Progress&);             \
+  template IndexedImage<N> identify<T, N>(const Image<T, N>&, const WorkOptions&);                    \
   template std::unique_ptr<ActiveTiles<N>> build_active_tiles<T, N>(const Image<T, N>&, ActiveMethod, \
                                                                     const ActiveTilesOptions&);       \
   template std::unique_ptr<ActiveTiles<N>> load_active_tiles<T, N>(ByteSource&, const Image<T, N>&,   \

@@ -30,7 +30,7 @@ struct IndexTask {
 
   /// Throws Cancelled if the caller's progress callback returns false.
   void tell(double fraction) const {
-    if (options.progress && !options.progress(fraction))
+    if (options.work.progress && !options.work.progress(fraction))
       throw Error(ErrorCode::Cancelled, fmt::format("building of the index cancelled at {:.0f} %", 100 * fraction));
   }
 };

@@ -245,7 +245,7 @@ void fill_brick_row(std::size_t brick_row, TileRanges<T, N>& ranges, MinMaxLevel
 /// Fills all bricks; rows of bricks in parallel.
 template <Value T, int N>
 void fill_bricks(const IndexTask<T, N>& task, MinMaxLevel<T, N>& bricks) {
-  Workers<TileRanges<T, N>> workers(task.options.threads, [&] { return TileRanges<T, N>(task.image); });
+  Workers<TileRanges<T, N>> workers(task.options.work.threads, [&] { return TileRanges<T, N>(task.image); });
   workers.for_range(bricks.count() / bricks.sizes[0], 1,
                     [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
                       for (std::size_t row = from; row < to; ++row) fill_brick_row(row, ranges, bricks);

@@ -21,7 +21,7 @@ class SeedIndex final : public tegl::ActiveTiles<N> {
   SeedIndex(const IndexTask<T, N>& task, std::vector<TileNumber> seeds)
       : tegl::ActiveTiles<N>(task.identity),
         image_(task.image),
-        threads_(task.options.threads),
+        threads_(task.options.work.threads),
         seeds_(std::move(seeds)) {}
 
   [[nodiscard]] ActiveMethod method() const noexcept override { return ActiveMethod::seed_set; }
@@ -53,8 +53,8 @@ ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task) {
   options.method = task.options.seed_method;
   options.scan_order = task.options.scan_order;
   options.neighbourhood = kNeighbourhood;
-  options.threads = task.options.threads;
-  options.progress = [&task](double fraction) {
+  options.work.threads = task.options.work.threads;
+  options.work.progress = [&task](double fraction) {
     task.tell(fraction);
     return true;
   };

@@ -47,7 +47,7 @@ class SeedFinder {
       : map_(map),
         options_(options),
         order_(checked_order(options.scan_order, map.tiles.dim())),
-        progress_(detail::part_of(options.progress, 0.1, 1.0)),
+        progress_(detail::part_of(options.work.progress, 0.1, 1.0)),
         stats_(stats) {}
 
   std::vector<detail::Place> find() {
@@ -190,47 +190,48 @@ std::vector<SeedMethod> seed_methods() {
 }
 
 template <Value T, int N>
-SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options, SeedSetStats* stats) {
-  SeedSetStats own;
-  SeedSetStats& found = stats != nullptr ? *stats : own;
-  found = {};
+requires DimensionBetween<N, 2, 5> SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options) {
+  SeedSetStats found;
   found.tiles = TileGrid<N>(image.grid().sizes()).count();
-  const auto map = detail::map_ranges(image, options.threads, detail::part_of(options.progress, 0.0, 0.1));
+  const auto map = detail::map_ranges(image, options.work.threads, detail::part_of(options.work.progress, 0.0, 0.1));
   SeedFinder<detail::KeyOf<T>> finder(map, options, found);
   std::vector<detail::Place> places;
   if (options.method == SeedMethod::volume_thinning) {
-    places = detail::thin_tiles(image, map.tiles, detail::part_of(options.progress, 0.1, 1.0));
+    places = detail::thin_tiles(image, map.tiles, detail::part_of(options.work.progress, 0.1, 1.0));
     if (!options.keep_constant_tiles) std::erase_if(places, [&](detail::Place place) { return map.constant(place); });
   } else {
     places = finder.find();
   }
-  detail::report_progress(options.progress, 1.0);
-  return to_seed_set<T>(map, options, std::move(places));
+  detail::report_progress(options.work.progress, 1.0);
+  SeedSet set = to_seed_set<T>(map, options, std::move(places));
+  set.stats = found;
+  return set;
 }
 
 template <Value T, int N>
-std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options) {
-  const auto map = detail::map_ranges(image, options.threads, detail::part_of(options.progress, 0.0, 0.1));
+requires DimensionBetween<N, 2, 5> std::uint64_t seed_lower_bound(const Image<T, N>& image,
+                                                                  const SeedSetOptions& options) {
+  const auto map = detail::map_ranges(image, options.work.threads, detail::part_of(options.work.progress, 0.0, 0.1));
   double done = 0.1;
   // The lower bound from all levels or from quantized ones; null if the work exceeds `most_work`.
   const auto pack = [&](const auto& ranges, std::uint64_t most_work) -> std::optional<std::uint64_t> {
     SeedSetStats stats;
     SeedFinder finder(ranges, options, stats);
-    const Progress graphs = detail::part_of(options.progress, done, 0.5 + 0.5 * done);
+    const Progress graphs = detail::part_of(options.work.progress, done, 0.5 + 0.5 * done);
     if (const auto graph = finder.make_small_graph(most_work, graphs))
-      return detail::pack_components(*graph, detail::part_of(options.progress, 0.5 + 0.5 * done, 1.0));
+      return detail::pack_components(*graph, detail::part_of(options.work.progress, 0.5 + 0.5 * done, 1.0));
     done += 0.5 * detail::kProgressWithRoots * (1.0 - done);
     return std::nullopt;
   };
   std::optional<std::uint64_t> bound = pack(map, kMostWork<detail::KeyOf<T>>);
   for (std::size_t levels = 255; !bound; levels = std::max<std::size_t>(1, levels / 4))
     bound = pack(at_some_levels(map, levels), levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0});
-  detail::report_progress(options.progress, 1.0);
+  detail::report_progress(options.work.progress, 1.0);
   return *bound;
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                      \
-  template SeedSet find_seeds<T, N>(const Image<T, N>&, const SeedSetOptions&, SeedSetStats*); \
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                       \
+  template SeedSet find_seeds<T, N>(const Image<T, N>&, const SeedSetOptions&); \
   template std::uint64_t seed_lower_bound<T, N>(const Image<T, N>&, const SeedSetOptions&);
 #include "base/instantiate.hpp"
 

@@ -24,7 +24,7 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
   const std::size_t parts = (grid.rows() + kPartRows - 1) / kPartRows;
   std::vector<std::size_t> first(parts + 1);
   TileIntervals<T> result;
-  Workers<TileRanges<T, N>> workers(task.options.threads, [&] { return TileRanges<T, N>(task.image); });
+  Workers<TileRanges<T, N>> workers(task.options.work.threads, [&] { return TileRanges<T, N>(task.image); });
   const std::size_t along = grid.size(0);
   // count per part, then write: buffers are allocated once
   workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {

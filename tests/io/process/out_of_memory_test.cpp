@@ -44,7 +44,7 @@ TEST_F(OutOfMemory, LeavesNoHalfWrittenMesh) {
 TEST_F(OutOfMemory, LeavesNoHalfWrittenStream) {
   const Grid<3> grid = Grid<3>::unit({20, 15, 9});
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   options.normals = true;
   expect_whole_or_none("a.vtkhdf", [&](const fs::path& path) {
     FunctionLayers<float, 3> layers(grid, [](std::size_t k, float* to) {

@@ -22,7 +22,7 @@ namespace {
 ExtractOptions by_saddle() {
   ExtractOptions options = by_ambiguity(Ambiguity::saddle);
   options.epsilon = 0.05;
-  options.threads = 1;
+  options.work.threads = 1;
   return options;
 }
 

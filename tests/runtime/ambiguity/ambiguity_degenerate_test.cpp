@@ -70,7 +70,7 @@ void expect_high_at_ties(std::uint64_t seed, std::size_t count, std::size_t samp
     ASSERT_TRUE(expected.regular);
     ExtractOptions options = by_ambiguity(Ambiguity::saddle);
     options.epsilon = 0.05;
-    options.threads = 1;
+    options.work.threads = 1;
     options.triangulation = i % 2 == 0 ? Triangulation::compact : Triangulation::barycentric;
     const auto contour = extract<double>(view_of(image_of<std::int16_t>(field)), 0.0, options);
     ASSERT_TRUE(has_topology_of(contour, below, expected)) << "seed " << seed << ", field " << i;

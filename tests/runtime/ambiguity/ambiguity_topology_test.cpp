@@ -25,7 +25,7 @@ ExtractOptions by_saddle(Triangulation triangulation) {
   ExtractOptions options;
   options.ambiguity = Ambiguity::saddle;
   options.triangulation = triangulation;
-  options.threads = 1;
+  options.work.threads = 1;
   return options;
 }
 

@@ -253,9 +253,9 @@ TYPED_TEST(Estimators, GiveTheSameBytesFromEveryEntryPoint) {
       SCOPED_TRACE(std::string(name_of(ambiguity)) + (close ? ", closed" : ""));
       ExtractOptions options = with(ambiguity);
       options.close = close;
-      options.threads = 1;
+      options.work.threads = 1;
       const auto contour = extract(image.view(), isovalue, options);
-      options.threads = 4;
+      options.work.threads = 4;
       expect_same_bytes(extract(image.view(), isovalue, options), contour);
       const ContourSize size = count(image.view(), isovalue, options);
       EXPECT_EQ(size.vertices, contour.vertices.size());
@@ -368,7 +368,7 @@ TEST(EstimatorsOfTheCaller, ThatThrowEndTheExtraction) {
   ExtractOptions options = with(Ambiguity::custom);
   options.estimator.choose = [](const AmbiguousFace&) -> facets::Choice { throw std::domain_error("no opinion"); };
   for (const unsigned threads : {1u, 4u}) {
-    options.threads = threads;
+    options.work.threads = threads;
     EXPECT_THROW(extract(image.view(), 0.5, options), std::domain_error);
     EXPECT_THROW(count(image.view(), 0.5, options), std::domain_error);
   }
@@ -378,7 +378,7 @@ TEST(EstimatorsOfTheCaller, ThatThrowEndTheExtraction) {
 ExtractOptions with_changing_answers() {
   ExtractOptions options;
   options.ambiguity = Ambiguity::custom;
-  options.threads = 1;
+  options.work.threads = 1;
   options.estimator.choose = [calls = std::make_shared<std::atomic<std::uint64_t>>(0)](const AmbiguousFace&) {
     return static_cast<facets::Choice>((++*calls * 0x9e3779b97f4a7c15u >> 33) % 3);
   };
@@ -426,7 +426,7 @@ TEST(EstimatorsOfTheCaller, ThatAnswerDifferentlyForTheSameFaceAreReportedAndOve
 TEST(EstimatorsOfTheCaller, ThatThrowOnlyWhenAskedAgainReachTheCaller) {
   const auto image = noise<float, 4>(std::size_t{6}, 1);
   ExtractOptions options = with(Ambiguity::custom);
-  options.threads = 1;
+  options.work.threads = 1;
   std::size_t calls = 0;
   options.estimator.choose = [&](const AmbiguousFace&) {
     ++calls;
@@ -458,10 +458,10 @@ TEST(BarycentricContoursOf4dImages, AreTheSameFromEveryEntryPoint) {
       ExtractOptions options = with(ambiguity);
       options.triangulation = Triangulation::barycentric;
       options.close = close;
-      options.threads = 1;
+      options.work.threads = 1;
       options.normals = true;
       const auto contour = extract(image.view(), 0.5, options);
-      options.threads = 4;
+      options.work.threads = 4;
       expect_same_bytes(extract(image.view(), 0.5, options), contour);
       expect_same_bytes(extract(image.view(), 0.5, options, *active), contour);
       const ContourSize size = count(image.view(), 0.5, options);
@@ -521,7 +521,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
         else
           expect_closed_manifold(contour);
         for (const unsigned threads : {1u, 4u}) {
-          options.threads = threads;
+          options.work.threads = threads;
           Collector<4, float> collector;
           auto layers = layers_of(image);
           const ContourSize size = extract_streamed(layers, 0.5, options, collector);

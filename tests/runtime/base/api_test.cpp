@@ -29,7 +29,7 @@
 #include "tegl/seed_set.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
-#include "tegl/stream_several.hpp"
+#include "tegl/stream.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tegl/track.hpp"
 

@@ -33,7 +33,7 @@ void expect_at_most(std::size_t bytes, const OwnedImage<T, N>& image, double iso
   for (ExtractOptions options : all)
     for (const unsigned threads : {1u, 4u})
       for (const bool normals : {false, true}) {
-        options.threads = threads;
+        options.work.threads = threads;
         options.normals = normals;
         SCOPED_TRACE(testing::Message() << describe(options) << ", threads " << threads << ", normals " << normals);
         EXPECT_LE(bytes_beside(image, isovalue, options), bytes);
@@ -73,7 +73,7 @@ TEST(Memory, BesideLongRows) {
 TEST(Memory, DoesNotGrowWithTheContour) {
   const auto image = noise<float, 4>({64, 16, 16, 72}, 3);
   for (ExtractOptions options : variants()) {
-    options.threads = 1;
+    options.work.threads = 1;
     SCOPED_TRACE(describe(options));
     const std::size_t few = bytes_beside(image, 0.9999, options);
     EXPECT_LE(bytes_beside(image, 0.98, options), few + 4096);

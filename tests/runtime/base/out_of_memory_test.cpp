@@ -88,7 +88,7 @@ void expect_all_ways_survive(const std::array<std::size_t, N>& sizes, unsigned t
   for (const double missing : {0.0, 0.02}) {
     const auto image = layered<N>(sizes, missing);
     ExtractOptions options;
-    options.threads = threads;
+    options.work.threads = threads;
     options.normals = missing == 0.0;
     options.close = missing != 0.0;
     options.triangulation = missing == 0.0 ? Triangulation::compact : Triangulation::barycentric;
@@ -129,7 +129,7 @@ TEST(OutOfMemory, IsSurvivedIn5d) {
   const auto corner = sample_field<float, 5>(Grid<5>::unit({2, 2, 2, 2, 2}),
                                              [](const Point<5>& x) { return 0.25 - x[0] - x[1] - x[2] - x[3] - x[4]; });
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   options.normals = true;
   EXPECT_GT(expect_survives(
                 "extract", [&] { return digest(extract<float>(corner.view(), 0.0, options)); }, true),
@@ -149,7 +149,7 @@ TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
 #endif
   const auto image = layered<3>({50, 50, 40}, 0.0);
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   options.normals = true;
   const std::int64_t before = memory.mapped_bytes;
   {
@@ -167,7 +167,7 @@ TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
 TEST(OutOfMemory, NeverComesFromMoreAddressSpace) {
   const auto image = sample_field<float, 3>(centred_grid<3>(90, 1.0), Ball<3>{{}, 0.7});
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   const auto succeeds_with = [&](rlim_t more) {
     const pid_t child = fork();
     if (child == 0) {

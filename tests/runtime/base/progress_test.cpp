@@ -49,7 +49,7 @@ std::vector<Way> ways(const OwnedImage<float, N>& image) {
   result.push_back({"count", slabs, [&](const ExtractOptions& options) { count(image.view(), 0.5, options); }});
   result.push_back({"extract_into", slabs, [&](const ExtractOptions& options) {
                       ExtractOptions silent = options;
-                      silent.progress = {};
+                      silent.work.progress = {};
                       const ContourSize size = count(image.view(), 0.5, silent);
                       std::vector<std::array<float, N>> vertices(size.vertices);
                       std::vector<std::array<Index, N>> simplices(size.simplices);
@@ -74,7 +74,7 @@ std::vector<Way> ways(const OwnedImage<float, N>& image) {
 std::vector<double> told(const Way& way, ExtractOptions options) {
   std::vector<double> fractions;
   const auto caller = std::this_thread::get_id();
-  options.progress = [&](double fraction) {
+  options.work.progress = [&](double fraction) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
     fractions.push_back(fraction);
     return true;
@@ -90,7 +90,7 @@ void expect_told_of_every_slab(const std::array<std::size_t, N>& sizes) {
     for (const unsigned threads : {1u, 4u}) {
       SCOPED_TRACE(testing::Message() << way.name << ", " << threads << " threads");
       ExtractOptions options;
-      options.threads = threads;
+      options.work.threads = threads;
       const std::vector<double> fractions = told(way, options);
       EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
       EXPECT_GE(fractions.front(), 0.0);
@@ -109,7 +109,7 @@ TEST(Progress, IsToldOfEverySlabByTheThreadThatAsked) {
 TEST(Progress, IsToldWithinLargeSlabs) {
   const auto image = noise_with_missing<float, 3>(Grid<3>::unit({1500, 1500, 2}), 3, 0.0);
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   const std::vector<double> fractions = told(ways(image)[0], options);
   const auto within = std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0.0 && f < 1.0; });
   EXPECT_GE(within, 6);
@@ -122,12 +122,12 @@ void expect_stopped_whenever(const std::array<std::size_t, N>& sizes) {
     for (const unsigned threads : {1u, 3u}) {
       SCOPED_TRACE(testing::Message() << way.name << ", " << threads << " threads");
       ExtractOptions options;
-      options.threads = threads;
+      options.work.threads = threads;
       // With several threads the number of calls varies.
       const std::size_t calls = threads == 1 ? told(way, options).size() : way.slabs;
       for (std::size_t last = 1; last <= calls; last += 1 + calls / 40) {
         std::size_t seen = 0;
-        options.progress = [&](double) { return ++seen < last; };
+        options.work.progress = [&](double) { return ++seen < last; };
         try {
           way.make(options);
           ADD_FAILURE() << "not cancelled by call " << last << " of " << calls;
@@ -150,9 +150,9 @@ TEST(Progress, WhatItThrowsReachesTheCaller) {
   for (const unsigned threads : {1u, 4u})
     for (const Way& way : ways(image)) {
       ExtractOptions options;
-      options.threads = threads;
+      options.work.threads = threads;
       int seen = 0;
-      options.progress = [&](double) -> bool {
+      options.work.progress = [&](double) -> bool {
         if (++seen < 3) return true;
         throw std::pair(seen, 'x');
       };
@@ -180,8 +180,8 @@ TEST(Progress, IsNotAskedForWhileItWaitsForTasksOfItsOwn) {
   for (const Way& way : ways(image)) {
     int depth = 0, deepest = 0;
     ExtractOptions options;
-    options.threads = 4;
-    options.progress = [&](double) {
+    options.work.threads = 4;
+    options.work.progress = [&](double) {
       deepest = std::max(deepest, ++depth);
       wait_for_others();
       --depth;
@@ -197,7 +197,7 @@ TEST(Progress, NorAreEstimators) {
   for (const Way& way : ways(image)) {
     std::atomic<int> deepest = 0;
     ExtractOptions options;
-    options.threads = 4;
+    options.work.threads = 4;
     options.ambiguity = Ambiguity::custom;
     options.estimator.choose = [&](const AmbiguousFace&) {
       static thread_local int depth = 0;

@@ -49,7 +49,7 @@ void expect_same(const OwnedImage<T, N>& image, const std::vector<double>& isova
         for (const bool close : {false, true}) {
           options.close = close;
           options.normals = !close;
-          options.threads = close ? 1 : 3;
+          options.work.threads = close ? 1 : 3;
           SCOPED_TRACE(std::string(active_method_name(method)) + ", " + describe(options) + ", at " +
                        std::to_string(isovalue));
           ExtractStats plain, stats;
@@ -152,7 +152,7 @@ TEST(ExtractActive, RefusesWhatExtractRefuses) {
   options.epsilon = 0.7;
   EXPECT_THROW(extract<float>(image.view(), 0.5, options, *index), Error);
   options = {};
-  options.progress = [](double) { return false; };
+  options.work.progress = [](double) { return false; };
   EXPECT_THROW(extract<float>(image.view(), 0.5, options, *index), Error);
   options = {};
   options.close = true;

@@ -137,7 +137,7 @@ template <Value T, int N>
 void expect_little_memory(const OwnedImage<T, N>& image, double isovalue) {
   for (unsigned threads = 1; threads <= 4; threads += 3) {
     ExtractOptions options;
-    options.threads = threads;
+    options.work.threads = threads;
     const ContourSize size = count(image.view(), isovalue, options);
     std::vector<std::array<float, N>> vertices(size.vertices);
     std::vector<std::array<Index, N>> simplices(size.simplices);

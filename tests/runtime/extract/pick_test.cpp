@@ -88,7 +88,7 @@ void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions
     for (int a = 0; a < N; ++a)
       at[a] = static_cast<double>(random() >> 11) * 0x1p-53 * static_cast<double>(grid.size(a));
     PickReport<N> report;
-    options.threads = 1 + static_cast<unsigned>(i % 4);
+    options.work.threads = 1 + static_cast<unsigned>(i % 4);
     const auto picked = extract_component<double>(image.view(), isovalue, at, options, &report);
     ASSERT_EQ(report.found, !active.empty());
     if (active.empty()) continue;

@@ -83,7 +83,7 @@ std::vector<Combination> all_combinations() {
             added.options.triangulation = triangulation;
             added.options.close = close;
             added.options.epsilon = epsilon;
-            added.options.threads = 1;
+            added.options.work.threads = 1;
             added.ties = ties;
             added.name = std::string(triangulation == Triangulation::compact ? "compact" : "barycentric") + ' ' + name +
                          (close ? " closed" : " open") + (epsilon > 0 ? " epsilon" : "") + (ties ? " ties" : "");

@@ -2,7 +2,6 @@
 //
 // Contours of several isovalues in one pass: each equals that of its own pass, every layer is read once, calls are
 // serialised, and all end if one fails.
-#include "tegl/stream_several.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -154,7 +153,7 @@ TEST_F(StreamSeveral, CanBeCancelled) {
   auto several = contours({5, 2, 8});
   auto source = layers();
   ExtractOptions options;
-  options.progress = [](double share) { return share < 0.4; };
+  options.work.progress = [](double share) { return share < 0.4; };
   try {
     extract_streamed_several<double>(source, std::span(several), options);
     ADD_FAILURE() << "no error";
@@ -166,7 +165,7 @@ TEST_F(StreamSeveral, CanBeCancelled) {
 TEST_F(StreamSeveral, IsTheSameForAnyNumberOfThreads) {
   for (const unsigned threads : {1U, 2U, 3U, 16U}) {
     ExtractOptions options;
-    options.threads = threads;
+    options.work.threads = threads;
     auto several = contours({5, 2, 8, 6, 3});
     auto source = layers();
     extract_streamed_several<double>(source, std::span(several), options);
@@ -187,8 +186,8 @@ TEST_F(StreamSeveral, TakesNoMoreThreadsForMoreContours) {
   const auto before = count_threads();
   std::ptrdiff_t most = 0;
   ExtractOptions options;
-  options.threads = 2;
-  options.progress = [&](double) {
+  options.work.threads = 2;
+  options.work.progress = [&](double) {
     most = std::max(most, count_threads());
     return true;
   };
@@ -204,7 +203,7 @@ TEST_F(StreamSeveral, TakesNoMoreThreadsForMoreContours) {
 TEST_F(StreamSeveral, TellsAProgressThatDoesNotFall) {
   double last = 0;
   ExtractOptions options;
-  options.progress = [&](double share) {
+  options.work.progress = [&](double share) {
     EXPECT_EQ(std::this_thread::get_id(), thread_);
     EXPECT_GE(share, last);
     last = share;

@@ -122,7 +122,7 @@ void expect_streamed_in_all_ways(const std::array<std::size_t, N>& sizes) {
         options.close = close;
         options.triangulation = triangulation;
         options.ambiguity = seed % 2 == 0 ? Ambiguity::low : Ambiguity::high;
-        options.threads = 1 + static_cast<unsigned>(seed % 3);
+        options.work.threads = 1 + static_cast<unsigned>(seed % 3);
         options.normals = seed % 4 < 2;
         replaced += expect_streamed<Real>(holey_noise<T, N>(sizes, seed++, missing), options);
       }
@@ -237,7 +237,7 @@ TEST(Streamed, CanBeCancelled) {
   Collector<3, float> collector;
   ExtractOptions options;
   int calls = 0;
-  options.progress = [&](double) { return ++calls < 4; };
+  options.work.progress = [&](double) { return ++calls < 4; };
   try {
     extract_streamed<float>(layers, noise_isovalue<float>(), options, collector);
     FAIL() << "was not cancelled";

@@ -390,9 +390,9 @@ TYPED_TEST(Facets, AreTheSameForAnyNumberOfThreads) {
   for (ExtractOptions options : facet_variants()) {
     if (!options.close) continue;
     SCOPED_TRACE(describe(options));
-    options.threads = 1;
+    options.work.threads = 1;
     const auto one = extract_facets<float>(image.view(), 0.5, options);
-    options.threads = 4;
+    options.work.threads = 4;
     const auto four = extract_facets<float>(image.view(), 0.5, options);
     EXPECT_EQ(one.vertices, four.vertices);
     for (int k = 0; k < N; ++k) {
@@ -432,7 +432,7 @@ TEST(FacetsOf3d, CanBeCancelledAndTellErrors) {
   const auto image = noise<float, 3>(12, 1);
   ExtractOptions options;
   int calls = 0;
-  options.progress = [&](double) { return ++calls < 3; };
+  options.work.progress = [&](double) { return ++calls < 3; };
   try {
     extract_facets<float>(image.view(), 0.5, options);
     FAIL() << "not cancelled";
@@ -440,7 +440,7 @@ TEST(FacetsOf3d, CanBeCancelledAndTellErrors) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);
   }
   double last = 0;
-  options.progress = [&](double fraction) {
+  options.work.progress = [&](double fraction) {
     EXPECT_GE(fraction, last);
     last = fraction;
     return true;

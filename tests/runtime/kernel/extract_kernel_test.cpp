@@ -83,7 +83,7 @@ bool fits_into(const OwnedImage<float, 3>& image, std::size_t more) {
     const rlimit limit{bytes, bytes};
     setrlimit(RLIMIT_AS, &limit);
     ExtractOptions options;
-    options.threads = 1;
+    options.work.threads = 1;
     try {
       _exit(extract<float>(image.view(), 0.5, options).simplices.empty() ? 2 : 0);
     } catch (const std::bad_alloc&) {

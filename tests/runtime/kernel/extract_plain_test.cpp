@@ -37,7 +37,7 @@ template <class Options>
 std::vector<Options> with_threads(Options options) {
   std::vector<Options> result;
   for (int threads = 1; threads <= 4; ++threads) {
-    if constexpr (requires { options.threads = threads; }) options.threads = threads;
+    if constexpr (requires { options.work.threads = threads; }) options.work.threads = threads;
     result.push_back(options);
   }
   return result;

@@ -434,7 +434,7 @@ TYPED_TEST(Extract, ReportsRisingProgressAndStopsWhenToldSo) {
   const auto image = noise<std::uint8_t, N>(6, 93);
   ExtractOptions options;
   std::vector<double> fractions;
-  options.progress = [&](double fraction) {
+  options.work.progress = [&](double fraction) {
     fractions.push_back(fraction);
     return true;
   };
@@ -444,7 +444,7 @@ TYPED_TEST(Extract, ReportsRisingProgressAndStopsWhenToldSo) {
   EXPECT_EQ(fractions.front(), 0.0);
   EXPECT_EQ(fractions.back(), 1.0);
 
-  options.progress = [](double fraction) { return fraction < 0.5; };
+  options.work.progress = [](double fraction) { return fraction < 0.5; };
   try {
     extract<float>(image.view(), 100.0, options);
     FAIL() << "not cancelled";

@@ -50,7 +50,7 @@ void expect_same_in_any_order(const OwnedImage<T, N>& image, double isovalue) {
   saddle.ambiguity = Ambiguity::saddle;
   saddle.close = true;
   for (ExtractOptions options : {plain, saddle}) {
-    options.threads = 1;
+    options.work.threads = 1;
     const auto expected = extract<float>(image.view(), isovalue, options);
     ASSERT_GT(expected.simplices.size(), 100u);
     std::array<int, N> order;
@@ -60,7 +60,7 @@ void expect_same_in_any_order(const OwnedImage<T, N>& image, double isovalue) {
       for (int a = 0; a < N; ++a) flipped[a] = (n >> a & 1u) != 0;
       const Elsewhere<T, N> other(image, order, flipped);
       for (const unsigned threads : {1u, 4u}) {
-        options.threads = threads;
+        options.work.threads = threads;
         SCOPED_TRACE(testing::Message() << "axis " << order[0] << " fastest, then " << order[1] << "; " << threads);
         const auto found = extract<float>(other.view, isovalue, options);
         EXPECT_TRUE(found.vertices == expected.vertices);

@@ -167,8 +167,8 @@ TEST(Sobel, OfALinearFieldIsExactOnGridsOfAnyKindToTheBorder) {
 TEST(Sobel, IsTheSameForAnyNumberOfThreadsAndForCutsFromTheImage) {
   const auto image = noise<float, 4>({9, 8, 7, 6}, 17);
   ExtractOptions one = with(GradientKind::sobel), many = one;
-  one.threads = 1;
-  many.threads = 4;
+  one.work.threads = 1;
+  many.work.threads = 4;
   const auto contour = extract<float>(image.view(), 0.5, one);
   EXPECT_EQ(contour.normals, extract<float>(image.view(), 0.5, many).normals);
   const auto cut = slice(contour, 2.0);

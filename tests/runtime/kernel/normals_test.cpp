@@ -143,7 +143,7 @@ void expect_normals_everywhere(const std::array<std::size_t, N>& sizes) {
       auto image = noise_with_missing<float, N>(Grid<N>::unit(sizes), seed++, 0.05);
       for (std::size_t i = 3; i < image.values.size(); i += 97)
         image.values[i] = std::numeric_limits<float>::infinity();
-      options.threads = 1;
+      options.work.threads = 1;
       const auto bare = extract<float>(image.view(), 0.5, options);
       const auto contour = extract<float>(image.view(), 0.5, with_normals(options));
       EXPECT_TRUE(bare.normals.empty());
@@ -154,7 +154,7 @@ void expect_normals_everywhere(const std::array<std::size_t, N>& sizes) {
         const double size = length<N, float>(normal);
         ASSERT_TRUE(size == 0.0 || std::abs(size - 1.0) < 1e-5) << size;
       }
-      options.threads = 3;
+      options.work.threads = 3;
       EXPECT_EQ(extract<float>(image.view(), 0.5, with_normals(options)).normals, contour.normals);
     }
 }
@@ -393,7 +393,7 @@ TEST(Normals, AndPointsOfLongRowsAreThoseOfTheTransposedImage) {
     for (std::size_t j = 0; j < 4; ++j) across.values[4 * i + j] = along.values[kLong * j + i];
   for (const unsigned threads : {1u, 4u}) {
     ExtractOptions options = with_normals();
-    options.threads = threads;
+    options.work.threads = threads;
     const auto contour = extract<float>(along.view(), 0.5, options);
     ASSERT_GT(contour.vertices.size(), 3 * kLong);
     const auto expected = by_place(extract<float>(across.view(), 0.5, options));

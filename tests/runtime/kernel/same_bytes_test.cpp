@@ -42,24 +42,24 @@ bool equal_bytes(const Rows& a, const Rows& b) {
 
 template <class Real, Value T, int N>
 void expect_same_bytes(const Image<T, N>& image, double isovalue, ExtractOptions options) {
-  options.threads = 1;
+  options.work.threads = 1;
   const auto expected = extract<Real>(image, isovalue, options);
   EXPECT_FALSE(expected.simplices.empty());
   unsigned seen = 0;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     const OnlyTargets only(target);
     SCOPED_TRACE(hwy::TargetName(target));
-    options.threads = 1 + seen++ % 4;
+    options.work.threads = 1 + seen++ % 4;
     const auto contour = extract<Real>(image, isovalue, options);
-    EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << options.threads << " threads";
-    EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << options.threads << " threads";
-    EXPECT_TRUE(equal_bytes(contour.normals, expected.normals)) << options.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << options.work.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << options.work.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.normals, expected.normals)) << options.work.threads << " threads";
   }
-  for (options.threads = 0; options.threads <= 4; ++options.threads) {
+  for (options.work.threads = 0; options.work.threads <= 4; ++options.work.threads) {
     const auto contour = extract<Real>(image, isovalue, options);
-    EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << options.threads << " threads";
-    EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << options.threads << " threads";
-    EXPECT_TRUE(equal_bytes(contour.normals, expected.normals)) << options.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << options.work.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << options.work.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.normals, expected.normals)) << options.work.threads << " threads";
   }
 }
 
@@ -151,10 +151,10 @@ TEST(SameBytes, OfManyBatchesOfRows) {
 TEST(SameBytes, OfMoreThreadsThanThereAre) {
   const auto image = noise<float, 3>({67, 40, 40}, 94);
   ExtractOptions options;
-  options.threads = 1;
+  options.work.threads = 1;
   const auto expected = extract<float>(image.view(), 0.5, options);
   for (const unsigned threads : {1000u, 0x7fffffffu, 0x80000000u, ~0u}) {
-    options.threads = threads;
+    options.work.threads = threads;
     const auto contour = extract<float>(image.view(), 0.5, options);
     EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << threads << " threads";
     EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << threads << " threads";

@@ -353,10 +353,10 @@ TEST(Extract5d, ResolvedFromTheDataNoiseIsClosedByCapsAndTheSameForAnyNumberOfTh
   options.close = true;
   for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
     options.ambiguity = ambiguity;
-    options.threads = 1;
+    options.work.threads = 1;
     const auto one = extract<float>(image.view(), 0.5, options);
     expect_closed_manifold(one);
-    options.threads = 3;
+    options.work.threads = 3;
     EXPECT_TRUE(same_bytes(one, extract_tile_by_tile<float>(image.view(), 0.5, options, 20'000)));
   }
 }
@@ -379,11 +379,11 @@ TEST(Extract5d, IsTheSameForAnyNumberOfThreadsAndAnyMemoryForTiles) {
   ExtractOptions options;
   options.close = true;
   options.normals = true;
-  options.threads = 1;
+  options.work.threads = 1;
   const auto one = extract<float>(image.view(), 0.5, options);
   EXPECT_FALSE(one.simplices.empty());
   for (const unsigned threads : {2u, 3u, 4u}) {
-    options.threads = threads;
+    options.work.threads = threads;
     EXPECT_TRUE(same_bytes(one, extract<float>(image.view(), 0.5, options))) << threads << " threads";
   }
   EXPECT_TRUE(same_bytes(one, extract_tile_by_tile<float>(image.view(), 0.5, options, 0)));
@@ -448,7 +448,7 @@ TEST(Extract5d, TellsOfProgressFromNothingToAllWithoutFalling) {
   const auto image = noise<float, 5>(3, 12);
   ExtractOptions options;
   std::vector<double> told;
-  options.progress = [&](double fraction) {
+  options.work.progress = [&](double fraction) {
     told.push_back(fraction);
     return true;
   };
@@ -462,7 +462,7 @@ TEST(Extract5d, TellsOfProgressFromNothingToAllWithoutFalling) {
 TEST(Extract5d, StopsWhenToldTo) {
   const auto image = noise<float, 5>(3, 12);
   ExtractOptions options;
-  options.progress = [](double) { return false; };
+  options.work.progress = [](double) { return false; };
   try {
     extract(image.view(), 0.5, options);
     FAIL() << "no error";

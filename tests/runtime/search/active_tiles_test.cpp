@@ -174,8 +174,8 @@ TEST(ActiveTiles, AreTheSameForAnyNumberOfThreads) {
   const auto image = noise_with_missing<float, 3>(Grid<3>::unit({40, 30, 20}), 15, 0.01);
   for (const ActiveMethod method : active_methods()) {
     MemoryFile one, many;
-    build_active_tiles(image.view(), method, {.threads = 1, .progress = {}})->save(one);
-    build_active_tiles(image.view(), method, {.threads = 4, .progress = {}})->save(many);
+    build_active_tiles(image.view(), method, {.work = {.threads = 1}})->save(one);
+    build_active_tiles(image.view(), method, {.work = {.threads = 4}})->save(many);
     EXPECT_EQ(one.content, many.content) << active_method_name(method);
   }
 }
@@ -306,7 +306,7 @@ TEST_P(ActiveTilesFile, HasAHeadThatCanBeReadAlone) {
 
 TEST_P(ActiveTilesFile, BuildingCanBeCancelled) {
   ActiveTilesOptions options;
-  options.progress = [](double) { return false; };
+  options.work.progress = [](double) { return false; };
   try {
     build_active_tiles(image_.view(), GetParam(), options);
     ADD_FAILURE() << "nothing was thrown";

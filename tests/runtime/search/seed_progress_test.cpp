@@ -56,22 +56,22 @@ void expect_of_seeds(const OwnedImage<T, N>& image, const std::vector<SeedMethod
   for (const Neighbourhood neighbourhood : neighbourhoods) {
     SeedSetOptions options;
     options.neighbourhood = neighbourhood;
-    options.threads = 1;
+    options.work.threads = 1;
     for (const SeedMethod method : methods) {
       SCOPED_TRACE(std::string(seed_method_name(method)) + ", " + std::string(neighbourhood_name(neighbourhood)));
       options.method = method;
       SeedSetStats stats;
       expect_rising_progress([&](const Progress& progress) {
-        options.progress = progress;
+        options.work.progress = progress;
         find_seeds(image.view(), options, &stats);
       });
-      options.progress = {};
+      options.work.progress = {};
       find_seeds(image.view(), options, &stats);
       EXPECT_EQ(stats.reduced, reduced && method == SeedMethod::cover);
     }
     SCOPED_TRACE("bound, " + std::string(neighbourhood_name(neighbourhood)));
     expect_rising_progress([&](const Progress& progress) {
-      options.progress = progress;
+      options.work.progress = progress;
       seed_lower_bound(image.view(), options);
     });
   }
@@ -94,7 +94,7 @@ TEST(SeedProgress, WithoutCountingTreesRisesToTheEnd) {
   SeedSetOptions options;
   options.neighbourhood = Neighbourhood::faces;
   expect_rising_progress([&](const Progress& progress) {
-    options.progress = progress;
+    options.work.progress = progress;
     find_seeds(image.view(), options);
   });
 }
@@ -107,8 +107,8 @@ TEST(SeedProgress, OfIndexesRisesToTheEnd) {
     const auto build = [&](const auto& image) {
       return [&image, method](const Progress& progress) {
         ActiveTilesOptions options;
-        options.threads = 1;
-        options.progress = progress;
+        options.work.threads = 1;
+        options.work.progress = progress;
         build_active_tiles(image.view(), method, options);
       };
     };
@@ -121,14 +121,14 @@ TEST(SeedProgress, OfPicksRisesToTheEnd) {
   const auto image = noise<float, 3>({30, 29, 28}, 9);
   expect_rising_progress([&](const Progress& progress) {
     ExtractOptions options;
-    options.threads = 1;  // with several threads the number of reports varies
-    options.progress = progress;
+    options.work.threads = 1;  // with several threads the number of reports varies
+    options.work.progress = progress;
     extract_component<float>(image.view(), 0.5, {10.0, 12.0, 14.0}, options);
   });
   expect_rising_progress([&](const Progress& progress) {  // without tiles
     ExtractOptions options;
-    options.threads = 1;  // with several threads the number of reports varies
-    options.progress = progress;
+    options.work.threads = 1;  // with several threads the number of reports varies
+    options.work.progress = progress;
     extract_component<float>(image.view(), 2.0, {10.0, 12.0, 14.0}, options);
   });
 }

@@ -112,7 +112,7 @@ void expect_seed_sets(const OwnedImage<T, N>& image, std::size_t isovalues) {
     const AllComponents<T, N> all(image, neighbourhood, isovalues);
     SeedSetOptions options;
     options.neighbourhood = neighbourhood;
-    options.threads = 2;
+    options.work.threads = 2;
     const std::uint64_t bound = seed_lower_bound(image.view(), options);
     std::size_t smallest = 0;
     for (const SeedMethod method : seed_methods()) {
@@ -350,7 +350,7 @@ TEST(SeedSet, StopsWhenTold) {
   for (const SeedMethod method : seed_methods()) {
     SeedSetOptions options;
     options.method = method;
-    options.progress = [](double fraction) { return fraction < 0.11; };
+    options.work.progress = [](double fraction) { return fraction < 0.11; };
     try {
       find_seeds(image.view(), options);
       ADD_FAILURE() << seed_method_name(method);
