@@ -52,7 +52,11 @@ void count_extract(const Image<T, N>& image, double isovalue, const ExtractOptio
     const OwnedImage<float, N> noise = make_field<N>("noise", 4);
     count(noise.view(), 0.0, options);
   }
-  measured([&] { simplices = extract(image, isovalue, options, &stats).simplices.size(); });
+  measured([&] {
+    const auto extraction = extract_with_stats(image, isovalue, options);
+    stats = extraction.stats;
+    simplices = extraction.contour.simplices.size();
+  });
   std::size_t samples = 1;
   for (int a = 0; a < N; ++a) samples *= image.size(a);
   std::printf("samples %zu active %zu simplices %zu\n", samples, std::size_t{stats.active_tiles}, simplices);

@@ -65,8 +65,7 @@ std::string count_seeds(const Image<T, N>& image, SeedSetOptions options, bool o
 /// One search for seeds, and its cost.
 struct Search {
   SeedSetOptions options;
-  SeedSetStats stats;
-  std::size_t seeds = 0;
+  SeedSet found;
   double seconds = 0;
   double peak_bytes = 0;  ///< in addition to memory in use before
 };
@@ -83,8 +82,7 @@ void for_each_search(const Image<T, N>& image, const Arguments& arguments, const
       give_back_memory();  // memory of earlier images
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
-      search.seconds = least_seconds(
-          [&] { search.seeds = find_seeds(image, search.options, &search.stats).tiles.size(); }, arguments.runs);
+      search.seconds = least_seconds([&] { search.found = find_seeds(image, search.options); }, arguments.runs);
       const std::uint64_t peak = memory_bytes("VmHWM");
       search.peak_bytes = static_cast<double>(peak - std::min(before, peak));
       print(search);
@@ -95,10 +93,10 @@ void for_each_search(const Image<T, N>& image, const Arguments& arguments, const
 template <Value T, int N>
 void measure_scaling(const std::string& name, const Image<T, N>& image, const Arguments& arguments) {
   for_each_search(image, arguments, [&](const Search& search) {
-    const auto tiles = static_cast<double>(search.stats.tiles);
+    const auto tiles = static_cast<double>(search.found.stats.tiles);
     fmt::print("| `{}` | {} | `{}` | {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", name,
                neighbourhood_name(search.options.neighbourhood), seed_method_name(search.options.method),
-               search.stats.tiles, search.seeds, search.seconds, 1e6 * search.seconds / tiles,
+               search.found.stats.tiles, search.found.tiles.size(), search.seconds, 1e6 * search.seconds / tiles,
                search.peak_bytes / tiles);
   });
 }
@@ -108,10 +106,10 @@ void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
   fmt::print(
       "| neighbourhood | method | seeds | bound | seconds | most memory while found |\n|---|---|---|---|---|---|\n");
   for_each_search(image, arguments, [&](const Search& search) {
-    const SeedSetStats& stats = search.stats;
+    const SeedSetStats& stats = search.found.stats;
     fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", neighbourhood_name(search.options.neighbourhood),
                seed_method_name(search.options.method),
-               count_seeds(image, search.options, arguments.orders, search.seeds),
+               count_seeds(image, search.options, arguments.orders, search.found.tiles.size()),
                stats.lower_bound > 0 ? fmt::format("{}", stats.lower_bound)
                : stats.reduced       ? fmt::format("{}, at some isovalues", seed_lower_bound(image, search.options))
                                      : "",
@@ -151,9 +149,9 @@ void measure_picks(const OwnedImage<T, N>& owned, int picks) {
       point[a] = image.grid().offset[a];
       for (int b = 0; b < N; ++b) point[a] += image.grid().linear(a, b) * index[b];
     }
-    PickReport<N> report;
-    seconds.push_back(least_seconds([&] { extract_component<float>(image, isovalue, point, options, &report); }, 3));
-    tiles.push_back(static_cast<double>(report.tiles));
+    PickedComponent<N> picked;
+    seconds.push_back(least_seconds([&] { picked = extract_component(image, isovalue, point, options); }, 3));
+    tiles.push_back(static_cast<double>(picked.report.tiles));
     whole += least_seconds([&] { extract<float>(image, isovalue, options); }, 1);
   }
   const Fit fit = fit_line(tiles, seconds);

@@ -20,8 +20,7 @@ void run_tegl(const float* data, std::size_t samples, double isovalue, int threa
   sizes.fill(samples);
   const Image<float, N> image(data, Grid<N>::unit(sizes));
   const ExtractOptions options = with_normals(with_threads(ExtractOptions{}, threads), normals != 0);
-  ExtractStats stats;
-  const auto contour = measured(result, [&] { return extract(image, isovalue, options, &stats); });
+  const auto [contour, stats] = measured(result, [&] { return extract_with_stats(image, isovalue, options); });
   result.vertices = contour.vertices.size();
   result.simplices = contour.simplices.size();
   result.active_tiles = stats.active_tiles;

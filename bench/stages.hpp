@@ -60,8 +60,9 @@ void extract_image(benchmark::State& state, const Image<T, N>& image, double iso
   double simplices = 0;
   double output = 0;
   for (auto _ : state) {
-    auto contour = extract(image, isovalue, options, &stats);
+    auto [contour, stages] = extract_with_stats(image, isovalue, options);
     state.PauseTiming();
+    stats = stages;
     sums.add(stats);
     simplices = static_cast<double>(contour.simplices.size());
     output = static_cast<double>(contour_bytes(contour));

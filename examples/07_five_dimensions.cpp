@@ -34,8 +34,7 @@ int main() {
           }
 
   const tegl::Image<float, 5> image(values.data(), grid);
-  tegl::ExtractStats stats;
-  const tegl::Contour<5> contour = tegl::extract(image, 0.0, {}, &stats);
+  const auto [contour, stats] = tegl::extract_with_stats(image, 0.0);
   const tegl::MeshReport report = tegl::check(contour);
   std::printf("%zu 4-simplices in %zu of %zu tiles, %zu vertices; components: %zu, Euler characteristic: %d\n",
               contour.simplices.size(), std::size_t(stats.active_tiles), std::size_t(stats.tiles),

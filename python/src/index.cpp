@@ -123,8 +123,10 @@ py::tuple picked(const Image<T, N>& image, double level, const std::type_identit
                  const ExtractOptions& options, const std::string& normals, Call& call) {
   PickReport<N> report;
   auto contour = call.run([&] {
+    auto found = extract_component<Real>(image, level, point, options);
+    report = found.report;
     auto result = std::make_unique<AnyContour>();
-    *result = {extract_component<Real>(image, level, point, options, &report), level};
+    *result = {std::move(found.contour), level};
     add_shape_normals(*result, normals, options);
     return result;
   });

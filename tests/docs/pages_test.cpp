@@ -182,7 +182,7 @@ TEST(Guides, TasksTakeAFewLines) {
   ASSERT_EQ(coloured.vertex_attributes.size(), 1u);
   for (const double value : coloured.vertex_attributes[0].values) EXPECT_NEAR(value, 0.0, 0.05);
   // [pick]
-  const tegl::Contour<4> nearest = tegl::extract_component(image, 0.0, {9, 9, 2, 4});
+  const tegl::Contour<4> nearest = tegl::extract_component(image, 0.0, {9, 9, 2, 4}).contour;
   // [/pick]
   EXPECT_EQ(nearest.simplices.size(), contour.simplices.size());
   double fraction = 0;

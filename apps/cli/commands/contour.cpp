@@ -236,18 +236,18 @@ class ContourCommand final : public Command {
   void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     options.work.progress = bar.stage("contour");
     if (result.picked) return pick(image, options, bar, result);
-    ExtractStats& stats = result.stats.emplace();
-    if (const auto method = options_.polygon_triangulation()) {
-      auto polygons = triangulated_polygons(
-          image, {*result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()}, *method,
-          bar, stats);
+    const auto finished = [&](auto extraction) {
+      result.stats = extraction.stats;
+      return with_additions(std::move(extraction.contour), options.work.threads, bar);
+    };
+    const bool single_precision = options_.single_precision();
+    if (const auto method = options_.polygon_triangulation())
       result.mesh = std::visit(
-          [&](auto& contour) { return with_additions(std::move(contour), options.work.threads, bar); }, polygons);
-      return;
-    }
-    result.mesh =
-        extract_any<Mesh>(image, *result.isovalue, options, options_.single_precision(), stats,
-                          [&](auto contour) { return with_additions(std::move(contour), options.work.threads, bar); });
+          finished,
+          triangulated_polygons(
+              image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
+    else
+      result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished);
   }
 
   /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
@@ -306,17 +306,16 @@ class ContourCommand final : public Command {
                                                             pick_, picked.point.size(), N));
       std::array<double, N> point;
       std::copy_n(picked.point.begin(), N, point.begin());
-      PickReport<N> report;
-      const auto keep = [&](auto contour) {
-        picked.tile.assign(report.at.begin(), report.at.end());
-        picked.distance = report.distance;
-        picked.tiles = report.tiles;
-        picked.components = report.components;
-        return with_additions(std::move(contour), options.work.threads, bar);
+      const auto keep = [&](auto found) {
+        picked.tile.assign(found.report.at.begin(), found.report.at.end());
+        picked.distance = found.report.distance;
+        picked.tiles = found.report.tiles;
+        picked.components = found.report.components;
+        return with_additions(std::move(found.contour), options.work.threads, bar);
       };
       return options_.single_precision()
-                 ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options, &report))
-                 : keep(extract_component<double>(owned.view(), *result.isovalue, point, options, &report));
+                 ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options))
+                 : keep(extract_component<double>(owned.view(), *result.isovalue, point, options));
     };
     result.mesh = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
     result.seconds.generate += watch.lap();
@@ -341,12 +340,13 @@ class ContourCommand final : public Command {
       results.front().seconds.read += watch.lap();
       for (ContourResult& result : results) {
         options.work.progress = bar.stage("contour");
-        ExtractStats& stats = result.stats.emplace();
+        const auto keep = [&](auto extraction) {
+          result.stats = extraction.stats;
+          return with_additions(std::move(extraction.contour), options.work.threads, bar);
+        };
         result.mesh = options_.single_precision()
-                          ? with_additions(extract<float>(view, *result.isovalue, options, *active, &stats),
-                                           options.work.threads, bar)
-                          : with_additions(extract<double>(view, *result.isovalue, options, *active, &stats),
-                                           options.work.threads, bar);
+                          ? keep(extract_with_stats<float>(view, *result.isovalue, options, *active))
+                          : keep(extract_with_stats<double>(view, *result.isovalue, options, *active));
       }
     };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);

@@ -183,10 +183,11 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
 }
 
-std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
-                                                                          PolygonTriangulation method, ProgressBar& bar,
-                                                                          ExtractStats& stats) {
-  using Triangles = std::variant<Contour<3, float>, Contour<3, double>>;
+std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(const AnyImage& image,
+                                                                                const FacetsWork& work,
+                                                                                PolygonTriangulation method,
+                                                                                ProgressBar& bar) {
+  using Triangles = std::variant<Extraction<3, float>, Extraction<3, double>>;
   const auto* const typed = std::get_if<AnyImageN<3>>(&image);
   if (typed == nullptr)
     throw Error(ErrorCode::InvalidArgument,
@@ -198,11 +199,11 @@ std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const 
   Stopwatch watch;
   return std::visit(
       [&](const auto& owned) {
-        return use_facets<Triangles>(owned, work, options, [&](const auto& facets) -> Triangles {
+        const auto triangulated = [&]<class Real>(const FacetHierarchy<3, Real>& facets) -> Triangles {
           auto contour = triangulate(facets, method, {work.options.work.threads, bar.stage("triangles")});
-          stats = stats_of(facets, watch.lap());
-          return contour;
-        });
+          return Extraction<3, Real>{std::move(contour), stats_of(facets, watch.lap())};
+        };
+        return use_facets<Triangles>(owned, work, options, triangulated);
       },
       *typed);
 }

@@ -58,8 +58,9 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
                         WrittenFiles& written);
 
 /// The contour of a 3D image, triangulated from its polygons. Throws InvalidArgument for images of other dimensions.
-std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
-                                                                          PolygonTriangulation method, ProgressBar& bar,
-                                                                          ExtractStats& stats);
+std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(const AnyImage& image,
+                                                                                const FacetsWork& work,
+                                                                                PolygonTriangulation method,
+                                                                                ProgressBar& bar);
 
 }  // namespace tegl::cli

@@ -341,12 +341,13 @@ class SliceCommand final : public Command {
     options.work.progress = bar.stage("contour");
     ExtractStats stats;
     struct Nothing {};
-    (void)extract_any<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), stats,
-                               [&]<int N, class Real>(Contour<N, Real>&& contour) {
-                                 if constexpr (N == 3 || N == 4)
-                                   cut_contour_of(std::move(contour), factors_, options_, results, bar);
-                                 return Nothing();
-                               });
+    (void)extract_and_use<Nothing>(image, *results[0].isovalue, options, options_.single_precision(),
+                                   [&]<int N, class Real>(Extraction<N, Real>&& extraction) {
+                                     stats = extraction.stats;
+                                     if constexpr (N == 3 || N == 4)
+                                       cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
+                                     return Nothing();
+                                   });
     for (ContourResult& result : results) {
       result.stats = stats;
       result.seconds.add(stats);

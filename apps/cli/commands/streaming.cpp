@@ -68,6 +68,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
   RangedLayers<T, N> layers(source, results);
   std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
   std::vector<StreamedContour<N, Real>> contours;
+  std::vector<ExtractedSize> extracted;
   std::vector<std::string> remarks;
   WrittenFiles written;
   Stopwatch watch;
@@ -77,15 +78,16 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
       files.push_back(
           std::make_unique<ContourFile<N, Real>>(file, layers.grid(), result.isovalue, options.compression));
     });
-    contours.push_back({*result.isovalue, files.back().get(), {}, {}});
+    contours.push_back({*result.isovalue, files.back().get()});
   }
   // extract, check the range of values, complete the files
   written.with_target_names([&] {
-    extract_streamed_several<Real, T, N>(layers, contours, options.extract);
-    for (const auto& contour : contours) {
-      const bool outside = is_outside(contour.isovalue, layers.range());
-      if (outside && !options.allow_empty) throw outside_error(contour.isovalue, layers.range(), unit);
-      if (!outside && contour.size.simplices == 0) remarks.push_back(remark_on_missing(contour.isovalue));
+    extracted = extract_streamed_several<Real>(layers, contours, options.extract);
+    for (std::size_t i = 0; i < contours.size(); ++i) {
+      const double isovalue = contours[i].isovalue;
+      const bool outside = is_outside(isovalue, layers.range());
+      if (outside && !options.allow_empty) throw outside_error(isovalue, layers.range(), unit);
+      if (!outside && extracted[i].size.simplices == 0) remarks.push_back(remark_on_missing(isovalue));
     }
     for (const auto& file : files) file->commit();
   });
@@ -94,9 +96,9 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
   const double seconds = watch.lap();
   for (std::size_t i = 0; i < results.size(); ++i) {
     results[i].image_dim = N;
-    results[i].stats = contours[i].stats;
-    results[i].streamed = MeshSize{N - 1, contours[i].size.vertices, contours[i].size.simplices};
-    results[i].seconds.add(contours[i].stats);
+    results[i].stats = extracted[i].stats;
+    results[i].streamed = MeshSize{N - 1, extracted[i].size.vertices, extracted[i].size.simplices};
+    results[i].seconds.add(extracted[i].stats);
     results[i].seconds.write = std::max(0.0, seconds - results[i].seconds.total());
   }
   return remarks;

@@ -177,11 +177,12 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");
-  result.contour = extract_any<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
-                                           result.stats.emplace(), [&](auto contour) {
-                                             options_.add_shape_normals(contour);
-                                             return AnyContour(widened(std::move(contour)));
-                                           });
+  result.contour = extract_and_use<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
+                                               [&](auto extraction) {
+                                                 result.stats = extraction.stats;
+                                                 options_.add_shape_normals(extraction.contour);
+                                                 return AnyContour(widened(std::move(extraction.contour)));
+                                               });
   if (result.size().simplices == 0) remark(remark_without_contour(input.image, *result.isovalue));
   result.seconds.add(*result.stats);
   if (keep_image) result.image = std::move(input);

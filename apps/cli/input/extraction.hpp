@@ -89,13 +89,14 @@ std::string remark_without_contour(const AnyImage& image, double isovalue);
 /// The remark that missing samples prevent a contour.
 std::string remark_on_missing(double isovalue);
 
-/// Extracts the contour of an image of any type and passes it to `use`, as Contour<N, float> or Contour<N, double>.
+/// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
+/// Extraction<N, double>.
 template <class Result, class Use>
-Result extract_any(const AnyImage& image, double isovalue, const ExtractOptions& options, bool single_precision,
-                   ExtractStats& stats, const Use& use) {
+Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOptions& options, bool single_precision,
+                       const Use& use) {
   const auto of_owned = [&](const auto& owned) -> Result {
-    if (single_precision) return use(extract<float>(owned.view(), isovalue, options, &stats));
-    return use(extract<double>(owned.view(), isovalue, options, &stats));
+    if (single_precision) return use(extract_with_stats<float>(owned.view(), isovalue, options));
+    return use(extract_with_stats<double>(owned.view(), isovalue, options));
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }

@@ -41,13 +41,12 @@ class SeedSetOfFile : public ::testing::TestWithParam<Sizes> {
     if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
     image_ = std::get<Volume>(std::get<1>(read_image(path).image));
   }
-  [[nodiscard]] SeedSet seeds(SeedMethod method, Neighbourhood neighbourhood, std::vector<int> order = {},
-                              SeedSetStats* stats = nullptr) const {
+  [[nodiscard]] SeedSet seeds(SeedMethod method, Neighbourhood neighbourhood, std::vector<int> order = {}) const {
     SeedSetOptions options;
     options.method = method;
     options.neighbourhood = neighbourhood;
     options.scan_order = std::move(order);
-    return find_seeds(image_.view(), options, stats);
+    return find_seeds(image_.view(), options);
   }
   [[nodiscard]] const Volume& image() const { return image_; }
 
@@ -65,8 +64,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(SeedSetOfFile, HasTheSizesThatTheDocumentationGives) {
   for (std::size_t i = 0; i < kNeighbourhoods.size(); ++i) {
-    SeedSetStats stats;
-    const std::size_t found = seeds(SeedMethod::cover, kNeighbourhoods[i], {}, &stats).tiles.size();
+    const SeedSet set = seeds(SeedMethod::cover, kNeighbourhoods[i]);
+    const SeedSetStats& stats = set.stats;
+    const std::size_t found = set.tiles.size();
     EXPECT_EQ(stats.whole1, GetParam().whole1[i]) << neighbourhood_name(kNeighbourhoods[i]);
     EXPECT_LE(found, GetParam().cover[i]) << neighbourhood_name(kNeighbourhoods[i]);
     EXPECT_LE(stats.lower_bound, found);

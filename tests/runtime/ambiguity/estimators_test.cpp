@@ -524,7 +524,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
           options.work.threads = threads;
           Collector<4, float> collector;
           auto layers = layers_of(image);
-          const ContourSize size = extract_streamed(layers, 0.5, options, collector);
+          const ContourSize size = extract_streamed(layers, 0.5, options, collector).size;
           expect_same_bytes(collector.contour, contour);
           EXPECT_EQ(size.vertices, contour.vertices.size());
           EXPECT_EQ(size.simplices, contour.simplices.size());

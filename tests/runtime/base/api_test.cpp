@@ -87,6 +87,12 @@ static_assert(only_in<2, 5>([]<int N>() {
 static_assert(only_in<2, 5>([]<int N>() {
   return requires { typename PickReport<N>; };
 }));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename PickedComponent<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Extraction<N>; };
+}));
 static_assert(only_in<2, 4>([]<int N>() {
   return requires { typename Hyperplane<N>; };
 }));
@@ -192,7 +198,7 @@ concept Streamed = requires(L& layers, ContourSink<N, float>& sink) {
   extract_streamed(layers, 0.0, {}, sink);
 };
 template <class L, int N>
-concept SeveralStreamed = requires(L& layers, std::span<StreamedContour<N, float>> contours) {
+concept SeveralStreamed = requires(L& layers, std::span<const StreamedContour<N, float>> contours) {
   extract_streamed_several(layers, contours, {});
 };
 template <class C>
@@ -339,16 +345,17 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
                                                         {.ambiguity = Ambiguity::mean},
                                                         {.close = true},
                                                         {.normals = true},
-                                                        {.threads = 1},
-                                                        {.progress = progress}};
+                                                        {.work = {.threads = 1}},
+                                                        {.work = {.progress = progress}}};
   [[maybe_unused]] const Estimator estimators[] = {{.choose = {}}, {.reach = 1}};
   [[maybe_unused]] const SimplifyOptions<3> simplification[] = {
       {.method = SimplifyMethod::facets}, {.count = 5}, {.ratio = 0.1}, {.max_error = 1.0}, {.threads = 1}};
   [[maybe_unused]] const DeviationOptions<4> deviations[] = {{.scale = {1, 1, 1, 2}}, {.enough = 1.0}, {.threads = 1}};
   [[maybe_unused]] const TrackOptions tracks[] = {{.min_lifetime = 1}, {.times = {1.0}}, {.handles = false}};
   [[maybe_unused]] const TrackPicture picture[] = {{.title = "a"}, {.width = 100}};
-  [[maybe_unused]] const SeedSetOptions seeds[] = {{.method = SeedMethod::cover}, {.scan_order = {0}}, {.threads = 1}};
-  [[maybe_unused]] const ActiveTilesOptions tiles[] = {{.threads = 1}, {.seed_method = SeedMethod::cover}};
+  [[maybe_unused]] const SeedSetOptions seeds[] = {
+      {.method = SeedMethod::cover}, {.scan_order = {0}}, {.work = {.threads = 1}}};
+  [[maybe_unused]] const ActiveTilesOptions tiles[] = {{.work = {.threads = 1}}, {.seed_method = SeedMethod::cover}};
   [[maybe_unused]] const ElementFileOptions elements[] = {{.axes = ElementAxes::as_is}, {.header = true}};
   [[maybe_unused]] const ReadImageOptions reading[] = {{.variable = "a"}, {.progress = progress}};
   [[maybe_unused]] const SeriesOptions series[] = {{.variable = "a"}, {.step = 1.0}, {.order = SeriesOrder::by_name}};

@@ -52,12 +52,11 @@ void expect_same(const OwnedImage<T, N>& image, const std::vector<double>& isova
           options.work.threads = close ? 1 : 3;
           SCOPED_TRACE(std::string(active_method_name(method)) + ", " + describe(options) + ", at " +
                        std::to_string(isovalue));
-          ExtractStats plain, stats;
-          const auto expected = extract<Real>(image.view(), isovalue, options, &plain);
-          const auto contour = extract<Real>(image.view(), isovalue, options, *index, &stats);
-          ASSERT_TRUE(same_bytes(contour, expected));
-          EXPECT_EQ(stats.active_tiles, plain.active_tiles);
-          EXPECT_EQ(stats.tiles, plain.tiles);
+          const auto expected = extract_with_stats<Real>(image.view(), isovalue, options);
+          const auto found = extract_with_stats<Real>(image.view(), isovalue, options, *index);
+          ASSERT_TRUE(same_bytes(found.contour, expected.contour));
+          EXPECT_EQ(found.stats.active_tiles, expected.stats.active_tiles);
+          EXPECT_EQ(found.stats.tiles, expected.stats.tiles);
         }
   }
 }
@@ -225,8 +224,8 @@ void expect_parts(const OwnedImage<T, N>& image, double isovalue, std::size_t le
     EXPECT_GE(parts.size(), least_parts);
     std::size_t vertices = 0, simplices = 0;
     for (const auto& tiles : parts) {
-      ExtractStats stats;
-      const auto part = extract<double>(image.view(), isovalue, options, *choose_tiles(image.view(), tiles), &stats);
+      const auto chosen = choose_tiles(image.view(), tiles);
+      const auto [part, stats] = extract_with_stats<double>(image.view(), isovalue, options, *chosen);
       EXPECT_EQ(stats.active_tiles, tiles.size());
       expect_oriented_manifold(part);
       EXPECT_TRUE(is_within_in_order<N>(part.vertices, whole.vertices));

@@ -36,10 +36,9 @@ void expect_same(const Image<T, N>& image, double isovalue, const ExtractOptions
   std::vector<std::array<Real, N>> vertices(size.vertices + 1, vertex);
   std::vector<std::array<I, N>> simplices(size.simplices + 1, simplex);
   auto normals = vertices;
-  ExtractStats stats;
-  EXPECT_EQ((extract_into(image, isovalue, ContourRoom<N, Real, I>{vertices, simplices, normals}, options, &stats)),
-            size);
-  EXPECT_GT(stats.active_tiles, 0u);
+  const auto written = extract_into(image, isovalue, ContourRoom<N, Real, I>{vertices, simplices, normals}, options);
+  EXPECT_EQ(written.size, size);
+  EXPECT_GT(written.stats.active_tiles, 0u);
   EXPECT_EQ(vertices.back(), vertex);
   EXPECT_EQ(simplices.back(), simplex);
   EXPECT_EQ(normals.back(), vertex);
@@ -147,7 +146,7 @@ void expect_little_memory(const OwnedImage<T, N>& image, double isovalue) {
     std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak
     const std::size_t before = process_memory("VmRSS");
     if (process_memory("VmHWM") > before + 65536) GTEST_SKIP() << "the peak of the memory cannot be set back here";
-    EXPECT_EQ(extract_into(image.view(), isovalue, room, options), size);
+    EXPECT_EQ(extract_into(image.view(), isovalue, room, options).size, size);
     EXPECT_LE(process_memory("VmHWM"), before + image.values.size() * sizeof(T) / 16) << threads << " threads";
   }
 }

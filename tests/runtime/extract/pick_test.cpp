@@ -87,9 +87,8 @@ void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions
     Point<N> at;
     for (int a = 0; a < N; ++a)
       at[a] = static_cast<double>(random() >> 11) * 0x1p-53 * static_cast<double>(grid.size(a));
-    PickReport<N> report;
     options.work.threads = 1 + static_cast<unsigned>(i % 4);
-    const auto picked = extract_component<double>(image.view(), isovalue, at, options, &report);
+    const auto [picked, report] = extract_component<double>(image.view(), isovalue, at, options);
     ASSERT_EQ(report.found, !active.empty());
     if (active.empty()) continue;
     EXPECT_EQ(report.tile, nearest_by_trial<N>(grid, active, at));
@@ -208,10 +207,10 @@ TEST(Pick, OfVerticesThatRoundingPutsOutsideOfTheGridIsTheNearest) {
     for (const auto& vertex : picked.vertices)
       for (const auto x : vertex) EXPECT_GT(x, 500001.0);
   };
-  expect_corner(extract_component<double>(image.view(), 0.5, {500001.08, 500001.08, 500001.08}, options));
-  PickReport<3> report;
-  expect_corner(extract_component<float>(image.view(), 0.5, {500001.08, 500001.08, 500001.08}, options, &report));
-  EXPECT_EQ(report.components, 1u);
+  expect_corner(extract_component<double>(image.view(), 0.5, {500001.08, 500001.08, 500001.08}, options).contour);
+  const auto picked = extract_component<float>(image.view(), 0.5, {500001.08, 500001.08, 500001.08}, options);
+  expect_corner(picked.contour);
+  EXPECT_EQ(picked.report.components, 1u);
 }
 
 TEST(Pick, OfTwoBallsIsTheNearer) {
@@ -219,13 +218,12 @@ TEST(Pick, OfTwoBallsIsTheNearer) {
   const Ball<3> large{{1.5, 0.0, 0.0}, 1.5};
   const auto image =
       sample_field<float>(centred_grid<3>(60, 3.5), [&](const Point<3>& x) { return std::max(small(x), large(x)); });
-  PickReport<3> report;
-  const auto picked = extract_component<double>(image.view(), 0.0, {-2.0, 0.1, 0.0}, {}, &report);
+  const auto [picked, report] = extract_component<double>(image.view(), 0.0, {-2.0, 0.1, 0.0});
   EXPECT_EQ(expect_closed_manifold(picked).components, 1u);
   for (const auto& vertex : picked.vertices) EXPECT_LT(vertex[0], -1.0);
   EXPECT_EQ(report.components, 1u);
   EXPECT_LT(report.tiles * 3, PlainRanges<3>(image.view()).active(0.0).size());
-  const auto other = extract_component<float>(image.view(), 0.0, {3.5, 3.5, 3.5});
+  const auto other = extract_component<float>(image.view(), 0.0, {3.5, 3.5, 3.5}).contour;
   EXPECT_EQ(expect_closed_manifold(other).components, 1u);
   for (const auto& vertex : other.vertices) EXPECT_GT(vertex[0], -0.5f);
 }
@@ -237,7 +235,7 @@ TEST(Pick, SeesThePointInTheWorld) {
       sample_field<double>(centred_grid<2>(60, 3.5), [&](const Point<2>& x) { return std::max(left(x), right(x)); });
   image.grid.linear << 0, -2, 2, 0;
   image.grid.offset << 100, 0;
-  const auto picked = extract_component<double>(image.view(), 0.0, {100.0, 4.2});
+  const auto picked = extract_component<double>(image.view(), 0.0, {100.0, 4.2}).contour;
   ASSERT_FALSE(picked.vertices.empty());
   for (const auto& vertex : picked.vertices) EXPECT_GT(vertex[1], 0.0);
 }
@@ -265,9 +263,8 @@ TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
   const auto whole = extract<double>(image.view(), 0.5, options);
   const auto parts = split_components(whole, label_components(whole));
   ASSERT_GE(parts.size(), 2u);
-  PickReport<3> report;
-  const auto left = extract_component<double>(image.view(), 0.5, {0.0, 2.0, 2.0}, options, &report);
-  const auto right = extract_component<double>(image.view(), 0.5, {8.0, 2.0, 2.0}, options);
+  const auto [left, report] = extract_component<double>(image.view(), 0.5, {0.0, 2.0, 2.0}, options);
+  const auto right = extract_component<double>(image.view(), 0.5, {8.0, 2.0, 2.0}, options).contour;
   EXPECT_FALSE(report.found);
   EXPECT_EQ(report.components, parts.size());
   EXPECT_FALSE(same(left, right));
@@ -279,9 +276,9 @@ TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
 
 TEST(Pick, WithoutAContourIsEmpty) {
   const auto image = noise<float, 3>({9, 8, 7}, 13);
-  PickReport<3> report;
-  EXPECT_TRUE(extract_component<double>(image.view(), 2.0, {1.0, 1.0, 1.0}, {}, &report).simplices.empty());
-  EXPECT_FALSE(report.found);
+  const auto picked = extract_component<double>(image.view(), 2.0, {1.0, 1.0, 1.0});
+  EXPECT_TRUE(picked.contour.simplices.empty());
+  EXPECT_FALSE(picked.report.found);
 }
 
 }  // namespace

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of several isovalues in one pass: each equals that of its own pass, every layer is read once, calls are
-// serialised, and all end if one fails.
-
+// Contours of several isovalues. In memory: each equals the contour of its own extraction. Streamed: each equals that
+// of its own pass, every layer is read once, calls are serialised, and all end if one fails.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <random>
 #include <thread>
 #include <vector>
+
+#include "fields.hpp"
+#include "tegl/stream.hpp"
 
 namespace tegl::test {
 namespace {
@@ -80,7 +85,7 @@ class StreamSeveral : public testing::Test {
     std::vector<StreamedContour<3, double>> result;
     for (const double isovalue : isovalues) {
       sinks_.push_back(std::make_unique<KeepingSink>(inside_));
-      result.push_back({isovalue, sinks_.back().get(), {}, {}});
+      result.push_back({isovalue, sinks_.back().get()});
     }
     return result;
   }
@@ -101,22 +106,21 @@ TEST_F(StreamSeveral, GivesEachContourOfAPassOfItsOwnAndReadsOnce) {
     options.normals = true;
     auto several = contours({5, 2, 8, 99});
     auto source = layers();
-    extract_streamed_several<double>(source, std::span(several), options);
+    const auto extracted = extract_streamed_several<double>(source, several, options);
     EXPECT_THAT(reads_, testing::Each(1));
+    ASSERT_EQ(extracted.size(), several.size());
     for (std::size_t i = 0; i < several.size(); ++i) {
       KeepingSink alone(inside_);
-      ExtractStats stats;
       auto again = layers();
-      const StreamedSize size = extract_streamed<double>(again, several[i].isovalue, options, alone, &stats);
-      EXPECT_EQ(several[i].size.vertices, size.vertices);
-      EXPECT_EQ(several[i].size.simplices, size.simplices);
-      EXPECT_EQ(several[i].stats.active_tiles, stats.active_tiles);
+      const auto [size, stats] = extract_streamed<double>(again, several[i].isovalue, options, alone);
+      EXPECT_EQ(extracted[i].size, size);
+      EXPECT_EQ(extracted[i].stats.active_tiles, stats.active_tiles);
       EXPECT_EQ(sinks_[i]->vertices, alone.vertices);
       EXPECT_EQ(sinks_[i]->normals, alone.normals);
       EXPECT_EQ(sinks_[i]->simplices, alone.simplices);
     }
-    EXPECT_GT(several[0].size.simplices, 0U);
-    EXPECT_EQ(several[3].size.simplices, 0U);
+    EXPECT_GT(extracted[0].size.simplices, 0U);
+    EXPECT_EQ(extracted[3].size.simplices, 0U);
   }
 }
 
@@ -127,7 +131,7 @@ TEST_F(StreamSeveral, EndsWithTheErrorOfWhoeverFails) {
     sinks_[failing]->fails_at = 500;
     auto source = layers();
     try {
-      extract_streamed_several<double>(source, std::span(several), {});
+      extract_streamed_several<double>(source, several, {});
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::WriteFailed) << error.what();
@@ -142,7 +146,7 @@ TEST_F(StreamSeveral, EndsWithTheErrorOfTheReader) {
     std::copy_n(values_.begin(), kSize * kSize, to);
   });
   try {
-    extract_streamed_several<double>(broken, std::span(several), {});
+    extract_streamed_several<double>(broken, several, {});
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::MalformedFile) << error.what();
@@ -155,7 +159,7 @@ TEST_F(StreamSeveral, CanBeCancelled) {
   ExtractOptions options;
   options.work.progress = [](double share) { return share < 0.4; };
   try {
-    extract_streamed_several<double>(source, std::span(several), options);
+    extract_streamed_several<double>(source, several, options);
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);
@@ -168,7 +172,7 @@ TEST_F(StreamSeveral, IsTheSameForAnyNumberOfThreads) {
     options.work.threads = threads;
     auto several = contours({5, 2, 8, 6, 3});
     auto source = layers();
-    extract_streamed_several<double>(source, std::span(several), options);
+    extract_streamed_several<double>(source, several, options);
     for (std::size_t i = 0; i < several.size(); ++i) {
       const auto& here = *sinks_[sinks_.size() - several.size() + i];
       EXPECT_EQ(here.vertices, sinks_[i]->vertices);
@@ -195,7 +199,7 @@ TEST_F(StreamSeveral, TakesNoMoreThreadsForMoreContours) {
   for (int i = 0; i < 100; ++i) isovalues.push_back(0.1 * i);
   auto several = contours(isovalues);
   auto source = layers();
-  extract_streamed_several<double>(source, std::span(several), options);
+  extract_streamed_several<double>(source, several, options);
   EXPECT_THAT(reads_, testing::Each(1));
   EXPECT_LE(most, before + 2);
 }
@@ -211,25 +215,109 @@ TEST_F(StreamSeveral, TellsAProgressThatDoesNotFall) {
   };
   auto several = contours({5, 2, 8});
   auto source = layers();
-  extract_streamed_several<double>(source, std::span(several), options);
+  extract_streamed_several<double>(source, several, options);
   EXPECT_EQ(last, 1);
 }
 
 TEST_F(StreamSeveral, OfAnImageWithoutTilesIsEmpty) {
   auto several = contours({5, 2});
   Layers flat(Grid<3>::unit({4, 4, 1}), [](std::size_t, float* to) { std::fill_n(to, 16, 5.0F); });
-  extract_streamed_several<double>(flat, std::span(several), {});
-  EXPECT_EQ(several[1].size.simplices, 0U);
-  EXPECT_EQ(several[1].stats.tiles, 0U);
+  const auto extracted = extract_streamed_several<double>(flat, several, {});
+  EXPECT_EQ(extracted[1].size.simplices, 0U);
+  EXPECT_EQ(extracted[1].stats.tiles, 0U);
 }
 
 TEST_F(StreamSeveral, RefusesAContourWithoutASink) {
   auto several = contours({5, 2});
   several[1].sink = nullptr;
   auto source = layers();
-  EXPECT_THROW(extract_streamed_several<double>(source, std::span(several), {}), Error);
-  extract_streamed_several<double>(source, std::span<StreamedContour<3, double>>(), {});
+  EXPECT_THROW(extract_streamed_several<double>(source, several, {}), Error);
+  EXPECT_TRUE(extract_streamed_several<double>(source, {}, {}).empty());
   EXPECT_THAT(reads_, testing::Each(0));
+}
+
+template <class Rows>
+bool equal_bytes(const Rows& a, const Rows& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+}
+
+template <class Real, Value T, int N>
+void expect_each_equals_its_own(const Image<T, N>& image, const std::vector<double>& isovalues) {
+  ExtractOptions options;
+  options.close = N < 5;
+  options.normals = true;
+  options.work.threads = 2;
+  const auto several = extract_several<Real>(image, isovalues, options);
+  ASSERT_EQ(several.size(), isovalues.size());
+  for (std::size_t i = 0; i < isovalues.size(); ++i) {
+    SCOPED_TRACE(isovalues[i]);
+    const auto alone = extract<Real>(image, isovalues[i], options);
+    EXPECT_TRUE(equal_bytes(several[i].vertices, alone.vertices));
+    EXPECT_TRUE(equal_bytes(several[i].normals, alone.normals));
+    EXPECT_TRUE(equal_bytes(several[i].simplices, alone.simplices));
+    EXPECT_EQ(several[i].axis_names, alone.axis_names);
+  }
+}
+
+template <class Real, Value T, int N>
+void expect_each_equals_its_own(const OwnedImage<T, N>& image, const std::vector<double>& isovalues) {
+  expect_each_equals_its_own<Real>(image.view(), isovalues);
+}
+
+TEST(ExtractSeveral, EachContourEqualsItsOwnExtraction) {
+  const std::vector<double> isovalues = {0.5, 0.9, 0.2, 0.5, 7.0};
+  expect_each_equals_its_own<float>(noise<float, 2>({40, 30}, 1), isovalues);
+  expect_each_equals_its_own<double>(noise<double, 3>({12, 11, 10}, 2), isovalues);
+  expect_each_equals_its_own<float>(noise<float, 4>({7, 6, 5, 6}, 3), isovalues);
+  expect_each_equals_its_own<float>(noise<float, 5>({3, 3, 3, 3, 2}, 4), {0.5, 0.9});
+  // Fortran order: the layers are transposed first.
+  const auto image = noise<float, 3>({70, 60, 50}, 5);
+  Grid<3> turned = image.grid;
+  std::reverse(turned.axes.begin(), turned.axes.end());
+  expect_each_equals_its_own<float>(Image<float, 3>(image.values.data(), turned, {70 * 60, 70, 1}), {0.5, 0.9});
+}
+
+TEST(ExtractSeveral, WithoutIsovaluesIsEmpty) {
+  const auto image = noise<float, 3>(5, 1);
+  EXPECT_TRUE(extract_several(image.view(), {}).empty());
+}
+
+TEST(ExtractSeveral, ReportsAProgressThatDoesNotFallAndCanBeCancelled) {
+  const auto image = noise<float, 3>({24, 23, 22}, 6);
+  const std::vector<double> isovalues = {0.2, 0.5, 0.8};
+  std::vector<double> fractions;
+  ExtractOptions options;
+  options.work.progress = [&](double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  };
+  extract_several(image.view(), isovalues, options);
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_EQ(fractions.front(), 0.0);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.back(), 1.0);
+
+  options.work.progress = [](double fraction) { return fraction < 0.6; };
+  try {
+    extract_several(image.view(), isovalues, options);
+    ADD_FAILURE() << "not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+  }
+}
+
+TEST(ExtractSeveral, RefusesAnIsovalueThatIsNotFiniteBeforeTheFirstContour) {
+  const auto image = noise<float, 3>({9, 8, 7}, 7);
+  bool begun = false;
+  ExtractOptions options;
+  options.work.progress = [&](double) { return begun = true; };
+  try {
+    extract_several(image.view(), std::vector<double>{0.5, std::nan("")}, options);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidIsovalue);
+  }
+  EXPECT_FALSE(begun);
 }
 
 }  // namespace

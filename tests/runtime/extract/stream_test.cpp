@@ -149,8 +149,7 @@ TEST(Streamed, ThroughThePublicFunction) {
   const auto contour = extract<float>(image.view(), noise_isovalue<float>(), {});
   ImageLayers<float, 4> layers(image);
   Collector<4, float> collector;
-  ExtractStats stats;
-  const StreamedSize size = extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector, &stats);
+  const auto [size, stats] = extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector);
   expect_equal(collector, contour);
   EXPECT_EQ(size.simplices, contour.simplices.size());
   EXPECT_EQ(stats.tiles, 8u * 7 * 6 * 5);
@@ -195,7 +194,7 @@ TEST(Streamed, WithoutTilesIsEmpty) {
   const auto image = noise<float, 3>({9, 1, 7}, 3);
   ImageLayers<float, 3> layers(image);
   Collector<3, float> collector;
-  EXPECT_EQ((extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector).vertices), 0u);
+  EXPECT_EQ(extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector).size.vertices, 0u);
 }
 
 /// Vertex numbers beyond 2^32 without that many vertices: the sink starts at a large number.

@@ -56,8 +56,9 @@ TEST(Limits, NumbersOfTwoBatchesAreToldApart) {
   const ExtractOptions options;
   ImageSource<std::uint8_t, 3> source(image.view(), 100.0, 0.0);
   const auto run = [&](std::uint64_t limit) {
-    return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options, nullptr,
-                                    {.batch = 1, .max_vertices_at_once = limit});
+    return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options,
+                                    {.batch = 1, .max_vertices_at_once = limit})
+        .contour;
   };
   const std::uint64_t count = run(~std::uint64_t{0}).vertices.size();
   EXPECT_EQ(run(count).vertices.size(), count);
@@ -119,8 +120,9 @@ TEST(Limits, MoreVerticesThanNumbersAreAnError) {
     options.close = close;
     ImageSource<std::uint8_t, 3> source(image.view(), 100.0, 0.0);
     const auto run = [&](std::uint64_t limit) {
-      return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options, nullptr,
-                                      {.max_vertices = limit});
+      return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options,
+                                      {.max_vertices = limit})
+          .contour;
     };
     const std::uint64_t count = run(kMaxVertices).vertices.size();
     EXPECT_EQ(run(count).vertices.size(), count);

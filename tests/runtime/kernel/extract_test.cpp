@@ -327,8 +327,7 @@ TYPED_TEST(Extract, OfAnAllMissingImageIsEmpty) {
   const auto image = sample_field<float, N>(centred_grid<N>(4, 1.0), [](const Point<N>&) { return kNan; });
   for (ExtractOptions options : variants()) {
     options.close = true;
-    ExtractStats stats;
-    const auto contour = extract<float>(image.view(), 0.0, options, &stats);
+    const auto [contour, stats] = extract_with_stats<float>(image.view(), 0.0, options);
     EXPECT_TRUE(contour.vertices.empty() && contour.simplices.empty());
     EXPECT_EQ(stats.active_tiles, 0u);
   }
@@ -341,11 +340,11 @@ TYPED_TEST(Extract, OfAnImageWithoutTilesIsEmpty) {
     sizes.fill(5);
     sizes[flat] = 1;
     const auto image = noise<std::uint8_t, N>(sizes, 73);
-    ExtractStats stats;
     ExtractOptions options;
     options.close = true;
-    EXPECT_TRUE(extract<float>(image.view(), 127.5, options, &stats).vertices.empty());
-    EXPECT_EQ(stats.tiles, 0u);
+    const auto extraction = extract_with_stats<float>(image.view(), 127.5, options);
+    EXPECT_TRUE(extraction.contour.vertices.empty());
+    EXPECT_EQ(extraction.stats.tiles, 0u);
   }
 }
 
@@ -390,9 +389,7 @@ TEST(Extract4d, HoldsThePointsOfThe3dContoursOfItsSteps) {
 TYPED_TEST(Extract, StatsCountTilesThatHoldHighAndLowCorners) {
   constexpr int N = TypeParam::value;
   const auto image = noise_with_missing<float, N>(Grid<N>::unit(noise<float, N>(6, 0).grid.sizes()), 91, 0.02);
-  ExtractStats stats;
-  stats.tiles = 999;  // must be overwritten
-  extract<float>(image.view(), 0.9, {}, &stats);
+  const ExtractStats stats = extract_with_stats<float>(image.view(), 0.9).stats;
   std::uint64_t tiles = 0;
   std::uint64_t active = 0;
   for_each_sample<N>(image.grid, [&](std::size_t, const std::array<std::size_t, N>& index) {

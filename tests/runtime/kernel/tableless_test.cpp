@@ -30,9 +30,7 @@ template <class Real = double, Value T, int N>
 Contour<N, Real> extract_tile_by_tile(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                                       std::size_t tile_bytes = detail::kBuiltTileBytes) {
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  Contour<N, Real> contour;
-  detail::extract_tiles<N, Real>(source, image.grid(), options, &contour, nullptr, tile_bytes);
-  return contour;
+  return detail::extract_tiles<N, Real>(source, image.grid(), options, tile_bytes).contour;
 }
 
 /// Coordinates rounded to 2^-30, to remove differences by rounding errors.
@@ -396,9 +394,8 @@ TEST(Extract5d, SizesAreCounted) {
   for (const bool close : {false, true}) {
     options.close = close;
     const auto contour = extract(image.view(), 0.5, options);
-    ExtractStats stats;
-    EXPECT_EQ(count(image.view(), 0.5, options, &stats),
-              (ContourSize{contour.vertices.size(), contour.simplices.size()}));
+    const auto [size, stats] = count_with_stats(image.view(), 0.5, options);
+    EXPECT_EQ(size, (ContourSize{contour.vertices.size(), contour.simplices.size()}));
     EXPECT_EQ(stats.tiles, 32u);
     EXPECT_EQ(stats.active_tiles, 32u);
   }

@@ -115,8 +115,7 @@ void expect_measures_and_elements_by_gauss(const Image<T, N>& image, double isov
     if (static_cast<double>(image(index)) >= isovalue) high += share;
   });
   const auto unit = on_unit_grid(image);
-  ExtractStats stats;
-  const auto steps = extract<double>(unit.view(), isovalue, closed(), &stats);
+  const auto [steps, stats] = extract_with_stats<double>(unit.view(), isovalue, closed());
   EXPECT_NEAR(*tegl::measure(steps).content, high, 0.25 * static_cast<double>(stats.active_tiles));
 }
 

@@ -60,14 +60,12 @@ void expect_of_seeds(const OwnedImage<T, N>& image, const std::vector<SeedMethod
     for (const SeedMethod method : methods) {
       SCOPED_TRACE(std::string(seed_method_name(method)) + ", " + std::string(neighbourhood_name(neighbourhood)));
       options.method = method;
-      SeedSetStats stats;
       expect_rising_progress([&](const Progress& progress) {
         options.work.progress = progress;
-        find_seeds(image.view(), options, &stats);
+        find_seeds(image.view(), options);
       });
       options.work.progress = {};
-      find_seeds(image.view(), options, &stats);
-      EXPECT_EQ(stats.reduced, reduced && method == SeedMethod::cover);
+      EXPECT_EQ(find_seeds(image.view(), options).stats.reduced, reduced && method == SeedMethod::cover);
     }
     SCOPED_TRACE("bound, " + std::string(neighbourhood_name(neighbourhood)));
     expect_rising_progress([&](const Progress& progress) {

@@ -118,14 +118,13 @@ void expect_seed_sets(const OwnedImage<T, N>& image, std::size_t isovalues) {
     for (const SeedMethod method : seed_methods()) {
       SCOPED_TRACE(std::string(seed_method_name(method)) + ", " + std::string(neighbourhood_name(neighbourhood)));
       options.method = method;
-      SeedSetStats stats;
-      const SeedSet set = find_seeds(image.view(), options, &stats);
+      const SeedSet set = find_seeds(image.view(), options);
       EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
       EXPECT_TRUE(std::is_sorted(set.tiles.begin(), set.tiles.end()));
       EXPECT_LE(bound, set.tiles.size());
       if (method == SeedMethod::cover) {
         smallest = set.tiles.size();
-        EXPECT_EQ(stats.lower_bound, bound);
+        EXPECT_EQ(set.stats.lower_bound, bound);
       }
       EXPECT_LE(smallest, set.tiles.size());
       const PlainRanges<N> ranges(image.view());
@@ -183,9 +182,8 @@ void expect_reduced_covers(const OwnedImage<T, N>& image, std::size_t isovalues)
     const AllComponents<T, N> all(image, neighbourhood, isovalues);
     SeedSetOptions options;
     options.neighbourhood = neighbourhood;
-    SeedSetStats stats;
-    const SeedSet set = find_seeds(image.view(), options, &stats);
-    EXPECT_TRUE(stats.reduced || neighbourhood == Neighbourhood::all);
+    const SeedSet set = find_seeds(image.view(), options);
+    EXPECT_TRUE(set.stats.reduced || neighbourhood == Neighbourhood::all);
     EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
     EXPECT_LE(seed_lower_bound(image.view(), options), set.tiles.size());
     options.method = SeedMethod::sweeping;
@@ -208,9 +206,8 @@ TEST(SeedSet, ChosenPartByPartMeetsAllComponents) {
   const AllComponents<float, 2> all(image, Neighbourhood::faces, 9);
   SeedSetOptions options;
   options.neighbourhood = Neighbourhood::faces;
-  SeedSetStats stats;
-  const SeedSet set = find_seeds(image.view(), options, &stats);
-  EXPECT_TRUE(stats.reduced);
+  const SeedSet set = find_seeds(image.view(), options);
+  EXPECT_TRUE(set.stats.reduced);
   EXPECT_GT(set.tiles.size(), std::size_t{40000});
   EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
   options.method = SeedMethod::climbing;
@@ -223,9 +220,9 @@ std::pair<double, double> share_of_seeds(const std::array<std::size_t, N>& sizes
   const auto image = noise<float, N>(sizes, 17);
   SeedSetOptions options;
   options.neighbourhood = Neighbourhood::faces;
-  SeedSetStats stats;
-  const auto seeds = static_cast<double>(find_seeds(image.view(), options, &stats).tiles.size());
-  const auto tiles = static_cast<double>(stats.tiles);
+  const SeedSet set = find_seeds(image.view(), options);
+  const auto seeds = static_cast<double>(set.tiles.size());
+  const auto tiles = static_cast<double>(set.stats.tiles);
   return {seeds / tiles, static_cast<double>(seed_lower_bound(image.view(), options)) / tiles};
 }
 
