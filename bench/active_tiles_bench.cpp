@@ -60,7 +60,7 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
     for (const double isovalue : isovalues) sum += least_seconds([&] { extract<float>(image, isovalue, options); });
     return sum;
   }();
-  const double identify_seconds = least_seconds([&] { identify(image, 1); });
+  const double identify_seconds = least_seconds([&] { identify(image, {.threads = 1}); });
   fmt::print(
       "\n## {}\n\n{} samples, {} isovalues; all contours without an index: {:.3f} s; digest of the values: "
       "{:.1f} ms\n\n",
