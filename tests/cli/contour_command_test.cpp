@@ -133,11 +133,11 @@ TEST_F(Contour, FarFromTheOriginSaysHowManyVerticesSinglePrecisionLoses) {
       places.insert({read.coordinates[i], read.coordinates[i + 1], read.coordinates[i + 2]});
     EXPECT_GT(together, vertices / 10);
     EXPECT_EQ(vertices - together, places.size());
-    const std::string some = std::to_string(together) + " of " + std::to_string(vertices) + " vertices fall together";
-    EXPECT_THAT(run.err, HasSubstr(out + ": in single precision, which " + extension + " has, " + some));
-    EXPECT_THAT(run.err, HasSubstr("expected a format with double, .ply, .obj or .vtkhdf"));
+    const std::string some = std::to_string(together) + " of " + std::to_string(vertices) + " vertices coincide";
+    EXPECT_THAT(run.err, HasSubstr(out + ": " + extension + " has single precision, in which " + some));
+    EXPECT_THAT(run.err, HasSubstr("expected a format with double precision (.ply, .obj or .vtkhdf)"));
     const RunResult told = run_tegl({"contour", file, "--iso", "128.5", "-o", out});
-    EXPECT_THAT(told.out, HasSubstr("fall together (single precision)"));
+    EXPECT_THAT(told.out, HasSubstr("coincide (single precision)"));
     EXPECT_EQ(run_tegl({"contour", file, "--iso", "128.5", "-o", out, "--quiet"}).err, "");
     const RunResult cut = run_tegl({"components", file, "--iso", "128.5", "--split",
                                     path("{label}" + std::string(extension)), "--largest", "1", "--json"});
@@ -163,8 +163,9 @@ TEST_F(Contour, OfTiesSaysThatStlMakesThemOne) {
   const auto vertices = run.json()["vertices"].get<std::size_t>();
   const auto together = run.json()["vertices_together"].get<std::size_t>();
   EXPECT_EQ(vertices - together, read_mesh(path("out.stl")).coordinates.size() / 3);
-  EXPECT_THAT(run.err, HasSubstr(std::to_string(together) + " of " + std::to_string(vertices) +
-                                 " vertices are at the place of others, and .stl has no numbers to tell them apart"));
+  EXPECT_THAT(run.err,
+              HasSubstr(std::to_string(together) + " of " + std::to_string(vertices) +
+                        " vertices coincide with others, and .stl has no vertex numbers that distinguish them"));
   EXPECT_THAT(run.err, HasSubstr("--epsilon"));
   const RunResult glb = run_tegl({"contour", file, "--iso", "3", "-o", path("out.glb"), "--json"});
   EXPECT_EQ(glb.err, "") << "numbered";
