@@ -252,7 +252,7 @@ void sample_any(AnyContour& contour, const AnyImage& image, const std::string& n
                       fmt::format("the image has {} axes; expected {}, as the contour", image.view.index() + 2, N));
         for (const Attribute& attribute : c.vertex_attributes)
           if (attribute.name == name)
-            throw Error(ErrorCode::InvalidArgument, fmt::format("the contour has an attribute '{}' already", name));
+            throw Error(ErrorCode::InvalidArgument, fmt::format("the contour already has an attribute '{}'", name));
         Attribute made = call.run(
             [&] { return std::visit([&](const auto& view) { return sample(view, c, name, unit, options); }, *views); });
         c.vertex_attributes.push_back(std::move(made));
@@ -293,7 +293,7 @@ void bind_operations(py::module_& m) {
   m.def("automatic_scale", &automatic_scale_any, py::arg("contour"), doc::automatic_scale);
   m.def("sample", &sample_any, py::arg("contour"), py::arg("image"), py::arg("name"), py::arg("unit"),
         py::arg("threads"), py::arg("progress"), doc::sample);
-  m.def("has_fast_simplify", &has_fast_simplify, "Whether the method 'fast' is there.");
+  m.def("has_fast_simplify", &has_fast_simplify, "Whether the method 'fast' is available.");
 }
 
 }  // namespace tegl::python

@@ -227,7 +227,7 @@ def test_a_folder_of_dicom_is_the_terminals(tmp_path):
     listed = tegl.read(files)
     assert np.array_equal(listed.array, scan()), "files that say where they lie come in any order"
     assert_same(listed.contour(0.1), image.contour(0.1))
-    with pytest.raises(ValueError, match="is a DICOM file, which says itself where it lies"):
+    with pytest.raises(ValueError, match="is a DICOM file, which contains its position"):
         tegl.read(files, time_step=2)
 
 

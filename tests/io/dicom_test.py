@@ -260,7 +260,7 @@ class Dicom(unittest.TestCase):
         for t in range(2):  # on a line each, but not on the same one
             for k in range(4):
                 writer.plane(np.zeros((4, 5), dtype=np.uint8), (3 * t, 0, 2 * k), TriggerTime=30 * t)
-        self.assert_refused("UnsupportedData", "lies 3 mm beside the line")
+        self.assert_refused("UnsupportedData", "lies 3 mm away from the line")
 
     def test_what_is_no_dicom_is_left_out_of_a_folder_and_said(self):
         Writer(self.folder).volume()
@@ -278,7 +278,7 @@ class Dicom(unittest.TestCase):
                 for paths in ([self.folder], [*scan, path]):
                     image = self.assert_both_ways(*paths)
                     self.assertEqual(len(image["remarks"]), 1)
-                    self.assertIn(f"left out: {path}", image.pop("remarks")[0])
+                    self.assertIn(f"skipped: {path}", image.pop("remarks")[0])
                     self.assertEqual(image, plain)
                 for how in ("whole", "layers"):  # by itself it is an error
                     self.assertIn(dump(path, how=how).get("error"), ("MalformedFile", "UnsupportedData"))
@@ -288,7 +288,7 @@ class Dicom(unittest.TestCase):
         self.assertIn("empty.dcm and 5 more", self.assert_both_ways()["remarks"][0])
         for path in scan:
             path.unlink()
-        self.assert_refused("UnsupportedData", "no image in DICOM")
+        self.assert_refused("UnsupportedData", "contains no DICOM image")
 
     def test_damaged_dicom_is_never_left_out(self):
         Writer(self.folder).volume(planes=6)
@@ -329,7 +329,7 @@ class Dicom(unittest.TestCase):
             data.PixelData = bytes(60)
             data.save_as(path, write_like_original=False)
         image = self.assert_both_ways()
-        self.assertIn("left out, a series of 2 files", image["remarks"][0])
+        self.assertIn("skipped, a series of 2 files", image["remarks"][0])
         self.assertIn("RGB", image["remarks"][0])
 
     def test_several_series_are_listed_and_chosen(self):

@@ -354,11 +354,11 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
   if (simplices.size() % width != 0)
     throw Error(
         ErrorCode::InvalidArgument,
-        fmt::format("{} vertex numbers; expected a multiple of {}, so many to a simplex", simplices.size(), width));
+        fmt::format("{} vertex numbers; expected a multiple of {}, the number per simplex", simplices.size(), width));
   if (coordinates.size() % static_cast<std::size_t>(space_dim) != 0)
     throw Error(
         ErrorCode::InvalidArgument,
-        fmt::format("{} coordinates; expected a multiple of {}, so many to a vertex", coordinates.size(), space_dim));
+        fmt::format("{} coordinates; expected a multiple of {}, the number per vertex", coordinates.size(), space_dim));
   constexpr std::size_t kLimit = std::numeric_limits<Index>::max();
   if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
     throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",

@@ -221,9 +221,8 @@ Contour<N, Real> select_components(const Contour<N, Real>& contour, const Compon
   require_labels(contour, labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
   if (keep.size() != labels.count)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} components are to be kept or not; expected {}, as many as there are", keep.size(),
-                            labels.count));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} choices of components; expected {}, one for each component",
+                                                        keep.size(), labels.count));
   const auto kept = [&](const Buffer<Index>& of, const Progress& part) {
     Buffer<Index> items;
     detail::in_parts(of.size(), part, [&](std::size_t from, std::size_t to) {

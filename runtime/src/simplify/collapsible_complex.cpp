@@ -80,9 +80,9 @@ void ShrinkingComplex<N>::find_border(const Progress& progress) {
         others += shares;
       }
       if (others > 1)
-        throw Error(ErrorCode::UnsupportedData,
-                    fmt::format("a face of simplex {} is in {} simplices; expected a manifold, where it is in 1 or 2",
-                                s, others + 1));
+        throw Error(
+            ErrorCode::UnsupportedData,
+            fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold", s, others + 1));
       if (others == 1) continue;
       border_faces_[s] |= static_cast<std::uint8_t>(1u << omitted);
       for (int i = 0; i < N; ++i)

@@ -448,8 +448,8 @@ class Simplifier {
     if (report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts == 0 && !twice) return;
     throw Error(
         ErrorCode::UnsupportedData,
-        fmt::format("{} is no oriented manifold ({} faces in more than two triangles, {} bad links, {} orientation "
-                    "conflicts{}); expected one: allow nonmanifold results, or take another method",
+        fmt::format("{} is not an oriented manifold ({} faces in more than two triangles, {} bad links, {} orientation "
+                    "conflicts{}); expected one: allow nonmanifold results, or use another method",
                     what, report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts,
                     twice ? ", triangles with the same corners" : ""));
   }

@@ -276,7 +276,7 @@ requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& cont
 
 TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep) {
   if (keep.size() != graph.tracks.size())
-    refuse(fmt::format("{} tracks are to be kept or not; expected {}", keep.size(), graph.tracks.size()));
+    refuse(fmt::format("{} choices of tracks; expected {}, one for each track", keep.size(), graph.tracks.size()));
   TrackGraph result = graph;
   std::vector<bool> keep_segment(graph.segments.size());
   std::vector<bool> keep_event(graph.events.size(), false);

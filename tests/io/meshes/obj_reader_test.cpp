@@ -180,7 +180,7 @@ TEST(ObjReader, SaysWhatIsBrokenAndWhere) {
   expect("v 0 0\n", "line 1: 'v' with 2 numbers; expected 3 or more");
   expect("\r\nv 0 one 0\n", "line 2: 'one'; expected a number");
   expect("v 0 1,5 0\n", "line 1: '1,5'; expected a number");
-  expect("v 0 1e999 0\n", "line 1: '1e999'; expected a number that double holds");
+  expect("v 0 1e999 0\n", "line 1: '1e999'; expected a number in the range of double");
   expect("v 0 0 0 red\n", "line 1: 'red'; expected a number");
   expect(kSquare + "vn 0 0 z\n", "line 5: 'z'; expected a number");
   expect(kSquare, "no triangles, no lines; expected a surface", ErrorCode::UnsupportedData);

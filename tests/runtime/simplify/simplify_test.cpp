@@ -457,7 +457,7 @@ TEST(SimplifyFast, TakesASmoothSurfaceAndRefusesWhatIsNoManifold) {
   const auto rough = extract<double>(image.view(), 0.6);
   options = with_ratio<3>(SimplifyMethod::fast, 0.1);
   options.measure = false;
-  expect_error(ErrorCode::UnsupportedData, "no oriented manifold", [&] { simplify(rough, options); });
+  expect_error(ErrorCode::UnsupportedData, "not an oriented manifold", [&] { simplify(rough, options); });
   options.allow_nonmanifold = true;
   const MeshReport report = check(simplify(rough, options));
   EXPECT_GT(report.nonmanifold_simplices + report.bad_links, 0u);
