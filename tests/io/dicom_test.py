@@ -393,20 +393,20 @@ class Dicom(unittest.TestCase):
         for _ in range(2):
             for k in range(3):
                 writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k))
-        self.assert_refused("UnsupportedData", "2 slices at one place", "Trigger Time")
+        self.assert_refused("UnsupportedData", "2 slices at one position", "Trigger Time")
         writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, 1))
-        self.assert_refused("UnsupportedData", "one of 3 at its place", "expected 2", "twice")
+        self.assert_refused("UnsupportedData", "one of 3 slices at", "expected 2", "duplicates")
 
     def test_a_copy_of_a_slice_is_named_and_a_moment_that_lacks_one(self):
         writer = Writer(self.folder)
         for k in range(9):
             writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k), name=f"D{k}.dcm", TriggerTime=0)
         shutil.copy(self.folder / "D3.dcm", self.folder / "D3 copy.dcm")
-        self.assert_refused("UnsupportedData", "one of 2 at its place, 3 mm", "expected 1", "D3.dcm", "D3 copy.dcm")
+        self.assert_refused("UnsupportedData", "one of 2 slices at 3 mm", "expected 1", "D3.dcm", "D3 copy.dcm")
         (self.folder / "D3 copy.dcm").unlink()
         for k in (0, 1, 2, 3, 4, 6, 7, 8):
             writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k), name=f"E{k}.dcm", TriggerTime=30)
-        self.assert_refused("UnsupportedData", "D5.dcm: is one of 1 at its place, 5 mm", "expected 2", "missing")
+        self.assert_refused("UnsupportedData", "D5.dcm: is one of 1 slices at 5 mm", "expected 2", "missing")
 
     def test_planes_that_do_not_fit_are_refused(self):
         def refused(parts, **tags):

@@ -403,7 +403,7 @@ TEST_F(Series, OptionsThatDoNotFitAreRefused) {
   expect_refused(ErrorCode::InvalidArgument, {"step of 1e-320", "2.2e-308"}, options);
   options = {};
   options.order = SeriesOrder::coordinate;
-  expect_refused(ErrorCode::UnsupportedData, {"does not say where it lies"}, options);
+  expect_refused(ErrorCode::UnsupportedData, {"has no coordinate along a further axis"}, options);
 }
 
 TEST_F(Series, DamagedFilesAreNamed) {
