@@ -584,7 +584,7 @@ class Viewer(unittest.TestCase):
         tegl("contour", self.folder / "ras.nii", "--iso", 0, "-o", self.folder / "saved.ply", "-q")
         browser = self.view("saved", self.folder / "saved.ply")
         self.assertEqual(ends(browser), "")
-        self.assertIn("is not known", browser.element("#world").text)
+        self.assertIn("are unknown", browser.element("#world").text)
         browser = self.view("told", self.folder / "saved.ply", "--world", "lps")
         self.assertEqual(ends(browser), "RLAPIS")
         self.assertLess(browser.run(side), 0)
