@@ -153,7 +153,7 @@ def contour(**arguments):
     (lambda: CONTOUR.track(min_lifetime="a"), TypeError, "min_lifetime is 'a'; expected a number"),
     (lambda: CONTOUR.track().save("a.svg", title=3), TypeError, "title is 3; expected text"),
     (lambda: CONTOUR.sample(VOLUME, 3), TypeError, "name is 3; expected text"),
-    (lambda: CONTOUR.sample(VOLUME, ""), ValueError, "name is ''; expected one"),
+    (lambda: CONTOUR.sample(VOLUME, ""), ValueError, "name is ''; expected a name"),
     (lambda: CONTOUR.sample(VOLUME, "a", 3), TypeError, "unit is 3; expected text"),
     (lambda: CONTOUR.simplify(ratio="a"), TypeError, "ratio is 'a'; expected a number"),
     (lambda: CONTOUR.simplify(count=1.5), TypeError, "count is 1.5; expected a whole number"),
@@ -364,7 +364,7 @@ def test_places_are_in_the_image_that_a_contour_is_of():
 
 
 def test_an_axis_without_a_name_is_cut_by_its_number():
-    text = ("no axis is named 'x', as the axes have no names; expected at=2 and axis= with a number from 0 to 2, or names for "
+    text = ("no axis is named 'x': the axes have no names; expected at=2 and axis= with a number from 0 to 2, or names for "
             "the axes: tegl.contour(array, level, axis_names=...)")
     assert said(lambda: CONTOUR.slice(x=2)) == text
     assert said(lambda: tegl.slice(CONTOUR, x=2)) == text

@@ -152,7 +152,7 @@ TEST_F(Components, WrongOptionsAreRefusedBeforeAnythingIsWritten) {
     EXPECT_THAT(run.err, HasSubstr(message));
     EXPECT_THAT(files(), ElementsAre("balls.nii"));
   };
-  refused({"--iso", "0", "--split", path("a.ply")}, 2, "expected {label} in it");
+  refused({"--iso", "0", "--split", path("a.ply")}, 2, "expected a name with {label}");
   refused({"--iso", "0", "--split", path("a_{label}.xyz")}, 6, ".xyz");
   refused({"--iso", "0", "--select", "size >"}, 2, "expected a number");
   refused({"--iso", "0", "--largest", "0"}, 2, "--largest");

@@ -92,8 +92,8 @@ TEST_F(Contour, GoesIntoStlAndObjWhereTheseHoldIt) {
   refused({disc_file}, "'.stl' cannot hold a 2D contour, which is made of lines");
   refused({write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 1}))},
           "cut the contour first ('tegl slice')");
-  refused({ball_file, "--normals"}, "no place for normals of vertices");
-  refused({ball_file, "--attribute", ball_file}, "no place for attributes");
+  refused({ball_file, "--normals"}, "cannot hold normals of vertices");
+  refused({ball_file, "--attribute", ball_file}, "cannot hold attributes");
   refused({ball_file, "--stream"}, "expected .vtkhdf");
   const RunResult line = run_tegl({"slice", ball_file, "--iso", "0", "--at", "z=5", "-o", path("no.stl")});
   EXPECT_EQ(line.exit, 6);
@@ -176,10 +176,10 @@ TEST_F(Contour, WithAttributesThatOptionsPromiseIsRefusedWhereThereIsNoPlaceForT
   for (const char* const name : {"a.stl", "a.obj"}) {
     const RunResult run = run_tegl({"contour", file, "--iso", "0,1", "--one-file", "-o", path(name)});
     EXPECT_EQ(run.exit, 6) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("has no place for attributes; expected .vtkhdf"));
+    EXPECT_THAT(run.err, HasSubstr("cannot hold attributes; expected .vtkhdf"));
     const RunResult components = run_tegl({"components", file, "--iso", "0", "-o", path(name)});
     EXPECT_EQ(components.exit, 6) << components.err;
-    EXPECT_THAT(components.err, HasSubstr("has no place for attributes; expected .vtkhdf"));
+    EXPECT_THAT(components.err, HasSubstr("cannot hold attributes; expected .vtkhdf"));
     EXPECT_EQ(run_tegl({"contour", file, "--iso", "0,1", "-o", path(name)}).exit, 0) << "a file each";
     EXPECT_EQ(run_tegl({"components", file, "--iso", "0", "--split", path("{label}" + std::string(name))}).exit, 0);
   }

@@ -254,7 +254,7 @@ class Dicom(unittest.TestCase):
         writer = Writer(self.folder)
         for k in range(5):
             writer.plane(np.zeros((4, 5), dtype=np.uint8), (0.3 * k * k, 0, 2 * k))
-        self.assert_refused("UnsupportedData", "beside the line", "straight line")
+        self.assert_refused("UnsupportedData", "away from the line", "straight line")
         for path in files_of(self.folder):
             path.unlink()
         for t in range(2):  # on a line each, but not on the same one

@@ -651,7 +651,7 @@ class Viewer(unittest.TestCase):
         tegl("slice", self.folder / "balls.vtkhdf", "--at", "t=1", "-o", self.folder / "still.ply", "-q")
         browser = self.view("still", self.folder / "still.ply")
         for call in ("tegl.time = 1", "tegl.play(true)"):
-            self.assertIn("expected a page with a contour in 4D", browser.run(f"try {{ {call} }} catch (error) {{ return error.message }}"))
+            self.assertIn("expected a page with a 4D contour", browser.run(f"try {{ {call} }} catch (error) {{ return error.message }}"))
 
     def test_the_screenshot_is_a_png_of_the_canvas(self):
         browser = self.open()

@@ -151,8 +151,8 @@ class ObjReader {
 
   void require_present(const Reference& reference, std::size_t present) const {
     if (reference.greatest > present)
-      fail(ErrorCode::MalformedFile, path_, "line {}: {} number {}; expected at most {}, their number", reference.line,
-           reference.what, reference.greatest, present);
+      fail(ErrorCode::MalformedFile, path_, "line {}: {} number {}; expected at most {}, the number of definitions",
+           reference.line, reference.what, reference.greatest, present);
   }
 
   /// Parses "7", "7/2", "7/2/5" or "7//5": vertex, texture coordinate, normal.
