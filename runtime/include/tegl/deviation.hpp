@@ -17,18 +17,10 @@ requires DimensionBetween<N, 2, 4>
 struct DeviationOptions {
   /// Coordinates are multiplied by these factors before distances are measured, to make axes of different units
   /// comparable.
-  std::array<double, N> scale = all_one();
+  std::array<double, N> scale = detail::all_one<N>();
   /// Bounds below this are not refined further, which saves time. All bounds stay valid.
   double enough = 0.0;
-  unsigned threads = 0;    ///< number of threads; 0: all of the machine. The result is the same, byte by byte.
-  Progress progress = {};  ///< see Progress
-
- private:
-  static constexpr std::array<double, N> all_one() {
-    std::array<double, N> result{};
-    result.fill(1.0);
-    return result;
-  }
+  WorkOptions work = {};  ///< threads and progress
 };
 
 /// Bounds of the distance of the points of one contour from another contour.
@@ -57,7 +49,7 @@ struct Deviation {
 /// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range, a coordinate that is not
 /// finite), Cancelled. Time: about O(S log S) for contours that are close to each other. Memory: about 300 bytes for
 /// each simplex of both.
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
                                                        const DeviationOptions<N>& options = {});
 

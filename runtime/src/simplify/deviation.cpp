@@ -578,7 +578,7 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
 }  // namespace
 }  // namespace detail
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
                                                        const DeviationOptions<N>& options) {
   using namespace detail;
@@ -599,7 +599,7 @@ requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& f
     return result;
   }
   const Pieces<N> from_pieces(from, options.scale), to_pieces(to, options.scale);
-  measure_all(from_pieces, to_pieces, options.enough, options.threads, options.progress, result);
+  measure_all(from_pieces, to_pieces, options.enough, options.work.threads, options.work.progress, result);
   return result;
 }
 

@@ -90,16 +90,15 @@ class Simplifier {
     gather_carried();
   }
 
-  Contour<N, Real> run() {
+  Simplification<N, Real> run() {
     stats_.simplices_before = contour_.simplices.size();
     stats_.vertices_before = contour_.vertices.size();
     Contour<N, Real> result = contour_.simplices.empty() ? contour_ : run_rounds();
     stats_.simplices_after = result.simplices.size();
     stats_.vertices_after = result.vertices.size();
-    tell(options_.progress, 1.0, "simplification cancelled at its end");
-    return result;
+    tell(options_.work.progress, 1.0, "simplification cancelled at its end");
+    return {std::move(result), stats_};
   }
-  [[nodiscard]] const SimplifyStats& stats() const noexcept { return stats_; }
 
  private:
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -310,7 +309,7 @@ class Simplifier {
     stop_ = stop;
     ++stats_.rounds;
     survivors_.clear();
-    const Progress shrinking = detail::part_of(options_.progress, progress_, to);
+    const Progress shrinking = detail::part_of(options_.work.progress, progress_, to);
     progress_ = to;
     Round round;
     round.result =
@@ -503,11 +502,10 @@ class Simplifier {
     const auto start = std::chrono::steady_clock::now();
     DeviationOptions<N> options;
     options.scale = options_.scale;
-    options.threads = options_.threads;
-    options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
+    options.work = {options_.work.threads, detail::part_of(options_.work.progress, from, 0.5 * (from + to))};
     options.enough = enough;
     Deviation of_original = deviation(contour_, round.result, options);
-    options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
+    options.work.progress = detail::part_of(options_.work.progress, 0.5 * (from + to), to);
     options.enough = enough > 0.0 ? enough : 0.5 * of_original.least;
     const Deviation of_result = deviation(round.result, contour_, options);
     round.errors = std::move(of_original.of_to);
@@ -680,20 +678,17 @@ class Simplifier {
 }  // namespace
 }  // namespace detail
 
-template <int N, class Real>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> simplify(const Contour<N, Real>& contour,
-                                                             const SimplifyOptions<N>& options, SimplifyStats* stats) {
-  detail::Simplifier<N, Real> simplifier(contour, options);
-  Contour<N, Real> result = simplifier.run();
-  if (stats != nullptr) *stats = simplifier.stats();
-  return result;
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contour<N, Real>& contour,
+                                                                    const SimplifyOptions<N>& options) {
+  return detail::Simplifier<N, Real>(contour, options).run();
 }
 
-template Contour<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&, SimplifyStats*);
-template Contour<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&, SimplifyStats*);
-template Contour<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&, SimplifyStats*);
-template Contour<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&, SimplifyStats*);
-template Contour<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&, SimplifyStats*);
-template Contour<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&, SimplifyStats*);
+template Simplification<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&);
+template Simplification<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&);
+template Simplification<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&);
+template Simplification<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&);
+template Simplification<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&);
+template Simplification<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&);
 
 }  // namespace tegl
