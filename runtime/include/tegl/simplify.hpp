@@ -118,7 +118,7 @@ struct Simplification {
 
 /// Reduces the number of simplices and preserves the topology: components, Euler characteristic, orientation and
 /// boundary. An edge is contracted only if the link condition holds (Dey, Edelsbrunner, Guha, Nekhayev 1999), no normal
-/// turns by 78 degrees or more, and no simplex becomes flat or worse than the worst one around the edge. Sheets closer
+/// turns by 78 degrees or more, and no simplex becomes flat or worse than the worst one around the edge. Parts closer
 /// to each other than the error may intersect afterwards. N = 2, 3, 4; Real: float or double.
 ///
 /// Normals and vertex attributes are interpolated where vertices move; remaining simplices keep their attributes. The

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,7 +44,7 @@ constexpr double kPrecision = 1.25;
 constexpr unsigned kMostSteps = 2;
 /// Progress of one round after its preparation and after its contractions.
 constexpr double kReady = 0.2;
-constexpr double kShrunk = 0.97;
+constexpr double kCollapsed = 0.97;
 /// Relative to the size of the contour: bound of the rounding errors of an error.
 constexpr double kRounding = 1e-12;
 /// Relative to the size of the contour: an error that counts as 0. Sums of squared distances are accurate only to its
@@ -58,7 +57,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 /// Remaining simplices, before they become a contour.
 template <int N>
-struct Remains {
+struct RemainingSimplices {
   std::vector<std::array<Index, N>> simplices;  ///< vertex numbers of the original
   std::vector<std::size_t> sources;             ///< #S: simplex of the original; empty if unknown
 };
@@ -82,7 +81,7 @@ class Simplifier {
     const auto before = static_cast<double>(contour.simplices.size());
     if (options.ratio) count_ = static_cast<std::size_t>(std::llround(*options.ratio * before));
     if (options.count) count_ = std::max<std::size_t>(count_, *options.count);
-    earlier_error_ = earlier_error(contour, options.scale);
+    earlier_error_ = earlier_error<N>(contour, options.scale);
     gather_vertex_data();
   }
 
@@ -322,33 +321,33 @@ class Simplifier {
   /// One round of a method that contracts edges.
   Round collapse_edges(const std::vector<double>& tolerance, std::size_t stop, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    Shrinker<N> shrinker = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
+    EdgeCollapse<N> collapse = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
     // contract
-    ShrinkGoal goal{stop, options_.max_curvature, &progress, kReady, kShrunk};
-    if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
-    if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
-    if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
+    CollapseGoal goal{stop, options_.max_curvature, &progress, kReady, kCollapsed};
+    if (options_.method == SimplifyMethod::quadric) collapse_by_quadrics(collapse, goal);
+    if (options_.method == SimplifyMethod::facets) collapse_by_curvature(collapse, goal);
+    if (options_.method == SimplifyMethod::vertices) collapse_by_distance(collapse, goal);
     // collect the remaining simplices
     Round round;
-    round.is_limited = shrinker.is_limited();
+    round.is_limited = collapse.is_limited();
     round.survivors.resize(contour_.vertices.size());
     for (std::size_t v = 0; v < round.survivors.size(); ++v)
-      round.survivors[v] = shrinker.survivor(static_cast<Index>(v));
-    Remains<N> remains;
-    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
-      if (!shrinker.complex().is_alive(s)) continue;
-      remains.simplices.push_back(shrinker.complex().simplex(s));
+      round.survivors[v] = collapse.survivor(static_cast<Index>(v));
+    RemainingSimplices<N> remains;
+    for (Index s = 0; s < collapse.complex().simplex_count(); ++s) {
+      if (!collapse.complex().is_alive(s)) continue;
+      remains.simplices.push_back(collapse.complex().simplex(s));
       remains.sources.push_back(s);
     }
-    set_result(round, remains, &shrinker);
+    set_result(round, remains, &collapse);
     stats_.simplify_seconds += seconds_since(start);
     detail::tell(progress, 1.0);
     return round;
   }
 
   /// The contour before its first contraction, bound to its hyperplanes.
-  Shrinker<N> prepared_collapse(const std::vector<double>& tolerance, const Progress& progress) const {
-    ShrinkStart<N> input;
+  EdgeCollapse<N> prepared_collapse(const std::vector<double>& tolerance, const Progress& progress) const {
+    CollapseInput<N> input;
     input.simplices = contour_.simplices;
     input.points.reserve(contour_.vertices.size());
     for (const auto& vertex : contour_.vertices) {
@@ -363,16 +362,16 @@ class Simplifier {
     input.border_fixed = options_.border == SimplifyBorder::fixed;
     input.single_precision = std::is_same_v<Real, float>;
     input.progress = progress;
-    Shrinker<N> shrinker(std::move(input));
-    bind_to_planes(shrinker);
-    return shrinker;
+    EdgeCollapse<N> collapse(std::move(input));
+    bind_to_planes(collapse);
+    return collapse;
   }
 
   /// One round of the method `fast`.
   Round run_meshoptimizer(const std::vector<double>& tolerance, std::size_t stop, bool is_trial,
                           const Progress& progress) {
     Round round;
-    Remains<N> remains;
+    RemainingSimplices<N> remains;
     if constexpr (N == 3) {
       const auto start = std::chrono::steady_clock::now();
       if (progress && !progress(0.0)) throw Error(ErrorCode::Cancelled, "simplification cancelled before it began");
@@ -388,7 +387,7 @@ class Simplifier {
         return simplify_fast(contour_.simplices, points, stop, error, options_.border == SimplifyBorder::fixed);
       };
       if (!options_.allow_nonmanifold) {
-        const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // for the same errors as other methods
+        const CollapsibleComplex<3> complex(contour_.simplices, points.size());  // for the same errors as other methods
         require_manifold(contour_, "the contour");
       }
       // simplify with the smallest tolerance; test whether it is the limit
@@ -420,40 +419,40 @@ class Simplifier {
 
   // ---- hyperplanes ----
 
-  void bind_to_planes(Shrinker<N>& shrinker) const {
+  void bind_to_planes(EdgeCollapse<N>& collapse) const {
     unsigned number = 0;
     for (int a = 0; a < N; ++a)
       for (const double side : {box_[a].first, box_[a].second}) {
-        if (has_part_in_side(shrinker, a, side))
-          for (Index v = 0; v < shrinker.points().size(); ++v)
-            if (shrinker.points()[v][a] == side) shrinker.bind(v, number);
+        if (has_part_in_side(collapse, a, side))
+          for (Index v = 0; v < collapse.points().size(); ++v)
+            if (collapse.points()[v][a] == side) collapse.bind(v, number);
         ++number;
       }
     const double precision = std::is_same_v<Real, float> ? 1e-6 : 1e-12;
     for (const Hyperplane<N>& plane : options_.planes) {
-      for (Index v = 0; v < shrinker.points().size(); ++v) {
+      for (Index v = 0; v < collapse.points().size(); ++v) {
         double sum = -plane.offset, size = std::abs(plane.offset);
         for (int a = 0; a < N; ++a) {
-          sum += plane.normal[a] * shrinker.points()[v][a];
-          size += std::abs(plane.normal[a] * shrinker.points()[v][a]);
+          sum += plane.normal[a] * collapse.points()[v][a];
+          size += std::abs(plane.normal[a] * collapse.points()[v][a]);
         }
-        if (std::abs(sum) <= precision * size) shrinker.bind(v, number);
+        if (std::abs(sum) <= precision * size) collapse.bind(v, number);
       }
       ++number;
     }
   }
 
   /// Whether a whole simplex or a whole border face lies in a side of the bounding box.
-  static bool has_part_in_side(Shrinker<N>& shrinker, int axis, double side) {
-    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
+  static bool has_part_in_side(EdgeCollapse<N>& collapse, int axis, double side) {
+    for (Index s = 0; s < collapse.complex().simplex_count(); ++s) {
       int outside = 0, last_outside = 0;
       for (int i = 0; i < N; ++i)
-        if (shrinker.points()[shrinker.complex().simplex(s)[i]][axis] != side) {
+        if (collapse.points()[collapse.complex().simplex(s)[i]][axis] != side) {
           ++outside;
           last_outside = i;
         }
       if (outside == 0) return true;
-      if (outside == 1 && (shrinker.complex().border_faces(s) >> last_outside & 1u) != 0) return true;
+      if (outside == 1 && (collapse.complex().border_faces(s) >> last_outside & 1u) != 0) return true;
     }
     return false;
   }
@@ -531,7 +530,7 @@ class Simplifier {
   void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
     Attribute attribute;
     attribute.name = kErrorName;
-    attribute.unit = error_unit(contour_, options_.scale);
+    attribute.unit = error_unit<N>(contour_, options_.scale);
     attribute.values.assign(result.vertices.size(), earlier_error_);
     for (std::size_t s = 0; s < errors.size(); ++s)
       for (const Index v : result.simplices[s])
@@ -541,9 +540,9 @@ class Simplifier {
 
   // ---- the result ----
 
-  /// Sets the round's contour: the used vertices, in their order, with attributes. `shrinker`: gives the new places of
+  /// Sets the round's contour: the used vertices, in their order, with attributes. `collapse`: gives the new places of
   /// vertices; null: the places are unchanged.
-  void set_result(Round& round, const Remains<N>& remains, const Shrinker<N>* shrinker) const {
+  void set_result(Round& round, const RemainingSimplices<N>& remains, const EdgeCollapse<N>* collapse) const {
     Contour<N, Real>& result = round.result;
     result.axis_names = contour_.axis_names;
     result.axis_units = contour_.axis_units;
@@ -566,25 +565,26 @@ class Simplifier {
     result.vertices.reserve(round.kept.size());
     for (const Index v : round.kept) {
       auto vertex = contour_.vertices[v];
-      if (shrinker != nullptr)
-        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(shrinker->points()[v][a]);
+      if (collapse != nullptr)
+        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(collapse->points()[v][a]);
       result.vertices.push_back(vertex);
     }
-    append_vertex_data(result, round.kept, shrinker);
+    append_vertex_data(result, round.kept, collapse);
     if (!remains.sources.empty()) append_simplex_attributes(result, remains.sources);
   }
 
   /// Appends normals and attributes of the vertices with these original numbers.
-  void append_vertex_data(Contour<N, Real>& result, const std::vector<Index>& kept, const Shrinker<N>* shrinker) const {
+  void append_vertex_data(Contour<N, Real>& result, const std::vector<Index>& kept,
+                          const EdgeCollapse<N>* collapse) const {
     for (const Attribute* attribute : carried_attributes_) {
       result.vertex_attributes.push_back({attribute->name, attribute->unit, attribute->width, {}});
       result.vertex_attributes.back().values.reserve(kept.size() * static_cast<std::size_t>(attribute->width));
     }
     for (const Index v : kept) {
       std::span<const double> values =
-          shrinker != nullptr ? shrinker->carried(v) : std::span(carried_).subspan(v * carried_width_, carried_width_);
+          collapse != nullptr ? collapse->carried(v) : std::span(carried_).subspan(v * carried_width_, carried_width_);
       if (!contour_.normals.empty()) {
-        const bool same = shrinker == nullptr || shrinker->version(v) == 0;
+        const bool same = collapse == nullptr || collapse->version(v) == 0;
         result.normals.push_back(same ? contour_.normals[v] : unit_normal(values.first(N)));
         values = values.subspan(N);
       }
