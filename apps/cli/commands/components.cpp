@@ -166,8 +166,9 @@ class ComponentsCommand final : public ContourInputCommand {
     choose(found, conditions);
     WrittenFiles written;
     if (!output_.empty()) {
-      add_component_attribute(contour, labels);
-      const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen, bar.stage("select")), input);
+      contour = add_component_attribute(std::move(contour), labels);
+      const Mesh mesh =
+          mesh_of(select_components(contour, labels, found.chosen, {threads(), bar.stage("select")}), input);
       const Progress progress = bar.stage("write");
       written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress, compress_.compression()); });
       lost_ = lost_vertices(mesh, output_);
@@ -216,7 +217,7 @@ class ComponentsCommand final : public ContourInputCommand {
       throw Error(ErrorCode::InvalidArgument, fmt::format("--split would write {} files; expected at most {} (choose "
                                                           "components with --select or --largest)",
                                                           count, kMostFiles));
-    const std::vector<Contour<N, double>> parts = split_components(contour, labels, bar.stage("split"));
+    const std::vector<Contour<N, double>> parts = split_components(contour, labels, {threads(), bar.stage("split")});
     const Progress progress = bar.stage("write");
     std::size_t done = 0;
     LostVertices lost;

@@ -95,8 +95,13 @@ class SimplifyCommand final : public ContourInputCommand {
     ContourResult result = input.to_result();
     result.output = output_;
     result.compression = compress_.compression();
-    std::visit([&](const auto& contour) { result.mesh = to_mesh(simplified(contour, input, stats, bar)); },
-               input.contour);
+    std::visit(
+        [&](const auto& contour) {
+          auto [fewer, found] = simplified(contour, input, bar);
+          stats = found;
+          result.mesh = to_mesh(std::move(fewer));
+        },
+        input.contour);
     input.contour = AnyContour();
     // check and write
     if (!no_check_) check_result(result, bar);
@@ -143,10 +148,10 @@ class SimplifyCommand final : public ContourInputCommand {
 
   /// Simplifies; error messages name the options of the command line.
   template <int N>
-  static Contour<N, double> simplify_or_explain(const Contour<N, double>& contour, const SimplifyOptions<N>& options,
-                                                SimplifyStats& stats) {
+  static Simplification<N, double> simplify_or_explain(const Contour<N, double>& contour,
+                                                       const SimplifyOptions<N>& options) {
     try {
-      return tegl::simplify(contour, options, &stats);
+      return tegl::simplify(contour, options);
     } catch (const Error& error) {
       if (options.method != SimplifyMethod::fast || error.code() != ErrorCode::UnsupportedData) throw;
       throw Error(error.code(), fmt::format("{} (on the command line: --allow-nonmanifold, --method)", error.what()));
@@ -154,9 +159,8 @@ class SimplifyCommand final : public ContourInputCommand {
   }
 
   template <int N>
-  Contour<N, double> simplified(const Contour<N, double>& contour, const ContourInput& input, SimplifyStats& stats,
-                                ProgressBar& bar) {
-    if (contour.simplices.empty()) return contour;
+  Simplification<N, double> simplified(const Contour<N, double>& contour, const ContourInput& input, ProgressBar& bar) {
+    if (contour.simplices.empty()) return {.contour = contour};
     SimplifyOptions<N> options;
     options.method = kMethods.at(method_);
     options.border = kBorders.at(border_);
@@ -166,12 +170,11 @@ class SimplifyCommand final : public ContourInputCommand {
     if (!max_curvature_.empty()) options.max_curvature = parse_finite("--max-curvature", max_curvature_);
     options.measure = !no_bound_;
     options.allow_nonmanifold = allow_nonmanifold_;
-    options.threads = threads();
     options.scale = scale(contour);
     used_scale_.assign(options.scale.begin(), options.scale.end());
     if (input.image) options.planes = planes<N>(input.image->image);
-    options.progress = bar.stage("simplify");
-    return simplify_or_explain(contour, options, stats);
+    options.work = {threads(), bar.stage("simplify")};
+    return simplify_or_explain(contour, options);
   }
 
   [[nodiscard]] std::uint64_t parse_count() const {

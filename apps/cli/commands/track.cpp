@@ -199,8 +199,7 @@ class TrackCommand final : public ContourInputCommand {
     if (first < last) options.times = even_times(first, last, samples_);
     options.label_simplices =
         std::any_of(outputs_.begin(), outputs_.end(), [](const auto& output) { return !is_track_file(output); });
-    options.threads = threads();
-    options.progress = bar.stage("track");
+    options.work = {threads(), bar.stage("track")};
     return track(contour, options);
   }
 

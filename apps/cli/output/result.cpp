@@ -145,7 +145,7 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
 }
 
 MeshReport check_mesh(const Mesh& mesh, const Progress& progress) {
-  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, progress);
+  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, {.progress = progress});
 }
 
 void StageSeconds::add(const ExtractStats& stats) {

@@ -266,7 +266,7 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
     result.simplices += sizes[label];
     ++result.components;
   }
-  contour = select_components(contour, labels, keep, options.progress);
+  contour = select_components(contour, labels, keep, options);
   return result;
 }
 
