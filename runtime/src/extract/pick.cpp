@@ -200,7 +200,7 @@ Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::Gri
   const Index nearest =
       nearest_component(contour, labels, locator, at, allowed, part_of(progress, 0.5 * (kLabelled + kChosen), kChosen));
   if (nearest != kNoComponent) keep[nearest] = true;
-  return select_components(contour, labels, keep, part_of(progress, kChosen, 1.0));
+  return select_components(contour, labels, keep, {options.work.threads, part_of(progress, kChosen, 1.0)});
 }
 
 template <int N>
