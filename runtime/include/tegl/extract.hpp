@@ -64,6 +64,14 @@ struct ExtractStats {
   double close_seconds = 0;        ///< to make caps
 };
 
+/// A contour with the counts and times of its extraction.
+template <int N, Coordinate Real = float>
+requires DimensionBetween<N, 2, 5>
+struct Extraction {
+  Contour<N, Real> contour = {};  ///< the contour
+  ExtractStats stats = {};        ///< counts and times
+};
+
 /// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
 /// The contour is an oriented manifold whatever the values. It has a boundary only at the image border and at missing
@@ -85,6 +93,15 @@ struct ExtractStats {
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
+
+/// As `extract`, with counts and times.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                                          const ExtractOptions& options = {}) {
+  Extraction<N, Real> result;
+  result.contour = extract<Real>(image, isovalue, options, &result.stats);
+  return result;
+}
 
 /// Counts the vertices and simplices that `extract` would make with these options, exactly. Takes little memory, and
 /// less time than `extract` because nothing is written; with `close` or missing values everything except writing is
