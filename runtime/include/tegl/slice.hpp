@@ -36,17 +36,17 @@ namespace tegl {
 /// The cut of a closed manifold is a closed manifold with the same orientation. The cut of a manifold is a manifold. If
 /// merging vertices would pinch the cut, they stay separate at the same position.
 ///
-/// Cuts across the last axis:
-/// - At a sample's coordinate t = k the cut is the contour of layer k of the image, bit by bit: the same vertices and
-///   the same oriented simplices, compared by the bits of their coordinates. Numbers, and the vertex that a simplex
-///   begins with, may differ. This holds for contours that `extract` makes with any options, also at the first and the
-///   last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the surface may lie
-///   flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps them out of the
-///   layer.) Conditions: Real has numbers between the coordinates of the layers, and a user's estimator returns the
-///   same for a face of the image and for this face of the layer. If samples are missing, the contour has only the part
-///   of the layer that belongs to tiles, and it may be triangulated differently.
+/// Across the last axis, at a sample's coordinate t = k, the cut is the contour of layer k of the image, bit by bit: the
+/// same vertices and the same oriented simplices, compared by the bits of their coordinates. Numbers, and the vertex
+/// that a simplex begins with, may differ. This holds for contours that `extract` makes with any options, also at the
+/// first and the last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the surface
+/// may lie flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps them out of
+/// the layer.) Conditions: the normal points in the axis's positive direction, Real has numbers between the coordinates
+/// of the layers, and a user's estimator returns the same for a face of the image and for this face of the layer. If
+/// samples are missing, the contour has only the part of the layer that belongs to tiles, and it may be triangulated
+/// differently.
 ///
-/// Cuts across other axes: at a sample's coordinate, the cut is the contour of that layer if no sample equals the
+/// Across other axes, at a sample's coordinate, the cut is the contour of that layer if no sample equals the
 /// isovalue. If samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the
 /// layers. On other axes such vertices lie in the layer, at the same positions as vertices of the layer itself, and the
 /// contour does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer
@@ -66,7 +66,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, R
 /// cuts; 8 #V bytes plus the memory of all cuts.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
-    const Contour<N, Real>& contour, const std::type_identity_t<std::span<const Hyperplane<N>>>& hyperplanes,
+    const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {});
 
 /// As `slice_image`, with counts and times of the extraction.

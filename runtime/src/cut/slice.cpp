@@ -105,7 +105,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, R
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
-    const Contour<N, Real>& contour, const std::type_identity_t<std::span<const Hyperplane<N>>>& hyperplanes,
+    const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work) {
   std::vector<Parallels<N>> groups;
   const std::vector<StackedCut> stack = group_by_normal<N, Real>(hyperplanes, groups);
@@ -135,10 +135,11 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   report(work.progress, 1.0);
   return cuts;
 }
-#define TEGL_INSTANTIATE_SLICE(N, Real)                                               \
-  template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&); \
-  template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&,     \
-                                                         const std::span<const Hyperplane<N>>&, const WorkOptions&);
+
+#define TEGL_INSTANTIATE_SLICE(N, Real)                                                                           \
+  template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&);                             \
+  template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, std::span<const Hyperplane<N>>, \
+                                                         const WorkOptions&);
 TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)
