@@ -229,7 +229,8 @@ Package ChildProcess::wait(const Progress& progress, bool shared) {
   constexpr int kMilliseconds = 50;
   constexpr double kMostSeconds = 3600;
   if (getpid() != owner_ || pid_ <= 0)
-    fail(ErrorCode::FileNotFound, path_, "cannot be read on: it was opened by another process, or its reading failed");
+    fail(ErrorCode::FileNotFound, path_,
+         "cannot be read further: it was opened by another process, or reading failed before");
   std::vector<Mapping> blocks;
   double fraction = 0;
   const auto has_progressed = [&] {
@@ -297,7 +298,7 @@ Package ChildProcess::receive(const Progress& progress, Blocks blocks) {
   }
 }
 
-void ChildProcess::fail_contradiction() { fail_damaged("gave a result that contradicts itself"); }
+void ChildProcess::fail_contradiction() { fail_damaged("gave an inconsistent result"); }
 
 void ChildProcess::request(const LayerRequest& request) {
   if (getpid() != owner_ || pid_ <= 0) return;  // receive() throws in this case
