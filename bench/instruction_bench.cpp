@@ -83,14 +83,14 @@ void count_bytes() {
 void count_slice() {
   const auto image = make_field<4>("balls", 24);
   const auto contour = extract(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
-  measured([&] { use(slice(contour, 11.3)); });
+  measured([&] { use(slice(contour, Hyperplane<4>::across(3, 11.3))); });
 }
 
 void count_slice_image() {
   const auto image = make_field<4>("balls", 32);
   const ExtractOptions options =
       with_threads(ExtractOptions{}, 1);  // the division of work among several threads varies
-  measured([&] { use(slice_image(image.view(), 0.0, 14.3, options)); });
+  measured([&] { use(slice_image(image.view(), 0.0, Hyperplane<4>::across(3, 14.3), options)); });
 }
 
 void count_check() {

@@ -24,7 +24,8 @@ template <int N>
 void slice_contour(benchmark::State& state, const std::string& field, std::size_t samples) {
   const auto contour = contour_of<N>(field, samples);
   std::size_t cut = 0;
-  for (auto _ : state) cut = slice(contour, 0.37 * static_cast<double>(samples)).simplices.size();
+  for (auto _ : state)
+    cut = slice(contour, Hyperplane<N>::across(N - 1, 0.37 * static_cast<double>(samples))).simplices.size();
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(contour.simplices.size()));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(contour_bytes(contour)));
   state.counters["cut_simplices"] = static_cast<double>(cut);
@@ -34,7 +35,9 @@ template <int N>
 void slice_field(benchmark::State& state, const std::string& field, std::size_t samples) {
   const auto image = make_field<N>(field, samples);
   std::size_t cut = 0;
-  for (auto _ : state) cut = slice_image(image.view(), 0.0, 0.37 * static_cast<double>(samples)).simplices.size();
+  for (auto _ : state)
+    cut = slice_image(image.view(), 0.0, Hyperplane<N>::across(N - 1, 0.37 * static_cast<double>(samples)))
+              .simplices.size();
   // A slice reads the two adjacent layers.
   const auto samples_read = static_cast<std::int64_t>(2 * image.values.size() / samples);
   state.SetItemsProcessed(state.iterations() * samples_read);

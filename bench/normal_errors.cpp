@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/normals.hpp"
 #include "usage.hpp"
@@ -34,7 +35,7 @@ tegl::Grid<N> grid_of(const std::string& kind, std::size_t samples) {
     }
     grid.axes[a] = kind == "smooth" || kind == "rough" ? tegl::Axis::rectilinear(uneven)
                                                        : tegl::Axis::uniform(samples, origin, step);
-    if (kind == "sheared" && a + 1 < N) grid.linear(a, a + 1) = 0.3;
+    if (kind == "sheared" && a + 1 < N) grid.linear[a][a + 1] = 0.3;
   }
   return grid;
 }
@@ -48,12 +49,13 @@ tegl::OwnedImage<double, N> ball_of(const tegl::Grid<N>& grid, double noise) {
   tegl::OwnedImage<double, N> image{grid, std::vector<double>(count)};
   std::mt19937_64 bits(7);
   const auto unit = [&] { return (static_cast<double>(bits() >> 11) + 0.5) * 0x1p-53; };
+  const Eigen::Matrix<double, N, N> linear = tegl::as_eigen(grid.linear);
   std::array<std::size_t, N> index{};
   for (double& value : image.values) {
     Eigen::Matrix<double, N, 1> x;
     for (int a = 0; a < N; ++a) x(a) = grid.axes[a][index[a]];
     const double normal = std::sqrt(-2.0 * std::log(unit())) * std::cos(2.0 * std::numbers::pi * unit());
-    value = 0.8 - (grid.linear * x).norm() + noise * std::abs(grid.axes[0].step()) * normal;
+    value = 0.8 - (linear * x).norm() + noise * std::abs(grid.axes[0].step()) * normal;
     for (int a = 0; a < N && ++index[a] == grid.axes[a].size(); ++a) index[a] = 0;
   }
   return image;

@@ -76,8 +76,10 @@ std::string counted(std::size_t count, const char* what) { return fmt::format("{
 
 template <Value T>
 void add_cuts(Subject<T>& subject, std::vector<Operation>& list) {
-  list.push_back({"`slice` at one time",
-                  [&] { return counted(slice(subject.contour, subject.time(0.314)).simplices.size(), "triangles"); }});
+  list.push_back({"`slice` at one time", [&] {
+                    const auto cut = slice(subject.contour, Hyperplane<4>::across(3, subject.time(0.314)));
+                    return counted(cut.simplices.size(), "triangles");
+                  }});
   list.push_back({"`slice` along x", [&] {
                     double x = 0;
                     for (const auto& vertex : subject.contour.vertices) x += vertex[0];
@@ -86,17 +88,17 @@ void add_cuts(Subject<T>& subject, std::vector<Operation>& list) {
                     return counted(cut.simplices.size(), "triangles");
                   }});
   list.push_back({"`slice_stack`, 100 times", [&] {
-                    const std::vector<double> times = subject.times(100);
-                    const auto cuts = slice_stack<4, double>(subject.contour, Eigen::Vector4d::Unit(3), times,
-                                                             subject.work_options());
+                    std::vector<Hyperplane<4>> hyperplanes;
+                    for (const double t : subject.times(100)) hyperplanes.push_back(Hyperplane<4>::across(3, t));
+                    const auto cuts = slice_stack(subject.contour, hyperplanes, subject.work_options());
                     std::size_t triangles = 0;
                     for (const auto& cut : cuts) triangles += cut.simplices.size();
                     return counted(triangles, "triangles");
                   }});
   list.push_back({"`Scrubber`: build", [&] {
                     subject.scrubber.reset();
-                    subject.scrubber = std::make_unique<Scrubber<4, double>>(subject.contour, Eigen::Vector4d::Unit(3),
-                                                                             subject.work_options());
+                    subject.scrubber =
+                        std::make_unique<Scrubber<4, double>>(subject.contour, Hyperplane<4>{}, subject.work_options());
                     return fmt::format("{:.1f} MB kept", static_cast<double>(subject.scrubber->memory()) * 1e-6);
                   }});
   list.push_back({"`Scrubber`: a cut",

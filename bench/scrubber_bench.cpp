@@ -79,12 +79,13 @@ void measure(std::size_t samples, std::size_t steps, int cuts) {
   WorkOptions options;
   options.threads = 1;
   for (int i = 0; i < 3; ++i)
-    builds.push_back(seconds_of([&] { Scrubber<4, float>(contour, Eigen::Vector4d::UnitW(), options); }));
-  const Scrubber<4, float> scrubber(contour, Eigen::Vector4d::UnitW(), options);
+    builds.push_back(seconds_of([&] { Scrubber<4, float>(contour, Hyperplane<4>{}, options); }));
+  const Scrubber<4, float> scrubber(contour, Hyperplane<4>{}, options);
   std::vector<double> triangles;
   const auto scrubbed = medians(
       steps, cuts, [&](double t) { triangles.push_back(static_cast<double>(scrubber.cut(t).simplices.size())); });
-  const auto sliced = medians(steps, std::min(cuts, 11), [&](double t) { (void)slice(contour, t); });
+  const auto sliced =
+      medians(steps, std::min(cuts, 11), [&](double t) { (void)slice(contour, Hyperplane<4>::across(3, t)); });
   std::printf("| %zu³ × %zu | %.2f | %.0f | %.2f | %.2f | %.0f | %.2f | %.1f | %.2f | %.0f |\n", samples, steps,
               1e-6 * static_cast<double>(contour.simplices.size()),
               1e-3 * static_cast<double>(contour_bytes(contour)) / 1e3, median(builds),

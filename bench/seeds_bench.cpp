@@ -147,7 +147,7 @@ void measure_picks(const OwnedImage<T, N>& owned, int picks) {
     }
     for (int a = 0; a < N; ++a) {
       point[a] = image.grid().offset[a];
-      for (int b = 0; b < N; ++b) point[a] += image.grid().linear(a, b) * index[b];
+      for (int b = 0; b < N; ++b) point[a] += image.grid().linear[a][b] * index[b];
     }
     PickedComponent<N> picked;
     seconds.push_back(least_seconds([&] { picked = extract_component(image, isovalue, point, options); }, 3));

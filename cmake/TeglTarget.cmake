@@ -82,7 +82,7 @@ function(tegl_test_precompile target)
     endif()
     # A program, as tests are: objects of libraries have other flags.
     add_executable(tegl_test_headers EXCLUDE_FROM_ALL ${source})
-    target_link_libraries(tegl_test_headers PRIVATE tegl::tegl GTest::gmock)
+    target_link_libraries(tegl_test_headers PRIVATE tegl::tegl Eigen3::Eigen GTest::gmock)
     tegl_quick_compile(tegl_test_headers)
     target_precompile_headers(tegl_test_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
       <functional> <map> <random> <set> <string> <vector> <gtest/gtest.h> <gmock/gmock.h> <Eigen/Core>)
@@ -109,7 +109,7 @@ endfunction()
 function(tegl_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LIBS")
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} Eigen3::Eigen GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   if(TEGL_UNITY_BUILD)
     # A source with definitions of its own would be compiled by itself.

@@ -42,8 +42,9 @@ int main() {
   // [readme]
   // values: 12 volumes of 40 x 40 x 40 samples, one after the other
   const tegl::Image<float, 4> image(values.data(), tegl::Grid<4>::unit({40, 40, 40, 12}));
-  const auto contour = tegl::extract(image, 0.0);  // tetrahedra in space and time
-  const auto surface = tegl::slice(contour, 7.3);  // triangles: the surface at t = 7.3
+  // tetrahedra in space and time, and the surface of triangles at t = 7.3
+  const auto contour = tegl::extract(image, 0.0);
+  const auto surface = tegl::slice(contour, tegl::Hyperplane<4>::across(3, 7.3));
   const tegl::MeshReport report = tegl::check(surface);
   std::printf("t = 7.3: %zu triangles, %zu components, Euler characteristic %d, open edges: %zu\n",
               surface.simplices.size(), std::size_t(report.components), int(report.euler),

@@ -18,7 +18,8 @@ namespace {
 /// The isosurface at `temperature`, sliced at `month`. Only the two adjacent months are contoured.
 tegl::Contour<3> surface_at(const tegl::AnyImage& any, double temperature, double month) {
   // The file determines the value type; `visit` passes the image with its type.
-  return std::visit([&](const auto& owned) { return tegl::slice_image(owned.view(), temperature, month); },
+  const auto hyperplane = tegl::Hyperplane<4>::across(3, month);
+  return std::visit([&](const auto& owned) { return tegl::slice_image(owned.view(), temperature, hyperplane); },
                     std::get<tegl::AnyImageN<4>>(any));
 }
 

@@ -64,8 +64,8 @@ Grid<N> grid_of(const py::array& array, const std::vector<AxisArgument>& axes, c
     for (int row = 0; row < N; ++row) {
       const auto& numbers = affine->at(static_cast<std::size_t>(row));
       for (int column = 0; column < N; ++column)
-        grid.linear(row, column) = numbers.at(static_cast<std::size_t>(column));
-      grid.offset(row) = numbers.at(N);
+        grid.linear[row][column] = numbers.at(static_cast<std::size_t>(column));
+      grid.offset[row] = numbers.at(N);
     }
   return grid;
 }
@@ -146,8 +146,7 @@ template <class Real>
 AnyContour cut_of(const AnyImage& image, double level, int axis, double at, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N == 3 || N == 4) {
-      if (axis == N - 1) return {slice_image<Real>(view, level, at, options), level};
-      return {slice_image_across<Real>(view, level, axis, at, options), level};
+      return {slice_image<Real>(view, level, Hyperplane<N>::across(axis, at), options), level};
     } else {
       throw Error(ErrorCode::UnsupportedData, fmt::format("a cut of a {}D image; expected 3 or 4 dimensions", N));
     }

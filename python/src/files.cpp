@@ -36,8 +36,8 @@ void put_grid(py::dict& result, const Grid<N>& grid) {
   std::vector<std::vector<double>> affine;
   for (int row = 0; row < N; ++row) {
     std::vector<double> numbers;
-    for (int column = 0; column < N; ++column) numbers.push_back(grid.linear(row, column));
-    numbers.push_back(grid.offset(row));
+    for (int column = 0; column < N; ++column) numbers.push_back(grid.linear[row][column]);
+    numbers.push_back(grid.offset[row]);
     affine.push_back(std::move(numbers));
   }
   result["affine"] = py::cast(affine);

@@ -27,9 +27,10 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
         [&]<int N, class Real>(const Contour<N, Real>& c) -> std::vector<AnyContour> {
           if constexpr (N == 3 || N == 4) {
             const auto direction = to_array<N>("the normal", normal);
+            std::vector<Hyperplane<N>> hyperplanes;
+            for (const double offset : offsets) hyperplanes.push_back({direction, offset});
             std::vector<AnyContour> result;
-            for (auto& cut : slice_stack(c, Eigen::Matrix<double, N, 1>(direction.data()), offsets, options))
-              result.push_back({std::move(cut), contour.isovalue});
+            for (auto& cut : slice_stack(c, hyperplanes, options)) result.push_back({std::move(cut), contour.isovalue});
             return result;
           } else {
             throw_dimension("a cut", N, "3 or 4 dimensions");

@@ -127,7 +127,7 @@ def slice(contour_or_array: typing.Any, level: float, *, axis: int | str | None 
           threads: int = 0, progress: Progress | None = None, **more: typing.Any) -> Contour | list[Contour]: ...
 
 
-@_arguments.documents("slice", "slice_2", "slice_image_across")
+@_arguments.documents("slice", "slice_image")
 def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | str | None = None, normal=None,
           offset=None, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
           **more) -> Contour | list[Contour]:

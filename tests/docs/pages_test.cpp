@@ -171,13 +171,14 @@ TEST(Guides, TasksTakeAFewLines) {
   const tegl::Grid<4> grid = tegl::Grid<4>::unit({kSize, kSize, kSize, kSteps});
   const tegl::Image<float, 4> image(values.data(), grid), pressure(other.data(), grid);
   // [cut]
-  const tegl::Contour<3> between = tegl::slice_image(image, 0.0, 3.25);  // looks at two volumes only
+  const auto time = tegl::Hyperplane<4>::across(3, 3.25);
+  const tegl::Contour<3> between = tegl::slice_image(image, 0.0, time);  // reads two volumes only
   // [/cut]
   EXPECT_EQ(tegl::check(between).euler, 2);
   // [attribute]
   tegl::Contour<4> contour = tegl::extract(image, 0.0);
   contour.vertex_attributes.push_back(tegl::sample(pressure, contour, "pressure", "Pa"));
-  const tegl::Contour<3> coloured = tegl::slice(contour, 3.25);  // has the attribute too
+  const auto coloured = tegl::slice(contour, tegl::Hyperplane<4>::across(3, 3.25));  // has the attribute too
   // [/attribute]
   ASSERT_EQ(coloured.vertex_attributes.size(), 1u);
   for (const double value : coloured.vertex_attributes[0].values) EXPECT_NEAR(value, 0.0, 0.05);

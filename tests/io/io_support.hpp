@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "tegl/eigen.hpp"
 #include "tegl/io.hpp"
 
 namespace tegl::test {
@@ -130,7 +131,7 @@ Eigen::Matrix<double, N, 1> world(const Grid<N>& grid,
                                   const std::array<std::size_t, static_cast<std::size_t>(N)>& index) {
   Eigen::Matrix<double, N, 1> position;
   for (int a = 0; a < N; ++a) position[a] = grid.axes[a][index[static_cast<std::size_t>(a)]];
-  return grid.linear * position + grid.offset;
+  return as_eigen(grid.linear) * position + as_eigen(grid.offset);
 }
 
 /// The numbers 0, 1, 2, ... in any type, wrapped to its range.

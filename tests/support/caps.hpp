@@ -17,6 +17,7 @@
 #include "compare.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::test {
@@ -101,7 +102,7 @@ OwnedImage<T, N - 1> image_of_side(const Image<T, N>& image, int side) {
 /// The content of the image's box.
 template <int N>
 double box_content(const Grid<N>& grid) {
-  double product = std::abs(grid.linear.determinant());
+  double product = std::abs(as_eigen(grid.linear).determinant());
   for (const Axis& axis : grid.axes) product *= std::abs(axis[axis.size() - 1] - axis[0]);
   return product;
 }

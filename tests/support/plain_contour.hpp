@@ -18,6 +18,7 @@
 
 #include "fields.hpp"
 #include "filling/facets.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/table_contract.hpp"
 
@@ -180,7 +181,7 @@ class PlainExtraction {
   bool is_flipped() const {
     bool flip = options_.direction == GradientDirection::descent;
     for (const Axis& axis : image_.grid().axes) flip = flip != axis.is_descending();
-    return flip != (image_.grid().linear.determinant() < 0);
+    return flip != (as_eigen(image_.grid().linear).determinant() < 0);
   }
 
   std::array<Real, N> point(const Corner& from, int axis) const {
@@ -203,8 +204,8 @@ class PlainExtraction {
     std::array<Real, N> vertex;
     for (int i = 0; i < N; ++i) {
       double sum = 0;
-      for (int j = 0; j < N; ++j) sum += image_.grid().linear(i, j) * x[j];
-      vertex[i] = static_cast<Real>(image_.grid().has_world_map() ? sum + image_.grid().offset(i) : x[i]);
+      for (int j = 0; j < N; ++j) sum += image_.grid().linear[i][j] * x[j];
+      vertex[i] = static_cast<Real>(image_.grid().has_world_map() ? sum + image_.grid().offset[i] : x[i]);
     }
     return vertex;
   }
@@ -213,7 +214,7 @@ class PlainExtraction {
   /// whose world map does not mix the last axis with others).
   void keep_inside(std::array<Real, N>& vertex, std::size_t k) const {
     for (int i = 0; i + 1 < N; ++i)
-      if (image_.grid().linear(N - 1, i) != 0) return;
+      if (image_.grid().linear[N - 1][i] != 0) return;
     std::array<double, N> x{};
     x[N - 1] = image_.grid().axes[N - 1][k];
     Real low = to_world(x)[N - 1];

@@ -127,9 +127,11 @@ Contour<N, Real> simplicial_contour(const Image<T, N>& image, double isovalue) {
 template <Value T, int N>
 Image<T, N - 1> last_axis_layer(const Image<T, N>& image, std::size_t i) {
   Grid<N - 1> grid;
-  std::copy_n(image.grid().axes.begin(), N - 1, grid.axes.begin());
-  grid.linear = image.grid().linear.template topLeftCorner<N - 1, N - 1>();
-  grid.offset = image.grid().offset.template head<N - 1>();
+  for (int a = 0; a < N - 1; ++a) {
+    grid.axes[a] = image.grid().axes[a];
+    grid.offset[a] = image.grid().offset[a];
+    for (int b = 0; b < N - 1; ++b) grid.linear[a][b] = image.grid().linear[a][b];
+  }
   typename Image<T, N - 1>::Strides strides;
   std::copy_n(image.strides().begin(), N - 1, strides.begin());
   return Image<T, N - 1>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[N - 1], grid, strides);

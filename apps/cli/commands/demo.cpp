@@ -271,7 +271,7 @@ class DemoCommand final : public Command {
       if (!width) return;
       const double share = static_cast<double>(i) / static_cast<double>(frames_ - 1);
       const double t = time[0] + share * (time[time.size() - 1] - time[0]);
-      const Map map = draw_world(*width, image, slice(contour, t));
+      const Map map = draw_world(*width, image, slice(contour, Hyperplane<4>::across(3, t)));
       const auto columns = static_cast<std::size_t>(console.width() - 1);
       const std::string back = lines == 0 ? "" : fmt::format("\x1b[{}A", lines);
       console.write(fmt::format("{}\r{}\x1b[K{}\n", back, in_colour ? coloured(map) : plain_lines(map),
@@ -305,7 +305,7 @@ class DemoCommand final : public Command {
     json["simplices"] = contour.simplices.size();
     json["cuts"] = Json::array();
     for (const double t : kTimes) {
-      const Contour<3, double> cut = slice(contour, t);
+      const Contour<3, double> cut = slice(contour, Hyperplane<4>::across(3, t));
       json["cuts"].push_back({{"t", t}, {"vertices", cut.vertices.size()}, {"simplices", cut.simplices.size()}});
     }
     json["seconds"] = seconds;
@@ -321,7 +321,7 @@ class DemoCommand final : public Command {
       text += fmt::format("The window is too narrow for the map: {} columns; expected at least {}\n\n", console.width(),
                           kLeastWidth + 1);
     } else if (with_map) {
-      const Map map = draw_world(*width, image, slice(contour, kTimes[2]));
+      const Map map = draw_world(*width, image, slice(contour, Hyperplane<4>::across(3, kTimes[2])));
       text += console.has_colours() && knows_unicode() ? coloured(map) : plain(map);
       text +=
           fmt::format("Depth of the water of 20 degrees or more at t = {} ({})\n\n", kTimes[2], month_text(kTimes[2]));
@@ -334,9 +334,10 @@ class DemoCommand final : public Command {
     text += report_line("contour", fmt::format("one surface in space and time: {}, in {:.2f} s",
                                                counted_simplices(3, contour.simplices.size()), seconds));
     for (const double t : kTimes)
-      text += report_line(t == kTimes[0] ? "cuts" : "",
-                          fmt::format("t = {:5.2f}, {:<12} {}", t, month_text(t),
-                                      counted_simplices(2, slice(contour, t).simplices.size())));
+      text +=
+          report_line(t == kTimes[0] ? "cuts" : "",
+                      fmt::format("t = {:5.2f}, {:<12} {}", t, month_text(t),
+                                  counted_simplices(2, slice(contour, Hyperplane<4>::across(3, t)).simplices.size())));
     text += fmt::format(
         "\nTime is an axis like the others: the data have 12 months, the animation any number of times.\n\n{}\n",
         console.bold("Next steps"));

@@ -66,8 +66,8 @@ void describe_grid(const OwnedImage<T, N>& image, Description& description) {
   if (!image.grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
     description.linear.emplace_back();
-    for (int column = 0; column < N; ++column) description.linear.back().push_back(image.grid.linear(row, column));
-    description.offset.push_back(image.grid.offset(row));
+    for (int column = 0; column < N; ++column) description.linear.back().push_back(image.grid.linear[row][column]);
+    description.offset.push_back(image.grid.offset[row]);
   }
 }
 

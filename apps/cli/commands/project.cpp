@@ -17,6 +17,7 @@
 #include "input/contour_input.hpp"
 #include "input/cuts.hpp"
 #include "output/output.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl::cli {
@@ -188,7 +189,7 @@ class ProjectCommand final : public ContourInputCommand {
       if (direction.size() != 4)
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("--along {} has {} numbers; expected 4", along_, direction.size()));
-      projection.direction = Eigen::Map<const Eigen::Vector4d>(direction.data());
+      std::copy(direction.begin(), direction.end(), projection.direction.begin());
     }
     if (!eye_.empty()) projection.eye_distance = parse_finite("--eye", eye_);
     if (projection.eye_distance < 0.0)
@@ -214,15 +215,18 @@ class ProjectCommand final : public ContourInputCommand {
     const Attribute heights = project(contour, projection).vertex_attributes.back();
     if (heights.values.empty()) return tegl::to_mesh(outline(contour, projection, {threads(), progress}));
     const auto [least, most] = std::minmax_element(heights.values.begin(), heights.values.end());
-    std::vector<double> offsets;
-    for (int i = 0; i < count_; ++i)
-      offsets.push_back((*least + (i + 0.5) / count_ * (*most - *least)) * projection.direction.norm());
-    const auto stack = slice_stack(contour, projection.direction, offsets, {threads(), progress});
+    const Eigen::Vector4d direction = as_eigen(projection.direction);
+    std::vector<Hyperplane<4>> hyperplanes;
+    for (int i = 0; i < count_; ++i) {
+      const double height = *least + (i + 0.5) / count_ * (*most - *least);
+      hyperplanes.push_back({projection.direction, height * direction.norm()});
+    }
+    const auto stack = slice_stack(contour, hyperplanes, {threads(), progress});
     Mesh mesh;
     for (std::size_t i = 0; i < stack.size(); ++i) {
       Mesh cut = tegl::to_mesh(stack[i]);
       Attribute when{heights.name, heights.unit, 1, {}};
-      when.values.assign(stack[i].vertices.size(), offsets[i] / projection.direction.norm());
+      when.values.assign(stack[i].vertices.size(), hyperplanes[i].offset / direction.norm());
       std::erase_if(cut.vertex_attributes, [&](const Attribute& attribute) { return attribute.name == when.name; });
       cut.vertex_attributes.push_back(std::move(when));
       if (i == 0)

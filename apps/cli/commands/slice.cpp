@@ -63,14 +63,16 @@ std::optional<CutFrame> frame_for_report(const Cut& cut, const std::vector<doubl
   if (cut.across) return std::nullopt;
   const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(cut, factors));
   CutFrame result{{frame.origin.begin(), frame.origin.end()}, {}};
-  for (int i = 0; i < N - 1; ++i) result.axes.emplace_back(frame.axes.col(i).begin(), frame.axes.col(i).end());
+  for (const Vector<N>& axis : frame.axes) result.axes.emplace_back(axis.begin(), axis.end());
   return result;
 }
 
 template <int N, class Real>
 void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
-  const Eigen::Map<const Eigen::Matrix<double, N, 1>> by_axis(factors.data());
-  if ((by_axis.array() != 1.0).any()) scale_axes<N, Real>(contour, by_axis);
+  Vector<N> by_axis;
+  std::copy(factors.begin(), factors.end(), by_axis.begin());
+  if (std::any_of(by_axis.begin(), by_axis.end(), [](double factor) { return factor != 1.0; }))
+    contour = scale_axes(std::move(contour), by_axis);
 }
 
 /// Cuts a contour after its axes are scaled; all cuts of one direction in one pass.
@@ -79,15 +81,14 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
                     std::vector<ContourResult>& results, ProgressBar& bar) {
   stretch(contour, factors);
   for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
-    const Hyperplane<N> hyperplane = hyperplane_of<N>(*results[first].cut, factors);
     const Cut& like = *results[first].cut;
-    std::vector<double> offsets;
+    std::vector<Hyperplane<N>> hyperplanes;
     for (end = first;
          end < results.size() && results[end].cut->normal == like.normal && results[end].cut->across == like.across;
          ++end)
-      offsets.push_back(hyperplane_of<N>(*results[end].cut, factors).offset);
+      hyperplanes.push_back(hyperplane_of<N>(*results[end].cut, factors));
     Stopwatch watch;
-    auto cuts = slice_stack(contour, hyperplane.normal, offsets, {own.threads(), bar.stage("slice")});
+    auto cuts = slice_stack(contour, hyperplanes, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       ContourResult& result = results[first + i];
       result.image_dim = N;
@@ -97,7 +98,7 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
       result.cut->frame = frame_for_report<N>(*result.cut, factors);
     }
     // The time of a pass is divided equally among its cuts.
-    const double seconds = watch.lap() / static_cast<double>(offsets.size());
+    const double seconds = watch.lap() / static_cast<double>(hyperplanes.size());
     for (std::size_t i = first; i < end; ++i) results[i].seconds.slice = seconds;
   }
 }
@@ -106,8 +107,8 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
 bool is_apart(const AnyImage& image, int axis) {
   const auto of_owned = [&](const auto& owned) {
     bool apart = true;
-    for (int a = 0; a < owned.grid.linear.rows(); ++a)
-      apart = apart && (a == axis || (owned.grid.linear(axis, a) == 0.0 && owned.grid.linear(a, axis) == 0.0));
+    for (int a = 0; a < static_cast<int>(owned.grid.axes.size()); ++a)
+      apart = apart && (a == axis || (owned.grid.linear[axis][a] == 0.0 && owned.grid.linear[a][axis] == 0.0));
     return apart;
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
@@ -132,7 +133,9 @@ Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const st
     constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
     if constexpr (kDim >= 3) {
       if (cut.is_outside) return to_mesh(empty_cut<kDim - 1, Real>(owned.grid, *cut.across));
-      auto contour = slice_image_across<Real>(owned.view(), isovalue, *cut.across, cut.value, options, &stats);
+      auto [contour, counts] = slice_image_with_stats<Real>(owned.view(), isovalue,
+                                                            Hyperplane<kDim>::across(*cut.across, cut.value), options);
+      stats = counts;
       std::vector<double> others = factors;
       others.erase(others.begin() + *cut.across);
       stretch(contour, others);
@@ -151,8 +154,9 @@ void append_points(const ContourResult& result, const std::vector<double>& facto
   const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(*result.cut, factors));
   const auto& coordinates = result.mesh.coordinates;
   for (std::size_t i = 0; i < coordinates.size(); i += N - 1) {
-    const Eigen::Map<const Eigen::Matrix<double, N - 1, 1>> within(coordinates.data() + i);
-    const Eigen::Matrix<double, N, 1> x = frame.origin + frame.axes * within;
+    Vector<N - 1> within;
+    std::copy_n(coordinates.data() + i, N - 1, within.begin());
+    const Vector<N> x = frame.to_space(within);
     auto& point = points.vertices.emplace_back();
     for (int a = 0; a < N; ++a) point[a] = x[a] / factors[static_cast<std::size_t>(a)];
   }

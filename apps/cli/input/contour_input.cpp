@@ -134,9 +134,9 @@ std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const 
   const auto of_owned = [](const auto& owned) -> Ends {
     constexpr int kLast = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>) - 1;
     for (int a = 0; a < kLast; ++a)
-      if (owned.grid.linear(kLast, a) != 0) return {};
+      if (owned.grid.linear[kLast][a] != 0) return {};
     const Axis& axis = owned.grid.axes[kLast];
-    const auto world = [&](double at) { return owned.grid.linear(kLast, kLast) * at + owned.grid.offset(kLast); };
+    const auto world = [&](double at) { return owned.grid.linear[kLast][kLast] * at + owned.grid.offset[kLast]; };
     return std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);

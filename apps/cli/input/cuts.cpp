@@ -197,12 +197,12 @@ CutSpace space_of(const AnyImage& image) {
     CutSpace space{{}, "image", {}};
     for (int a = 0; a < kDim; ++a) {
       CutAxis& world = space.axes.emplace_back();
-      world = {axis_label(owned.grid.axes[a].name, static_cast<std::size_t>(a)), owned.grid.offset(a),
-               owned.grid.offset(a)};
+      world = {axis_label(owned.grid.axes[a].name, static_cast<std::size_t>(a)), owned.grid.offset[a],
+               owned.grid.offset[a]};
       for (int b = 0; b < kDim; ++b) {
         const Axis& axis = owned.grid.axes[b];
         const auto [low, high] =
-            std::minmax({owned.grid.linear(a, b) * axis[0], owned.grid.linear(a, b) * axis[axis.size() - 1]});
+            std::minmax({owned.grid.linear[a][b] * axis[0], owned.grid.linear[a][b] * axis[axis.size() - 1]});
         world.first += low;
         world.last += high;
       }

@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "tegl/dimensions.hpp"
 
 namespace tegl {
@@ -82,15 +80,14 @@ struct Attribute {
 enum class GradientDirection { descent, ascent };
 
 /// The contour of an N-dimensional image: an (N-1)-dimensional simplicial complex in N-space.
-/// N = 2: segments, 3: triangles, 4: tetrahedra, 5: 4-simplices.
+/// N = 2: segments, 3: triangles, 4: tetrahedra, 5: 4-simplices. tegl/eigen.hpp has views of vertices and simplices as
+/// Eigen matrices.
 template <int N, Coordinate Real = float>
 requires DimensionBetween<N, 2, 5>
 struct Contour {
   using Vertex = std::array<Real, N>;  ///< a point, N coordinates
   /// N vertex numbers.
   using Simplex = std::array<Index, N>;
-  using VertexMatrix = Eigen::Matrix<Real, Eigen::Dynamic, N, Eigen::RowMajor>;    ///< #V x N, row = vertex
-  using SimplexMatrix = Eigen::Matrix<Index, Eigen::Dynamic, N, Eigen::RowMajor>;  ///< #S x N, row = simplex
 
   Buffer<Vertex> vertices = {};    ///< #V x N world coordinates, row = vertex; for time-varying images t is last
   Buffer<Simplex> simplices = {};  ///< #S x N vertex numbers, row = simplex, consistently oriented
@@ -100,21 +97,6 @@ struct Contour {
   GradientDirection direction = GradientDirection::descent;  ///< which side simplices and normals face
   std::vector<Attribute> vertex_attributes = {};             ///< empty after `extract`
   std::vector<Attribute> simplex_attributes = {};            ///< empty after `extract`
-
-  /// The vertices as an Eigen matrix, without a copy; valid until `vertices` changes.
-  [[nodiscard]] auto vertex_matrix() const& {
-    return Eigen::Map<const VertexMatrix>(vertices.empty() ? nullptr : vertices.data()->data(),
-                                          static_cast<Eigen::Index>(vertices.size()), N);
-  }
-  /// Deleted: the matrix of a temporary would dangle.
-  void vertex_matrix() const&& = delete;
-  /// The simplices as an Eigen matrix, without a copy; valid until `simplices` changes.
-  [[nodiscard]] auto simplex_matrix() const& {
-    return Eigen::Map<const SimplexMatrix>(simplices.empty() ? nullptr : simplices.data()->data(),
-                                           static_cast<Eigen::Index>(simplices.size()), N);
-  }
-  /// Deleted: the matrix of a temporary would dangle.
-  void simplex_matrix() const&& = delete;
 };
 
 }  // namespace tegl

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "tegl/dimensions.hpp"
 #include "tegl/error.hpp"
+#include "tegl/vector.hpp"
 
 namespace tegl {
 
@@ -58,9 +57,9 @@ class Axis {
 template <int N>
 requires DimensionBetween<N, 2, 5>
 struct Grid {
-  std::array<Axis, N> axes = {};                                                 ///< axis 0 first; time last
-  Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();  ///< matrix of the world map
-  Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();      ///< its translation
+  std::array<Axis, N> axes = {};     ///< axis 0 first; time last
+  Matrix<N> linear = identity<N>();  ///< matrix of the world map, linear[row][column]
+  Vector<N> offset = {};             ///< its translation
 
   /// A uniform grid with origin 0 and step 1.
   static Grid unit(const std::array<std::size_t, N>& sizes) {
@@ -75,7 +74,7 @@ struct Grid {
     return result;
   }
   /// True unless `linear` is the identity and `offset` is zero.
-  [[nodiscard]] bool has_world_map() const { return !linear.isIdentity(0.0) || !offset.isZero(0.0); }
+  [[nodiscard]] bool has_world_map() const { return linear != identity<N>() || offset != Vector<N>{}; }
 };
 
 }  // namespace tegl

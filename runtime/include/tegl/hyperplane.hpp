@@ -3,9 +3,12 @@
 // Hyperplanes in N-space, and Cartesian coordinates in them.
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
+#include <type_traits>
 
 #include "tegl/contour.hpp"
+#include "tegl/dimensions.hpp"
+#include "tegl/vector.hpp"
 
 namespace tegl {
 
@@ -13,15 +16,14 @@ namespace tegl {
 template <int N>
 requires DimensionBetween<N, 2, 4>
 struct Hyperplane {
-  using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
-  Vector normal = Vector::Unit(N - 1);         ///< a, of any non-zero length
-  double offset = 0.0;                         ///< b
+  Vector<N> normal = unit_vector<N>(N - 1);  ///< of any non-zero length
+  double offset = 0.0;                       ///< its distance from 0, times the length of the normal
 
-  /// The hyperplane x_axis = at.
-  static Hyperplane across(int axis, double at) { return {Vector::Unit(axis), at}; }
+  /// The hyperplane x_axis = at. Throws InvalidArgument for an axis other than 0 to N - 1.
+  static Hyperplane across(int axis, double at);
 };
 
-/// Orthonormal coordinates in a hyperplane: y is the point `origin + axes * y`.
+/// Orthonormal coordinates in a hyperplane: y is the point origin + y_0 axes[0] + ... + y_{N-2} axes[N - 2].
 ///
 /// The frame depends only on the hyperplane. Let e_k be the axis closest to the normal (the last one if several are).
 /// The frame's axes are the other axes in their order, rotated by the smallest rotation that takes e_k to the normal,
@@ -30,19 +32,31 @@ struct Hyperplane {
 template <int N>
 requires DimensionBetween<N, 2, 4>
 struct HyperplaneFrame {
-  Eigen::Matrix<double, N, N - 1> axes;  ///< column = axis
-  Eigen::Matrix<double, N, 1> origin;    ///< the point of the hyperplane nearest to 0
-  Eigen::Matrix<double, N, 1> up;        ///< the unit normal
-  int dropped = N - 1;                   ///< k
-  bool is_right_handed = true;           ///< whether det[axes, up] is +1 (right-handed), not -1
+  std::array<Vector<N>, N - 1> axes = {};  ///< unit vectors
+  Vector<N> origin = {};                   ///< the point of the hyperplane nearest to 0
+  Vector<N> up = unit_vector<N>(N - 1);    ///< the unit normal
+  int dropped = N - 1;                     ///< k
+  bool is_right_handed = true;             ///< whether det[axes, up] is +1 (right-handed), not -1
 
   /// The point of N-space with hyperplane coordinates y.
-  [[nodiscard]] Eigen::Matrix<double, N, 1> to_space(const Eigen::Matrix<double, N - 1, 1>& y) const {
-    return origin + axes * y;
+  [[nodiscard]] Vector<N> to_space(const Vector<N - 1>& y) const noexcept {
+    Vector<N> x;
+    for (std::size_t a = 0; a < N; ++a) {
+      double sum = axes[0][a] * y[0];
+      for (std::size_t i = 1; i < N - 1; ++i) sum += axes[i][a] * y[i];
+      x[a] = origin[a] + sum;
+    }
+    return x;
   }
   /// Hyperplane coordinates of the orthogonal projection of a point.
-  [[nodiscard]] Eigen::Matrix<double, N - 1, 1> to_plane(const Eigen::Matrix<double, N, 1>& x) const {
-    return axes.transpose() * x;
+  [[nodiscard]] Vector<N - 1> to_plane(const Vector<N>& x) const noexcept {
+    Vector<N - 1> y;
+    for (std::size_t i = 0; i < N - 1; ++i) {
+      double sum = axes[i][0] * x[0];
+      for (std::size_t a = 1; a < N; ++a) sum += axes[i][a] * x[a];
+      y[i] = sum;
+    }
+    return y;
   }
 };
 
@@ -52,10 +66,11 @@ struct HyperplaneFrame {
 template <int N>
 requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
 
-/// Multiplies the coordinates along each axis by a positive factor. Normals become those of the scaled contour; names,
-/// units, attributes and simplices are unchanged. N = 2, 3, 4. Throws InvalidArgument for other factors. O(#V).
-template <int N, class Real>
+/// The contour with the coordinates along each axis multiplied by a positive factor. Normals become those of the scaled
+/// contour; names, units, attributes and simplices are unchanged. Pass the contour by std::move to scale it without a
+/// copy. N = 2, 3, 4. Throws InvalidArgument for other factors. O(#V).
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
-void scale_axes(Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& factors);
+[[nodiscard]] Contour<N, Real> scale_axes(Contour<N, Real> contour, const std::type_identity_t<Vector<N>>& factors);
 
 }  // namespace tegl

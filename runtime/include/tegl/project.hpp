@@ -5,6 +5,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/vector.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -12,7 +13,7 @@ namespace tegl {
 /// How 4-space is projected to 3-space.
 struct Projection {
   /// The line of sight. The result has the coordinates of `frame_of` for the hyperplane across it; along t: x, y, z.
-  Eigen::Vector4d direction = Eigen::Vector4d::UnitW();
+  Vector<4> direction = unit_vector<4>(3);
   /// 0: parallel projection. Else the distance of the eye before the contour's minimum height along the direction.
   /// Objects at the minimum height keep their size; at this distance behind it they are half as large, scaled towards
   /// the centre of the contour's bounding box.

@@ -4,12 +4,14 @@
 // slider.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "tegl/contour.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/vector.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -30,15 +32,14 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4>
 class Scrubber {
  public:
-  using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
+  /// All cuts are parallel to `hyperplane`: they have its normal, and `cut` takes their offset. Throws InvalidArgument
+  /// if the normal is 0 or not finite, the offset or a coordinate of the contour is not finite, a vertex number is out
+  /// of range, or attributes or normals are of another number; Cancelled.
+  explicit Scrubber(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane = {},
+                    const WorkOptions& work = {});
+  explicit Scrubber(const Contour<N, Real>&&, const Hyperplane<N>& = {}, const WorkOptions& = {}) = delete;
 
-  /// `normal`: the normal of the hyperplanes. Throws InvalidArgument if it is 0 or not finite, a coordinate of the
-  /// contour is not finite, a vertex number is out of range, or attributes or normals are of another number; Cancelled.
-  explicit Scrubber(const Contour<N, Real>& contour, const Vector& normal = Vector::Unit(N - 1),
-                    const WorkOptions& options = {});
-  explicit Scrubber(const Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const WorkOptions& = {}) = delete;
-
-  /// Returns slice(contour, Hyperplane<N>{normal, offset}). O(c + log s) for c simplices that touch the hyperplane, few
+  /// Returns slice(contour, {hyperplane.normal, offset}). O(c + log s) for c simplices that touch the hyperplane, few
   /// more than the cut has; O(c log c) if vertices lie on it. Throws InvalidArgument if the offset is not finite.
   [[nodiscard]] Contour<N - 1, Real> cut(double offset) const;
 
@@ -66,7 +67,7 @@ class Scrubber {
   void visit(std::uint32_t middle, std::uint32_t at, std::vector<Index>& found) const;
 
   const Contour<N, Real>* contour_;
-  Vector normal_;
+  Vector<N> normal_;
   double lowest_ = 0.0;
   std::pair<double, double> range_{0.0, 0.0};
   std::vector<Node> nodes_;      ///< by `middle`, plus a sentinel

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "tegl/extract.hpp"
@@ -12,92 +13,89 @@
 
 namespace tegl {
 
-/// Cuts an N-dimensional contour (N = 3, 4) by x_{N-1} = at. The result has one dimension less, without the last
-/// coordinate: triangles for N = 4, segments for N = 3. Names, units and direction are kept; the cut faces the same
-/// side, low or high, as the contour. Normals, if the contour has any, are interpolated like the vertices, lose their
-/// last component, and get length 1, or 0 if nothing remains. Vertex attributes are interpolated like the vertices. A
-/// simplex of the cut gets the attributes of the simplex that it lies in.
+/// Cuts an N-dimensional contour (N = 3, 4) by a hyperplane. `slice(contour, Hyperplane<4>::across(3, t))` is the
+/// surface at time t.
+///
+/// The result has one dimension less, in the coordinates of `frame_of(hyperplane)`: triangles for N = 4, segments for
+/// N = 3. Across an axis these are the other axes: across x, a 4D contour gives a surface in y, z and t. "Above" is the
+/// side of the hyperplane's normal. The cut faces the same side, low or high, as the contour, in the frame's
+/// coordinates, also if the frame is left-handed. Direction, and names and units of axes that are axes of the frame,
+/// are kept; other names and units are empty. Normals, if the contour has any, are interpolated like the vertices,
+/// lose their component along the hyperplane's normal, and get length 1, or 0 if nothing remains. Vertex attributes are
+/// interpolated like the vertices. A simplex of the cut gets the attributes of the simplex that it lies in.
 ///
 /// Vertices of the cut lie on edges between a vertex below and a vertex above the hyperplane; they are interpolated in
-/// double, from the lower one. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above; if
-/// the contour does not reach it from below, it counts as below. It is itself the vertex of every cut edge that ends in
-/// it; simplices that collapse are dropped. Parts of the contour's boundary in the hyperplane belong to the cut if the
-/// contour is only on their upper side. Consequences:
-/// - At a sample's coordinate t = k the cut is the contour of layer k of the image, bit by bit: the same vertices and
-///   the same oriented simplices, compared by the bits of their coordinates. Numbers, and the vertex that a simplex
-///   begins with, may differ. This holds for contours that `extract` makes with any options, also at the first and the
-///   last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the surface may lie
-///   flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps them out of the
-///   layer.) Conditions: Real has numbers between the coordinates of the layers, and a user's estimator returns the
-///   same for a face of the image and for this face of the layer. If samples are missing, the contour has only the part
-///   of the layer that belongs to tiles, and it may be triangulated differently.
-/// - The cut of a closed manifold is a closed manifold with the same orientation, for every t. If merging vertices
-///   would pinch the cut, they stay separate at the same position.
+/// double, from the lower one. A vertex lies on the hyperplane if <normal, x> equals the offset as computed in double;
+/// if the normal is a multiple of an axis, if the coordinate equals the quotient in Real. A vertex on the hyperplane
+/// counts as above; if the contour does not reach it from below, it counts as below. It is itself the vertex of every
+/// cut edge that ends in it; simplices that collapse are dropped. So the cut is the limit from below, and around
+/// vertices that the contour does not reach from below the limit from above. Parts of the contour's boundary in the
+/// hyperplane, with the contour only on their upper side, belong to cuts across an axis, unless they may also lie in a
+/// side of the image along another axis. They never belong to oblique cuts.
+///
+/// The cut of a closed manifold is a closed manifold with the same orientation. The cut of a manifold is a manifold. If
+/// merging vertices would pinch the cut, they stay separate at the same position.
+///
+/// Across the last axis, at a sample's coordinate t = k, the cut is the contour of layer k of the image, bit by bit: the
+/// same vertices and the same oriented simplices, compared by the bits of their coordinates. Numbers, and the vertex
+/// that a simplex begins with, may differ. This holds for contours that `extract` makes with any options, also at the
+/// first and the last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the surface
+/// may lie flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps them out of
+/// the layer.) Conditions: the normal points in the axis's positive direction, Real has numbers between the coordinates
+/// of the layers, and a user's estimator returns the same for a face of the image and for this face of the layer. If
+/// samples are missing, the contour has only the part of the layer that belongs to tiles, and it may be triangulated
+/// differently.
+///
+/// Across other axes, at a sample's coordinate, the cut is the contour of that layer if no sample equals the
+/// isovalue. If samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the
+/// layers. On other axes such vertices lie in the layer, at the same positions as vertices of the layer itself, and the
+/// contour does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer
+/// or lie along samples of the isovalue. `slice_image` reads the image and gives the layer's contour.
 ///
 /// Quadrilaterals are split by the shorter diagonal. The order of the result depends only on the order of the contour.
-/// Errors: InvalidArgument (`at` or a coordinate is not finite, a vertex number out of range, attributes or normals of
-/// another number). If `at` is beyond the contour, the cut is empty. O(#S + #V) time, plus O(c log c) for a cut of c
-/// simplices; #V bytes plus O(c) memory. Thread-safe.
-template <int N, class Real>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
-
-/// Cuts a contour by any hyperplane, in the coordinates of `frame_of(hyperplane)`: across x, a 4D contour gives a
-/// surface in y, z and t. "Above" is the side of the hyperplane's normal. Across the last axis the result is that of
-/// the function above.
-///
-/// The cut of a manifold is a manifold with the same orientation, and closed if the contour is closed. The cut is the
-/// limit from below; around vertices that the contour does not reach from below, the limit from above. Boundary parts
-/// that lie in the hyperplane, with the contour only on their upper side, belong to cuts across an axis, unless they
-/// may also lie in a side of the image along another axis. They never belong to oblique cuts.
-///
-/// At a sample's coordinate on any axis, the cut is the contour of that layer if no sample equals the isovalue. If
-/// samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the layers. On
-/// other axes such vertices lie in the layer, at the same positions as vertices of the layer itself, and the contour
-/// does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer or lie
-/// along samples of the isovalue. `slice_image_across` reads the image and gives the layer's contour.
-///
-/// A vertex lies on the hyperplane if <normal, x> equals the offset as computed in double; if the normal is a multiple
-/// of an axis, if the coordinate equals the quotient in Real. Orientation: the cut faces the same side as the contour
-/// in the frame's coordinates, also if the frame is left-handed. Names and units of axes are kept if a frame axis is an
-/// axis of the contour, and empty otherwise. Errors: those of `frame_of` and of the function above. Cost: that of the
-/// function above.
-template <int N, class Real>
+/// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
+/// attributes or normals of another number). If the hyperplane is beyond the contour, the cut is empty. O(#S + #V)
+/// time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. Thread-safe.
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
                                                               const Hyperplane<N>& hyperplane);
 
-/// Cuts a contour by parallel hyperplanes <normal, x> = offsets[i], in one pass over the contour. Each cut equals that
-/// of `slice` bit by bit. Offsets may be in any order; as many cuts are made at a time as there are threads. Errors:
-/// those of `slice`; Cancelled. O(#S log k + #V) for k offsets, plus the cost of the cuts; 8 #V bytes plus the memory
-/// of all cuts.
-template <int N, class Real>
+/// Cuts a contour by several hyperplanes, in any order. Each cut equals `slice` by its hyperplane bit by bit.
+/// Hyperplanes with equal normals are cut in one pass over the contour; as many cuts are made at a time as there are
+/// threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
+/// cuts; 8 #V bytes plus the memory of all cuts.
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
-    const Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& normal, std::span<const double> offsets,
-    const WorkOptions& options = {});
+    const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
+    const WorkOptions& work = {});
 
-/// Makes the cut directly from the image: reads only the slab of tiles that the hyperplane passes, or, at a sample's
-/// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis. At a sample's coordinate the
-/// result is the contour of that layer, bit by bit, also if samples equal the isovalue (N = 3, 4). Elsewhere it equals
-/// slice(extract<Real>(image, isovalue, options), at) bit by bit, up to the numbering; if values are missing at some
-/// times only, up to the triangulation of the same surface. `options.close` closes the cut at the borders of the other
-/// axes, as in the cut of the closed contour.
+/// As `slice_image`, with counts and times of the extraction.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stats(
+    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
+    const ExtractOptions& options = {});
+
+/// Cuts the contour of an image by a hyperplane in world coordinates, without the whole contour if the normal is a
+/// multiple of an axis: then only the slab of tiles that the hyperplane passes is read, or, at a sample's coordinate,
+/// the two slabs that meet there (for normals across another axis than the last, also the adjacent layers). Otherwise
+/// the cut is that of the whole contour.
 ///
-/// An image with one sample along the last axis has no tiles, hence an empty cut, at its only valid `at`. Errors: those
-/// of `extract`; InvalidArgument if `at` is not finite or outside of the last axis, or if the world map mixes the last
-/// axis with others, so that "last world coordinate = at" is not a layer. Cost: that of extracting one or two slabs,
-/// independent of the length of the last axis.
-template <class Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
-                                                                    double at, const ExtractOptions& options = {},
-                                                                    ExtractStats* stats = nullptr);
-
-/// As `slice_image`, but across any axis: the cut by x_axis = at, in the other coordinates. Contours only a slab of
-/// layers of that axis (for normals, also the adjacent layers). All guarantees for the last axis hold, except that
-/// normals agree up to rounding only. At a sample's coordinate the cut is the contour of that layer, also if samples
-/// equal the isovalue, where cuts of the whole contour may differ from it.
-template <class Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
-                                                                           int axis, double at,
-                                                                           const ExtractOptions& options = {},
-                                                                           ExtractStats* stats = nullptr);
+/// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
+/// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
+/// from it (N = 3, 4). Elsewhere it equals slice(extract<Real>(image, isovalue, options), hyperplane) bit by bit
+/// (normals again up to rounding), up to the numbering; if values are missing at some layers only, up to the
+/// triangulation of the same surface. `options.close` closes the cut at the borders of the other axes, as in the cut of
+/// the closed contour.
+///
+/// An image with one sample along the axis has no tiles, hence an empty cut, at its only valid coordinate. Errors:
+/// those of `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
+/// the world map mixes the axis with others, so that its layers are not across it. Cost: that of extracting one or two
+/// slabs, independent of the length of the axis; for oblique hyperplanes, that of `extract` and `slice`.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(
+    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
+    const ExtractOptions& options = {}) {
+  return slice_image_with_stats<Real>(image, isovalue, hyperplane, options).contour;
+}
 
 }  // namespace tegl

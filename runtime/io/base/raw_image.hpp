@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "base/value_array.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/io.hpp"
 
 namespace tegl::io_detail {
@@ -62,8 +63,8 @@ template <int N>
 Grid<N> fixed_grid(const RawGrid& grid) {
   Grid<N> result;
   for (int a = 0; a < N; ++a) result.axes[a] = grid.axes[a];
-  result.linear = grid.linear;
-  result.offset = grid.offset;
+  as_eigen(result.linear) = grid.linear;
+  as_eigen(result.offset) = grid.offset;
   return result;
 }
 

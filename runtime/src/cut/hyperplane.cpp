@@ -7,13 +7,22 @@
 
 #include <fmt/format.h>
 
+#include "tegl/eigen.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {
 
 template <int N>
+requires DimensionBetween<N, 2, 4> Hyperplane<N> Hyperplane<N>::across(int axis, double at) {
+  if (axis < 0 || axis >= N)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+  return {unit_vector<N>(axis), at};
+}
+
+template <int N>
 requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
-  const auto& normal = hyperplane.normal;
+  using Column = Eigen::Matrix<double, N, 1>;
+  const Column normal = as_eigen(hyperplane.normal);
   double most = normal.cwiseAbs().maxCoeff();
   if (!normal.allFinite() || !(most > 0.0))
     throw Error(ErrorCode::InvalidArgument, "normal of a hyperplane that is 0 or not finite; expected another");
@@ -23,29 +32,31 @@ requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<
   for (int a = 0; a < N; ++a)
     if (std::abs(normal[a]) == most) frame.dropped = a;
   // Divide by the largest component first, so that the length neither overflows nor vanishes.
-  const Eigen::Matrix<double, N, 1> shrunk = normal / most;
+  const Column shrunk = normal / most;
   const double length = shrunk.norm();
-  frame.up = shrunk / length;
-  frame.origin = frame.up * (hyperplane.offset / most / length);
+  const Column up = shrunk / length;
+  frame.up = to_vector(up);
+  as_eigen(frame.origin) = up * (hyperplane.offset / most / length);
   const int k = frame.dropped;
-  const Eigen::Matrix<double, N, 1> nearer = frame.up[k] < 0.0 ? (-frame.up).eval() : frame.up;
+  const Column nearer = up[k] < 0.0 ? Column(-up) : up;
   // The rotation in the plane of e_k and u that maps one to the other maps e_i to e_i - u_i / (1 + u_k) (e_k + u).
   for (int i = 0, column = 0; i < N; ++i) {
     if (i == k) continue;
-    Eigen::Matrix<double, N, 1> axis = -(nearer[i] / (1.0 + nearer[k])) * nearer;
+    Column axis = -(nearer[i] / (1.0 + nearer[k])) * nearer;
     axis[k] -= nearer[i] / (1.0 + nearer[k]);
     axis[i] += 1.0;
-    frame.axes.col(column++) = axis.array() + 0.0;  // turns -0 into 0, for output
+    for (int a = 0; a < N; ++a) frame.axes[column][a] = axis[a] + 0.0;  // turns -0 into 0, for output
+    ++column;
   }
   // A rotation preserves the sign of det[e_0 … without e_k … e_{N-1}, e_k]; N - 1 - k exchanges make that determinant
   // 1.
-  frame.is_right_handed = ((N - 1 - k) % 2 == 0) == (frame.up[k] > 0.0);
+  frame.is_right_handed = ((N - 1 - k) % 2 == 0) == (up[k] > 0.0);
   return frame;
 }
 
-template <int N, class Real>
-requires DimensionBetween<N, 2, 4>
-void scale_axes(Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& factors) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Contour<N, Real> scale_axes(Contour<N, Real> contour,
+                                                               const std::type_identity_t<Vector<N>>& factors) {
   for (int a = 0; a < N; ++a)
     if (!(factors[a] > 0.0) || !std::isfinite(factors[a]))
       throw Error(ErrorCode::InvalidArgument,
@@ -58,16 +69,20 @@ void scale_axes(Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& fa
     const double length = turned.norm();
     for (int a = 0; a < N; ++a) normal[a] = length > 0.0 ? static_cast<Real>(turned[a] / length) : Real{0};
   }
+  return contour;
 }
 
+template struct Hyperplane<2>;
+template struct Hyperplane<3>;
+template struct Hyperplane<4>;
 template HyperplaneFrame<2> frame_of(const Hyperplane<2>&);
 template HyperplaneFrame<3> frame_of(const Hyperplane<3>&);
 template HyperplaneFrame<4> frame_of(const Hyperplane<4>&);
-template void scale_axes(Contour<2, float>&, const Eigen::Matrix<double, 2, 1>&);
-template void scale_axes(Contour<2, double>&, const Eigen::Matrix<double, 2, 1>&);
-template void scale_axes(Contour<3, float>&, const Eigen::Matrix<double, 3, 1>&);
-template void scale_axes(Contour<3, double>&, const Eigen::Matrix<double, 3, 1>&);
-template void scale_axes(Contour<4, float>&, const Eigen::Matrix<double, 4, 1>&);
-template void scale_axes(Contour<4, double>&, const Eigen::Matrix<double, 4, 1>&);
+template Contour<2, float> scale_axes(Contour<2, float>, const Vector<2>&);
+template Contour<2, double> scale_axes(Contour<2, double>, const Vector<2>&);
+template Contour<3, float> scale_axes(Contour<3, float>, const Vector<3>&);
+template Contour<3, double> scale_axes(Contour<3, double>, const Vector<3>&);
+template Contour<4, float> scale_axes(Contour<4, float>, const Vector<4>&);
+template Contour<4, double> scale_axes(Contour<4, double>, const Vector<4>&);
 
 }  // namespace tegl

@@ -22,10 +22,8 @@ namespace tegl::detail {
 template <int N>
 class Section {
  public:
-  using Vector = Eigen::Matrix<double, N, 1>;
-
   /// Throws InvalidArgument as `frame_of` does.
-  explicit Section(const Vector& normal) : frame_(frame_of(Hyperplane<N>{normal, 0.0})), normal_(normal) {
+  explicit Section(const Vector<N>& normal) : frame_(frame_of(Hyperplane<N>{normal, 0.0})), normal_(normal) {
     int others = 0;
     for (int a = 0; a < N; ++a) others += a != frame_.dropped && normal[a] != 0.0;
     is_across_axis_ = others == 0;
@@ -68,7 +66,7 @@ class Section {
     }
     for (int i = 0; i < N - 1; ++i) {
       result[i] = 0.0;
-      for (int a = 0; a < N; ++a) result[i] += frame_.axes(a, i) * x[a];
+      for (int a = 0; a < N; ++a) result[i] += frame_.axes[i][a] * x[a];
     }
     return result;
   }
@@ -86,7 +84,7 @@ class Section {
 
  private:
   HyperplaneFrame<N> frame_;
-  Vector normal_;
+  Vector<N> normal_;
   bool is_across_axis_ = false;
   bool is_reversed_ = false;
   double unit_ = 1.0;

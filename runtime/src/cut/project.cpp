@@ -26,6 +26,7 @@
 #include "cut/hyperplane_family.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl {
@@ -91,6 +92,7 @@ View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection
   detail::require_sound(contour);
   const Section<4> section(projection.direction);
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
+  const Eigen::Vector4d up = as_eigen(frame.up);
   View<Real> view;
   view.is_right_handed = frame.is_right_handed;
   for (const auto& vertex : contour.vertices) {
@@ -98,7 +100,7 @@ View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection
     std::copy(vertex.begin(), vertex.end(), x.begin());
     const std::array<double, 3> y = section.within(x);
     view.points.emplace_back(y[0], y[1], y[2]);
-    view.heights.push_back(section.is_across_axis() ? section.height(vertex) : frame.up.dot(Eigen::Vector4d(x.data())));
+    view.heights.push_back(section.is_across_axis() ? section.height(vertex) : up.dot(Eigen::Vector4d(x.data())));
   }
   draw_towards_middle(view, projection.eye_distance);
   return view;
@@ -170,6 +172,8 @@ void fill_from_neighbours(const Contour<4, Real>& contour, Normals& normals) {
 template <class Real>
 std::vector<double> along_sight(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
+  const Eigen::Vector4d up = as_eigen(frame.up);
+  const Eigen::Matrix<double, 4, 3> axes = as_eigen(frame.axes).transpose();
   Normals normals(contour.vertices.size(), Eigen::Vector4d::Zero());
   for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
     const auto normal = detail::normal_vector_of<4>(detail::corners_of(contour, s));
@@ -178,10 +182,9 @@ std::vector<double> along_sight(const Contour<4, Real>& contour, const Projectio
   fill_from_neighbours(contour, normals);
   std::vector<double> result(normals.size());
   for (std::size_t v = 0; v < normals.size(); ++v) {
-    Eigen::Vector4d sight = frame.up;
+    Eigen::Vector4d sight = up;
     if (projection.eye_distance > 0.0)
-      sight = frame.axes * (view.flat[v] - view.middle) +
-              frame.up * (projection.eye_distance + view.heights[v] - view.least);
+      sight = axes * (view.flat[v] - view.middle) + up * (projection.eye_distance + view.heights[v] - view.least);
     const double size = normals[v].norm() * sight.norm();
     constexpr double kRounding = 64.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
     double cosine = size > 0.0 ? normals[v].dot(sight) / size : 0.0;
@@ -228,7 +231,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   raised.vertex_attributes = contour.vertex_attributes;
   replace(raised.vertex_attributes, height_attribute(contour, projection, view));
   raised.simplex_attributes = contour.simplex_attributes;
-  Contour<3, double> cut = slice(raised, 0.0);
+  Contour<3, double> cut = slice(raised, Hyperplane<4>::across(3, 0.0));
   report(work.progress, 0.9);
   Contour<3, Real> result;
   result.direction = contour.direction;

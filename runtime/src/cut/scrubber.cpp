@@ -54,12 +54,13 @@ void report(const Progress& progress, double fraction) {
 }  // namespace
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal,
-                                                               const WorkOptions& options)
-    : contour_(&contour), normal_(normal) {
-  const detail::Section<N> section(normal);
+requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour,
+                                                               const Hyperplane<N>& hyperplane, const WorkOptions& work)
+    : contour_(&contour), normal_(hyperplane.normal) {
+  const detail::Section<N> section(normal_);
+  (void)section.template level<Real>(hyperplane.offset);  // throws if it is not finite
   detail::require_sound(contour);
-  report(options.progress, 0.0);
+  report(work.progress, 0.0);
   if (contour.simplices.empty()) {
     nodes_.push_back({0, 0});
     return;
@@ -76,7 +77,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   }
   range_ = {lowest_ * section.unit(), highest * section.unit()};
   struct Nothing {};
-  detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
+  detail::Workers<Nothing> workers(work.threads, [] { return Nothing(); });
   constexpr std::size_t kGrain = std::size_t{1} << 14;
   // range of places of each simplex
   std::vector<Range> ranges(contour.simplices.size());
@@ -94,7 +95,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   });
   // Stable radix sorts: by one end, then by node.
   const auto gather = [&](std::vector<Entry>& entries, double fraction, const auto& key, const auto& end) {
-    report(options.progress, fraction);
+    report(work.progress, fraction);
     detail::sort_by_bits(ranges, kPlaceBits, key);
     detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); });
     entries.resize(ranges.size());
@@ -111,7 +112,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   }
   nodes_.push_back({0, ranges.size()});
   nodes_.shrink_to_fit();
-  report(options.progress, 1.0);
+  report(work.progress, 1.0);
 }
 
 template <int N, Coordinate Real>

@@ -4,8 +4,6 @@
 #include "tegl/slice.hpp"
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -17,9 +15,6 @@ namespace tegl {
 namespace {
 
 using detail::Section;
-
-template <int N>
-using Vector = Eigen::Matrix<double, N, 1>;
 
 /// The simplices that touch the level, ascending.
 template <int N, class Real>
@@ -37,13 +32,6 @@ std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Sec
     if (met == kOn) touching.push_back(static_cast<Index>(s));
   }
   return touching;
-}
-
-template <int N, class Real>
-Contour<N - 1, Real> cut(const Contour<N, Real>& contour, const Section<N>& section, double offset) {
-  detail::require_sound(contour);
-  const double level = section.template level<Real>(offset);
-  return detail::cut_simplices(contour, section, level, touching_simplices(contour, section, level));
 }
 
 /// By level, the simplices that touch it, ascending; levels ascend. Each simplex is read once.
@@ -68,58 +56,90 @@ std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour,
   return touching;
 }
 
+/// The hyperplanes of a stack that have the same normal.
+template <int N>
+struct Parallels {
+  Vector<N> normal;
+  Section<N> section;
+  std::vector<double> levels;                ///< ascending, each once
+  std::vector<std::vector<Index>> touching;  ///< by level, the simplices that touch it
+};
+
+/// A hyperplane of a stack.
+struct StackedCut {
+  std::size_t parallels;  ///< index of its `Parallels`
+  double level;
+};
+
+/// Groups the hyperplanes by normal. Throws InvalidArgument as `slice` does.
+template <int N, class Real>
+std::vector<StackedCut> group_by_normal(std::span<const Hyperplane<N>> hyperplanes, std::vector<Parallels<N>>& groups) {
+  std::vector<StackedCut> stack;
+  for (const Hyperplane<N>& hyperplane : hyperplanes) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const Parallels<N>& other) { return other.normal == hyperplane.normal; });
+    if (group == groups.end()) group = groups.insert(group, {hyperplane.normal, Section<N>(hyperplane.normal), {}, {}});
+    const double level = group->section.template level<Real>(hyperplane.offset);
+    group->levels.push_back(level);
+    stack.push_back({static_cast<std::size_t>(group - groups.begin()), level});
+  }
+  for (Parallels<N>& group : groups) {
+    std::sort(group.levels.begin(), group.levels.end());
+    group.levels.erase(std::unique(group.levels.begin(), group.levels.end()), group.levels.end());
+  }
+  return stack;
+}
+
 void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "cuts cancelled"); }
 
 }  // namespace
 
-template <int N, class Real>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at) {
-  return cut(contour, Section<N>(Vector<N>::Unit(N - 1)), at);
-}
-
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
                                                               const Hyperplane<N>& hyperplane) {
-  return cut(contour, Section<N>(hyperplane.normal), hyperplane.offset);
+  const Section<N> section(hyperplane.normal);
+  detail::require_sound(contour);
+  const double level = section.template level<Real>(hyperplane.offset);
+  return detail::cut_simplices(contour, section, level, touching_simplices(contour, section, level));
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
-    const Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& normal, std::span<const double> offsets,
-    const WorkOptions& options) {
-  const Section<N> section(normal);
+    const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
+    const WorkOptions& work) {
+  std::vector<Parallels<N>> groups;
+  const std::vector<StackedCut> stack = group_by_normal<N, Real>(hyperplanes, groups);
   detail::require_sound(contour);
-  std::vector<double> levels;
-  for (const double offset : offsets) levels.push_back(section.template level<Real>(offset));
-  // simplices by distinct level
-  std::vector<double> sorted = levels;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  report(options.progress, 0.0);
-  const auto touching = touching_levels(contour, section, sorted);
-  std::vector<Contour<N - 1, Real>> cuts(levels.size());
+  const auto steps = static_cast<double>(groups.size() + stack.size());
+  // one pass over the contour for each normal
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    report(work.progress, static_cast<double>(i) / steps);
+    groups[i].touching = touching_levels(contour, groups[i].section, groups[i].levels);
+  }
+  const auto cut_of = [&](const StackedCut& cut) {
+    const Parallels<N>& group = groups[cut.parallels];
+    const auto place = std::lower_bound(group.levels.begin(), group.levels.end(), cut.level) - group.levels.begin();
+    return detail::cut_simplices(contour, group.section, cut.level, group.touching[static_cast<std::size_t>(place)]);
+  };
+  // the cuts: one per thread at a time, so that progress can be reported between them
+  std::vector<Contour<N - 1, Real>> cuts(stack.size());
   struct Nothing {};
-  detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
-  // One cut per thread at a time, so that progress can be reported between groups.
+  detail::Workers<Nothing> workers(work.threads, [] { return Nothing(); });
   for (std::size_t first = 0; first < cuts.size(); first += workers.count()) {
-    report(options.progress, (1.0 + static_cast<double>(first)) / (1.0 + static_cast<double>(cuts.size())));
+    report(work.progress, static_cast<double>(groups.size() + first) / steps);
     const std::size_t count = std::min(workers.count(), cuts.size() - first);
     workers.for_range(count, 1, [&](std::size_t from, std::size_t to, Nothing&) {
-      for (std::size_t i = first + from; i < first + to; ++i) {
-        const auto place = std::lower_bound(sorted.begin(), sorted.end(), levels[i]) - sorted.begin();
-        cuts[i] = detail::cut_simplices(contour, section, levels[i], touching[static_cast<std::size_t>(place)]);
-      }
+      for (std::size_t i = first + from; i < first + to; ++i) cuts[i] = cut_of(stack[i]);
     });
   }
-  report(options.progress, 1.0);
+  report(work.progress, 1.0);
   return cuts;
 }
 
-#define TEGL_INSTANTIATE_SLICE(N, Real)                                                                               \
-  template Contour<N - 1, Real> slice(const Contour<N, Real>&, double);                                               \
-  template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&);                                 \
-  template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, const Eigen::Matrix<double, N, 1>&, \
-                                                         std::span<const double>, const WorkOptions&);
+#define TEGL_INSTANTIATE_SLICE(N, Real)                                                                           \
+  template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&);                             \
+  template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, std::span<const Hyperplane<N>>, \
+                                                         const WorkOptions&);
 TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -27,9 +28,9 @@ namespace tegl::detail {
 /// diagonal element.
 template <int N>
 void check_axis_is_apart(const Grid<N>& grid, int axis) {
-  bool apart = grid.linear(axis, axis) != 0.0;
+  bool apart = grid.linear[axis][axis] != 0.0;
   for (int a = 0; a < N; ++a)
-    apart = apart && (a == axis || (grid.linear(axis, a) == 0.0 && grid.linear(a, axis) == 0.0));
+    apart = apart && (a == axis || (grid.linear[axis][a] == 0.0 && grid.linear[a][axis] == 0.0));
   if (!apart)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("direct cut of a grid whose world map mixes axis {} with others; expected a row {} and a "
@@ -41,14 +42,24 @@ void check_axis_is_apart(const Grid<N>& grid, int axis) {
 template <int N, class Real>
 Real world_coordinate(const Grid<N>& grid, int axis, std::size_t i) {
   const double x = grid.axes[axis][i];
-  return static_cast<Real>(grid.has_world_map() ? grid.linear(axis, axis) * x + grid.offset(axis) : x);
+  return static_cast<Real>(grid.has_world_map() ? grid.linear[axis][axis] * x + grid.offset[axis] : x);
+}
+
+/// The axis that the hyperplane is perpendicular to; -1 if it is oblique. The normal must be finite and not 0.
+template <int N>
+int axis_of_normal(const Hyperplane<N>& hyperplane) {
+  int axis = -1;
+  for (int a = 0; a < N; ++a) {
+    if (hyperplane.normal[a] == 0.0) continue;
+    if (axis >= 0) return -1;
+    axis = a;
+  }
+  return axis;
 }
 
 /// The layers {first, count} of the slabs that meet `at`; for an axis with one sample, that layer.
 template <int N, class Real>
 std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis, double at) {
-  if (axis < 0 || axis >= N)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
   check_axis_is_apart(grid, axis);
   const Real rounded = rounded_at<Real>(at);
   const std::size_t size = grid.axes[axis].size();
@@ -91,8 +102,8 @@ Image<T, N> with_axis_last(const Image<T, N>& image, int axis) {
   for (int a = 0; a < N; ++a) {
     grid.axes[a] = from.axes[old(a)];
     strides[a] = image.strides()[old(a)];
-    grid.offset(a) = from.offset(old(a));
-    for (int b = 0; b < N; ++b) grid.linear(a, b) = from.linear(old(a), old(b));
+    grid.offset[a] = from.offset[old(a)];
+    for (int b = 0; b < N; ++b) grid.linear[a][b] = from.linear[old(a)][old(b)];
   }
   return Image<T, N>(image.data(), std::move(grid), strides);
 }
@@ -105,51 +116,54 @@ bool is_at_layer(const Grid<N>& grid, int axis, double at, std::pair<std::size_t
   return false;
 }
 
+/// The cut across an axis, from the layers that it needs.
+template <class Real, Value T, int N>
+Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, const Hyperplane<N>& hyperplane,
+                                     int axis, const ExtractOptions& options) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const double at = std::clamp(hyperplane.offset / hyperplane.normal[axis], -kMost, kMost);
+  auto layers = layers_around<N, Real>(image.grid(), axis, at);
+  const bool is_last = axis == N - 1;
+  // The extraction keeps points between layers off the layers along the last axis only.
+  const bool at_layer = is_at_layer<N, Real>(image.grid(), axis, at, layers);
+  if (!is_last && at_layer) {
+    ExtractOptions moved = options;
+    if (options.ambiguity == Ambiguity::custom) moved.estimator = moved_estimator<N>(options.estimator, axis);
+    return slice_layers<Real>(with_axis_last(image, axis), isovalue, Hyperplane<N>::across(N - 1, at), N - 1, moved);
+  }
+  if (!is_last) layers = with_neighbours(layers, image.size(axis), options);
+  const Image<T, N> slab = image.part(axis, layers.first, layers.second);
+  // Along the last axis a source can begin inside the image and reads the layers before and behind.
+  ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
+  ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
+  plan.keeps_off_layers = at_layer;
+  if (!is_last) plan.part = {axis, layers.first};
+  const auto extracted = extract_in_memory<N, Real>(source, slab.grid(), options, plan);
+  // At a layer, the limit from below is the layer's contour, whichever way the normal points.
+  return {slice(extracted.contour, at_layer ? Hyperplane<N>::across(axis, at) : hyperplane), extracted.stats};
+}
+
 }  // namespace tegl::detail
 
 namespace tegl {
 
-template <class Real, Value T, int N>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
-                                                                           int axis, double at,
-                                                                           const ExtractOptions& options,
-                                                                           ExtractStats* stats) {
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stats(
+    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
+    const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
-  auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
-  const bool is_last = axis == N - 1;
-  // The extraction keeps points between layers off the layers along the last axis only.
-  const bool at_layer = detail::is_at_layer<N, Real>(image.grid(), axis, at, layers);
-  if (!is_last && at_layer) {
-    ExtractOptions moved = options;
-    if (options.ambiguity == Ambiguity::custom) moved.estimator = detail::moved_estimator<N>(options.estimator, axis);
-    return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, moved, stats);
-  }
-  if (!is_last) layers = detail::with_neighbours(layers, image.size(axis), options);
-  const Image<T, N> slab = image.part(axis, layers.first, layers.second);
-  // Along the last axis a source can begin inside the image and reads the layers before and behind.
-  detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
-  detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
-  plan.keeps_off_layers = at_layer;
-  if (!is_last) plan.part = {axis, layers.first};
-  const auto extracted = detail::extract_in_memory<N, Real>(source, slab.grid(), options, plan);
-  if (stats != nullptr) *stats = extracted.stats;
-  return slice(extracted.contour, Hyperplane<N>::across(axis, at));
-}
-
-template <class Real, Value T, int N>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
-                                                                    double at, const ExtractOptions& options,
-                                                                    ExtractStats* stats) {
-  return slice_image_across<Real>(image, isovalue, N - 1, at, options, stats);
+  (void)frame_of(hyperplane);  // throws before the work if the hyperplane is none
+  const int axis = detail::axis_of_normal(hyperplane);
+  if (axis >= 0) return detail::slice_layers<Real>(image, isovalue, hyperplane, axis, options);
+  auto whole = extract_with_stats<Real>(image, isovalue, options);
+  return {slice(whole.contour, hyperplane), whole.stats};
 }
 
 }  // namespace tegl
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                            \
-  template tegl::Contour<N - 1, Real> tegl::slice_image<Real, T, N>(const Image<T, N>&, double, double,             \
-                                                                    const ExtractOptions&, ExtractStats*);          \
-  template tegl::Contour<N - 1, Real> tegl::slice_image_across<Real, T, N>(const Image<T, N>&, double, int, double, \
-                                                                           const ExtractOptions&, ExtractStats*);
+#define TEGL_INSTANTIATE_ONE(T, N, Real)                                           \
+  template tegl::Extraction<N - 1, Real> tegl::slice_image_with_stats<Real, T, N>( \
+      const Image<T, N>&, double, const Hyperplane<N>&, const ExtractOptions&);
 #define TEGL_INSTANTIATE_SLICE_IMAGE(T) \
   TEGL_INSTANTIATE_ONE(T, 3, float)     \
   TEGL_INSTANTIATE_ONE(T, 3, double)    \

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "tegl/eigen.hpp"
+
 namespace tegl {
 namespace {
 
@@ -28,9 +30,10 @@ void check_grid(const Grid<N>& grid) {
   for (int a = 0; a < N; ++a)
     if (grid.axes[a].size() == 0)
       throw Error(ErrorCode::InvalidGrid, fmt::format("axis {} has 0 samples; expected at least 1", a));
-  if (!grid.linear.allFinite() || !grid.offset.allFinite())
+  const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
+  if (!linear.allFinite() || !as_eigen(grid.offset).allFinite())
     throw Error(ErrorCode::InvalidGrid, "the affine map to the world has a NaN or infinity; expected finite values");
-  if (grid.linear.determinant() == 0.0)
+  if (linear.determinant() == 0.0)
     throw Error(ErrorCode::InvalidGrid, "the affine map to the world has determinant 0; expected an invertible map");
 }
 

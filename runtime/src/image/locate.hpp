@@ -12,6 +12,7 @@
 
 #include <Eigen/LU>
 
+#include "tegl/eigen.hpp"
 #include "tegl/grid.hpp"
 
 namespace tegl::detail {
@@ -32,7 +33,7 @@ template <int N>
 class GridLocator {
  public:
   explicit GridLocator(const Grid<N>& grid)
-      : axes_(grid.axes), mapped_(grid.has_world_map()), inverse_(grid.linear.inverse()), offset_(grid.offset) {
+      : axes_(grid.axes), mapped_(grid.has_world_map()), inverse_(inverse_of(grid.linear)), offset_(grid.offset) {
     for (int a = 0; a < N; ++a)
       for (std::size_t i = 0; i < axes_[a].size() && !axes_[a].is_uniform(); ++i)
         keys_[a].push_back(axes_[a].is_descending() ? -axes_[a][i] : axes_[a][i]);
@@ -50,12 +51,18 @@ class GridLocator {
   }
 
  private:
+  static Matrix<N> inverse_of(const Matrix<N>& matrix) {
+    const Eigen::Matrix<double, N, N> linear = as_eigen(matrix);
+    const Eigen::Matrix<double, N, N> inverse = linear.inverse();
+    return to_matrix(inverse);
+  }
+
   bool find(const std::array<double, N>& world, CellPlace<N>& place, double slack) const noexcept {
     std::array<double, N> point = world;
     if (mapped_)
       for (int a = 0; a < N; ++a) {
         point[a] = 0.0;
-        for (int b = 0; b < N; ++b) point[a] += inverse_(a, b) * (world[b] - offset_(b));
+        for (int b = 0; b < N; ++b) point[a] += inverse_[a][b] * (world[b] - offset_[b]);
       }
     for (int a = 0; a < N; ++a)
       if (!find_along(a, point[a], slack, place.base[a], place.share[a])) return false;
@@ -98,8 +105,8 @@ class GridLocator {
   std::array<Axis, N> axes_;
   std::array<std::vector<double>, N> keys_;  ///< ascending; only for non-uniform axes
   bool mapped_;
-  Eigen::Matrix<double, N, N> inverse_;
-  Eigen::Matrix<double, N, 1> offset_;
+  Matrix<N> inverse_;
+  Vector<N> offset_;
 };
 
 }  // namespace tegl::detail

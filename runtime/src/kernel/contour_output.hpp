@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 
 #include "ambiguity/face_estimator.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::detail {
@@ -41,7 +42,8 @@ template <int N>
 bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
   bool flip = options.direction == GradientDirection::descent;
   for (const Axis& axis : grid.axes) flip = flip != axis.is_descending();
-  return flip != (grid.linear.determinant() < 0);
+  const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
+  return flip != (linear.determinant() < 0);
 }
 
 class TileSelection;

@@ -16,6 +16,7 @@
 
 #include "image/extract_source.hpp"
 #include "kernel/edge_normals.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::detail {
@@ -57,7 +58,8 @@ class NormalWriter {
         // A world map may amplify small differences, for which float is not precise enough.
         in_float_(std::is_same_v<Real, float> && source.fits_float() && !mapped_) {
     // Gradients are covectors, so the inverse transpose transforms them.
-    if (mapped_) to_world_ = sign_ * grid.linear.inverse().transpose();
+    const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
+    if (mapped_) to_world_ = sign_ * linear.inverse().transpose();
   }
 
   /// Whether a row can be processed together with other rows, because its differences have the same weights.

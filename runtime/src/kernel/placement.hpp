@@ -68,8 +68,8 @@ class Placement {
     }
     for (int a = 0; a < N; ++a) {
       double sum = 0;
-      for (int b = 0; b < N; ++b) sum += linear_(a, b) * point[b];
-      vertex[a] = static_cast<Real>(sum + offset_(a));
+      for (int b = 0; b < N; ++b) sum += linear_[a][b] * point[b];
+      vertex[a] = static_cast<Real>(sum + offset_[a]);
     }
     return vertex;
   }
@@ -90,7 +90,7 @@ class Placement {
     edges.along = is_uniform_ ? nullptr : coordinates_[0].data();
     edges.origin = origin_;
     edges.step = step_;
-    edges.linear = mapped_ ? linear_.data() : nullptr;
+    edges.linear = mapped_ ? linear_[0].data() : nullptr;
     edges.offset = offset_.data();
     edges.inside.fill(std::numeric_limits<Real>::quiet_NaN());
     if (edges.axis == N - 1 && !insides_.empty()) edges.inside = insides_[k];
@@ -111,7 +111,7 @@ class Placement {
   /// by the world map; slabs too thin for it keep their full range.
   void find_insides() {
     for (int a = 0; a < N - 1; ++a)
-      if (linear_(N - 1, a) != 0) return;
+      if (linear_[N - 1][a] != 0) return;
     const auto layer = [this](std::size_t k) {
       std::array<double, N> point{};
       point[N - 1] = coordinates_[N - 1][k];
@@ -136,8 +136,8 @@ class Placement {
   }
 
   std::array<std::vector<double>, N> coordinates_;
-  Eigen::Matrix<double, N, N, Eigen::RowMajor> linear_;
-  Eigen::Matrix<double, N, 1> offset_;
+  Matrix<N> linear_;
+  Vector<N> offset_;
   bool is_uniform_;  ///< coordinates on axis 0 are equidistant
   double origin_ = 0.0, step_ = 0.0;
   bool mapped_;

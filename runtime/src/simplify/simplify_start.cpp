@@ -9,6 +9,7 @@
 
 #include <Eigen/LU>
 
+#include "tegl/eigen.hpp"
 #include "tegl/simplify.hpp"
 
 namespace tegl {
@@ -16,14 +17,15 @@ namespace tegl {
 template <int N>
 requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
   // Border hyperplane of axis a: origin + the span of the other columns of the map.
-  const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
+  const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
+  const Eigen::Matrix<double, N, N> inverse = linear.inverse();
   std::vector<Hyperplane<N>> result;
   for (int a = 0; a < N; ++a)
     for (const std::size_t i : {std::size_t{0}, grid.axes[a].size() - 1}) {
       Hyperplane<N> plane;
-      plane.normal = inverse.row(a).transpose();
+      as_eigen(plane.normal) = inverse.row(a).transpose();
       plane.offset = grid.axes[a][i];
-      for (int b = 0; b < N; ++b) plane.offset += inverse(a, b) * grid.offset(b);
+      for (int b = 0; b < N; ++b) plane.offset += inverse(a, b) * grid.offset[b];
       result.push_back(plane);
     }
   return result;

@@ -46,7 +46,7 @@ int main() {
   const tegl::Image<float, 4> image(values.data(), tegl::Grid<4>::unit({kSize, kSize, kSize, kSize}));
   const auto contour = tegl::extract(image, 0.0);
   const tegl::MeshReport whole = tegl::check(contour);
-  const tegl::MeshReport cut = tegl::check(tegl::slice(contour, 5.3));
+  const tegl::MeshReport cut = tegl::check(tegl::slice(contour, tegl::Hyperplane<4>::across(3, 5.3)));
   std::printf("4D: %zu tetrahedra, Euler characteristic %lld; cut: %zu triangles, Euler characteristic %lld\n",
               static_cast<std::size_t>(whole.simplices), static_cast<long long>(whole.euler),
               static_cast<std::size_t>(cut.simplices), static_cast<long long>(cut.euler));

@@ -20,7 +20,7 @@ json describe(const tegl::Grid<N>& grid) {
     for (std::size_t i = 0; i < grid.axes[a].size(); ++i) coordinates.push_back(grid.axes[a][i]);
     result["axes"].push_back({{"name", grid.axes[a].name}, {"unit", grid.axes[a].unit}, {"at", coordinates}});
     std::vector<double> row;
-    for (int b = 0; b < N; ++b) row.push_back(grid.linear(a, b));
+    for (int b = 0; b < N; ++b) row.push_back(grid.linear[a][b]);
     result["linear"].push_back(row);
     result["offset"].push_back(grid.offset[a]);
   }

@@ -110,8 +110,8 @@ TEST(Nifti, TimeIsTheLastAxisWithItsUnit) {
   EXPECT_EQ(grid.axes[3].name, "t");
   EXPECT_EQ(grid.axes[3].unit, "ms");
   EXPECT_EQ(world(grid, {1, 1, 1, 4}), Eigen::Vector4d(-1, 4, 5, 110));
-  EXPECT_EQ(grid.linear.col(3), Eigen::Vector4d(0, 0, 0, 1));
-  EXPECT_EQ(grid.linear.row(3), Eigen::RowVector4d(0, 0, 0, 1));
+  EXPECT_EQ(as_eigen(grid.linear).col(3), Eigen::Vector4d(0, 0, 0, 1));
+  EXPECT_EQ(grid.linear[3], unit_vector<4>(3));
 }
 
 TEST(Nifti, SlopeAndInterceptGiveFloats) {

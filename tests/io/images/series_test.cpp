@@ -94,10 +94,9 @@ TEST_F(Series, HasTheWorldMapOfItsFiles) {
   const ReadImageResult read = read_series(files_);
   const auto image = image_as<std::int16_t, 4>(read.image);
   const auto one = image_as<std::int16_t, 3>(read_image(files_[0]).image);
-  EXPECT_EQ(image.grid.linear.topLeftCorner(3, 3), one.grid.linear);
-  EXPECT_EQ(image.grid.linear(3, 3), 1);
-  EXPECT_EQ(image.grid.linear(3, 0), 0);
-  EXPECT_EQ(image.grid.offset.head(3), one.grid.offset);
+  EXPECT_EQ(as_eigen(image.grid.linear).topLeftCorner(3, 3), as_eigen(one.grid.linear));
+  EXPECT_EQ(image.grid.linear[3], unit_vector<4>(3));
+  EXPECT_EQ(as_eigen(image.grid.offset).head(3), as_eigen(one.grid.offset));
   EXPECT_EQ(read.info.world_frame, "LPS");
 }
 

@@ -49,7 +49,7 @@ void expect_right(const Contour<4, double>& contour, double first, double last) 
       const TrackSegment& segment = graph.segments[handle.segment];
       if (segment.start < time && handle.time < time && time < segment.end) euler += handle.euler_change;
     }
-    const Contour<3, double> cut = slice(contour, time);
+    const Contour<3, double> cut = slice(contour, Hyperplane<4>::across(3, time));
     const MeshReport report = check(cut);
     EXPECT_EQ(parts, report.components) << "at " << time;
     EXPECT_EQ(euler, report.euler) << "at " << time;

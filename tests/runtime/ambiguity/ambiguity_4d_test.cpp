@@ -56,10 +56,12 @@ TEST(Ambiguity4d, CutsAtAnyTimeAndObliqueOnesAreClosedSurfaces) {
     const auto contour = extract<double>(image.view(), 0.5, options);
     expect_closed_manifold(contour);
     for (int i = 0; i < 6; ++i) {
-      EXPECT_GT(expect_closed_manifold(slice(contour, 1.0 + 5.0 * unit_random(bits))).simplices, 0u);
+      EXPECT_GT(
+          expect_closed_manifold(slice(contour, Hyperplane<4>::across(3, 1.0 + 5.0 * unit_random(bits)))).simplices,
+          0u);
       Hyperplane<4> plane;
       for (int a = 0; a < 4; ++a) plane.normal[a] = unit_random(bits) - 0.5;
-      plane.offset = plane.normal.sum() * 3.5;
+      plane.offset = std::accumulate(plane.normal.begin(), plane.normal.end(), 0.0) * 3.5;
       EXPECT_GT(expect_closed_manifold(slice(contour, plane)).simplices, 0u);
     }
   }
@@ -74,8 +76,9 @@ TEST(Ambiguity4d, AtAWholeTimeItIsTheContourOfTheLayer) {
     for (std::size_t t = 0; t < 6; ++t) {
       const Image<float, 3> part(image.values.data() + t * layer, Grid<3>::unit({6, 6, 6}));
       const auto expected = extract<double>(part, 0.5, options);
-      EXPECT_TRUE(same_surface(slice(contour, static_cast<double>(t)), expected));
-      EXPECT_TRUE(same_surface(slice_image<double>(image.view(), 0.5, static_cast<double>(t), options), expected));
+      EXPECT_TRUE(same_surface(slice(contour, Hyperplane<4>::across(3, static_cast<double>(t))), expected));
+      EXPECT_TRUE(same_surface(
+          slice_image<double>(image.view(), 0.5, Hyperplane<4>::across(3, static_cast<double>(t)), options), expected));
     }
   }
 }
@@ -104,8 +107,9 @@ TEST(Ambiguity4d, AtAWholePlaceAlongAnyAxisItIsTheContourOfTheLayer) {
       for (const std::size_t at : {1u, 4u}) {
         SCOPED_TRACE(name + ", axis " + std::to_string(axis) + ", at " + std::to_string(at));
         const auto expected = extract<double>(layer_across(image, axis, at), 0.5, options);
-        EXPECT_TRUE(same_surface(slice_image_across<double>(image.view(), 0.5, axis, static_cast<double>(at), options),
-                                 expected));
+        EXPECT_TRUE(same_surface(
+            slice_image<double>(image.view(), 0.5, Hyperplane<4>::across(axis, static_cast<double>(at)), options),
+            expected));
       }
 }
 
@@ -116,7 +120,9 @@ TEST(Ambiguity4d, DirectCutsAreThoseOfTheContour) {
     SCOPED_TRACE(name);
     const auto contour = extract<double>(image.view(), 0.5, options);
     for (const double t : {0.3, 2.71, 4.5})
-      EXPECT_TRUE(same_surface(slice_image<double>(image.view(), 0.5, t, options), slice(contour, t))) << "at " << t;
+      EXPECT_TRUE(same_surface(slice_image<double>(image.view(), 0.5, Hyperplane<4>::across(3, t), options),
+                               slice(contour, Hyperplane<4>::across(3, t))))
+          << "at " << t;
   }
 }
 

@@ -277,7 +277,7 @@ TYPED_TEST(Estimators, GiveTheSameBytesFromEveryEntryPoint) {
       if constexpr (N > 2)
         for (const double at : {0.3, 0.5}) {
           const double where = image.grid.axes[N - 1][1] + at * image.grid.axes[N - 1].step();
-          const auto direct = slice_image(image.view(), isovalue, where, options);
+          const auto direct = slice_image(image.view(), isovalue, Hyperplane<N>::across(N - 1, where), options);
           expect_same_bytes(direct, slice(contour, Hyperplane<N>::across(N - 1, where)));
         }
     }
@@ -318,7 +318,7 @@ TYPED_TEST(Estimators, OfTheCallersSeeWhatIsAroundAFace) {
       for (int axis = 0; axis < N; ++axis) {
         const Axis& across = image.grid.axes[axis];
         const double where = across[2] + 0.4 * across.step();
-        const auto direct = slice_image_across(image.view(), isovalue, axis, where, options);
+        const auto direct = slice_image(image.view(), isovalue, Hyperplane<N>::across(axis, where), options);
         EXPECT_EQ(direct.simplices.size(), slice(contour, Hyperplane<N>::across(axis, where)).simplices.size());
       }
   }
@@ -479,7 +479,7 @@ TEST(BarycentricContoursOf4dImages, AreTheSameFromEveryEntryPoint) {
       });
       for (int axis = 0; axis < 4; ++axis) {
         const double where = 1.4;
-        expect_same_bytes(slice_image_across(image.view(), 0.5, axis, where, options),
+        expect_same_bytes(slice_image(image.view(), 0.5, Hyperplane<4>::across(axis, where), options),
                           slice(contour, Hyperplane<4>::across(axis, where)));
       }
     }

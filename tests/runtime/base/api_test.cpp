@@ -10,6 +10,7 @@
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
 #include "tegl/deviation.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
 #include "tegl/facets/tile_certifier.hpp"
@@ -126,24 +127,17 @@ static_assert(only_in<3, 4>([]<int N>() {
 
 // Functions that do not exist in all dimensions, by the dimension of a contour C or an image I.
 template <class C>
-concept Sliced = requires(const C& c, double at) {
-  slice(c, at);
+concept Sliced = requires(const C& c) {
+  slice(c, {});
 };
-template <class C, int N>
-concept SlicedByHyperplane = requires(const C& c, const Hyperplane<N>& plane) {
-  slice(c, plane);
-};
-template <class C, int N>
-concept SlicedOften = requires(const C& c, Eigen::Matrix<double, N, 1> normal, std::span<const double> at) {
-  slice_stack(c, normal, at);
+template <class C>
+concept SlicedOften = requires(const C& c) {
+  slice_stack(c, {});
 };
 template <class I>
 concept ImageSliced = requires(const I& image) {
-  slice_image(image, 0.0, 0.0);
-};
-template <class I>
-concept ImageSlicedAcross = requires(const I& image) {
-  slice_image_across(image, 0.0, 0, 0.0);
+  slice_image(image, 0.0, {});
+  slice_image_with_stats(image, 0.0, {});
 };
 template <class C>
 concept CutsMeasured = requires(const C& c, std::span<const double> at) {
@@ -161,9 +155,9 @@ template <class C>
 concept Scaled = requires(const C& c) {
   automatic_scale(c);
 };
-template <class C, int N>
-concept AxesScaled = requires(C& c, Eigen::Matrix<double, N, 1> factors) {
-  scale_axes(c, factors);
+template <class C>
+concept AxesScaled = requires(const C& c) {
+  scale_axes(c, {});
 };
 template <class C>
 concept Compared = requires(const C& c) {
@@ -233,15 +227,13 @@ consteval bool of_2_to_5_only(Test test) {
   (std::make_integer_sequence<int, 4>(), test);
 }
 static_assert(of_2_to_5_only<3, 4>([]<int N>() { return Sliced<Contour<N>>; }));
-static_assert(of_2_to_5_only<3, 4>([]<int N>() { return SlicedByHyperplane<Contour<N>, N>; }));
-static_assert(of_2_to_5_only<3, 4>([]<int N>() { return SlicedOften<Contour<N>, N>; }));
+static_assert(of_2_to_5_only<3, 4>([]<int N>() { return SlicedOften<Contour<N>>; }));
 static_assert(of_2_to_5_only<3, 4>([]<int N>() { return ImageSliced<Image<float, N>>; }));
-static_assert(of_2_to_5_only<3, 4>([]<int N>() { return ImageSlicedAcross<Image<float, N>>; }));
 static_assert(of_2_to_5_only<3, 5>([]<int N>() { return CutsMeasured<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Tracked<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Simplified<Contour<N>, N>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Scaled<Contour<N>>; }));
-static_assert(of_2_to_5_only<2, 4>([]<int N>() { return AxesScaled<Contour<N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return AxesScaled<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Compared<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return FlatNormals<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return GeometricNormals<Contour<N>>; }));
@@ -304,8 +296,6 @@ consteval bool is_safe_of_temporaries(Call) {
 static_assert(is_safe_of_temporaries<OwnedImage<float, 3>>(CALL(view())));
 static_assert(is_safe_of_temporaries<Image<float, 3>>(CALL(grid())));
 static_assert(is_safe_of_temporaries<Image<float, 3>>(CALL(strides())));
-static_assert(is_safe_of_temporaries<Contour<4>>(CALL(vertex_matrix())));
-static_assert(is_safe_of_temporaries<Contour<4>>(CALL(simplex_matrix())));
 static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(down(1, 0))));
 static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(down_signs(1, 0))));
 static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(up(1, 0))));
@@ -323,6 +313,28 @@ static_assert(is_safe_of_temporaries<facets::FacetBuilder>(CALL(build(1))));
 static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(lattice())));
 static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(tile())));
 #undef CALL
+
+// Views for Eigen: of named objects only.
+template <class C>
+concept HasVertexMatrix = requires(C&& contour) {
+  vertex_matrix(std::forward<C>(contour));
+};
+template <class C>
+concept HasSimplexMatrix = requires(C&& contour) {
+  simplex_matrix(std::forward<C>(contour));
+};
+template <class A>
+concept HasEigenView = requires(A&& array) {
+  as_eigen(std::forward<A>(array));
+};
+static_assert(HasVertexMatrix<Contour<4>&> && HasVertexMatrix<const Contour<4>&>);
+static_assert(!HasVertexMatrix<Contour<4>> && !HasVertexMatrix<const Contour<4>>);
+static_assert(HasSimplexMatrix<Contour<4>&> && HasSimplexMatrix<const Contour<4>&>);
+static_assert(!HasSimplexMatrix<Contour<4>> && !HasSimplexMatrix<const Contour<4>>);
+static_assert(HasEigenView<Vector<3>&> && HasEigenView<const Vector<3>&>);
+static_assert(!HasEigenView<Vector<3>> && !HasEigenView<const Vector<3>>);
+static_assert(HasEigenView<Matrix<3>&> && HasEigenView<const Matrix<3>&>);
+static_assert(!HasEigenView<Matrix<3>> && !HasEigenView<const Matrix<3>>);
 
 // Constructors that store a reference to an argument.
 static_assert(std::constructible_from<Scrubber<4, float>, const Contour<4>&>);
@@ -363,14 +375,14 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
   [[maybe_unused]] const SeriesRequest requests[] = {{.variable = "a"}, {.time_step = 1.0}};
   [[maybe_unused]] const SeriesWords words[] = {{.times = "a"}, {.sort = "b"}};
   [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = "float"}, {.big_endian = true}};
-  [[maybe_unused]] const Projection projections[] = {{.direction = Eigen::Vector4d::UnitX()}, {.eye_distance = 1}};
-  [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = Eigen::Vector4d::UnitX()}, {.offset = 1}};
+  [[maybe_unused]] const Projection projections[] = {{.direction = {1, 0, 0, 0}}, {.eye_distance = 1}};
+  [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = {1, 0, 0, 0}}, {.offset = 1}};
   [[maybe_unused]] const facets::Resolution resolution[] = {{.choices = {}},
                                                             {.alternative = facets::Alternative::high}};
   [[maybe_unused]] const Attribute attributes[] = {{.name = "a"}, {.width = 2}};
   [[maybe_unused]] const Mesh meshes[] = {{.dim = 1}, {.simplices = {0, 1}}, {.isovalue = 1.0}};
   [[maybe_unused]] const ContourRoom<3, float> room[] = {{.vertices = {}}, {.simplices = {}}};
-  [[maybe_unused]] const Grid<2> grids[] = {{.axes = {}}, {.offset = Eigen::Vector2d(1, 2)}};
+  [[maybe_unused]] const Grid<2> grids[] = {{.axes = {}}, {.offset = {1, 2}}};
   [[maybe_unused]] const OwnedImage<float, 2> images[] = {{.grid = Grid<2>::unit({1, 1})}, {.values = {1.0F}}};
   [[maybe_unused]] const StreamedContour<3, float> streamed[] = {{.isovalue = 1}, {.sink = nullptr}};
 }

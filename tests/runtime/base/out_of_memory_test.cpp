@@ -105,12 +105,14 @@ void expect_all_ways_survive(const std::array<std::size_t, N>& sizes, unsigned t
               20);
     if constexpr (N > 2) {
       EXPECT_GT(expect_survives(
-                    "slice_image", [&] { return digest(slice_image(image.view(), 0.5, 1.25, options)); }, alone),
+                    "slice_image",
+                    [&] { return digest(slice_image(image.view(), 0.5, Hyperplane<N>::across(N - 1, 1.25), options)); },
+                    alone),
                 20);
       if (!alone) continue;
       const auto contour = extract<float>(image.view(), 0.5, options);
       EXPECT_GT(expect_survives(
-                    "slice", [&] { return digest(slice(contour, 1.25)); }, true),
+                    "slice", [&] { return digest(slice(contour, Hyperplane<N>::across(N - 1, 1.25))); }, true),
                 10);
       EXPECT_GT(expect_survives(
                     "check", [&] { return check(contour).components; }, true),

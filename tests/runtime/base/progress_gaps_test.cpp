@@ -53,6 +53,11 @@ class ProgressGaps : public testing::Test {
   }
 
   static std::vector<double> times() { return even_times(0.0, kSize - 1.0, 40); }
+  static std::vector<Hyperplane<4>> hyperplanes() {
+    std::vector<Hyperplane<4>> result;
+    for (const double t : times()) result.push_back(Hyperplane<4>::across(3, t));
+    return result;
+  }
 
   static void simplify_surface(SimplifyMethod method, unsigned threads, const Progress& progress) {
     SimplifyOptions<3> options;
@@ -83,8 +88,7 @@ class ProgressGaps : public testing::Test {
          0.3},
         {"measure", [work](const Progress& p) { measure(*contour_, work(p)); }, 0.2},
         {"measure_cuts", [work](const Progress& p) { measure_cuts(*contour_, times(), work(p)); }, 0.2},
-        {"slice_stack",
-         [work](const Progress& p) { slice_stack(*contour_, Eigen::Vector4d(0, 0, 0, 1), times(), work(p)); }},
+        {"slice_stack", [work](const Progress& p) { slice_stack(*contour_, hyperplanes(), work(p)); }},
         {"elements", [work](const Progress& p) { elements(*contour_, work(p)); }, 0.2},
         {"sample", [work](const Progress& p) { sample(image_->view(), *contour_, "v", "", work(p)); }, 0.3},
         {"track", [follow](const Progress& p) { follow({}, p); }},

@@ -65,8 +65,9 @@ std::vector<Way> ways(const OwnedImage<float, N>& image) {
                       extract_streamed<float>(layers, 0.5, options, sink);
                     }});
   if constexpr (N > 2)
-    result.push_back(
-        {"slice_image", 2, [&](const ExtractOptions& options) { slice_image(image.view(), 0.5, 2.0, options); }});
+    result.push_back({"slice_image", 2, [&](const ExtractOptions& options) {
+                        slice_image(image.view(), 0.5, Hyperplane<N>::across(N - 1, 2.0), options);
+                      }});
   return result;
 }
 

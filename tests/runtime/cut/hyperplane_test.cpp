@@ -13,6 +13,7 @@
 #include "invariants.hpp"
 #include "measure.hpp"
 #include "simplicial_contour.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/error.hpp"
 #include "tegl/scrubber.hpp"
 #include "tegl/slice.hpp"
@@ -25,12 +26,18 @@ using test::layer_across;
 using test::Point;
 using test::same_surface;
 
+/// A vector for arithmetic.
 template <int N>
-using Vector = Eigen::Matrix<double, N, 1>;
+using Column = Eigen::Matrix<double, N, 1>;
+
+template <class Normal>
+auto hyperplane_of(const Eigen::MatrixBase<Normal>& normal, double offset) {
+  return Hyperplane<Normal::SizeAtCompileTime>{to_vector(normal), offset};
+}
 
 template <int N>
-Vector<N> random_normal(std::mt19937_64& bits) {
-  Vector<N> normal;
+Column<N> random_normal(std::mt19937_64& bits) {
+  Column<N> normal;
   do {
     for (double& x : normal) x = 2.0 * test::unit_random(bits) - 1.0;
   } while (normal.norm() > 1.0 || normal.norm() < 0.1);
@@ -67,35 +74,38 @@ bool same_bytes(const Contour<N, Real>& a, const Contour<N, Real>& b) {
 template <int N>
 void expect_frame(const Hyperplane<N>& hyperplane) {
   const HyperplaneFrame<N> frame = frame_of(hyperplane);
+  const Column<N> normal = as_eigen(hyperplane.normal);
   Eigen::Matrix<double, N, N> all;
-  all << frame.axes, frame.up;
-  EXPECT_LT((all.transpose() * all - Eigen::Matrix<double, N, N>::Identity()).norm(), 1e-14) << hyperplane.normal;
-  EXPECT_NEAR(all.determinant(), frame.is_right_handed ? 1.0 : -1.0, 1e-14) << hyperplane.normal;
-  EXPECT_NEAR(hyperplane.normal.normalized().dot(frame.up), 1.0, 1e-14);
-  EXPECT_NEAR(hyperplane.normal.dot(frame.origin), hyperplane.offset, 1e-13);
-  const Eigen::Matrix<double, N - 1, 1> y = Eigen::Matrix<double, N - 1, 1>::LinSpaced(-1.0, 2.0);
-  EXPECT_LT((frame.to_plane(frame.to_space(y)) - y).norm(), 1e-13);
-  EXPECT_NEAR(hyperplane.normal.dot(frame.to_space(y)), hyperplane.offset, 1e-13);
+  all << as_eigen(frame.axes).transpose(), as_eigen(frame.up);
+  EXPECT_LT((all.transpose() * all - Eigen::Matrix<double, N, N>::Identity()).norm(), 1e-14) << normal;
+  EXPECT_NEAR(all.determinant(), frame.is_right_handed ? 1.0 : -1.0, 1e-14) << normal;
+  EXPECT_NEAR(normal.normalized().dot(as_eigen(frame.up)), 1.0, 1e-14);
+  EXPECT_NEAR(normal.dot(as_eigen(frame.origin)), hyperplane.offset, 1e-13);
+  const Column<N - 1> y = Column<N - 1>::LinSpaced(-1.0, 2.0);
+  const Vector<N> x = frame.to_space(to_vector(y));
+  const Vector<N - 1> again = frame.to_plane(x);
+  EXPECT_LT((as_eigen(again) - y).norm(), 1e-13);
+  EXPECT_NEAR(normal.dot(as_eigen(x)), hyperplane.offset, 1e-13);
 }
 
 TEST(HyperplaneFrame, IsOrthonormalAndKnowsItsHandedness) {
   std::mt19937_64 bits(1);
   for (int i = 0; i < 500; ++i) {
-    expect_frame<2>({random_normal<2>(bits), 0.3});
-    expect_frame<3>({random_normal<3>(bits), -0.7});
-    expect_frame<4>({random_normal<4>(bits), 1.7});
+    expect_frame(hyperplane_of(random_normal<2>(bits), 0.3));
+    expect_frame(hyperplane_of(random_normal<3>(bits), -0.7));
+    expect_frame(hyperplane_of(random_normal<4>(bits), 1.7));
   }
   for (int axis = 0; axis < 4; ++axis)
-    for (const double length : {1.0, -1.0, 3.0, -0.1}) expect_frame<4>({length * Vector<4>::Unit(axis), 0.4});
-  expect_frame<4>({Vector<4>::Ones(), 1.0});
-  expect_frame<4>({-Vector<4>::Ones(), 1.0});
+    for (const double length : {1.0, -1.0, 3.0, -0.1}) expect_frame(hyperplane_of(length * Column<4>::Unit(axis), 0.4));
+  expect_frame(hyperplane_of(Column<4>::Ones(), 1.0));
+  expect_frame(hyperplane_of(-Column<4>::Ones(), 1.0));
 }
 
 TEST(HyperplaneFrame, AcrossAnAxisIsTheOtherAxes) {
   for (int axis = 0; axis < 4; ++axis) {
     const auto frame = frame_of(Hyperplane<4>::across(axis, 2.5));
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(frame.axes.col(i), (Vector<4>::Unit(i < axis ? i : i + 1)));
-    EXPECT_EQ(frame.origin, (2.5 * Vector<4>::Unit(axis)).eval());
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(frame.axes[i], unit_vector<4>(i < axis ? i : i + 1));
+    EXPECT_EQ(frame.origin, to_vector(2.5 * Column<4>::Unit(axis)));
     EXPECT_EQ(frame.dropped, axis);
   }
 }
@@ -103,14 +113,14 @@ TEST(HyperplaneFrame, AcrossAnAxisIsTheOtherAxes) {
 TEST(HyperplaneFrame, ChangesLittleWithTheNormal) {
   const auto before = frame_of(Hyperplane<4>{{0.1, -0.2, 0.3, 0.9}, 0.0});
   const auto after = frame_of(Hyperplane<4>{{0.1001, -0.2, 0.3, 0.9}, 0.0});
-  EXPECT_LT((before.axes - after.axes).norm(), 3e-4);
+  EXPECT_LT((as_eigen(before.axes) - as_eigen(after.axes)).norm(), 3e-4);
 }
 
 TEST(HyperplaneFrame, NormalsOfAnyLengthWillDo) {
   for (const double length : {1e-300, 1e-160, 1e160, 1e300}) {
     const auto frame = frame_of(Hyperplane<3>{{length, 2 * length, 2 * length}, 3 * length});
     EXPECT_NEAR(frame.up[0], 1.0 / 3.0, 1e-15);
-    EXPECT_NEAR(frame.origin.norm(), 1.0, 1e-14);
+    EXPECT_NEAR(as_eigen(frame.origin).norm(), 1.0, 1e-14);
   }
 }
 
@@ -138,8 +148,8 @@ TEST(SliceByHyperplane, AcrossTheLastAxisIsTheSameBitByBit) {
   std::mt19937_64 bits(3);
   for (int i = 0; i < 40; ++i) {
     const double t = i < 6 ? i : 5.0 * test::unit_random(bits);
-    EXPECT_TRUE(same_bytes(slice(whole, t), slice(whole, Hyperplane<4>::across(3, t)))) << t;
-    EXPECT_TRUE(same_bytes(slice(whole, t), slice(whole, Hyperplane<4>{{0, 0, 0, 4}, 4 * t}))) << t;
+    EXPECT_TRUE(same_bytes(slice(whole, Hyperplane<4>::across(3, t)), slice(whole, Hyperplane<4>{{0, 0, 0, 4}, 4 * t})))
+        << t;
   }
 }
 
@@ -164,8 +174,8 @@ TEST(SliceByHyperplane, AcrossAnAxisIsTheCutOfTheContourWithThatAxisLast) {
     const auto turned = permuted(whole, orders[axis], (3 - axis) % 2 == 1);
     for (const double at : {0.0, 0.3, 1.0, 2.71, 4.0}) {
       const auto cut = slice(whole, Hyperplane<4>::across(axis, at));
-      EXPECT_TRUE(same_surface(cut, slice(turned, at))) << axis << " " << at;
-      EXPECT_EQ(cut.axis_names, slice(turned, at).axis_names);
+      EXPECT_TRUE(same_surface(cut, slice(turned, Hyperplane<4>::across(3, at)))) << axis << " " << at;
+      EXPECT_EQ(cut.axis_names, slice(turned, Hyperplane<4>::across(3, at)).axis_names);
       EXPECT_FALSE(cut.simplices.empty());
     }
   }
@@ -188,9 +198,8 @@ TEST(SliceByHyperplane, AtASampleOfAnyAxisIsTheContourOfThatLayer) {
 TEST(SliceByHyperplane, TheOtherSideAboveGivesTheSameSurface) {
   const auto image = test::noise<double, 4>(5, 6);
   const auto whole = extract<double>(image.view(), 0.5);
-  const Vector<4> normal(1, 2, -3, 4);
-  const auto cut = slice(whole, Hyperplane<4>{normal, 5.1});
-  const auto other = slice(whole, Hyperplane<4>{-normal, -5.1});
+  const auto cut = slice(whole, Hyperplane<4>{{1, 2, -3, 4}, 5.1});
+  const auto other = slice(whole, Hyperplane<4>{{-1, -2, 3, -4}, -5.1});
   EXPECT_NEAR(test::measure(cut), test::measure(other), 1e-9);
   EXPECT_NEAR(test::enclosed_content(cut), test::enclosed_content(other), 1e-9);
   EXPECT_EQ(cut.simplices.size(), other.simplices.size());
@@ -204,14 +213,14 @@ TEST(SliceByHyperplane, NormalsOfAnyLengthGiveTheSameCut) {
     const auto cut = slice(whole, Hyperplane<4>{normal, offset});
     ASSERT_FALSE(cut.simplices.empty());
     for (const int exponent : {-1030, -1000, -1, 1000, 1021}) {  // at the last exponent sums would overflow
-      const Hyperplane<4> hyperplane{(normal.array() * std::ldexp(1.0, exponent)).matrix(),
-                                     std::ldexp(offset, exponent)};
+      const Hyperplane<4> hyperplane =
+          hyperplane_of(as_eigen(normal) * std::ldexp(1.0, exponent), std::ldexp(offset, exponent));
       EXPECT_TRUE(same_bytes(slice(whole, hyperplane), cut)) << exponent;
-      const Scrubber<4, double> scrubber(whole, hyperplane.normal);
+      const Scrubber<4, double> scrubber(whole, hyperplane);
       EXPECT_TRUE(same_bytes(scrubber.cut(hyperplane.offset), cut)) << exponent;
     }
     for (const double length : {1e-300, 1e300}) {
-      const auto other = slice(whole, Hyperplane<4>{normal * length, offset * length});
+      const auto other = slice(whole, hyperplane_of(as_eigen(normal) * length, offset * length));
       EXPECT_EQ(other.simplices.size(), cut.simplices.size()) << length;
       EXPECT_NEAR(test::measure(other), test::measure(cut), 1e-9) << length;
     }
@@ -232,11 +241,11 @@ void expect_closed_cuts(std::uint64_t levels, std::uint64_t seed) {
   std::mt19937_64 bits(seed);
   std::size_t not_empty = 0;
   for (int i = 0; i < 60; ++i) {
-    Hyperplane<N> hyperplane{random_normal<N>(bits), 0.0};
+    Hyperplane<N> hyperplane = hyperplane_of(random_normal<N>(bits), 0.0);
     // Normals of small integers, so that many vertices lie on the hyperplanes.
     if (i % 2 == 0)
       for (double& x : hyperplane.normal) x = std::round(2.4 * x);
-    if (hyperplane.normal.isZero()) continue;
+    if (hyperplane.normal == Vector<N>{}) continue;
     const auto& through = whole.vertices[test::random_below(bits, whole.vertices.size())];
     double sum = 0.0;
     for (int a = 0; a < N; ++a) sum += hyperplane.normal[a] * static_cast<double>(through[a]);
@@ -264,9 +273,9 @@ TEST(SliceByHyperplane, OfABallIsABallThatFacesOutwards) {
   auto whole = extract<double>(image.view(), 0.0, options);
   std::mt19937_64 bits(7);
   for (int i = 0; i < 12; ++i) {
-    const Vector<4> normal = random_normal<4>(bits);
+    const Column<4> normal = random_normal<4>(bits);
     const double distance = 0.6 * test::unit_random(bits);
-    const auto cut = slice(whole, Hyperplane<4>{normal, distance * normal.norm()});
+    const auto cut = slice(whole, hyperplane_of(normal, distance * normal.norm()));
     const auto report = expect_closed_manifold(cut);
     EXPECT_EQ(report.euler, 2);
     EXPECT_EQ(report.components, 1u);
@@ -288,8 +297,8 @@ TEST(SliceByHyperplane, OfASphereIsACircleThatFacesOutwards) {
   const auto whole = extract<double>(image.view(), 0.0);
   std::mt19937_64 bits(8);
   for (int i = 0; i < 12; ++i) {
-    const Vector<3> normal = random_normal<3>(bits);
-    const auto cut = slice(whole, Hyperplane<3>{normal, 0.33 * normal.norm()});
+    const Column<3> normal = random_normal<3>(bits);
+    const auto cut = slice(whole, hyperplane_of(normal, 0.33 * normal.norm()));
     EXPECT_EQ(expect_closed_manifold(cut).components, 1u);
     EXPECT_EQ(test::share_facing(cut, [](const Point<2>& y) { return y; }), 1.0);
     EXPECT_NEAR(test::measure(cut), (test::Ball<2>{{}, std::sqrt(0.64 - 0.33 * 0.33)}.surface()), 0.02);
@@ -313,21 +322,19 @@ TEST(SliceByHyperplane, InterpolatesAttributesOfVerticesAndInheritsThoseOfSimpli
   add_attributes(whole);
   std::mt19937_64 bits(10);
   for (int i = 0; i < 10; ++i) {
-    Hyperplane<4> hyperplane{i < 4 ? Vector<4>::Unit(i) : random_normal<4>(bits), 2.0};
+    Hyperplane<4> hyperplane{i < 4 ? unit_vector<4>(i) : to_vector(random_normal<4>(bits)), 2.0};
     if (i == 4) hyperplane = {{1, 1, 0, 0}, 4.0};
-    if (i > 4) hyperplane.offset = 2.0 * hyperplane.normal.sum() + 0.1;
+    if (i > 4) hyperplane.offset = 2.0 * as_eigen(hyperplane.normal).sum() + 0.1;
     const auto frame = frame_of(hyperplane);
     const auto cut = slice(whole, hyperplane);
     ASSERT_FALSE(cut.simplices.empty());
     ASSERT_EQ(cut.vertex_attributes.size(), 1u);
     ASSERT_EQ(cut.simplex_attributes.size(), 1u);
     EXPECT_EQ(cut.vertex_attributes[0].unit, "K");
-    const auto space = [&](std::size_t v) {
-      return frame.to_space(Eigen::Map<const Eigen::Vector3d>(cut.vertices[v].data()));
-    };
+    const auto space = [&](std::size_t v) { return frame.to_space(cut.vertices[v]); };
     for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
       const Vector<4> x = space(v);
-      ASSERT_NEAR(cut.vertex_attributes[0].values[2 * v], x.dot(Vector<4>(1, 2, -1, 0.5)) + 3, 1e-12);
+      ASSERT_NEAR(cut.vertex_attributes[0].values[2 * v], as_eigen(x).dot(Column<4>(1, 2, -1, 0.5)) + 3, 1e-12);
       ASSERT_NEAR(cut.vertex_attributes[0].values[2 * v + 1], x[3], 1e-12);
     }
     for (std::size_t s = 0; s < cut.simplices.size(); ++s) {
@@ -359,32 +366,39 @@ TEST(SliceStack, IsEachSingleCutBitByBit) {
   auto whole = extract<double>(image.view(), 0.5);
   add_attributes(whole);
   std::mt19937_64 bits(12);
-  for (const Vector<4>& normal : {Vector<4>(0, 0, 0, 1), Vector<4>(0, 2, 0, 0), Vector<4>(1, 2, -1, 3)}) {
-    std::vector<double> offsets = {3.0, 0.0, 2.5, 3.0, -100.0, 5.0, 100.0};
-    for (int i = 0; i < 60; ++i) offsets.push_back(20.0 * test::unit_random(bits) - 3.0);
-    for (const unsigned threads : {1u, 3u, 0u}) {
-      const auto cuts = slice_stack(whole, normal, offsets, {threads, {}});
-      ASSERT_EQ(cuts.size(), offsets.size());
-      for (std::size_t i = 0; i < offsets.size(); ++i)
-        ASSERT_TRUE(same_bytes(cuts[i], slice(whole, Hyperplane<4>{normal, offsets[i]}))) << offsets[i];
-    }
+  std::vector<Hyperplane<4>> all;
+  const auto expect_each = [&](const std::vector<Hyperplane<4>>& hyperplanes, unsigned threads) {
+    const auto cuts = slice_stack(whole, hyperplanes, {threads, {}});
+    ASSERT_EQ(cuts.size(), hyperplanes.size());
+    for (std::size_t i = 0; i < cuts.size(); ++i)
+      ASSERT_TRUE(same_bytes(cuts[i], slice(whole, hyperplanes[i]))) << hyperplanes[i].offset;
+  };
+  for (const Vector<4>& normal : {Vector<4>{0, 0, 0, 1}, Vector<4>{0, 2, 0, 0}, Vector<4>{1, 2, -1, 3}}) {
+    std::vector<Hyperplane<4>> hyperplanes;
+    for (const double offset : {3.0, 0.0, 2.5, 3.0, -100.0, 5.0, 100.0}) hyperplanes.push_back({normal, offset});
+    for (int i = 0; i < 60; ++i) hyperplanes.push_back({normal, 20.0 * test::unit_random(bits) - 3.0});
+    for (const unsigned threads : {1u, 3u, 0u}) expect_each(hyperplanes, threads);
+    all.insert(all.end(), hyperplanes.begin(), hyperplanes.end());
   }
-  EXPECT_TRUE(slice_stack(whole, Vector<4>(0, 0, 0, 1), {}).empty());
+  std::shuffle(all.begin(), all.end(), bits);  // normals in turn
+  expect_each(all, 2);
+  EXPECT_TRUE(slice_stack(whole, {}).empty());
 }
 
 TEST(SliceStack, TellsItsProgressAndStops) {
   const auto image = test::noise<float, 3>(6, 13);
   const auto whole = extract(image.view(), 0.5);
-  const std::vector<double> offsets = {0.5, 1.5, 2.5};
+  const std::vector<Hyperplane<3>> hyperplanes = {Hyperplane<3>::across(2, 0.5), Hyperplane<3>::across(2, 1.5),
+                                                  Hyperplane<3>::across(0, 2.5)};
   double last = -1.0;
-  (void)slice_stack(whole, Vector<3>(0, 0, 1), offsets, {1, [&](double fraction) {
-                                                           EXPECT_GE(fraction, last);
-                                                           last = fraction;
-                                                           return true;
-                                                         }});
+  (void)slice_stack(whole, hyperplanes, {1, [&](double fraction) {
+                                           EXPECT_GE(fraction, last);
+                                           last = fraction;
+                                           return true;
+                                         }});
   EXPECT_EQ(last, 1.0);
   try {
-    (void)slice_stack(whole, Vector<3>(0, 0, 1), offsets, {1, [](double fraction) { return fraction < 0.5; }});
+    (void)slice_stack(whole, hyperplanes, {1, [](double fraction) { return fraction < 0.5; }});
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);
@@ -397,7 +411,7 @@ TEST(ScaleAxes, StretchesPointsAndTurnsNormals) {
   const auto image = test::sample_field<double>(test::centred_grid<3>(25, 1.0), test::Ball<3>{{}, 0.8});
   auto contour = extract<double>(image.view(), 0.0, options);
   const auto before = contour;
-  scale_axes(contour, Vector<3>(1, 2, 10));
+  contour = scale_axes(std::move(contour), {1, 2, 10});
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
     EXPECT_EQ(contour.vertices[v][2], 10 * before.vertices[v][2]);
     // The normal of the ellipsoid x² + (y/2)² + (z/10)² = r².
@@ -405,8 +419,8 @@ TEST(ScaleAxes, StretchesPointsAndTurnsNormals) {
     const Eigen::Vector3d expected = Eigen::Vector3d(x[0], x[1] / 4, x[2] / 100).normalized();
     ASSERT_LT((Eigen::Map<const Eigen::Vector3d>(contour.normals[v].data()) - expected).norm(), 0.02);
   }
-  EXPECT_THROW(scale_axes(contour, Vector<3>(1, 0, 1)), Error);
-  EXPECT_THROW(scale_axes(contour, Vector<3>(1, -1, 1)), Error);
+  EXPECT_THROW((void)scale_axes(contour, {1, 0, 1}), Error);
+  EXPECT_THROW((void)scale_axes(contour, {1, -1, 1}), Error);
 }
 
 /// The maximum difference between components of normals of vertices at equal positions.
@@ -437,7 +451,7 @@ void expect_direct_is_whole(const Image<T, N>& image, double isovalue, const Ext
     for (int i = 0; i < 8; ++i) {
       const auto last = static_cast<double>(image.size(axis) - 1);
       const double at = i < 4 ? std::floor(last * i / 3) : last * test::unit_random(bits);
-      const auto direct = slice_image_across<Real>(image, isovalue, axis, at, options);
+      const auto direct = slice_image<Real>(image, isovalue, Hyperplane<N>::across(axis, at), options);
       const auto cut = slice(whole, Hyperplane<N>::across(axis, at));
       EXPECT_TRUE(same_surface(direct, cut)) << axis << " " << at;
       EXPECT_EQ(direct.axis_names, cut.axis_names);
@@ -463,17 +477,16 @@ TEST(SliceImageAcross, IsClosedAtTheOtherBorders) {
   const auto whole = extract(image.view(), 0.5, options);
   for (int axis = 0; axis < 4; ++axis)
     for (const double at : {0.4, 2.0, 4.9}) {
-      const auto direct = slice_image_across(image.view(), 0.5, axis, at, options);
+      const auto direct = slice_image(image.view(), 0.5, Hyperplane<4>::across(axis, at), options);
       expect_closed_manifold(direct);
       EXPECT_TRUE(same_surface(direct, slice(whole, Hyperplane<4>::across(axis, at)))) << axis << " " << at;
     }
 }
 
-TEST(SliceImageAcross, RefusesAxesThatAreNotThere) {
-  const auto image = test::noise<float, 3>(4, 18);
+TEST(HyperplaneAcross, RefusesAxesThatAreNotThere) {
   for (const int axis : {-1, 3}) {
     try {
-      (void)slice_image_across(image.view(), 0.5, axis, 1.0);
+      (void)Hyperplane<3>::across(axis, 1.0);
       FAIL() << "no error";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("expected 0 to 2"), std::string::npos) << error.what();

@@ -76,12 +76,12 @@ TEST(Outline, FacesAwayFromWhatIsSweptForDescentAndIntoItForAscent) {
 TEST(Outline, OfA4BallIsASphereAlongAnyDirection) {
   const auto image = test::sample_field<double>(test::centred_grid<4>(21, 1.0), test::Ball<4>{{}, 0.8});
   const auto contour = extract<double>(image.view(), 0.0);
-  for (const Eigen::Vector4d& direction :
-       {Eigen::Vector4d(0, 0, 0, 1), Eigen::Vector4d(1, 0, 0, 0), Eigen::Vector4d(0, -1, 0, 0),
-        Eigen::Vector4d(1, 2, -1, 1), Eigen::Vector4d(-3, 1, 0, 1)}) {
+  for (const Vector<4>& direction : {Vector<4>{0, 0, 0, 1}, Vector<4>{1, 0, 0, 0}, Vector<4>{0, -1, 0, 0},
+                                     Vector<4>{1, 2, -1, 1}, Vector<4>{-3, 1, 0, 1}}) {
     const auto surface = outline(contour, {direction, 0.0});
     expect_closed_manifold(surface);
-    EXPECT_NEAR(test::enclosed_content(surface), (test::Ball<3>{{}, 0.8}.content()), 0.12) << direction;
+    EXPECT_NEAR(test::enclosed_content(surface), (test::Ball<3>{{}, 0.8}.content()), 0.12)
+        << testing::PrintToString(direction);
     for (std::size_t v = 0; v < surface.vertices.size(); ++v)
       EXPECT_NEAR(surface.vertex_attributes[0].values[v], 0.0, 0.3);
   }
@@ -95,7 +95,7 @@ TEST(Outline, OfNoiseIsAClosedOrientedManifold) {
     for (const bool close : {false, true}) {
       ExtractOptions options;
       options.close = close;
-      for (const Eigen::Vector4d& direction : {Eigen::Vector4d(0, 0, 0, 1), Eigen::Vector4d(1, 2, 3, 4)})
+      for (const Vector<4>& direction : {Vector<4>{0, 0, 0, 1}, Vector<4>{1, 2, 3, 4}})
         for (const double eye : {0.0, 3.0})
           for (const auto& contour : {extract(image.view(), 0.5, options), extract(coarse.view(), 1.0, options)}) {
             const auto surface = outline(contour, {direction, eye});
@@ -146,7 +146,7 @@ TEST(Project, DrawsWhatIsFurtherTowardsTheMiddle) {
   Contour<4, double> contour;
   contour.vertices = {{-1, -1, -1, 5}, {1, 1, 1, 5}, {1, 0, 0, 7}, {1, 1, -1, 9}};
   contour.simplices = {{0, 1, 2, 3}};
-  const auto projected = project(contour, {Eigen::Vector4d::UnitW(), 2.0});
+  const auto projected = project(contour, {unit_vector<4>(3), 2.0});
   EXPECT_EQ(projected.vertices[1], (std::array<double, 3>{1, 1, 1}));
   EXPECT_EQ(projected.vertices[2], (std::array<double, 3>{0.5, 0, 0}));  // twice as far from the eye
   EXPECT_NEAR(projected.vertices[3][0], 1.0 / 3.0, 1e-15);
@@ -161,9 +161,9 @@ TEST(Project, KeepsAttributesAndRefusesWhatIsNoView) {
   ASSERT_EQ(projected.vertex_attributes.size(), 2u);
   EXPECT_EQ(projected.vertex_attributes[0].name, "age");
   EXPECT_EQ(projected.vertex_attributes[1].values[3], 1.0);
-  EXPECT_THROW((void)project(contour, {Eigen::Vector4d::Zero(), 0.0}), Error);
-  EXPECT_THROW((void)project(contour, {Eigen::Vector4d::UnitW(), -1.0}), Error);
-  EXPECT_THROW((void)outline(contour, {Eigen::Vector4d::UnitW(), std::numeric_limits<double>::infinity()}), Error);
+  EXPECT_THROW((void)project(contour, {Vector<4>{}, 0.0}), Error);
+  EXPECT_THROW((void)project(contour, {unit_vector<4>(3), -1.0}), Error);
+  EXPECT_THROW((void)outline(contour, {unit_vector<4>(3), std::numeric_limits<double>::infinity()}), Error);
   EXPECT_THROW((void)outline(contour, {}, {1, [](double) { return false; }}), Error);
   EXPECT_TRUE(outline(Contour<4, float>{}).simplices.empty());
 }

@@ -17,9 +17,6 @@
 namespace tegl {
 namespace {
 
-template <int N>
-using Vector = Eigen::Matrix<double, N, 1>;
-
 template <int N, class Real>
 void expect_same_cut(const Scrubber<N, Real>& scrubber, const Contour<N, Real>& contour,
                      const std::type_identity_t<Vector<N>>& normal, double offset) {
@@ -38,7 +35,7 @@ TEST(Scrubber, CutsAsSliceDoesAtAThousandTimes) {
   const Scrubber<4, float> scrubber(contour);
   std::mt19937_64 bits(2);
   for (int i = 0; i < 1000; ++i)
-    expect_same_cut(scrubber, contour, Vector<4>::Unit(3), 5.2 * test::unit_random(bits) - 0.1);
+    expect_same_cut(scrubber, contour, unit_vector<4>(3), 5.2 * test::unit_random(bits) - 0.1);
 }
 
 TEST(Scrubber, CutsAsSliceDoesAtTheTimesOfAllVertices) {
@@ -49,9 +46,9 @@ TEST(Scrubber, CutsAsSliceDoesAtTheTimesOfAllVertices) {
   for (const auto& vertex : contour.vertices) times.insert(vertex[3]);
   EXPECT_GT(times.size(), 100u);
   for (const double t : times) {
-    expect_same_cut(scrubber, contour, Vector<4>::Unit(3), t);
-    expect_same_cut(scrubber, contour, Vector<4>::Unit(3), std::nextafter(t, 10.0));
-    expect_same_cut(scrubber, contour, Vector<4>::Unit(3), std::nextafter(t, -10.0));
+    expect_same_cut(scrubber, contour, unit_vector<4>(3), t);
+    expect_same_cut(scrubber, contour, unit_vector<4>(3), std::nextafter(t, 10.0));
+    expect_same_cut(scrubber, contour, unit_vector<4>(3), std::nextafter(t, -10.0));
   }
 }
 
@@ -59,7 +56,7 @@ TEST(Scrubber, CutsWhereSamplesEqualTheIsovalue) {
   const auto image = test::coarse_noise<std::uint8_t, 4>(Grid<4>::unit({6, 6, 6, 6}), 4, 3);
   const auto contour = extract(image.view(), 1.0);
   const Scrubber<4, float> scrubber(contour);
-  for (double t = -0.25; t <= 5.25; t += 0.125) expect_same_cut(scrubber, contour, Vector<4>::Unit(3), t);
+  for (double t = -0.25; t <= 5.25; t += 0.125) expect_same_cut(scrubber, contour, unit_vector<4>(3), t);
 }
 
 TEST(Scrubber, CutsAlongAnyDirectionAndOfSurfaces) {
@@ -69,16 +66,16 @@ TEST(Scrubber, CutsAlongAnyDirectionAndOfSurfaces) {
   const auto surface = extract(volume.view(), 0.5);
   std::mt19937_64 bits(7);
   for (const Vector<4>& normal :
-       {Vector<4>(1, 0, 0, 0), Vector<4>(0, 0, -2, 0), Vector<4>(1, 2, -3, 0.5), Vector<4>(-1e-9, 0, 1e-9, 0)}) {
-    const Scrubber<4, double> scrubber(contour, normal);
+       {Vector<4>{1, 0, 0, 0}, Vector<4>{0, 0, -2, 0}, Vector<4>{1, 2, -3, 0.5}, Vector<4>{-1e-9, 0, 1e-9, 0}}) {
+    const Scrubber<4, double> scrubber(contour, {normal, 3.0});  // the offset has no effect
     const auto [first, last] = scrubber.range();
     for (int i = 0; i < 40; ++i)
       expect_same_cut(scrubber, contour, normal, first + (last - first) * (1.2 * test::unit_random(bits) - 0.1));
     expect_same_cut(scrubber, contour, normal, first);
     expect_same_cut(scrubber, contour, normal, last);
   }
-  const Vector<3> up(0, 1, 1);
-  const Scrubber<3, float> scrubber(surface, up);
+  const Vector<3> up{0, 1, 1};
+  const Scrubber<3, float> scrubber(surface, {up});
   for (double offset = -1.0; offset < 17.0; offset += 0.25) expect_same_cut(scrubber, surface, up, offset);
 }
 
@@ -89,8 +86,7 @@ TEST(Scrubber, TimesMayBeFarFromZero) {
   const auto image = test::noise<float, 4>(grid, 8);
   const auto contour = extract<double>(image.view(), 0.5);
   const Scrubber<4, double> scrubber(contour);
-  for (double t = -0.5; t < 4.5; t += 0.0625)
-    expect_same_cut(scrubber, contour, Vector<4>::Unit(3), 1.7e12 + 3.6e6 * t);
+  for (double t = -0.5; t < 4.5; t += 0.0625) expect_same_cut(scrubber, contour, unit_vector<4>(3), 1.7e12 + 3.6e6 * t);
 }
 
 TEST(Scrubber, FindsTheSimplicesThatTouch) {
@@ -117,8 +113,8 @@ TEST(Scrubber, IsTheSameForAnyNumberOfThreads) {
   one.threads = 1;
   WorkOptions four;
   four.threads = 4;
-  const Scrubber<4, float> first(contour, Vector<4>::Unit(3), one);
-  const Scrubber<4, float> second(contour, Vector<4>::Unit(3), four);
+  const Scrubber<4, float> first(contour, {}, one);
+  const Scrubber<4, float> second(contour, {}, four);
   EXPECT_EQ(first.memory(), second.memory());
   for (double t = 0.0; t < 7.0; t += 0.3) EXPECT_EQ(first.touching(t), second.touching(t));
   EXPECT_GE(first.memory(), 16 * contour.simplices.size());
@@ -150,12 +146,14 @@ TEST(Scrubber, RefusesWhatIsNotFiniteAndStopsWhenAsked) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Scrubber<3, double> scrubber(contour);
   expect_error(ErrorCode::InvalidArgument, "expected a finite coordinate", [&] { (void)scrubber.cut(nan); });
-  expect_error(ErrorCode::InvalidArgument, "normal of a hyperplane",
-               [&] { const Scrubber<3, double> none(contour, Vector<3>::Zero()); });
+  expect_error(ErrorCode::InvalidArgument, "normal of a hyperplane", [&] {
+    const Scrubber<3, double> none(contour, {{0, 0, 0}});
+  });
+  expect_error(ErrorCode::InvalidArgument, "expected a finite coordinate",
+               [&] { const Scrubber<3, double> none(contour, Hyperplane<3>::across(2, nan)); });
   WorkOptions options;
   options.progress = [](double) { return false; };
-  expect_error(ErrorCode::Cancelled, "cancelled",
-               [&] { const Scrubber<3, double> none(contour, Vector<3>::Unit(2), options); });
+  expect_error(ErrorCode::Cancelled, "cancelled", [&] { const Scrubber<3, double> none(contour, {}, options); });
   contour.vertices[1][2] = nan;
   expect_error(ErrorCode::InvalidArgument, "a coordinate of vertex 1 is nan",
                [&] { const Scrubber<3, double> none(contour); });

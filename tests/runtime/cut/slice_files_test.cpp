@@ -38,7 +38,7 @@ double time_of(const Image<T, 4>& image, double index) {
   const auto& axis = image.grid().axes[3];
   const auto i = std::min(static_cast<std::size_t>(index), axis.size() - 2);
   const double t = axis[i] + (index - static_cast<double>(i)) * (axis[i + 1] - axis[i]);
-  return image.grid().linear(3, 3) * t + image.grid().offset(3);
+  return image.grid().linear[3][3] * t + image.grid().offset[3];
 }
 
 class SliceOfFile : public ::testing::TestWithParam<File> {
@@ -68,7 +68,7 @@ TEST_P(SliceOfFile, IsAManifoldAtAnyTime) {
     std::mt19937_64 bits(1);
     for (int i = 0; i < 170; ++i) {  // with six files, more than a thousand
       const double index = static_cast<double>(image.size(3) - 1) * test::unit_random(bits);
-      const MeshReport cut = check(slice(whole, time_of(image, index)));
+      const MeshReport cut = check(slice(whole, Hyperplane<4>::across(3, time_of(image, index))));
       EXPECT_GT(cut.simplices, 100u);
       EXPECT_TRUE(test::is_oriented_manifold(cut)) << index;
       if (GetParam().closes) {
@@ -87,7 +87,7 @@ TEST_P(SliceOfFile, IsAManifoldAlongAnyHyperplane) {
     for (int i = 0; i < 20; ++i) {
       Hyperplane<4> hyperplane;
       for (double& x : hyperplane.normal) x = 2.0 * test::unit_random(bits) - 1.0;
-      if (i < 4) hyperplane.normal = Eigen::Vector4d::Unit(i);
+      if (i < 4) hyperplane.normal = unit_vector<4>(i);
       const auto& through = whole.vertices[test::random_below(bits, whole.vertices.size())];
       hyperplane.offset = 0.0;
       for (int a = 0; a < 4; ++a) hyperplane.offset += hyperplane.normal[a] * through[a];
@@ -105,7 +105,7 @@ TEST_P(SliceOfFile, ByAScrubberIsTheSame) {
     const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile));
     const Scrubber<4, double> scrubber(whole);
     for (double index = 0.0; index <= static_cast<double>(image.size(3) - 1); index += 0.25) {
-      const auto expected = slice(whole, time_of(image, index));
+      const auto expected = slice(whole, Hyperplane<4>::across(3, time_of(image, index)));
       const auto cut = scrubber.cut(time_of(image, index));
       EXPECT_TRUE(cut.vertices == expected.vertices && cut.simplices == expected.simplices) << index;
     }
@@ -121,7 +121,7 @@ TEST_P(SliceOfFile, AtATimeStepEqualsThe3dContourInEveryCombination) {
         options.close = close;
         const auto whole = extract<double>(image, isovalue, options);
         for (std::size_t k = 0; k < image.size(3); ++k)
-          EXPECT_TRUE(same_surface(slice(whole, time_of(image, static_cast<double>(k))),
+          EXPECT_TRUE(same_surface(slice(whole, Hyperplane<4>::across(3, time_of(image, static_cast<double>(k)))),
                                    extract<double>(test::last_axis_layer(image, k), isovalue, options)))
               << name << (close ? ", closed" : "") << ", layer " << k;
       }
@@ -135,7 +135,9 @@ TEST_P(SliceOfFile, TakenDirectlyEqualsTheCutOfTheWhole) {
     const auto last = static_cast<double>(image.size(3) - 1);
     for (const double index : {0.0, 0.25, 1.0, last - 0.1, last}) {
       const double at = time_of(image, index);
-      EXPECT_TRUE(same_surface(slice_image(image, isovalue, at), slice(whole, at))) << index;
+      EXPECT_TRUE(same_surface(slice_image(image, isovalue, Hyperplane<4>::across(3, at)),
+                               slice(whole, Hyperplane<4>::across(3, at))))
+          << index;
     }
   });
 }

@@ -55,12 +55,12 @@ Eigen::Vector4d positive_normal(const Contour<4, double>& contour) {
 }
 
 TEST(Slice, OfATetrahedronIsATriangleOrAQuadrilateral) {
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 1}), 0.5).simplices.size(), 1u);
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), 0.5).simplices.size(), 2u);
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), 0.5).vertices.size(), 4u);
-  EXPECT_EQ(slice(one_tetrahedron({0, 1, 1, 1}), 0.5).simplices.size(), 1u);
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), 1.5).simplices.size(), 0u);
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), -0.5).simplices.size(), 0u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 1}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 1u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 2u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), Hyperplane<4>::across(3, 0.5)).vertices.size(), 4u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 1, 1, 1}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 1u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), Hyperplane<4>::across(3, 1.5)).simplices.size(), 0u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 1, 1}), Hyperplane<4>::across(3, -0.5)).simplices.size(), 0u);
 }
 
 TEST(Slice, KeepsTheSideThatTheContourFaces) {
@@ -73,7 +73,7 @@ TEST(Slice, KeepsTheSideThatTheContourFaces) {
       Contour<4, double> contour = one_tetrahedron(t);
       contour.simplices[0] = order;
       const Eigen::Vector4d normal = positive_normal(contour);
-      const Contour<3, double> cut = slice(contour, 0.7);
+      const Contour<3, double> cut = slice(contour, Hyperplane<4>::across(3, 0.7));
       ASSERT_GT(cut.simplices.size(), 0u);
       EXPECT_EQ(test::share_facing(cut,
                                    [&](const Point<3>&) {
@@ -88,28 +88,28 @@ TEST(Slice, KeepsTheSideThatTheContourFaces) {
 TEST(Slice, AVertexOnTheHyperplaneIsItsOwnPoint) {
   // Two vertices on each side, one of the upper ones on the hyperplane: the quadrilateral becomes a triangle with that
   // vertex.
-  const Contour<3, double> cut = slice(one_tetrahedron({0, 0, 0.5, 1}), 0.5);
+  const Contour<3, double> cut = slice(one_tetrahedron({0, 0, 0.5, 1}), Hyperplane<4>::across(3, 0.5));
   ASSERT_EQ(cut.simplices.size(), 1u);
   EXPECT_EQ(cut.vertices.size(), 3u);
   EXPECT_EQ(std::count(cut.vertices.begin(), cut.vertices.end(), (std::array<double, 3>{0, 1, 0})), 1);
   // One vertex on the hyperplane, the others below: the triangle collapses.
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 0.5}), 0.5).simplices.size(), 0u);
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 0.5}), 0.5).vertices.size(), 0u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 0.5}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 0u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 0.5}), Hyperplane<4>::across(3, 0.5)).vertices.size(), 0u);
   // Two vertices on the hyperplane: a segment, dropped.
-  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0.5, 0.5}), 0.5).simplices.size(), 0u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0, 0.5, 0.5}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 0u);
   // A face on the hyperplane: kept if its simplex is below, and, for a face on the contour's boundary, also if it is
   // above.
-  EXPECT_EQ(slice(one_tetrahedron({0, 0.5, 0.5, 0.5}), 0.5).simplices.size(), 1u);
-  EXPECT_EQ(slice(one_tetrahedron({1, 0.5, 0.5, 0.5}), 0.5).simplices.size(), 1u);
+  EXPECT_EQ(slice(one_tetrahedron({0, 0.5, 0.5, 0.5}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 1u);
+  EXPECT_EQ(slice(one_tetrahedron({1, 0.5, 0.5, 0.5}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 1u);
   // All vertices on the hyperplane: no simplex is below or above.
-  EXPECT_EQ(slice(one_tetrahedron({0.5, 0.5, 0.5, 0.5}), 0.5).simplices.size(), 0u);
+  EXPECT_EQ(slice(one_tetrahedron({0.5, 0.5, 0.5, 0.5}), Hyperplane<4>::across(3, 0.5)).simplices.size(), 0u);
 }
 
 TEST(Slice, AFaceBetweenTwoTetrahedraIsCutOnce) {
   Contour<4, double> contour = one_tetrahedron({0, 0.5, 0.5, 0.5});
   contour.vertices.push_back({1, 1, 1, 1});
   contour.simplices.push_back({4, 1, 3, 2});
-  const Contour<3, double> cut = slice(contour, 0.5);
+  const Contour<3, double> cut = slice(contour, Hyperplane<4>::across(3, 0.5));
   EXPECT_EQ(cut.simplices.size(), 1u);
   EXPECT_EQ(cut.vertices.size(), 3u);
 }
@@ -120,7 +120,7 @@ TEST(Slice, OfTheSimplicialContourAtATimeStepEqualsTheContourOfThatStep) {
     const auto image = owned.view();
     const auto whole = simplicial_contour(image, 0.5);
     for (std::size_t k = 0; k < 6; ++k) {
-      const auto cut = slice(whole, static_cast<double>(k));
+      const auto cut = slice(whole, Hyperplane<4>::across(3, static_cast<double>(k)));
       EXPECT_TRUE(same_surface(cut, simplicial_contour(last_axis_layer(image, k), 0.5)))
           << "seed " << seed << " k " << k;
     }
@@ -132,8 +132,8 @@ TEST(Slice, OfASurfaceAtALayerEqualsTheContourOfThatLayer) {
   const auto image = owned.view();
   const auto whole = simplicial_contour<double>(image, 0.5);
   for (std::size_t k = 0; k < 12; ++k)
-    EXPECT_TRUE(
-        same_surface(slice(whole, static_cast<double>(k)), simplicial_contour<double>(last_axis_layer(image, k), 0.5)))
+    EXPECT_TRUE(same_surface(slice(whole, Hyperplane<3>::across(2, static_cast<double>(k))),
+                             simplicial_contour<double>(last_axis_layer(image, k), 0.5)))
         << k;
 }
 
@@ -144,7 +144,7 @@ TEST(Slice, OfAClosedContourIsAClosedManifoldAtAnyTime) {
   std::mt19937_64 bits(6);
   std::size_t not_empty = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto cut = slice(whole, 6.0 * test::unit_random(bits));
+    const auto cut = slice(whole, Hyperplane<4>::across(3, 6.0 * test::unit_random(bits)));
     expect_closed_manifold(cut);
     not_empty += !cut.simplices.empty();
   }
@@ -160,7 +160,7 @@ TEST(Slice, StaysAManifoldWhereSamplesEqualTheIsovalue) {
         if (x == 0 || x == 6) owned.values[i] = 0;
     });
     const auto whole = simplicial_contour(owned.view(), std::floor(static_cast<double>(levels) / 2));
-    for (double t = 0.0; t <= 6.0; t += 0.125) expect_closed_manifold(slice(whole, t));
+    for (double t = 0.0; t <= 6.0; t += 0.125) expect_closed_manifold(slice(whole, Hyperplane<4>::across(3, t)));
   }
 }
 
@@ -171,14 +171,15 @@ TEST(Slice, OfASurfaceStaysAManifoldWhereSamplesEqualTheIsovalue) {
       if (x == 0 || x == 8) owned.values[i] = 0;
   });
   const auto whole = simplicial_contour(owned.view(), 1.0);
-  for (double z = 0.0; z <= 8.0; z += 0.125) expect_closed_manifold(slice(whole, z));
+  for (double z = 0.0; z <= 8.0; z += 0.125) expect_closed_manifold(slice(whole, Hyperplane<3>::across(2, z)));
 }
 
 TEST(Slice, OfAClosedSurfaceIsClosedCurvesAtAnyHeight) {
   const auto owned = bordered_noise<std::int16_t, 3>(10, 7);
   const auto whole = simplicial_contour(owned.view(), -0.5);
   std::mt19937_64 bits(8);
-  for (int i = 0; i < 200; ++i) expect_closed_manifold(slice(whole, 9.0 * test::unit_random(bits)));
+  for (int i = 0; i < 200; ++i)
+    expect_closed_manifold(slice(whole, Hyperplane<3>::across(2, 9.0 * test::unit_random(bits))));
 }
 
 TEST(Slice, OfABallIsABallThatFacesOutwards) {
@@ -187,7 +188,7 @@ TEST(Slice, OfABallIsABallThatFacesOutwards) {
   const auto owned = test::sample_field<double>(test::centred_grid<4>(17, 1.0), ball);
   const auto whole = simplicial_contour<double>(owned.view(), 0.0);
   for (const double t : {-0.53, -0.2, 0.0, 0.31, 0.6}) {
-    const auto cut = slice(whole, t);
+    const auto cut = slice(whole, Hyperplane<4>::across(3, t));
     const auto report = expect_closed_manifold(cut);
     EXPECT_EQ(report.euler, 2);
     EXPECT_EQ(test::share_facing(cut, [](const Point<3>& x) { return x; }), 1.0);
@@ -199,7 +200,7 @@ TEST(Slice, OfABallIsABallThatFacesOutwards) {
 
 TEST(Slice, OfASphereIsACircleThatFacesOutwards) {
   const auto owned = test::sample_field<double>(test::centred_grid<3>(21, 1.0), test::Ball<3>{{}, 0.8});
-  const auto cut = slice(simplicial_contour<double>(owned.view(), 0.0), 0.33);
+  const auto cut = slice(simplicial_contour<double>(owned.view(), 0.0), Hyperplane<3>::across(2, 0.33));
   const test::Ball<2> expected{{}, std::sqrt(0.64 - 0.33 * 0.33)};
   EXPECT_EQ(expect_closed_manifold(cut).components, 1u);
   EXPECT_EQ(test::share_facing(cut, [](const Point<2>& x) { return x; }), 1.0);
@@ -213,7 +214,7 @@ TEST(Slice, AscentStaysAscent) {
   whole.direction = GradientDirection::ascent;
   whole.axis_names = {"x", "y", "z", "t"};
   whole.axis_units = {"mm", "mm", "mm", "s"};
-  const auto cut = slice(whole, 0.1);
+  const auto cut = slice(whole, Hyperplane<4>::across(3, 0.1));
   EXPECT_EQ(cut.direction, GradientDirection::ascent);
   EXPECT_GT(test::enclosed_content(cut), 0.0);
   EXPECT_EQ(test::share_facing(cut, [](const Point<3>& x) { return x; }), 0.0);
@@ -228,7 +229,7 @@ TEST(Slice, MergingBallsChangeEulerCharacteristicFrom4To2) {
   grid.axes[3] = Axis::uniform(11, 0.0, 0.1);
   const auto owned = test::sample_field<float>(grid, balls);
   const auto whole = simplicial_contour(owned.view(), 0.0);
-  const auto at = [&](double t) { return expect_closed_manifold(slice(whole, t)); };
+  const auto at = [&](double t) { return expect_closed_manifold(slice(whole, Hyperplane<4>::across(3, t))); };
   EXPECT_EQ(at(balls.event() - 0.13).euler, 4);
   EXPECT_EQ(at(balls.event() - 0.13).components, 2u);
   EXPECT_EQ(at(balls.event() + 0.13).euler, 2);
@@ -250,20 +251,23 @@ TEST(Slice, SimplicesInAnyOrderGiveTheSameSurface) {
     std::swap(simplex[1], simplex[2]);
   }
   std::shuffle(shuffled.simplices.begin(), shuffled.simplices.end(), bits);
-  for (const double t : {0.0, 0.4, 1.0, 2.77, 4.0}) EXPECT_TRUE(same_surface(slice(whole, t), slice(shuffled, t))) << t;
+  for (const double t : {0.0, 0.4, 1.0, 2.77, 4.0})
+    EXPECT_TRUE(same_surface(slice(whole, Hyperplane<4>::across(3, t)), slice(shuffled, Hyperplane<4>::across(3, t))))
+        << t;
 }
 
 TEST(Slice, IsEmptyOutsideOfTheContour) {
   const auto owned = test::noise<float, 4>(4, 11);
   const auto whole = simplicial_contour(owned.view(), 0.5);
-  for (const double t : {-1.0, 3.5, 1e300, -1e300}) EXPECT_TRUE(slice(whole, t).vertices.empty());
-  EXPECT_TRUE(slice(Contour<4, float>{}, 1.0).simplices.empty());
+  for (const double t : {-1.0, 3.5, 1e300, -1e300})
+    EXPECT_TRUE(slice(whole, Hyperplane<4>::across(3, t)).vertices.empty());
+  EXPECT_TRUE(slice(Contour<4, float>{}, Hyperplane<4>::across(3, 1.0)).simplices.empty());
 }
 
 TEST(Slice, RefusesAHyperplaneThatIsNotFinite) {
   for (const double t : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     try {
-      slice(Contour<4, float>{}, t);
+      slice(Contour<4, float>{}, Hyperplane<4>::across(3, t));
       FAIL() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
@@ -278,7 +282,8 @@ TEST(Slice, MeetsVerticesAtCoordinatesThatFloatsRound) {
   const auto owned = test::noise<float, 4>(grid, 12);
   const auto whole = simplicial_contour(owned.view(), 0.5);
   for (std::size_t k = 0; k < 5; ++k)
-    EXPECT_TRUE(same_surface(slice(whole, grid.axes[3][k]), simplicial_contour(last_axis_layer(owned.view(), k), 0.5)));
+    EXPECT_TRUE(same_surface(slice(whole, Hyperplane<4>::across(3, grid.axes[3][k])),
+                             simplicial_contour(last_axis_layer(owned.view(), k), 0.5)));
 }
 
 TEST(Slice, ShowsALayerWhoseLayerBelowIsMissing) {
@@ -287,8 +292,8 @@ TEST(Slice, ShowsALayerWhoseLayerBelowIsMissing) {
   const auto whole = simplicial_contour(owned.view(), 0.5);
   const auto third = simplicial_contour(last_axis_layer(owned.view(), 2), 0.5);
   EXPECT_GT(third.simplices.size(), 0u);
-  EXPECT_TRUE(same_surface(slice(whole, 2.0), third));
-  EXPECT_TRUE(slice(whole, 1.5).simplices.empty());
+  EXPECT_TRUE(same_surface(slice(whole, Hyperplane<4>::across(3, 2.0)), third));
+  EXPECT_TRUE(slice(whole, Hyperplane<4>::across(3, 1.5)).simplices.empty());
 }
 
 }  // namespace

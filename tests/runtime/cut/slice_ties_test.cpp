@@ -28,18 +28,26 @@ OwnedImage<float, N> few_values(std::size_t samples, std::uint64_t seed, double 
   return image;
 }
 
+/// The hyperplane x_axis = at with the normal `sign` times the axis.
+template <int N>
+Hyperplane<N> layer_towards(int axis, double at, double sign) {
+  Hyperplane<N> layer{{}, sign * at};
+  layer.normal[axis] = sign;
+  return layer;
+}
+
 /// Hyperplanes at the layers, in both directions, and oblique ones through vertices.
 template <int N>
 std::vector<Hyperplane<N>> hyperplanes_through_vertices(const Contour<N, double>& contour, std::uint64_t seed) {
   std::vector<Hyperplane<N>> result;
   for (int axis = 0; axis < N; ++axis)
     for (const double at : {0.0, 1.0, 2.0})
-      for (const double sign : {1.0, -1.0}) result.push_back({sign * Hyperplane<N>::Vector::Unit(axis), sign * at});
+      for (const double sign : {1.0, -1.0}) result.push_back(layer_towards<N>(axis, at, sign));
   std::mt19937_64 bits(seed);
   for (int i = 0; i < 6; ++i) {
     Hyperplane<N> oblique;
     for (double& x : oblique.normal) x = static_cast<double>(test::random_below(bits, 5)) - 2.0;
-    if (oblique.normal.isZero()) continue;
+    if (oblique.normal == Vector<N>{}) continue;
     const auto& through = contour.vertices[test::random_below(bits, contour.vertices.size())];
     oblique.offset = 0.0;
     for (int a = 0; a < N; ++a) oblique.offset += oblique.normal[a] * through[a];
@@ -63,8 +71,8 @@ void expect_manifold_cuts(std::size_t samples, double missing_share) {
         const auto cut = slice(whole, hyperplane);
         not_empty += !cut.simplices.empty();
         ASSERT_TRUE(test::is_oriented_manifold(check(cut)))
-            << "seed " << seed << " close " << close << " normal " << hyperplane.normal.transpose() << " offset "
-            << hyperplane.offset;
+            << "seed " << seed << " close " << close << " normal " << testing::PrintToString(hyperplane.normal)
+            << " offset " << hyperplane.offset;
       }
     }
   EXPECT_GT(not_empty, 500u);
@@ -112,7 +120,7 @@ TEST(SliceThroughTies, AcrossOtherAxesThanTheLastIsTheLimitFromBelow) {
     for (int axis = 0; axis < 3; ++axis)
       for (const double at : {0.0, 1.0, 2.0})
         for (const double sign : {1.0, -1.0}) {
-          const Hyperplane<4> layer{sign * Hyperplane<4>::Vector::Unit(axis), sign * at};
+          const Hyperplane<4> layer = layer_towards<4>(axis, at, sign);
           EXPECT_NEAR(test::measure(slice(whole, layer)), test::measure(slice(moved_off(whole, axis, at, sign), layer)),
                       1e-6)
               << "seed " << seed << " axis " << axis << " at " << at << " sign " << sign;
@@ -125,7 +133,7 @@ TEST(SliceThroughTies, AcrossTheLastAxisIsTheContourOfTheLayer) {
     const auto image = few_values<4>(3, seed, 0.0);
     const auto whole = extract<double>(image.view(), 1.0);
     for (std::size_t k = 0; k < 3; ++k)
-      ASSERT_NEAR(test::measure(slice(whole, static_cast<double>(k))),
+      ASSERT_NEAR(test::measure(slice(whole, Hyperplane<4>::across(3, static_cast<double>(k)))),
                   test::measure(extract<double>(test::last_axis_layer(image.view(), k), 1.0)), 1e-9)
           << "seed " << seed << " layer " << k;
   }
@@ -140,7 +148,8 @@ TEST(SliceThroughTies, OfAnImageAcrossAnyAxisIsTheContourOfTheLayer) {
       const auto image = few_values<4>(4, seed, 0.0);
       for (int axis = 0; axis < 4; ++axis)
         for (std::size_t k = 0; k < 4; ++k) {
-          const auto cut = slice_image_across<double>(image.view(), 1.0, axis, static_cast<double>(k), options);
+          const auto cut =
+              slice_image<double>(image.view(), 1.0, Hyperplane<4>::across(axis, static_cast<double>(k)), options);
           const auto expected = extract<double>(test::layer_across(image.view(), axis, k), 1.0, options);
           ASSERT_TRUE(test::same_surface(cut, expected))
               << "seed " << seed << " close " << close << " axis " << axis << " layer " << k;

@@ -233,8 +233,8 @@ TEST(Pick, SeesThePointInTheWorld) {
   const Ball<2> right{{2.0, 0.0}, 0.8};
   auto image =
       sample_field<double>(centred_grid<2>(60, 3.5), [&](const Point<2>& x) { return std::max(left(x), right(x)); });
-  image.grid.linear << 0, -2, 2, 0;
-  image.grid.offset << 100, 0;
+  image.grid.linear = {{{0, -2}, {2, 0}}};
+  image.grid.offset = {100, 0};
   const auto picked = extract_component<double>(image.view(), 0.0, {100.0, 4.2}).contour;
   ASSERT_FALSE(picked.vertices.empty());
   for (const auto& vertex : picked.vertices) EXPECT_GT(vertex[1], 0.0);

@@ -12,6 +12,7 @@
 #include "invariants.hpp"
 #include "measure.hpp"
 #include "simplicial_contour.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/error.hpp"
 #include "tegl/slice.hpp"
 
@@ -50,8 +51,10 @@ void expect_cuts_are_layers(const Image<T, N>& image, double isovalue, const Ext
   for (std::size_t k = 0; k < image.size(N - 1); ++k) {
     const double at = image.grid().axes[N - 1][k];
     const auto layer = extract<Real>(last_axis_layer(image, k), isovalue, options);
-    EXPECT_TRUE(same_surface(slice(whole, at), layer)) << "layer " << k << ", " << describe(options);
-    EXPECT_TRUE(same_surface(slice_image<Real>(image, isovalue, at, options), layer)) << "layer " << k;
+    EXPECT_TRUE(same_surface(slice(whole, Hyperplane<N>::across(N - 1, at)), layer))
+        << "layer " << k << ", " << describe(options);
+    EXPECT_TRUE(same_surface(slice_image<Real>(image, isovalue, Hyperplane<N>::across(N - 1, at), options), layer))
+        << "layer " << k;
   }
 }
 
@@ -61,7 +64,8 @@ void expect_direct_is_whole(const Image<T, N>& image, double isovalue, const Ext
                             const std::vector<double>& places) {
   const auto whole = extract<Real>(image, isovalue, options);
   for (const double at : places)
-    EXPECT_TRUE(same_surface(slice_image<Real>(image, isovalue, at, options), slice(whole, at)))
+    EXPECT_TRUE(same_surface(slice_image<Real>(image, isovalue, Hyperplane<N>::across(N - 1, at), options),
+                             slice(whole, Hyperplane<N>::across(N - 1, at))))
         << "at " << at << ", " << describe(options);
 }
 
@@ -145,7 +149,7 @@ TEST(SliceImage, IsAManifoldAtAThousandTimes) {
   std::mt19937_64 bits(27);
   for (int i = 0; i < 1000; ++i) {
     const double at = 7.0 * test::unit_random(bits);
-    const auto cut = slice(whole, at);
+    const auto cut = slice(whole, Hyperplane<4>::across(3, at));
     const auto report = test::expect_oriented_manifold(cut);
     EXPECT_GT(report.simplices, 1000u);
     // Open at the image border only.
@@ -156,7 +160,7 @@ TEST(SliceImage, IsAManifoldAtAThousandTimes) {
           on_border = on_border || (cut.vertices[edge[0]][a] == x && cut.vertices[edge[1]][a] == x);
       ASSERT_TRUE(on_border) << at;
     }
-    if (i % 4 == 0) test::expect_closed_manifold(slice(closed, at));
+    if (i % 4 == 0) test::expect_closed_manifold(slice(closed, Hyperplane<4>::across(3, at)));
   }
 }
 
@@ -166,7 +170,8 @@ TEST(SliceImage, IsAManifoldAtAnyTimeWhereSamplesEqualTheIsovalue) {
     for (ExtractOptions options : all_options()) {
       options.close = true;
       const auto closed = extract(owned.view(), 1.0, options);
-      for (double at = 0.0; at <= 5.0; at += 0.125) test::expect_closed_manifold(slice(closed, at));
+      for (double at = 0.0; at <= 5.0; at += 0.125)
+        test::expect_closed_manifold(slice(closed, Hyperplane<4>::across(3, at)));
     }
   }
 }
@@ -218,8 +223,8 @@ TEST(SliceImage, CoversTheCutOfTheWholeContourWhereMissingValuesComeAndGo) {
       const auto whole = extract<double>(owned.view(), 0.5, options);
       for (const double at : {0.5, 2.7, 5.2}) {
         SCOPED_TRACE(std::to_string(at) + ", " + describe(options));
-        const auto direct = slice_image<double>(owned.view(), 0.5, at, options);
-        const auto cut = slice(whole, at);
+        const auto direct = slice_image<double>(owned.view(), 0.5, Hyperplane<4>::across(3, at), options);
+        const auto cut = slice(whole, Hyperplane<4>::across(3, at));
         test::expect_oriented_manifold(direct);
         test::expect_oriented_manifold(cut);
         EXPECT_NEAR(test::measure(direct) / test::measure(cut), 1.0, 1e-12);
@@ -243,8 +248,8 @@ TEST(SliceImage, ShowsALayerThatHasTilesOnItsUpperSideAlone) {
     if (i % 8 < 4) owned.values[i] = std::numeric_limits<float>::quiet_NaN();
   const auto image = owned.view();
   const auto layer = extract(last_axis_layer(image, 1), 0.5);
-  EXPECT_TRUE(same_surface(slice(extract(image, 0.5), 1.0), layer));
-  EXPECT_TRUE(same_surface(slice_image(image, 0.5, 1.0), layer));
+  EXPECT_TRUE(same_surface(slice(extract(image, 0.5), Hyperplane<4>::across(3, 1.0)), layer));
+  EXPECT_TRUE(same_surface(slice_image(image, 0.5, Hyperplane<4>::across(3, 1.0)), layer));
 }
 
 TEST(SliceImage, FollowsAxesOfAnyKind) {
@@ -262,17 +267,18 @@ TEST(SliceImage, FollowsAxesOfAnyKind) {
 
 TEST(SliceImage, FollowsAWorldMapThatLeavesTheLastAxisApart) {
   Grid<4> grid = Grid<4>::unit({5, 5, 5, 5});
-  grid.linear.topLeftCorner<3, 3>() << 0, -1.1, 0, 0.9, 0.1, 0, 0.2, 0, -2;
-  grid.linear(3, 3) = -0.7;
-  grid.offset << 3, -4, 0.5, 11.1;
+  grid.linear = {{{0, -1.1, 0, 0}, {0.9, 0.1, 0, 0}, {0.2, 0, -2, 0}, {0, 0, 0, -0.7}}};
+  grid.offset = {3, -4, 0.5, 11.1};
   const auto owned = test::noise<float, 4>(grid, 38);
   std::vector<double> places;
   for (double i = 0; i <= 4.0; i += 0.25) places.push_back(-0.7 * i + 11.1);
   for (const ExtractOptions& options : all_options()) expect_direct_is_whole(owned.view(), 0.5, options, places);
   // Normals face low in world coordinates, that is outwards for a ball.
   const auto ball = test::sample_field<double>(grid, test::Ball<4>{{2, 2, 2, 2}, 1.7});
-  const Eigen::Vector3d centre = grid.linear.topLeftCorner<3, 3>() * Eigen::Vector3d(2, 2, 2) + grid.offset.head<3>();
-  for (const auto& cut : {slice(extract<double>(ball.view(), 0.0), 9.6), slice_image<double>(ball.view(), 0.0, 9.6)})
+  const Eigen::Vector3d centre =
+      (as_eigen(grid.linear) * Eigen::Vector4d(2, 2, 2, 0) + as_eigen(grid.offset)).head<3>();
+  for (const auto& cut : {slice(extract<double>(ball.view(), 0.0), Hyperplane<4>::across(3, 9.6)),
+                          slice_image<double>(ball.view(), 0.0, Hyperplane<4>::across(3, 9.6))})
     EXPECT_EQ(test::share_facing(cut,
                                  [&](const Point<3>& x) {
                                    return Point<3>{x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]};
@@ -294,9 +300,10 @@ ErrorCode code_of(const std::function<void()>& call, const std::string& part_of_
 TEST(SliceImage, RefusesAWorldMapThatMixesTheLastAxis) {
   for (const auto& [row, column] : {std::pair{3, 0}, std::pair{1, 3}}) {
     Grid<4> grid = Grid<4>::unit({3, 3, 3, 3});
-    grid.linear(row, column) = 0.5;
+    grid.linear[row][column] = 0.5;
     const auto owned = test::noise<float, 4>(grid, 39);
-    EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, 1.0); }, "mixes axis 3"), ErrorCode::InvalidArgument);
+    EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, 1.0)); }, "mixes axis 3"),
+              ErrorCode::InvalidArgument);
   }
 }
 
@@ -306,29 +313,49 @@ TEST(SliceImage, NamesThePlaceAndTheRangeThatItIsOutsideOf) {
   grid.axes[3].name = "time";
   const auto owned = test::noise<float, 4>(grid, 40);
   for (const double at : {1.5, 3.5})
-    EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, at); }, "between 2 and 3, the ends of axis 3 (time)"),
+    EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, at)); },
+                      "between 2 and 3, the ends of axis 3 (time)"),
               ErrorCode::InvalidArgument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, nan); }, "cut at nan"), ErrorCode::InvalidArgument);
-  EXPECT_EQ(code_of([&] { slice_image(owned.view(), nan, 2.5); }, "nan"), ErrorCode::InvalidIsovalue);
+  EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, nan)); }, "cut at nan"),
+            ErrorCode::InvalidArgument);
+  EXPECT_EQ(code_of([&] { slice_image(owned.view(), nan, Hyperplane<4>::across(3, 2.5)); }, "nan"),
+            ErrorCode::InvalidIsovalue);
 }
 
 TEST(SliceImage, OfOneSampleAlongTheLastAxisIsEmpty) {
   const auto owned = test::noise<float, 4>(Grid<4>::unit({4, 4, 4, 1}), 41);
-  EXPECT_TRUE(slice_image(owned.view(), 0.5, 0.0).simplices.empty());
-  EXPECT_TRUE(slice(extract(owned.view(), 0.5), 0.0).simplices.empty());
-  EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, 0.5); }, "between 0 and 0"), ErrorCode::InvalidArgument);
+  EXPECT_TRUE(slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, 0.0)).simplices.empty());
+  EXPECT_TRUE(slice(extract(owned.view(), 0.5), Hyperplane<4>::across(3, 0.0)).simplices.empty());
+  EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, 0.5)); }, "between 0 and 0"),
+            ErrorCode::InvalidArgument);
 }
 
 TEST(SliceImage, ReadsTheSlabAlone) {
   const auto owned = test::noise<float, 4>(Grid<4>::unit({6, 6, 6, 50}), 42);
-  ExtractStats stats;
-  slice_image(owned.view(), 0.5, 20.5, {}, &stats);
-  EXPECT_EQ(stats.tiles, 125u);
-  slice_image(owned.view(), 0.5, 20.0, {}, &stats);
-  EXPECT_EQ(stats.tiles, 250u);
-  slice_image(owned.view(), 0.5, 0.0, {}, &stats);
-  EXPECT_EQ(stats.tiles, 125u);
+  const auto tiles_of = [&](const Hyperplane<4>& hyperplane) {
+    return slice_image_with_stats(owned.view(), 0.5, hyperplane).stats.tiles;
+  };
+  EXPECT_EQ(tiles_of(Hyperplane<4>::across(3, 20.5)), 125u);
+  EXPECT_EQ(tiles_of(Hyperplane<4>::across(3, 20.0)), 250u);
+  EXPECT_EQ(tiles_of(Hyperplane<4>::across(3, 0.0)), 125u);
+  EXPECT_EQ(tiles_of({{0, 0, 0, -2}, -41.0}), 125u);
+  EXPECT_EQ(tiles_of({{0, 0, 1, 1}, 20.5}), 125u * 49u) << "an oblique hyperplane is cut from the whole contour";
+}
+
+TEST(SliceImage, ByAnyHyperplaneIsTheCutOfTheWholeContour) {
+  const auto owned = test::noise<float, 4>({6, 5, 7, 4}, 44);
+  const auto whole = extract<double>(owned.view(), 0.5);
+  for (const Hyperplane<4>& hyperplane :
+       {Hyperplane<4>{{1, -2, 0.5, 3}, 2.0}, Hyperplane<4>{{0, 0, 1, 1}, 4.5}, Hyperplane<4>{{0, 0, 0, -2}, -3.0},
+        Hyperplane<4>{{0, -4, 0, 0}, -5.0}, Hyperplane<4>{{1e-3, 0, 0, 0}, 3.3e-3}}) {
+    const auto cut = slice_image<double>(owned.view(), 0.5, hyperplane);
+    EXPECT_FALSE(cut.simplices.empty());
+    EXPECT_TRUE(same_surface(cut, slice(whole, hyperplane))) << testing::PrintToString(hyperplane.normal);
+  }
+  // At a layer it is the layer's contour, whichever side is above.
+  const auto layer = extract<double>(last_axis_layer(owned.view(), 2), 0.5);
+  EXPECT_TRUE(same_surface(slice_image<double>(owned.view(), 0.5, {{0, 0, 0, -1}, -2.0}), layer));
 }
 
 TEST(SliceImage, OfMergingBallsChangesEulerCharacteristicAtTheEvent) {
@@ -340,7 +367,7 @@ TEST(SliceImage, OfMergingBallsChangesEulerCharacteristicAtTheEvent) {
   double last_apart = 0.0;
   double first_joined = 1.0;
   for (double t = 0.0; t <= 1.0; t += 1.0 / 64) {
-    const auto report = test::expect_closed_manifold(slice_image(owned.view(), 0.0, t));
+    const auto report = test::expect_closed_manifold(slice_image(owned.view(), 0.0, Hyperplane<4>::across(3, t)));
     ASSERT_TRUE((report.euler == 4 && report.components == 2) || (report.euler == 2 && report.components == 1)) << t;
     if (report.euler == 4) last_apart = std::max(last_apart, t);
     if (report.euler == 2) first_joined = std::min(first_joined, t);
@@ -357,7 +384,7 @@ TEST(SliceImage, OfABallConvergesInAreaAndVolumeAtSecondOrder) {
   std::array<double, 2> volume;
   for (int i = 0; i < 2; ++i) {
     const auto owned = test::sample_field<double>(test::centred_grid<4>(i == 0 ? 17 : 33, 1.0), ball);
-    const auto cut = slice_image<double>(owned.view(), 0.0, t);
+    const auto cut = slice_image<double>(owned.view(), 0.0, Hyperplane<4>::across(3, t));
     EXPECT_EQ(test::expect_closed_manifold(cut).euler, 2);
     area[i] = test::measure(cut) - expected.surface();
     volume[i] = test::enclosed_content(cut) - expected.content();
@@ -375,7 +402,7 @@ TEST(SliceImage, TakesOverNamesAndDirection) {
   const auto owned = test::noise<float, 4>(grid, 43);
   ExtractOptions options;
   options.direction = GradientDirection::ascent;
-  const auto cut = slice_image(owned.view(), 0.5, 1.5, options);
+  const auto cut = slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, 1.5), options);
   EXPECT_EQ(cut.axis_names, (std::array<std::string, 3>{"x", "y", "z"}));
   EXPECT_EQ(cut.axis_units, (std::array<std::string, 3>{"mm", "mm", "mm"}));
   EXPECT_EQ(cut.direction, GradientDirection::ascent);

@@ -101,7 +101,7 @@ void compare_layers(const Image<float, N>& image, const Combination& combination
   const ExtractOptions& options = combination.options;
   const auto whole = extract<Real>(image, 1.0, options);
   for (int axis = 0; axis < N; ++axis) {
-    const Scrubber<N, Real> scrubber(whole, Scrubber<N, Real>::Vector::Unit(axis));
+    const Scrubber<N, Real> scrubber(whole, Hyperplane<N>::across(axis, 0.0));
     // Only along the last axis of 4D contours points between layers are kept off the layers (slice.hpp).
     const bool by_contour = !combination.ties || options.epsilon > 0.0 || (N == 4 && axis == N - 1);
     for (std::size_t k = 0; k < image.size(axis); ++k) {
@@ -115,8 +115,7 @@ void compare_layers(const Image<float, N>& image, const Combination& combination
                         << ": " << cut.simplices.size() << " against " << expected.size() << " simplices";
       };
       ++tally.layers;
-      compare(slice_image_across<Real>(image, 1.0, axis, at, options), "slice_image_across");
-      if (axis == N - 1) compare(slice_image<Real>(image, 1.0, at, options), "slice_image");
+      compare(slice_image<Real>(image, 1.0, Hyperplane<N>::across(axis, at), options), "slice_image");
       if (!by_contour) continue;
       compare(slice(whole, Hyperplane<N>::across(axis, at)), "slice");
       compare(scrubber.cut(at), "Scrubber");

@@ -178,7 +178,7 @@ Grid<N> twisted_grid(std::size_t samples) {
   std::vector<double> coordinates;
   for (std::size_t i = 0; i < samples; ++i) coordinates.push_back(static_cast<double>(i * i + i));
   grid.axes[1] = Axis::rectilinear(coordinates);
-  if (N < 4) grid.linear(0, 1) = 0.5;
+  if (N < 4) grid.linear[0][1] = 0.5;
   return grid;
 }
 

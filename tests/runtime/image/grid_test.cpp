@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "tegl/contour.hpp"
+#include "tegl/eigen.hpp"
+
 namespace tegl {
 namespace {
 
@@ -82,8 +85,30 @@ TEST(Grid, HasAWorldMapUnlessItIsTheIdentity) {
   grid.offset[1] = 1e-300;
   EXPECT_TRUE(grid.has_world_map());
   grid.offset[1] = 0;
-  grid.linear(0, 0) = -1;
+  grid.linear[0][0] = -1;
   EXPECT_TRUE(grid.has_world_map());
+}
+
+TEST(EigenViews, AreTheArraysThemselves) {
+  Contour<3, double> contour;
+  contour.vertices = {{1, 2, 3}, {4, 5, 6}};
+  contour.simplices = {{0, 1, 0}};
+  EXPECT_EQ(vertex_matrix(contour).data(), contour.vertices.data()->data());
+  EXPECT_EQ(vertex_matrix(contour).rows(), 2);
+  EXPECT_EQ(vertex_matrix(contour)(1, 2), 6.0);
+  EXPECT_EQ(simplex_matrix(contour).data(), contour.simplices.data()->data());
+  EXPECT_EQ(simplex_matrix(contour)(0, 1), 1u);
+  const Contour<3> empty;
+  EXPECT_EQ(vertex_matrix(empty).rows(), 0);
+  Matrix<3> matrix = identity<3>();
+  as_eigen(matrix)(0, 2) = 5.0;
+  EXPECT_EQ(matrix[0][2], 5.0);
+  Vector<3> vector = unit_vector<3>(2);
+  EXPECT_EQ(as_eigen(vector).data(), vector.data());
+  as_eigen(vector) = as_eigen(matrix) * Eigen::Vector3d(1, 2, 3);
+  EXPECT_EQ(vector, (Vector<3>{16, 2, 3}));
+  EXPECT_EQ(to_vector(2.0 * as_eigen(vector)), (Vector<3>{32, 4, 6}));
+  EXPECT_EQ(to_matrix(as_eigen(matrix).transpose()), (Matrix<3>{{{1, 0, 0}, {0, 1, 0}, {5, 0, 1}}}));
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ TEST(Image, RejectsNullEmptyAxesAndSingularMaps) {
   EXPECT_EQ(code_of(nullptr, Grid<2>::unit({1, 1})), ErrorCode::InvalidGrid);
   EXPECT_EQ(code_of(&value, Grid<2>{}), ErrorCode::InvalidGrid);
   auto grid = Grid<2>::unit({1, 1});
-  grid.linear(1, 1) = 0;
+  grid.linear[1][1] = 0;
   EXPECT_EQ(code_of(&value, grid), ErrorCode::InvalidGrid);
-  grid.linear(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  grid.linear[1][1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(code_of(&value, grid), ErrorCode::InvalidGrid);
 }
 

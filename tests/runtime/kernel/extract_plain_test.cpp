@@ -154,11 +154,11 @@ void expect_plain_options(std::array<std::size_t, N> sizes, std::uint64_t seed) 
     uneven.axes[N - 1] = Axis::uniform(sizes[N - 1], 0.3, 0.7);
     expect_plain<Real>(Image<float, N>(image.values.data(), uneven), 0.5, options, builder);
     expect_plain<Real>(Image<std::int16_t, N>(coarse.values.data(), uneven), 1.0, options, builder);
-    uneven.linear(0, 1) = 0.4;
-    uneven.linear(N - 1, N - 1) = -1.7;
-    uneven.offset(0) = 11.3;
+    uneven.linear[0][1] = 0.4;
+    uneven.linear[N - 1][N - 1] = -1.7;
+    uneven.offset[0] = 11.3;
     expect_plain<Real>(Image<float, N>(image.values.data(), uneven), 0.5, options, builder);
-    if (N == 4) uneven.linear(N - 1, 0) = 0.1;  // the last axis then has no layers
+    if (N == 4) uneven.linear[N - 1][0] = 0.1;  // the last axis then has no layers
     expect_plain<Real>(Image<float, N>(image.values.data(), uneven), 0.5, options, builder);
   }
 }

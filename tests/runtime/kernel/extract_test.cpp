@@ -155,8 +155,8 @@ TYPED_TEST(Extract, NormalsPointTowardsLowInTheWorldWhateverTheMap) {
         auto image = plain;  // the ball is symmetric: its values do not change with the axes
         for (int a = 0; a < N; ++a)
           if ((descending >> a & 1u) != 0) image.grid.axes[a] = Axis::uniform(9, 1.4, -0.35);
-        image.grid.linear(0, 0) = 2.0 * scale;
-        image.grid.linear(0, 1) = 0.5;
+        image.grid.linear[0][0] = 2.0 * scale;
+        image.grid.linear[0][1] = 0.5;
         ExtractOptions options;
         options.ambiguity = ambiguity;
         const auto contour = extract<double>(image.view(), 0.0, options);
@@ -171,8 +171,8 @@ TYPED_TEST(Extract, WorldMapIsAppliedToTheVertices) {
   constexpr int N = TypeParam::value;
   auto image = noise<float, N>(5, 53);
   const auto plain = extract<double>(image.view(), 0.5);
-  image.grid.linear(0, 1) = 0.25;
-  image.grid.linear(1, 1) = -3.0;
+  image.grid.linear[0][1] = 0.25;
+  image.grid.linear[1][1] = -3.0;
   image.grid.offset[0] = 100.0;
   const auto mapped = extract<double>(image.view(), 0.5);
   ASSERT_EQ(plain.vertices.size(), mapped.vertices.size());
@@ -364,12 +364,14 @@ TEST(Extract4d, HoldsThePointsOfThe3dContoursOfItsSteps) {
   auto image = noise<float, 4>({9, 7, 6, 4}, 81);
   image.grid.axes[3] = Axis::rectilinear({0.0, 0.7, 1.1, 3.0});
   image.grid.axes[1] = Axis::uniform(7, 0.3, -1.7);
-  image.grid.linear.topLeftCorner<3, 3>() << 0.9, 0.1, 0.0, -0.2, 1.1, 0.3, 0.0, 0.1, 0.7;
-  image.grid.offset.head<3>() << 5.0, -3.0, 0.1;
+  image.grid.linear = {{{0.9, 0.1, 0.0, 0.0}, {-0.2, 1.1, 0.3, 0.0}, {0.0, 0.1, 0.7, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
+  image.grid.offset = {5.0, -3.0, 0.1, 0.0};
   Grid<3> grid;
-  for (int a = 0; a < 3; ++a) grid.axes[a] = image.grid.axes[a];
-  grid.linear = image.grid.linear.topLeftCorner<3, 3>();
-  grid.offset = image.grid.offset.head<3>();
+  for (int a = 0; a < 3; ++a) {
+    grid.axes[a] = image.grid.axes[a];
+    grid.offset[a] = image.grid.offset[a];
+    for (int b = 0; b < 3; ++b) grid.linear[a][b] = image.grid.linear[a][b];
+  }
   for (const ExtractOptions& options : variants()) {
     SCOPED_TRACE(describe(options));
     const auto contour = extract<double>(image.view(), 0.5, options);

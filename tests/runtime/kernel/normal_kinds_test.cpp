@@ -15,6 +15,7 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/slice.hpp"
@@ -128,7 +129,7 @@ Grid<N> odd_grid() {
   grid.axes[0] = Axis::rectilinear(uneven);
   grid.axes[1] = Axis::uniform(6, 5.0, -0.6);
   for (int a = 0; a < N; ++a)
-    for (int b = 0; b < N; ++b) grid.linear(a, b) = a == b ? 1.0 + 0.2 * a : 0.1 * (a - 2 * b);
+    for (int b = 0; b < N; ++b) grid.linear[a][b] = a == b ? 1.0 + 0.2 * a : 0.1 * (a - 2 * b);
   return grid;
 }
 
@@ -151,7 +152,7 @@ void expect_exact_slopes() {
       options.close = !missing;
       const auto contour = extract<double>(image.view(), isovalue, with(GradientKind::sobel, options));
       ASSERT_GT(contour.vertices.size(), 5u);
-      const Eigen::Matrix<double, N, 1> expected = -(grid.linear.inverse().transpose() * slope).normalized();
+      const Eigen::Matrix<double, N, 1> expected = -(as_eigen(grid.linear).inverse().transpose() * slope).normalized();
       for (const auto& normal : contour.normals)
         for (int a = 0; a < N; ++a) ASSERT_NEAR(normal[a], expected(a), 1e-10) << "missing " << missing;
     }
@@ -171,8 +172,8 @@ TEST(Sobel, IsTheSameForAnyNumberOfThreadsAndForCutsFromTheImage) {
   many.work.threads = 4;
   const auto contour = extract<float>(image.view(), 0.5, one);
   EXPECT_EQ(contour.normals, extract<float>(image.view(), 0.5, many).normals);
-  const auto cut = slice(contour, 2.0);
-  const auto direct = slice_image(image.view(), 0.5, 2.0, one);
+  const auto cut = slice(contour, Hyperplane<4>::across(3, 2.0));
+  const auto direct = slice_image(image.view(), 0.5, Hyperplane<4>::across(3, 2.0), one);
   ASSERT_EQ(cut.normals.size(), direct.normals.size());
   double sum = 0, direct_sum = 0;
   for (std::size_t v = 0; v < cut.normals.size(); ++v) {
@@ -401,7 +402,7 @@ Grid<N> grid_of(GridKind kind, std::size_t samples) {
     grid.axes[a] = kind == GridKind::smooth || kind == GridKind::rough
                        ? Axis::rectilinear(uneven)
                        : Axis::uniform(samples, grid.axes[a].origin() + step * 0.17 * (a + 1), step);
-    if (kind == GridKind::sheared && a + 1 < N) grid.linear(a, a + 1) = 0.3;
+    if (kind == GridKind::sheared && a + 1 < N) grid.linear[a][a + 1] = 0.3;
   }
   return grid;
 }
@@ -412,7 +413,7 @@ OwnedImage<double, N> ball_in_world(const Grid<N>& grid) {
   return sample_field<double, N>(grid, [&](const Point<N>& x) {
     Eigen::Matrix<double, N, 1> at;
     for (int a = 0; a < N; ++a) at(a) = x[a];
-    return 0.8 - (grid.linear * at).norm();
+    return 0.8 - (as_eigen(grid.linear) * at).norm();
   });
 }
 

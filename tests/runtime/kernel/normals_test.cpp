@@ -15,6 +15,7 @@
 
 #include "ambiguity/variants.hpp"
 #include "fields.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/slice.hpp"
@@ -45,8 +46,8 @@ Grid<N> odd_grid() {
   grid.axes[0] = Axis::rectilinear(uneven);
   grid.axes[1] = Axis::uniform(sizes[1], 5.0, -0.6);
   for (int a = 0; a < N; ++a)
-    for (int b = 0; b < N; ++b) grid.linear(a, b) = a == b ? 1.0 + 0.2 * a : 0.1 * (a - 2 * b);
-  grid.offset(0) = 3.0;
+    for (int b = 0; b < N; ++b) grid.linear[a][b] = a == b ? 1.0 + 0.2 * a : 0.1 * (a - 2 * b);
+  grid.offset[0] = 3.0;
   return grid;
 }
 
@@ -69,7 +70,7 @@ void expect_normals_of_a_plane() {
     unit[a] = 1;
     slope(a) = Plane<N>{}(unit);
   }
-  const Eigen::Matrix<double, N, 1> expected = (grid.linear.inverse().transpose() * slope).normalized();
+  const Eigen::Matrix<double, N, 1> expected = (as_eigen(grid.linear).inverse().transpose() * slope).normalized();
   const double isovalue = image.values[image.values.size() / 2] + 0.01;
   for (ExtractOptions options : variants())
     for (const auto direction : {GradientDirection::descent, GradientDirection::ascent}) {
@@ -333,7 +334,7 @@ TEST(Normals, OfSteepAndFlatFieldsHaveLengthOne) {
 TEST(Normals, OfTheLargestNumbersAreNumbers) {
   for (const bool mapped : {false, true}) {
     Grid<3> grid = Grid<3>::unit({9, 8, 7});
-    if (mapped) grid.linear(0, 1) = 0.25;
+    if (mapped) grid.linear[0][1] = 0.25;
     auto image = noise<double, 3>(grid, 9);
     for (double& value : image.values)
       value = value < 0.3 ? std::numeric_limits<double>::lowest()
@@ -420,10 +421,10 @@ void expect_normals_of_cuts(const std::array<std::size_t, N>& sizes) {
   options.close = true;
   const auto contour = extract<float>(image.view(), 0.5, options);
   for (const double at : {0.0, 1.3, 2.0, static_cast<double>(sizes[N - 1] - 1) - 0.25}) {
-    const auto cut = slice(contour, at);
+    const auto cut = slice(contour, Hyperplane<N>::across(N - 1, at));
     ASSERT_EQ(cut.normals.size(), cut.vertices.size());
     ASSERT_GT(cut.vertices.size(), 10u);
-    const auto direct = slice_image(image.view(), 0.5, at, options);
+    const auto direct = slice_image(image.view(), 0.5, Hyperplane<N>::across(N - 1, at), options);
     ASSERT_EQ(direct.normals.size(), direct.vertices.size());
     EXPECT_EQ(by_place(direct), by_place(cut)) << "at " << at;
     for (const auto& normal : cut.normals) ASSERT_NEAR((length<N - 1, float>(normal)), 1.0, 1e-5);
@@ -437,7 +438,7 @@ TEST(Normals, OfCutsAreTheSameFromTheContourAndFromTheImage) {
 
 TEST(Normals, OfACutOfASphereAreRadial) {
   const auto image = sample_field<float, 4>(centred_grid<4>(24, 1.0), Ball<4>{{}, 0.7});
-  const auto cut = slice(extract<float>(image.view(), 0.0, with_normals()), 0.21);
+  const auto cut = slice(extract<float>(image.view(), 0.0, with_normals()), Hyperplane<4>::across(3, 0.21));
   ASSERT_GT(cut.vertices.size(), 100u);
   for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
     double along = 0;

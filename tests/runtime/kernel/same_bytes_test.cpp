@@ -70,8 +70,8 @@ Grid<N> slanted(const std::array<std::size_t, N>& sizes, bool mapped) {
   grid.axes[0] = Axis::uniform(sizes[0], -0.0, -0.3);
   grid.axes[N - 1] = Axis::uniform(sizes[N - 1], 0.0, -0.7);
   if (mapped) {
-    grid.linear(0, 1) = 0.25;
-    grid.offset(1) = -3.1;
+    grid.linear[0][1] = 0.25;
+    grid.offset[1] = -3.1;
   }
   return grid;
 }

@@ -60,10 +60,10 @@ Grid<N> bent_grid(std::size_t samples) {
     for (std::size_t i = 0; i < samples; ++i)
       coordinates.push_back((a == 1 ? -1.0 : 1.0) * (static_cast<double>(i) + 0.01 * static_cast<double>(i * i)));
     grid.axes[a] = Axis::rectilinear(coordinates);
-    grid.linear(a, (a + 1) % N) = 0.3;
-    grid.offset(a) = a;
+    grid.linear[a][(a + 1) % N] = 0.3;
+    grid.offset[a] = a;
   }
-  grid.linear(0, 0) = -1.0;
+  grid.linear[0][0] = -1.0;
   return grid;
 }
 

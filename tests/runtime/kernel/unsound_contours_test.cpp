@@ -44,11 +44,11 @@ using Calls = std::vector<std::pair<std::string, std::function<void(const Any&)>
 
 /// Functions that convert one contour to another and copy normals and attributes, with `others` in addition.
 Calls all_that_make_contours(Calls others) {
-  static const std::vector<double> at = {0.5};
+  static const std::vector<Hyperplane<4>> hyperplanes = {Hyperplane<4>::across(3, 0.5)};
   const Calls calls = {
-      {"slice", [](const Any& c) { slice(c, 0.5); }},
+      {"slice", [](const Any& c) { slice(c, Hyperplane<4>::across(3, 0.5)); }},
       {"slice by a hyperplane", [](const Any& c) { slice(c, Hyperplane<4>::across(1, 0.5)); }},
-      {"slice_stack", [](const Any& c) { slice_stack<4, float>(c, Eigen::Vector4d::UnitW(), at); }},
+      {"slice_stack", [](const Any& c) { slice_stack(c, hyperplanes); }},
       {"Scrubber", [](const Any& c) { const Scrubber<4, float> scrubber(c); }},
       {"project", [](const Any& c) { project(c); }},
       {"outline", [](const Any& c) { outline(c); }},
@@ -60,7 +60,7 @@ Calls all_that_make_contours(Calls others) {
 
 /// Functions that look up vertices by number.
 Calls all_that_follow_vertices() {
-  static const std::vector<double> at = {0.5};
+  static const std::vector<Hyperplane<4>> hyperplanes = {Hyperplane<4>::across(3, 0.5)};
   return all_that_make_contours({
       {"label_components", [](const Any& c) { label_components(c); }},
       {"components", [](const Any& c) { components(c, no_labels()); }},
@@ -149,7 +149,7 @@ TEST(UnsoundLabels, AreRefused) {
 }
 
 TEST(UnsoundContours, CoordinatesThatAreNotFiniteAreRefused) {
-  static const std::vector<double> at = {0.5};
+  static const std::vector<Hyperplane<4>> hyperplanes = {Hyperplane<4>::across(3, 0.5)};
   for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     Any contour = tetrahedron();
     contour.vertices[2][1] = x;

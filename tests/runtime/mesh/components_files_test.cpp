@@ -56,7 +56,7 @@ void expect_parts_and_measures(const Contour<4, double>& contour) {
     at.push_back(measures.lowest[3] + share * (measures.highest[3] - measures.lowest[3]));
   const std::vector<CutMeasures> curve = measure_cuts(contour, at);
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const Contour<3, double> cut = slice(contour, at[i]);
+    const Contour<3, double> cut = slice(contour, Hyperplane<4>::across(3, at[i]));
     const double area = test::measure(cut);
     EXPECT_NEAR(curve[i].size, area, 1e-9 * area) << "at " << at[i];
     EXPECT_EQ(curve[i].content.has_value(), check(cut).boundary_simplices == 0) << "at " << at[i];

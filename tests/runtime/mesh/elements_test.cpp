@@ -18,6 +18,7 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
 
@@ -150,17 +151,16 @@ void expect_equivariance(std::size_t samples) {
   for (int a = 0; a < N; ++a)
     for (int b = 0; b < N; ++b) linear(a, b) = a == b ? 1.5 - 0.3 * a : 0.2 * (a - 2 * b) + 0.1;
   ASSERT_GT(linear.determinant(), 0.0);
-  image.grid.linear = linear;
-  image.grid.offset.setConstant(3.0);
+  image.grid.linear = to_matrix(linear);
+  image.grid.offset.fill(3.0);
   const auto mapped = elements(extract<double>(image.view(), 0.5));
   ASSERT_EQ(mapped.normals.size(), plain.normals.size());
   const Eigen::Matrix<double, N, N> cofactors = linear.determinant() * linear.inverse().transpose();
-  using Vector = Eigen::Map<const Eigen::Matrix<double, N, 1>>;
   for (std::size_t e = 0; e < plain.normals.size(); ++e) {
-    const Eigen::Matrix<double, N, 1> expected = cofactors * Vector(plain.normals[e].data());
-    ASSERT_LT((Vector(mapped.normals[e].data()) - expected).norm(), 1e-12) << "element " << e;
-    const Eigen::Matrix<double, N, 1> centroid = linear * Vector(plain.centroids[e].data()) + image.grid.offset;
-    ASSERT_LT((Vector(mapped.centroids[e].data()) - centroid).norm(), 1e-12);
+    const Eigen::Matrix<double, N, 1> expected = cofactors * as_eigen(plain.normals[e]);
+    ASSERT_LT((as_eigen(mapped.normals[e]) - expected).norm(), 1e-12) << "element " << e;
+    const Eigen::Matrix<double, N, 1> centroid = linear * as_eigen(plain.centroids[e]) + as_eigen(image.grid.offset);
+    ASSERT_LT((as_eigen(mapped.centroids[e]) - centroid).norm(), 1e-12);
   }
   // Tiles are found through the world map.
   auto unmapped = noise<double, N>(samples, 11);

@@ -12,6 +12,7 @@
 #include <Eigen/LU>
 
 #include "fields.hpp"
+#include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/sample.hpp"
 
@@ -29,8 +30,8 @@ Grid<N> odd_grid() {
   for (int i = 0; i <= 6; ++i) uneven.push_back(2.5 - 5.0 * std::pow(i / 6.0, 1.4));
   grid.axes[0] = Axis::rectilinear(uneven);
   for (int a = 0; a < N; ++a)
-    for (int b = 0; b < N; ++b) grid.linear(a, b) = a == b ? 1.0 + 0.1 * a : 0.03 * (a - 2 * b);
-  grid.offset(0) = 0.1;
+    for (int b = 0; b < N; ++b) grid.linear[a][b] = a == b ? 1.0 + 0.1 * a : 0.03 * (a - 2 * b);
+  grid.offset[0] = 0.1;
   return grid;
 }
 
@@ -48,7 +49,7 @@ OwnedImage<double, N> plane_image(const Grid<N>& grid) {
   for_each_sample<N>(grid, [&](std::size_t i, const std::array<std::size_t, N>& index) {
     Eigen::Matrix<double, N, 1> x;
     for (int a = 0; a < N; ++a) x(a) = grid.axes[a][index[a]];
-    x = (grid.linear * x + grid.offset).eval();
+    x = (as_eigen(grid.linear) * x + as_eigen(grid.offset)).eval();
     std::array<double, N> world;
     for (int a = 0; a < N; ++a) world[a] = x(a);
     image.values[i] = plane<N>(world);
@@ -115,7 +116,7 @@ TEST(Sample, OfTheContoursOwnImageIsTheIsovalue) {
 template <class Real>
 void expect_missing_samples_to_spoil_nothing() {
   Grid<3> grid = Grid<3>::unit({12, 11, 10});
-  grid.linear << 0.9, 0.2, 0.0, -0.3, 1.1, 0.1, 0.0, 0.2, 1.3;
+  grid.linear = {{{0.9, 0.2, 0.0}, {-0.3, 1.1, 0.1}, {0.0, 0.2, 1.3}}};
   const auto image = noise_with_missing<float, 3>(grid, 3, 0.2);
   const auto contour = extract<Real>(image.view(), 0.5);
   const Attribute attribute = sample(image.view(), contour, "own");

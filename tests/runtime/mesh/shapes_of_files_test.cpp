@@ -248,18 +248,18 @@ TEST_P(FilmOfFile, StacksAndScrubbersOfObliqueCutsAreThoseCuts) {
   with_image([](const auto& image, double isovalue) {
     const auto unit = on_unit_grid(image);
     const auto contour = extract<double>(unit.view(), isovalue, closed());
-    const Eigen::Vector4d normal(1, -2, 0.5, 3);
-    const Scrubber<4, double> scrubber(contour, normal);
+    const Vector<4> normal{1, -2, 0.5, 3};
+    const Scrubber<4, double> scrubber(contour, {normal});
     const auto [least, most] = scrubber.range();
-    std::vector<double> offsets;
-    for (int i = 1; i < 8; ++i) offsets.push_back(least + (most - least) * i / 8.0);
-    const auto stack = slice_stack(contour, normal, std::span<const double>(offsets));
+    std::vector<Hyperplane<4>> hyperplanes;
+    for (int i = 1; i < 8; ++i) hyperplanes.push_back({normal, least + (most - least) * i / 8.0});
+    const auto stack = slice_stack(contour, hyperplanes);
     std::size_t triangles = 0;
-    for (std::size_t i = 0; i < offsets.size(); ++i) {
-      const auto expected = slice(contour, Hyperplane<4>{normal, offsets[i]});
+    for (std::size_t i = 0; i < hyperplanes.size(); ++i) {
+      const auto expected = slice(contour, hyperplanes[i]);
       expect_closed_manifold(expected);
       triangles += expected.simplices.size();
-      const auto cut = scrubber.cut(offsets[i]);
+      const auto cut = scrubber.cut(hyperplanes[i].offset);
       EXPECT_TRUE(stack[i].vertices == expected.vertices && stack[i].simplices == expected.simplices) << i;
       EXPECT_TRUE(cut.vertices == expected.vertices && cut.simplices == expected.simplices) << i;
     }

@@ -81,11 +81,11 @@ TYPED_TEST(DeviationOf, IsMeasuredInUnitsOfTheScale) {
   constexpr int N = TypeParam::value;
   auto from = sphere<N>(1.1, N == 4 ? 7 : 20), to = sphere<N>(1.0, N == 4 ? 6 : 18);
   DeviationOptions<N> options;
-  Eigen::Matrix<double, N, 1> factors;
+  Vector<N> factors;
   for (int a = 0; a < N; ++a) factors[a] = options.scale[a] = 1.0 + a;
   const double scaled = deviation(from, to, options).bound;
-  scale_axes(from, factors);
-  scale_axes(to, factors);
+  from = scale_axes(std::move(from), factors);
+  to = scale_axes(std::move(to), factors);
   EXPECT_NEAR(deviation(from, to).bound, scaled, 1e-9);
 }
 

@@ -86,12 +86,12 @@ using SimplifiedFile = RealFile;
 /// If axes have units other than the first's, measures lengths in steps, so that all axes count.
 template <int N, class Real>
 void in_steps(Contour<N, Real>& contour, const Grid<N>& grid) {
-  Eigen::Matrix<double, N, 1> factors;
+  Vector<N> factors;
   for (int a = 0; a < N; ++a) {
     const Axis& axis = grid.axes[a];
     factors[a] = std::abs(static_cast<double>(axis.size() - 1) / (axis[axis.size() - 1] - axis[0]));
   }
-  scale_axes(contour, factors);
+  contour = scale_axes(std::move(contour), factors);
 }
 
 TEST_P(SimplifiedFile, KeepsManifoldAndBorderWithinItsBound) {
@@ -143,7 +143,7 @@ class CutOfAFile : public ::testing::TestWithParam<FileCut> {
             part = part.part(a, cut.first, std::min(cut.size, part.size(a) - cut.first));
             ++parts;
           }
-          contour_ = slice_image_across<double>(part, cut.isovalue, cut.axis, cut.at);
+          contour_ = slice_image<double>(part, cut.isovalue, Hyperplane<4>::across(cut.axis, cut.at));
         },
         std::get<AnyImageN<4>>(input.image));
     ASSERT_GT(contour_.simplices.size(), 2000u);

@@ -62,7 +62,7 @@ Contour<3, double> warm_water() {
       [&](const auto& owned) {
         auto part = owned.view();
         for (int a = 0; a < 2; ++a) part = part.part(a, part.size(a) / 3, part.size(a) / 10);
-        result = slice_image_across<double>(part, 20.0, 3, 7.3, extraction);
+        result = slice_image<double>(part, 20.0, Hyperplane<4>::across(3, 7.3), extraction);
       },
       std::get<AnyImageN<4>>(input.image));
   return result;

@@ -311,9 +311,10 @@ TYPED_TEST(Simplify, EarlierErrorsCountByTheScaleTheyWereTakenAt) {
 TYPED_TEST(Simplify, AutomaticScaleMakesOtherUnitsAsFineAsTheFirst) {
   constexpr int N = TypeParam::value;
   auto contour = ball<N>(ball_samples<N>());
-  Eigen::Matrix<double, N, 1> factors = Eigen::Matrix<double, N, 1>::Ones();
+  Vector<N> factors;
+  factors.fill(1.0);
   factors[N - 1] = 20.0;
-  scale_axes(contour, factors);
+  contour = scale_axes(std::move(contour), factors);
   EXPECT_EQ(automatic_scale(contour)[N - 1], 1.0);  // of the same unit
   contour.axis_units[N - 1] = "s";
   const auto scale = automatic_scale(contour);
@@ -401,9 +402,9 @@ TYPED_TEST(Simplify, IsAsNearByTwoGoalsAsByTheCountWhereTheErrorLetsIt) {
 
 TEST(Simplify2, CapsOfASlantedGridStayInItsBorder) {
   auto grid = centred_grid<3>(12, 1.0);
-  grid.linear(0, 1) = 0.4;
-  grid.linear(2, 0) = -0.3;
-  grid.offset(1) = 2.0;
+  grid.linear[0][1] = 0.4;
+  grid.linear[2][0] = -0.3;
+  grid.offset[1] = 2.0;
   const auto image = sample_field<float, 3>(grid, Ball<3>{{0.9, 0.9, 0.9}, 1.2});
   ExtractOptions extraction;
   extraction.close = true;

@@ -37,11 +37,12 @@ TEST(Resolved4d, ClosedNoiseIsAClosedManifoldAndSoIsEveryCut) {
       const auto image = noise<std::int16_t, 4>({7, 6, 5, 6}, seed);
       const auto contour = extract<double>(image.view(), 0.5, options);
       expect_closed_manifold(contour);
-      for (int i = 0; i < 4; ++i) expect_closed_manifold(slice(contour, 5.0 * unit_random(bits)));
+      for (int i = 0; i < 4; ++i)
+        expect_closed_manifold(slice(contour, Hyperplane<4>::across(3, 5.0 * unit_random(bits))));
       for (int i = 0; i < 4; ++i) {
         Hyperplane<4> oblique;
         for (double& x : oblique.normal) x = unit_random(bits) - 0.5;
-        oblique.offset = 2.5 * oblique.normal.sum();
+        oblique.offset = 2.5 * std::accumulate(oblique.normal.begin(), oblique.normal.end(), 0.0);
         expect_closed_manifold(slice(contour, oblique));
       }
     }
@@ -63,7 +64,7 @@ TEST(Resolved4d, AnyChoicesForTheFacesGiveAClosedManifold) {
   for (std::uint64_t seed = 11; seed <= 13; ++seed) {
     const auto contour = extract<double>(view_of(noise<float, 4>(7, seed)), 0.5, options);
     expect_closed_manifold(contour);
-    expect_closed_manifold(slice(contour, 2.75));
+    expect_closed_manifold(slice(contour, Hyperplane<4>::across(3, 2.75)));
   }
 }
 
@@ -75,7 +76,7 @@ TEST(Resolved4d, AtWholeStepsItIsTheContourOfTheStep) {
     const auto contour = extract<double>(image.view(), 0.5, options);
     EXPECT_TRUE(is_open_only_where_data_end(contour, image.view()));
     for (std::size_t k = 0; k < 6; ++k)
-      EXPECT_TRUE(same_surface(rounded(slice(contour, static_cast<double>(k))),
+      EXPECT_TRUE(same_surface(rounded(slice(contour, Hyperplane<4>::across(3, static_cast<double>(k)))),
                                rounded(extract<double>(last_axis_layer(image.view(), k), 0.5, options))))
           << "layer " << k;
   }
