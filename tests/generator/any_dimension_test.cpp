@@ -13,8 +13,8 @@
 #include <tuple>
 
 #include "filling/facets.hpp"
-#include "tegl/facets/certificate.hpp"
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/certificate.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 
 namespace tegl::facets {
 namespace {

@@ -15,7 +15,7 @@
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
 #include "symmetry/tile_symmetry.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::gen {
 namespace {

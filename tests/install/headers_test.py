@@ -37,7 +37,7 @@ def main(source, eigen, compilers):
     source = pathlib.Path(source)
     roots = [source / "runtime/include", source / "tile/include"]
     include = [f"-I{root}" for root in roots] + ["-isystem", eigen]
-    headers = sorted(str(header.relative_to(root)) for root, below in zip(roots, ["tegl/**/*.hpp", "tegl/facets/*.hpp"])
+    headers = sorted(str(header.relative_to(root)) for root, below in zip(roots, ["tegl/**/*.hpp", "tegl/tile/*.hpp"])
                      for header in root.glob(below))
     assert len(headers) > 30, f"only {headers} found"
     # Twice, so that a header without a guard is found, too.

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::facets {
 

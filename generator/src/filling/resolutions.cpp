@@ -15,7 +15,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "symmetry/tile_symmetry.hpp"
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 
 namespace tegl::gen {
 

@@ -10,7 +10,7 @@
 #include <map>
 
 #include "base/lattice.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::gen {
 

@@ -18,7 +18,7 @@
 #include "base/lattice.hpp"
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
-#include "tegl/facets/certificate.hpp"
+#include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
 

@@ -19,7 +19,7 @@
 #include "symmetry/tile_symmetry.hpp"
 #include "tables/emit_text.hpp"
 #include "tables/table_set.hpp"
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/complex.hpp"
 
 namespace tegl::gen {
 

@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tegl/image.hpp"
 
 namespace tegl {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::detail {
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tile/cube_key.hpp"
 

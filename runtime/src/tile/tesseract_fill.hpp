@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tile/cube_regions.hpp"
 #include "tile/cube_subcases.hpp"
 #include "tile/row_table.hpp"

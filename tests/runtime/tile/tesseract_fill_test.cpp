@@ -18,8 +18,8 @@
 
 #include "ambiguity/tesseract_decision.hpp"
 #include "base/corners.hpp"
-#include "tegl/facets/certificate.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/certificate.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tile/cube_regions.hpp"

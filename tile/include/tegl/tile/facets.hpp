@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/complex.hpp"
 
 namespace tegl::facets {
 
