@@ -155,7 +155,7 @@ TEST(AnyDimension, BoundariesOfFacetsAreThoseOfTheTableBuilder) {
         const Resolution resolution{.choices = {}, .alternative = high ? Alternative::high : Alternative::low};
         std::vector<int> ours, theirs;
         for (const Facet& f : build_facets(lattice, s, resolution).facets) ours.push_back(f.boundary_euler);
-        for (const gen::Facet& f : builder.build(static_cast<gen::Signature>(s)).facets)
+        for (const gen::LocalFacet& f : builder.build(static_cast<gen::Signature>(s)).facets)
           theirs.push_back(f.boundary_euler);
         ASSERT_THAT(ours, testing::UnorderedElementsAreArray(theirs)) << n << "D, signature " << s;
       }

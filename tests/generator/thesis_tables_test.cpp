@@ -188,7 +188,7 @@ class Builder {
 
   [[nodiscard]] Facets facets(Signature signature) const {
     Facets result;
-    for (const Facet& facet : builder_.build(signature).facets) {
+    for (const LocalFacet& facet : builder_.build(signature).facets) {
       result.emplace_back();
       for (const std::uint8_t edge : facet.points) {
         result.back().push_back(builder_.tile().edge_names[edge]);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Builds face lattices from the corner sets of the maximal faces: intersections, dimensions, order, orientation.
+#include "tegl/tile/face_lattice.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <string>
 
-#include "tegl/tile/facets.hpp"
+#include "tegl/tile/complex.hpp"
 
 namespace tegl::facets {
 
@@ -121,6 +123,12 @@ void FaceLattice::orient(Face& face) {
   }
   if (reached.size() != face.faces.size())
     throw std::invalid_argument("a face's boundary that is not connected: no polytope");
+}
+
+std::optional<std::uint32_t> FaceLattice::find(Signature corners) const {
+  const auto at = std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.corners == corners; });
+  if (at == faces_.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(at - faces_.begin());
 }
 
 FaceLattice FaceLattice::cube(int n) {

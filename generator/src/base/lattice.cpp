@@ -129,6 +129,12 @@ Tile make_octahedron(const Tile* triangle) {
 
 }  // namespace
 
+Signature SubTile::corners() const {
+  Signature result = 0;
+  for (const std::uint8_t v : corner) result |= Signature{1} << v;
+  return result;
+}
+
 Signature Tile::restrict_to(std::uint32_t f, Signature signature) const {
   const auto& corner = faces[f].corner;
   Signature result = 0;

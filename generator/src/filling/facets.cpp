@@ -42,11 +42,11 @@ std::uint8_t edge_between(const Tile& tile, std::uint8_t a, std::uint8_t b) {
 TileContour contour_of_edge(Signature signature) {
   TileContour result;
   if (signature == 1 || signature == 2) {
-    Facet facet;
-    facet.filling = Filling::point;
+    LocalFacet facet;
+    facet.filling = Filling::simplex;
     facet.sign = signature == 2 ? 1 : -1;
     facet.points = {0};
-    facet.simplices = {Simplex{0}};
+    facet.simplices = {LocalSimplex{0}};
     result.facets.push_back(facet);
   }
   return result;
@@ -70,11 +70,11 @@ void cut_runs(const Tile& tile, Signature signature, Alternative alternative, Ti
     std::uint8_t from = edge_between(tile, ring[(start + m - 1) % m], ring[start]);
     std::uint8_t to = edge_between(tile, ring[end % m], ring[(end + 1) % m]);
     if (sign_of[from] > 0) std::swap(from, to);  // the boundary of a segment is to - from
-    Facet facet;
+    LocalFacet facet;
     facet.boundary_euler = 2;
     facet.boundary_facets = 2;
     facet.points = {from, to};
-    facet.simplices = {Simplex{from, to}};
+    facet.simplices = {LocalSimplex{from, to}};
     contour.facets.push_back(facet);
   }
 }
@@ -115,8 +115,8 @@ ContourBuilder::ContourBuilder(const Lattice& lattice, int n, Alternative altern
 /// The contour around a single high corner is convex, so one of its simplices fixes the sign for all.
 void ContourBuilder::find_orientation() {
   const TileContour one = build(1);
-  const Facet& facet = one.facets.at(0);
-  const Simplex& simplex = facet.simplices.at(0);
+  const LocalFacet& facet = one.facets.at(0);
+  const LocalSimplex& simplex = facet.simplices.at(0);
   const int n = dim();
   const auto on_edge = [&](std::uint8_t e, int i) {
     return 0.5 * (tile().corners[tile().edges[e][0]][i] + tile().corners[tile().edges[e][1]][i]);

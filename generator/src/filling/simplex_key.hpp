@@ -32,8 +32,8 @@ inline int parity(const std::array<std::uint8_t, 4>& v, int count) {
   return sign;
 }
 
-inline Simplex without(const Simplex& s, int drop, int n) {
-  Simplex face{};
+inline LocalSimplex without(const LocalSimplex& s, int drop, int n) {
+  LocalSimplex face{};
   for (int i = 0, k = 0; i < n; ++i)
     if (i != drop) face[k++] = s[i];
   return face;

@@ -11,7 +11,7 @@
 #include <functional>
 #include <span>
 
-#include "tegl/tile/facets.hpp"
+#include "tegl/tile/choices.hpp"
 
 namespace tegl {
 

@@ -18,8 +18,8 @@
 #include <cstdint>
 #include <span>
 
-#include "tegl/tile/facets.hpp"
 #include "tegl/image.hpp"
+#include "tegl/tile/choices.hpp"
 
 namespace tegl {
 

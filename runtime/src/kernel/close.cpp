@@ -353,7 +353,7 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   };
   // new vertices and tetrahedra of each region
   const EdgePlaces<N, kAxes> places(source_, index, signature);
-  const bool barycentric = estimator_->triangulation() == kBarycentric;
+  const bool barycentric = estimator_->triangulation() == Triangulation::barycentric;
   const Regions& regions = Regions::of_caps(estimator_->triangulation());
   for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
     // A caller's estimator may change its answer: then a square has no barycentre although one is needed now.

@@ -370,22 +370,22 @@ class RegionMaker {
 
 }  // namespace
 
-const CubeRegions& CubeRegions::instance(int triangulation) {
-  if (triangulation == kBarycentric) {
-    static const CubeRegions barycentric(kBarycentric, false);
+const CubeRegions& CubeRegions::instance(Triangulation triangulation) {
+  if (triangulation == Triangulation::barycentric) {
+    static const CubeRegions barycentric(Triangulation::barycentric, false);
     return barycentric;
   }
-  static const CubeRegions compact(kCompact, false);
+  static const CubeRegions compact(Triangulation::compact, false);
   return compact;
 }
 
-const CubeRegions& CubeRegions::of_caps(int triangulation) {
-  if (triangulation == kCompact) return instance(kCompact);
-  static const CubeRegions barycentric(kBarycentric, true);
+const CubeRegions& CubeRegions::of_caps(Triangulation triangulation) {
+  if (triangulation == Triangulation::compact) return instance(Triangulation::compact);
+  static const CubeRegions barycentric(Triangulation::barycentric, true);
   return barycentric;
 }
 
-CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
+CubeRegions::CubeRegions(Triangulation triangulation, bool has_square_centres) {
   const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
   const std::vector<CubeList>& lists = cubes.lists();
   whole_ = static_cast<unsigned>(lists.size());
@@ -408,7 +408,7 @@ CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
       }
       // regions
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
-        RegionMaker maker(triangulation == kBarycentric);
+        RegionMaker maker(triangulation == Triangulation::barycentric);
         maker.fill(part, contour);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);

@@ -80,16 +80,16 @@ std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsign
   return place;
 }
 
-const ResolvedCubes& ResolvedCubes::instance(int triangulation) {
-  if (triangulation == kBarycentric) {
-    static const ResolvedCubes barycentric(kBarycentric);
+const ResolvedCubes& ResolvedCubes::instance(Triangulation triangulation) {
+  if (triangulation == Triangulation::barycentric) {
+    static const ResolvedCubes barycentric(Triangulation::barycentric);
     return barycentric;
   }
-  static const ResolvedCubes compact(kCompact);
+  static const ResolvedCubes compact(Triangulation::compact);
   return compact;
 }
 
-ResolvedCubes::ResolvedCubes(int triangulation) {
+ResolvedCubes::ResolvedCubes(Triangulation triangulation) {
   // signatures of cubes
   for (unsigned tile = 0; tile < 256; ++tile)
     for (unsigned f = 0; f < kCubes; ++f) {
@@ -141,7 +141,7 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
   triangles_.resize(triangles_.size() + kWordsBehind);
 }
 
-void ResolvedCubes::number_lists(int triangulation) {
+void ResolvedCubes::number_lists(Triangulation triangulation) {
   // properties of entries and signatures
   list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
   for (unsigned entry = 0; entry < kTile3Resolved.entry_count; ++entry)
@@ -164,7 +164,7 @@ void ResolvedCubes::number_lists(int triangulation) {
           key_of_.push_back((ambiguous_signatures<3>()[s] ? resolved : CubeKey(s)).bits());
           Summary& summary = summaries_.emplace_back();
           summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;
-          if (triangulation == kCompact)
+          if (triangulation == Triangulation::compact)
             take_compact(*lists[choice]);
           else
             take_barycentric();
@@ -190,7 +190,7 @@ void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
 
 /// Takes triangles, masks and summary of the list numbered last from the table of 3D contours.
 void ResolvedCubes::take_barycentric() {
-  const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
+  const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
   const tables::List& list = table.lists[table.list_of[key_of_.back()]];
   const std::uint8_t* const first = table.simplices + 3 * std::size_t{list.first_simplex};
   const std::span<const std::uint8_t> triangles(first, 3 * std::size_t{list.simplex_count});

@@ -11,14 +11,11 @@
 #include <span>
 #include <vector>
 
-#include "tegl/tile/facets.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tile/cube_key.hpp"
 
 namespace tegl::detail {
-
-/// Triangulations, numbered as in the generated tables (tables::tile_table).
-inline constexpr int kBarycentric = 0, kCompact = 1;
 
 /// A list of the table and its cube.
 struct CubeList {
@@ -61,7 +58,7 @@ class ResolvedCubes {
   using Lists = std::array<std::uint16_t, kCubes>;  ///< by cube of a tile
 
   /// List numbers are the same in both triangulations.
-  static const ResolvedCubes& instance(int triangulation = kCompact);
+  static const ResolvedCubes& instance(Triangulation triangulation = Triangulation::compact);
 
   /// Byte f: signature of cube f.
   [[nodiscard]] std::uint64_t signatures(std::uint16_t tile) const noexcept {
@@ -130,8 +127,8 @@ class ResolvedCubes {
   [[nodiscard]] bool is_reversed(unsigned cube) const noexcept { return reversed_[cube]; }
 
  private:
-  explicit ResolvedCubes(int triangulation);
-  void number_lists(int triangulation);
+  explicit ResolvedCubes(Triangulation triangulation);
+  void number_lists(Triangulation triangulation);
   void take_compact(const tables::ResolvedList& list);
   void take_barycentric();
   void make_frames();

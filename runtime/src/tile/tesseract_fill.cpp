@@ -89,13 +89,14 @@ Choice choice_of(const ResolvedKey& key, unsigned cube) {
 
 }  // namespace
 
-ResolvedTesseract::ResolvedTesseract(int triangulation)
-    : is_barycentric_(triangulation == kBarycentric),
+ResolvedTesseract::ResolvedTesseract(Triangulation triangulation)
+    : is_barycentric_(triangulation == Triangulation::barycentric),
       cubes_(ResolvedCubes::instance(triangulation)),
       in_table_(in_table().data()) {}
 
 const CubeRegions& ResolvedTesseract::regions() {
-  if (regions_ == nullptr) regions_ = &CubeRegions::instance(is_barycentric_ ? kBarycentric : kCompact);
+  if (regions_ == nullptr)
+    regions_ = &CubeRegions::instance(is_barycentric_ ? Triangulation::barycentric : Triangulation::compact);
   return *regions_;
 }
 
@@ -554,14 +555,14 @@ bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
   return settled[signature];
 }
 
-const RowTable& estimated_tesseracts(int triangulation) {
+const RowTable& estimated_tesseracts(Triangulation triangulation) {
   const auto make = [](bool all) {
-    RowTable result(tables::tile_table(4, kCompact));
+    RowTable result(tables::tile_table(4, Triangulation::compact));
     for (unsigned s = 0; s < 65536; ++s)
       if (all || ambiguous_signatures<4>()[s]) result.mark_as_own(s);
     return result;
   };
-  if (triangulation == kBarycentric) {
+  if (triangulation == Triangulation::barycentric) {
     static const RowTable barycentric = make(true);
     return barycentric;
   }
