@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tegl/tile/complex.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::facets {
 
@@ -134,13 +135,8 @@ std::optional<std::uint32_t> FaceLattice::find(Signature corners) const {
 FaceLattice FaceLattice::cube(int n) {
   checked(n, 1);
   std::vector<Signature> maximal;
-  for (int axis = 0; axis < n; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      Signature corners = 0;
-      for (int v = 0; v < 1 << n; ++v)
-        if (((v >> axis) & 1) == side) corners |= Signature{1} << v;
-      maximal.push_back(corners);
-    }
+  for (unsigned f = 0; f < 2 * static_cast<unsigned>(n); ++f)
+    maximal.push_back(detail::face_corners(static_cast<unsigned>(n), f));
   return {n, maximal};
 }
 

@@ -49,6 +49,8 @@ struct Tile {
   [[nodiscard]] Signature full() const { return ~Signature{0} >> (64 - corner_count()); }
   /// The signature restricted to face f, in the numbering of the face's corners.
   [[nodiscard]] Signature restrict_to(std::uint32_t f, Signature signature) const;
+  /// The edge between two corners, in either order. Throws std::logic_error if there is none.
+  [[nodiscard]] std::uint8_t edge_between(std::uint32_t a, std::uint32_t b) const;
 };
 
 /// The images of a tile's edges under a permutation of its corners that maps edges to edges.

@@ -31,12 +31,6 @@ std::vector<std::uint8_t> ring_of(const Tile& tile) {
   return ring;
 }
 
-std::uint8_t edge_between(const Tile& tile, std::uint8_t a, std::uint8_t b) {
-  for (std::uint8_t e = 0; e < tile.edge_count(); ++e)
-    if ((tile.edges[e][0] == a && tile.edges[e][1] == b) || (tile.edges[e][0] == b && tile.edges[e][1] == a)) return e;
-  throw std::logic_error("no edge between two corners of a ring");
-}
-
 /// Dimension 1: a critical edge has one point. Its sign is that of the boundary of the high part: + if the second end
 /// is high.
 TileContour contour_of_edge(Signature signature) {
@@ -67,8 +61,8 @@ void cut_runs(const Tile& tile, Signature signature, Alternative alternative, Ti
     if (!inside(start) || inside(start + m - 1)) continue;  // a run starts here
     std::size_t end = start;
     while (inside(end + 1)) ++end;
-    std::uint8_t from = edge_between(tile, ring[(start + m - 1) % m], ring[start]);
-    std::uint8_t to = edge_between(tile, ring[end % m], ring[(end + 1) % m]);
+    std::uint8_t from = tile.edge_between(ring[(start + m - 1) % m], ring[start]);
+    std::uint8_t to = tile.edge_between(ring[end % m], ring[(end + 1) % m]);
     if (sign_of[from] > 0) std::swap(from, to);  // the boundary of a segment is to - from
     LocalFacet facet;
     facet.boundary_euler = 2;

@@ -269,13 +269,6 @@ class SideFilling {
   static unsigned bits(const Triangle& t) { return 1u << t[0] | 1u << t[1] | 1u << t[2]; }
   [[nodiscard]] bool inside(std::uint8_t corner) const { return (((signature_ >> corner) & 1u) != 0) == high_; }
 
-  [[nodiscard]] std::uint8_t edge(std::uint8_t a, std::uint8_t b) const {
-    const Tile& cube = frame_.tiles.tile(3);
-    for (std::uint8_t e = 0; e < kEdges; ++e)
-      if (cube.edges[e][0] == std::min(a, b) && cube.edges[e][1] == std::max(a, b)) return e;
-    return 0;
-  }
-
   void square(std::size_t q) {
     // The square's corners in cyclic order, with the same orientation for all six squares seen from outside.
     std::array<std::uint8_t, 4> ring = {frame_.squares[q][0], frame_.squares[q][1], frame_.squares[q][3],
@@ -285,7 +278,7 @@ class SideFilling {
     for (std::size_t i = 0; i < 4; ++i) {
       const std::uint8_t here = ring[i], next = ring[(i + 1) % 4];
       if (inside(here)) outline.push_back(static_cast<std::uint8_t>(kEdges + here));
-      if (inside(here) != inside(next)) outline.push_back(edge(here, next));
+      if (inside(here) != inside(next)) outline.push_back(frame_.tiles.tile(3).edge_between(here, next));
     }
     const bool joined = (((high_squares_ >> q) & 1u) != 0) == high_;
     const auto is_corner = [](std::uint8_t v) { return v >= kEdges; };

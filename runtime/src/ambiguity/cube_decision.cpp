@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
-#include "base/corners.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/saddle.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 
@@ -39,8 +39,7 @@ constexpr auto kAxesOf = [] {
 constexpr auto kCornersOfSquares = [] {
   std::array<std::array<std::uint8_t, 4>, 6> result{};
   for (unsigned square = 0; square < 6; ++square)
-    for (unsigned c = 0; c < 4; ++c)
-      result[square][c] = static_cast<std::uint8_t>(unsqueeze(c, square / 2) | square % 2 << square / 2);
+    for (unsigned c = 0; c < 4; ++c) result[square][c] = static_cast<std::uint8_t>(lifted_corner(square, c));
   return result;
 }();
 

@@ -10,6 +10,7 @@
 #include "ambiguity/cube_decision.hpp"
 #include "kernel/contour_output.hpp"
 #include "kernel/extract_generate.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/cube_regions.hpp"
 
 namespace tegl::detail {
@@ -44,17 +45,13 @@ TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, s
 
 /// Whether all corners and edges in a region's mask belong to one square of the cube.
 bool lies_in_square(std::uint32_t mask) noexcept {
-  for (unsigned square = 0; square < 6; ++square) {
-    const unsigned axis = square / 2, side = square % 2;
-    const auto has = [&](unsigned v) {
-      if (v < 8) return (v >> axis & 1u) == side;
-      return (v - 8) / 4 != axis && (edge_base(3, v - 8) >> axis & 1u) == side;
-    };
-    std::uint32_t rest = mask;
-    while (rest != 0 && has(static_cast<unsigned>(std::countr_zero(rest)))) rest &= rest - 1;
-    if (rest == 0) return true;
-  }
-  return false;
+  static constexpr auto kSquares = [] {
+    std::array<std::uint32_t, 6> squares{};
+    for (unsigned q = 0; q < 6; ++q)
+      squares[q] = static_cast<std::uint32_t>(face_corners(3, q)) | face_edges(3, q) << 8;
+    return squares;
+  }();
+  return std::any_of(kSquares.begin(), kSquares.end(), [&](std::uint32_t square) { return (mask & ~square) == 0; });
 }
 
 /// Position of a vertex that a region of a cube adds in the barycentric triangulation. The weights are unequal, as in

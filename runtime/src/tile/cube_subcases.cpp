@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/corners.hpp"
+#include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/variant_table.hpp"
 
 namespace tegl::detail {
@@ -95,7 +96,7 @@ ResolvedCubes::ResolvedCubes(Triangulation triangulation) {
     for (unsigned f = 0; f < kCubes; ++f) {
       for (unsigned half = 0; half < 2; ++half) {
         const unsigned corners = tile << (8 * half);
-        signatures_[half][tile] |= std::uint64_t{squeezed_corners<4>(corners >> (f % 2 << f / 2), f / 2)} << (8 * f);
+        signatures_[half][tile] |= std::uint64_t{face_signature(4, corners, f)} << (8 * f);
       }
     }
   // squares of cubes
@@ -212,8 +213,7 @@ void ResolvedCubes::take_barycentric() {
 void ResolvedCubes::make_frames() {
   for (unsigned f = 0; f < kCubes; ++f) {
     for (unsigned e = 0; e < kCubeEdges; ++e) {
-      const unsigned axis = e / 4 < f / 2 ? e / 4 : e / 4 + 1;
-      const unsigned edge = axis << 3 | squeeze(lifted_corner(f, edge_base(3, e)), axis);
+      const unsigned edge = lifted_edge(4, f, e);
       lifted_[f][e] = static_cast<std::uint8_t>(edge);
       edges_of_[f] |= 1u << edge;
     }
@@ -221,7 +221,7 @@ void ResolvedCubes::make_frames() {
       lifted_[f][kCubeEdges + j] = static_cast<std::uint8_t>(kEdges + kMostOwn * f + j);
     // Sign from a tile with one high corner, in the cube: its tetrahedron is (vertex on the edge that leaves the cube,
     // triangle of the cube), and all cubes must orient it equally.
-    reversed_[f] = (f / 2 + f % 2) % 2 == 0;
+    reversed_[f] = face_sign(f) < 0;
   }
   for (unsigned f = 0; f < kCubes; ++f)
     for (unsigned e = 0; e < kEdges; ++e)

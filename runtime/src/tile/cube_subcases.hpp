@@ -161,12 +161,6 @@ class ResolvedCubes {
   std::array<bool, kCubes> reversed_{};
 };
 
-/// Corner of the tile for a corner of its cube `cube`.
-constexpr unsigned lifted_corner(unsigned cube, unsigned corner) noexcept {
-  const unsigned axis = cube / 2, below = corner & ((1u << axis) - 1);
-  return below | (corner >> axis) << (axis + 1) | (cube % 2) << axis;
-}
-
 /// Number of the list (ResolvedCubes) for a cube's key; kNone for a cube without a contour.
 unsigned list_of_key(unsigned key) noexcept;
 

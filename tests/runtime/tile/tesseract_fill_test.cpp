@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "ambiguity/tesseract_decision.hpp"
-#include "base/corners.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/certificate.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tegl/tile/facets.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tile/cube_regions.hpp"
