@@ -204,12 +204,7 @@ using SignedFace = std::pair<LocalSimplex, int>;
 
 /// The simplex with ascending vertices, and the sign of the permutation.
 SignedFace sorted_face(LocalSimplex s, int count) {
-  int sign = 1;
-  for (int i = 1; i < count; ++i)
-    for (int j = i; j > 0 && s[j] < s[j - 1]; --j) {
-      std::swap(s[j], s[j - 1]);
-      sign = -sign;
-    }
+  const int sign = facets::sort_vertices(s, count);
   return {s, sign};
 }
 

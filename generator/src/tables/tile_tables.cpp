@@ -31,16 +31,10 @@ template <class Name>
 std::vector<Canonical> canonical(int n, const std::vector<LocalSimplex>& simplices, bool reversed, const Name& name) {
   std::vector<Canonical> result;
   for (const LocalSimplex& s : simplices) {
-    Canonical c{};
-    int sign = reversed ? -1 : 1;
-    for (int i = 0; i < n; ++i) c[i + 1] = name(s[i]);
-    for (int i = 1; i <= n; ++i)  // insertion sort that counts exchanges
-      for (int j = i; j > 1 && c[j] < c[j - 1]; --j) {
-        std::swap(c[j], c[j - 1]);
-        sign = -sign;
-      }
-    c[0] = sign > 0 ? 1 : 0;
-    result.push_back(c);
+    std::array<std::uint32_t, 4> names{};
+    for (int i = 0; i < n; ++i) names[i] = name(s[i]);
+    const int sign = facets::sort_vertices(names, n) * (reversed ? -1 : 1);
+    result.push_back({sign > 0 ? 1u : 0u, names[0], names[1], names[2], names[3]});
   }
   std::sort(result.begin(), result.end());
   return result;

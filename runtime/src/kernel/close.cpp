@@ -334,10 +334,10 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
   using Regions = CubeRegions;
   // numbers of shared vertices
-  const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
+  const CubeKey key = cube_key<N>(*estimator_, index, kAxes, signature);
   corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
   const unsigned own = cube_vertices(estimator_->triangulation(), key);
-  if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key, own))
+  if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key.bits(), own))
     return estimator_->report_change(index);
   if (own != 0) {
     const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);

@@ -111,14 +111,6 @@ ResolvedCubes::ResolvedCubes(Triangulation triangulation) {
         for (unsigned set = 0; set < 16; ++set)
           if ((set >> sides & 1u) != 0) squares_[pair][set] |= bits;
       }
-  // resolution numbers
-  for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
-    for (unsigned high = 0; high < 64; ++high) {
-      unsigned result = 0, at = 0;
-      for (unsigned q = 0; q < 6; ++q)
-        if ((ambiguous >> q & 1u) != 0) result |= (high >> q & 1u) << at++;
-      compressed_[ambiguous << 6 | high] = static_cast<std::uint8_t>(result);
-    }
   // lists, frames and parts
   number_lists(triangulation);
   make_frames();
@@ -162,7 +154,7 @@ void ResolvedCubes::number_lists(Triangulation triangulation) {
           list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
           lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
           const CubeKey resolved(s, entry - kTile3Resolved.first_entry[s], static_cast<facets::Choice>(choice));
-          key_of_.push_back((ambiguous_signatures<3>()[s] ? resolved : CubeKey(s)).bits());
+          key_of_.push_back(ambiguous_signatures<3>()[s] ? resolved : CubeKey(s));
           Summary& summary = summaries_.emplace_back();
           summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;
           if (triangulation == Triangulation::compact)
@@ -192,7 +184,7 @@ void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
 /// Takes triangles, masks and summary of the list numbered last from the table of 3D contours.
 void ResolvedCubes::take_barycentric() {
   const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
-  const tables::List& list = table.lists[table.list_of[key_of_.back()]];
+  const tables::List& list = table.lists[table.list_of[key_of_.back().bits()]];
   const std::uint8_t* const first = table.simplices + 3 * std::size_t{list.first_simplex};
   const std::span<const std::uint8_t> triangles(first, 3 * std::size_t{list.simplex_count});
   of_cube_.insert(of_cube_.end(), triangles.begin(), triangles.end());
@@ -257,8 +249,7 @@ void ResolvedCubes::make_parts(unsigned cube, unsigned list) {
   }
 }
 
-unsigned list_of_key(unsigned key) noexcept {
-  const CubeKey cube(key);
+unsigned list_of_key(CubeKey cube) noexcept {
   if (cube.signature() == 0 || cube.signature() == 255) return ResolvedCubes::kNone;
   unsigned squares = 0;
   unsigned bit = 0;

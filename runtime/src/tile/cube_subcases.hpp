@@ -73,7 +73,7 @@ class ResolvedCubes {
   /// Entry of tables::kTile3Resolved. Bits of `high_squares` for unambiguous squares are ignored.
   [[nodiscard]] unsigned entry(unsigned signature, unsigned high_squares) const noexcept {
     const Signature of = of_signatures_[signature];
-    return unsigned{of.first_entry} + compressed_[of.ambiguous << 6 | high_squares];
+    return unsigned{of.first_entry} + kPackedSquares[of.ambiguous][high_squares];
   }
   /// Number of a list, less than lists().size(), or kNone for a cube of one sign.
   [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, facets::Choice choice) const noexcept {
@@ -87,8 +87,8 @@ class ResolvedCubes {
   [[nodiscard]] bool has_choice(unsigned entry) const noexcept { return has_choice_[entry] != 0; }
   /// Number of own vertices of a list; 0 for kNone.
   [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept { return summary(list).own_vertices; }
-  /// A key (cube_key.hpp) whose filling is the list.
-  [[nodiscard]] std::uint16_t key(unsigned list) const noexcept { return key_of_[list]; }
+  /// A key whose filling is the list.
+  [[nodiscard]] CubeKey key(unsigned list) const noexcept { return key_of_[list]; }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
   /// Triangles of a list in the cube, three local vertices each.
   [[nodiscard]] std::span<const std::uint8_t> triangles_of(unsigned list) const noexcept {
@@ -141,10 +141,9 @@ class ResolvedCubes {
     std::uint16_t ambiguous;  ///< ambiguous squares
   };
   std::array<Signature, 256> of_signatures_{};
-  std::array<std::uint8_t, 64 * 64> compressed_{};
   std::vector<CubeList> lists_;
   std::vector<std::uint16_t> list_of_;
-  std::vector<std::uint16_t> key_of_;  ///< by list
+  std::vector<CubeKey> key_of_;        ///< by list
   std::vector<std::uint8_t> of_cube_;  ///< triangles of the lists
   std::vector<std::uint32_t> first_of_cube_{0};
   std::vector<std::array<std::uint32_t, kMostOwn>> masks_;  ///< by list
@@ -162,6 +161,6 @@ class ResolvedCubes {
 };
 
 /// Number of the list (ResolvedCubes) for a cube's key; kNone for a cube without a contour.
-unsigned list_of_key(unsigned key) noexcept;
+unsigned list_of_key(CubeKey key) noexcept;
 
 }  // namespace tegl::detail

@@ -58,8 +58,8 @@ template <>
 const std::array<bool, 65536>& ambiguous_signatures<4>() noexcept;  // tesseract_fill.cpp
 
 /// Number of vertices that a cube owns, by key.
-inline unsigned cube_vertices(Triangulation triangulation, unsigned key) {
-  return variant_table<3>(triangulation).rows().own_vertices(key);
+inline unsigned cube_vertices(Triangulation triangulation, CubeKey key) {
+  return variant_table<3>(triangulation).rows().own_vertices(key.bits());
 }
 
 }  // namespace tegl::detail
