@@ -152,7 +152,7 @@ TEST_P(EquivarianceTest, BarycentricContoursMoveWithEverySymmetryOrientationIncl
           moved[e] = static_cast<int>(f);
     for (Signature s = 0; s <= tile.full(); ++s)
       ASSERT_EQ(canonical(builder, builder.build(s), moved, g.reverses_orientation()),
-                canonical(builder, builder.build(act(g, corner, s)), same, false))
+                canonical(builder, builder.build(act(g, corner, static_cast<std::uint32_t>(s))), same, false))
           << "signature " << s;
   }
 }

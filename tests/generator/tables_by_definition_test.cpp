@@ -125,7 +125,7 @@ std::string fault_of_separate(const Parts& parts, const std::vector<VertexSet>& 
   return "";
 }
 
-std::vector<VertexSet> simplices_of(const tables::TileTable& table, Signature s) {
+std::vector<VertexSet> simplices_of(const tables::TileTable& table, Corners s) {
   std::vector<VertexSet> result;
   for (const LocalSimplex& simplex : decode(table, s).simplices) {
     VertexSet set;
@@ -140,8 +140,8 @@ constexpr std::array kTriangulations{Triangulation::barycentric, Triangulation::
 
 TEST(TablesByDefinition, EveryEntryOfEveryTileTable) {
   for (const int n : {2, 3, 4}) {
-    const Signature full = (Signature{1} << (1u << n)) - 1;
-    for (Signature s = 1; s < full; ++s) {
+    const Corners full = (Corners{1} << (1u << n)) - 1;
+    for (Corners s = 1; s < full; ++s) {
       const Parts parts(n, s, kAllLow);
       for (const Triangulation triangulation : kTriangulations) {
         const auto simplices = simplices_of(tables::tile_table(n, triangulation), s);
@@ -149,7 +149,7 @@ TEST(TablesByDefinition, EveryEntryOfEveryTileTable) {
             << n << "D, signature " << s << ", " << triangulation_name(triangulation);
       }
     }
-    for (const Signature s : {Signature{0}, full})
+    for (const Corners s : {Corners{0}, full})
       for (const Triangulation triangulation : kTriangulations)
         EXPECT_TRUE(simplices_of(tables::tile_table(n, triangulation), s).empty());
   }
@@ -203,7 +203,7 @@ std::string fault_of_masks(const tables::ResolvedList& list) {
 TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
   const tables::ResolvedTable& table = tables::kTile3Resolved;
   unsigned entries = 0;
-  for (Signature s = 0; s < 256; ++s) {
+  for (Corners s = 0; s < 256; ++s) {
     const unsigned ambiguous = table.ambiguous_squares[s];
     for (unsigned r = 0; r < 1u << std::popcount(ambiguous); ++r, ++entries) {
       const auto is_high = [&](unsigned base, unsigned axes) {
@@ -235,7 +235,7 @@ TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
       for (const Alternative alternative : {Alternative::low, Alternative::high}) {
         const tables::RegionTable& table = tables::region_table(k, triangulation, alternative);
         const auto size = static_cast<unsigned>(k + 1);
-        for (Signature s = 0; s < Signature{1} << (1u << k); ++s) {
+        for (Corners s = 0; s < Corners{1} << (1u << k); ++s) {
           std::vector<VertexSet> simplices;
           for (unsigned i = 0; i < table.lists[s].simplex_count; ++i) {
             VertexSet set;
@@ -262,8 +262,8 @@ TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
 
 /// The comparison notices what it is for.
 TEST(TablesByDefinition, AWrongEntryIsFound) {
-  const auto entry = [](int n, Signature s) { return simplices_of(tables::tile_table(n, Triangulation::compact), s); };
-  const auto fault = [](int n, Signature s, const std::vector<VertexSet>& simplices) {
+  const auto entry = [](int n, Corners s) { return simplices_of(tables::tile_table(n, Triangulation::compact), s); };
+  const auto fault = [](int n, Corners s, const std::vector<VertexSet>& simplices) {
     return fault_of_separate(Parts(n, s, kAllLow), simplices);
   };
   ASSERT_EQ(fault(3, 0b1001, entry(3, 0b1001)), "");

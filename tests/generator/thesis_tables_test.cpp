@@ -224,7 +224,7 @@ TEST(ThesisTables, TwoDimensionalLookUpTable) {
 TEST(ThesisTables, ThreeDimensionalTransversal) {
   std::vector<std::uint32_t> printed;
   for (const auto& [signature, facets] : table("7.7").rows) {
-    printed.push_back(signature);
+    printed.push_back(static_cast<std::uint32_t>(signature));
   }
   EXPECT_EQ(printed, transversal(3, group(3, GroupKind::Full, false)).representatives);
   EXPECT_EQ(differences(table("7.7"), Builder(3, Alternative::low)), "");
@@ -233,7 +233,7 @@ TEST(ThesisTables, ThreeDimensionalTransversal) {
 TEST(ThesisTables, TwoDimensionalTransversal) {
   std::vector<std::uint32_t> printed;
   for (const auto& [signature, facets] : table("6.12").rows) {
-    printed.push_back(signature);
+    printed.push_back(static_cast<std::uint32_t>(signature));
   }
   EXPECT_EQ(printed, transversal(2, group(2, GroupKind::Rotations, false)).representatives);
 }
