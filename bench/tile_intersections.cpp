@@ -278,12 +278,12 @@ int main(int argc, char** argv) {
                                "of noise enclose, as CSV"))
     return 0;
   const std::size_t tiles = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 100'000;
-  constexpr auto kCompact = Triangulation::compact;
-  constexpr auto kBarycentric = Triangulation::barycentric;
-  constexpr Way kLow{"low", Ambiguity::low, kCompact}, kHigh{"high", Ambiguity::high, kCompact};
-  constexpr Way kMean{"mean", Ambiguity::mean, kCompact}, kSaddle{"saddle", Ambiguity::saddle, kCompact};
-  constexpr Way kLowEven{"low", Ambiguity::low, kBarycentric}, kMeanEven{"mean", Ambiguity::mean, kBarycentric};
-  constexpr Way kSaddleEven{"saddle", Ambiguity::saddle, kBarycentric};
+  constexpr auto compact = Triangulation::compact;
+  constexpr auto barycentric = Triangulation::barycentric;
+  constexpr Way kLow{"low", Ambiguity::low, compact}, kHigh{"high", Ambiguity::high, compact};
+  constexpr Way kMean{"mean", Ambiguity::mean, compact}, kSaddle{"saddle", Ambiguity::saddle, compact};
+  constexpr Way kLowEven{"low", Ambiguity::low, barycentric}, kMeanEven{"mean", Ambiguity::mean, barycentric};
+  constexpr Way kSaddleEven{"saddle", Ambiguity::saddle, barycentric};
   std::printf("dimension,ambiguity,triangulation,samples along an axis,share of noise,share of its negative,sum\n");
   for (const Way& way : {kLow, kLowEven, kMean, kMeanEven, kSaddle, kSaddleEven}) {
     enclosed<3>(way, 48);

@@ -88,7 +88,7 @@ tegl_needed_packages(tegl_core_dependencies ${tegl_core_targets})
 tegl_install_component(core ${tegl_core_targets})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/tegl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT core
   FILES_MATCHING PATTERN "*.hpp" PATTERN io.hpp EXCLUDE PATTERN io EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/tile/include/tegl/facets DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tile/include/tegl/tile DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl
   COMPONENT core)
 
 set(tegl_io_dependencies "")

@@ -43,12 +43,13 @@ int main(int argc, char** argv) {
       const auto open = open_simplices(builder, by_class[below], by_class[above], kUp);
       if (open.empty()) continue;
 
-      std::printf("for example signature %u below %u: %zu open edges\n", below, above, open.size());
+      std::printf("for example signature %llu below %llu: %zu open edges\n", static_cast<unsigned long long>(below),
+                  static_cast<unsigned long long>(above), open.size());
       Picture picture;
       picture.title = "A hole between two tiles";
       picture.tiles = {{&lattice.tile(3), below, &by_class[below], {0, 0, 0}},
                        {&lattice.tile(3), above, &by_class[above], {0, 0, 1}}};
-      for (const Simplex& edge : open) {
+      for (const LocalSimplex& edge : open) {
         const Place a = place_of(lattice.tile(3), {}, edge[0]), b = place_of(lattice.tile(3), {}, edge[1]);
         std::printf("  (%g, %g, %g) - (%g, %g, %g)\n", a[0], a[1], a[2], b[0], b[1], b[2]);
         picture.marks.push_back({a, b});

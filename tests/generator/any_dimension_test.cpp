@@ -13,8 +13,8 @@
 #include <tuple>
 
 #include "filling/facets.hpp"
-#include "tegl/facets/certificate.hpp"
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/certificate.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 
 namespace tegl::facets {
 namespace {
@@ -155,7 +155,7 @@ TEST(AnyDimension, BoundariesOfFacetsAreThoseOfTheTableBuilder) {
         const Resolution resolution{.choices = {}, .alternative = high ? Alternative::high : Alternative::low};
         std::vector<int> ours, theirs;
         for (const Facet& f : build_facets(lattice, s, resolution).facets) ours.push_back(f.boundary_euler);
-        for (const gen::Facet& f : builder.build(static_cast<gen::Signature>(s)).facets)
+        for (const gen::LocalFacet& f : builder.build(static_cast<gen::Signature>(s)).facets)
           theirs.push_back(f.boundary_euler);
         ASSERT_THAT(ours, testing::UnorderedElementsAreArray(theirs)) << n << "D, signature " << s;
       }

@@ -14,7 +14,7 @@
 namespace tegl::gen {
 
 struct Decoded {
-  std::vector<Simplex> simplices;
+  std::vector<LocalSimplex> simplices;
   std::uint32_t cones = 0;
   std::vector<std::uint64_t> masks;
 
@@ -29,7 +29,7 @@ inline Decoded decode(const tables::TileTable& table, Signature s) {
   Decoded result;
   result.cones = list.cone_vertices;
   for (std::uint32_t i = 0; i < list.simplex_count; ++i) {
-    Simplex simplex{};
+    LocalSimplex simplex{};
     for (std::uint32_t k = 0; k < n; ++k) {
       std::uint8_t v = table.simplices[(std::size_t{list.first_simplex} + i) * n + k];
       if (row && v < tables::first_tile_vertex(n)) {

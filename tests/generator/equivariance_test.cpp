@@ -81,7 +81,7 @@ std::array<Place, 256> places_of(const ContourBuilder& builder, Signature s, con
   for (std::uint32_t e = 0; e < tile.edge_count(); ++e) places[e] = place(kPoint, 0, Place{1} << e);
   for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
     std::uint32_t slot = 0;
-    for (const Facet& facet : builder.face_contour(f, s).facets) {
+    for (const LocalFacet& facet : builder.face_contour(f, s).facets) {
       if (facet.filling != Filling::cone) continue;
       Place edges = 0;
       for (const std::uint8_t e : facet.points) edges |= Place{1} << tile.faces[f].edge[e];
@@ -89,7 +89,7 @@ std::array<Place, 256> places_of(const ContourBuilder& builder, Signature s, con
     }
   }
   std::uint32_t cone = 0;
-  for (const Facet& facet : contour.facets)
+  for (const LocalFacet& facet : contour.facets)
     if (facet.filling == Filling::cone)
       places[builder.own_base() + cone++] = place(kOwnBarycentre, 0, edges_of(facet.points));
   for (std::uint32_t j = 0; j < contour.side_masks.size(); ++j)
@@ -102,8 +102,8 @@ std::vector<PlacedSimplex> placed(const ContourBuilder& builder, Signature s) {
   const TileContour contour = builder.build(s);
   const auto places = places_of(builder, s, contour);
   std::vector<PlacedSimplex> result;
-  for (const Facet& facet : contour.facets)
-    for (const Simplex& t : facet.simplices)
+  for (const LocalFacet& facet : contour.facets)
+    for (const LocalSimplex& t : facet.simplices)
       result.push_back(sorted({places[t[0]], places[t[1]], places[t[2]], places[t[3]]}, 1));
   std::sort(result.begin(), result.end());
   return result;
@@ -115,7 +115,7 @@ using FacetKind = std::tuple<Place, int, std::uint32_t>;
 
 std::vector<FacetKind> facets_of(const ContourBuilder& builder, Signature s) {
   std::vector<FacetKind> result;
-  for (const Facet& facet : builder.build(s).facets)
+  for (const LocalFacet& facet : builder.build(s).facets)
     result.emplace_back(edges_of(facet.points), facet.boundary_euler, facet.boundary_facets);
   std::sort(result.begin(), result.end());
   return result;

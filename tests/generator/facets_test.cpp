@@ -29,7 +29,7 @@ constexpr Triangulation kTriangulations[] = {Triangulation::barycentric, Triangu
 
 std::vector<int> polygon_sizes(const TileContour& contour) {
   std::vector<int> sizes;
-  for (const Facet& facet : contour.facets) sizes.push_back(static_cast<int>(facet.points.size()));
+  for (const LocalFacet& facet : contour.facets) sizes.push_back(static_cast<int>(facet.points.size()));
   std::sort(sizes.rbegin(), sizes.rend());
   return sizes;
 }
@@ -116,10 +116,10 @@ TEST(Facets, EverySignatureOf2dAnd3dPassesInEveryWay) {
 std::multiset<std::vector<int>> canonical(const ContourBuilder& builder, const TileContour& contour,
                                           const std::array<int, 64>& rename, bool reversed) {
   std::multiset<std::vector<int>> result;
-  for (const Facet& facet : contour.facets) {
+  for (const LocalFacet& facet : contour.facets) {
     int smallest = 1000;
     for (const auto p : facet.points) smallest = std::min(smallest, rename[p]);
-    for (const Simplex& s : facet.simplices) {
+    for (const LocalSimplex& s : facet.simplices) {
       std::vector<int> v;
       for (int i = 0; i < builder.dim(); ++i) v.push_back(s[i] < builder.own_base() ? rename[s[i]] : 100 + smallest);
       bool odd = reversed;
@@ -152,7 +152,7 @@ TEST_P(EquivarianceTest, BarycentricContoursMoveWithEverySymmetryOrientationIncl
           moved[e] = static_cast<int>(f);
     for (Signature s = 0; s <= tile.full(); ++s)
       ASSERT_EQ(canonical(builder, builder.build(s), moved, g.reverses_orientation()),
-                canonical(builder, builder.build(act(g, corner, s)), same, false))
+                canonical(builder, builder.build(act(g, corner, static_cast<std::uint32_t>(s))), same, false))
           << "signature " << s;
   }
 }
@@ -186,7 +186,7 @@ TEST(Certificate, AConeOverATorusFailsAtItsApex) {
       ASSERT_EQ(0, contour.facets[0].boundary_euler);
       ASSERT_EQ(certify(builder, s, contour), Fault::none);
       contour.facets[0].simplices.clear();
-      for (const Simplex& b : contour.boundary)
+      for (const LocalSimplex& b : contour.boundary)
         contour.facets[0].simplices.push_back({static_cast<std::uint8_t>(builder.own_base()), b[0], b[1], b[2]});
       EXPECT_EQ(Fault::link, certify(builder, s, contour));
     }
@@ -204,13 +204,13 @@ TEST(Certificate, EveryKindOfFaultIsNamed) {
     change(bad.facets[0].simplices);
     return certify(builder, s, bad);
   };
-  using List = std::vector<Simplex>;
+  using List = std::vector<LocalSimplex>;
   EXPECT_EQ(Fault::boundary, fault([](List& l) { l.pop_back(); }));
   EXPECT_EQ(Fault::repeated_vertex, fault([](List& l) { l.push_back(l[0]); }));
   EXPECT_EQ(Fault::repeated_vertex, fault([](List& l) { l[0][1] = l[0][0]; }));
   EXPECT_EQ(Fault::orientation, fault([](List& l) { std::swap(l[0][1], l[0][2]); }));
   EXPECT_EQ(Fault::boundary, fault([](List& l) {
-              for (Simplex& t : l) std::swap(t[1], t[2]);
+              for (LocalSimplex& t : l) std::swap(t[1], t[2]);
             }));
   EXPECT_EQ(Fault::branching, fault([](List& l) {
               for (const std::uint8_t v : {std::uint8_t{50}, std::uint8_t{51}})
@@ -247,7 +247,7 @@ TEST(Certificate, CompactTilesNeedNoMoreSimplicesThanBarycentricOnes) {
     const ContourBuilder barycentric(lattice, n, Alternative::low, Triangulation::barycentric);
     const auto count = [](const TileContour& c) {
       std::size_t sum = 0;
-      for (const Facet& f : c.facets) sum += f.simplices.size();
+      for (const LocalFacet& f : c.facets) sum += f.simplices.size();
       return sum;
     };
     for (Signature s = 0; s <= compact.tile().full(); s += n == 4 ? 17 : 1)
@@ -277,7 +277,7 @@ Point mean_of(const Tile& tile, std::uint32_t mask) {
 double volume(const RegionBuilder& builder, Signature s) {
   const Tile& tile = builder.tile();
   double total = 0;
-  for (const Simplex& simplex : builder.regions(s).simplices) {
+  for (const LocalSimplex& simplex : builder.regions(s).simplices) {
     Point p[4];
     for (int i = 0; i <= tile.dim; ++i) p[i] = mean_of(tile, builder.mask_of(s, simplex[i]));
     double m[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -15,7 +15,7 @@
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
 #include "symmetry/tile_symmetry.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::gen {
 namespace {
@@ -243,10 +243,10 @@ TEST(Resolutions, EveryTesseractIsThatOfTheBarycentricTable) {
               ++portrait.second[lattice.faces()[v.face].corners];
         ours.insert(portrait);
       }
-      for (const Facet& facet : tables.build(s).facets) {
+      for (const LocalFacet& facet : tables.build(s).facets) {
         if (facet.filling == Filling::side) continue;
         Portrait portrait{facet.simplices.size(), {}};
-        for (const Simplex& simplex : facet.simplices)
+        for (const LocalSimplex& simplex : facet.simplices)
           for (const std::uint8_t v : simplex)
             if (v < tile.edge_count())
               ++portrait.second[std::uint64_t{1} << tile.edges[v][0] | std::uint64_t{1} << tile.edges[v][1]];

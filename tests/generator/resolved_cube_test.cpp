@@ -15,7 +15,7 @@
 #include "base/lattice.hpp"
 #include "filling/resolutions.hpp"
 #include "filling/resolved_cube.hpp"
-#include "tegl/facets/certificate.hpp"
+#include "tegl/tile/certificate.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::gen {

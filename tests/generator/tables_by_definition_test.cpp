@@ -125,9 +125,9 @@ std::string fault_of_separate(const Parts& parts, const std::vector<VertexSet>& 
   return "";
 }
 
-std::vector<VertexSet> simplices_of(const tables::TileTable& table, Signature s) {
+std::vector<VertexSet> simplices_of(const tables::TileTable& table, Corners s) {
   std::vector<VertexSet> result;
-  for (const Simplex& simplex : decode(table, s).simplices) {
+  for (const LocalSimplex& simplex : decode(table, s).simplices) {
     VertexSet set;
     set.fill(0xff);
     for (std::uint32_t j = 0; j < table.dim; ++j) set[j] = static_cast<std::uint8_t>(simplex[j]);
@@ -136,18 +136,22 @@ std::vector<VertexSet> simplices_of(const tables::TileTable& table, Signature s)
   return result;
 }
 
+constexpr std::array kTriangulations{Triangulation::barycentric, Triangulation::compact};
+
 TEST(TablesByDefinition, EveryEntryOfEveryTileTable) {
   for (const int n : {2, 3, 4}) {
-    const Signature full = (Signature{1} << (1u << n)) - 1;
-    for (Signature s = 1; s < full; ++s) {
+    const Corners full = (Corners{1} << (1u << n)) - 1;
+    for (Corners s = 1; s < full; ++s) {
       const Parts parts(n, s, kAllLow);
-      for (const int triangulation : {0, 1}) {
+      for (const Triangulation triangulation : kTriangulations) {
         const auto simplices = simplices_of(tables::tile_table(n, triangulation), s);
-        ASSERT_EQ(fault_of_separate(parts, simplices), "") << n << "D, signature " << s << ", table " << triangulation;
+        ASSERT_EQ(fault_of_separate(parts, simplices), "")
+            << n << "D, signature " << s << ", " << triangulation_name(triangulation);
       }
     }
-    for (const Signature s : {Signature{0}, full})
-      for (const int triangulation : {0, 1}) EXPECT_TRUE(simplices_of(tables::tile_table(n, triangulation), s).empty());
+    for (const Corners s : {Corners{0}, full})
+      for (const Triangulation triangulation : kTriangulations)
+        EXPECT_TRUE(simplices_of(tables::tile_table(n, triangulation), s).empty());
   }
 }
 
@@ -199,7 +203,7 @@ std::string fault_of_masks(const tables::ResolvedList& list) {
 TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
   const tables::ResolvedTable& table = tables::kTile3Resolved;
   unsigned entries = 0;
-  for (Signature s = 0; s < 256; ++s) {
+  for (Corners s = 0; s < 256; ++s) {
     const unsigned ambiguous = table.ambiguous_squares[s];
     for (unsigned r = 0; r < 1u << std::popcount(ambiguous); ++r, ++entries) {
       const auto is_high = [&](unsigned base, unsigned axes) {
@@ -227,11 +231,11 @@ TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
 
 TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
   for (const int k : {1, 2, 3})
-    for (const int triangulation : {0, 1})
-      for (const int alternative : {0, 1}) {
+    for (const Triangulation triangulation : kTriangulations)
+      for (const Alternative alternative : {Alternative::low, Alternative::high}) {
         const tables::RegionTable& table = tables::region_table(k, triangulation, alternative);
         const auto size = static_cast<unsigned>(k + 1);
-        for (Signature s = 0; s < Signature{1} << (1u << k); ++s) {
+        for (Corners s = 0; s < Corners{1} << (1u << k); ++s) {
           std::vector<VertexSet> simplices;
           for (unsigned i = 0; i < table.lists[s].simplex_count; ++i) {
             VertexSet set;
@@ -241,7 +245,7 @@ TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
             simplices.push_back(set);
           }
           std::set<Corners> expected, found;
-          const BoundaryPart part(k, s, alternative == 0 ? kAllLow : kAllHigh);
+          const BoundaryPart part(k, s, alternative == Alternative::low ? kAllLow : kAllHigh);
           expected.insert(part.regions_of_cube().begin(), part.regions_of_cube().end());
           for (const Piece& piece : pieces_of(simplices, size)) {
             EXPECT_EQ(piece.euler, 1) << k << "D, signature " << s;
@@ -250,15 +254,16 @@ TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
               if (v < 1u << k) corners |= Corners{1} << v;
             found.insert(corners);
           }
-          ASSERT_EQ(found, expected) << k << "D, signature " << s << ", table " << triangulation << ", " << alternative;
+          ASSERT_EQ(found, expected) << k << "D, signature " << s << ", " << triangulation_name(triangulation) << ", "
+                                     << alternative_name(alternative);
         }
       }
 }
 
 /// The comparison notices what it is for.
 TEST(TablesByDefinition, AWrongEntryIsFound) {
-  const auto entry = [](int n, Signature s) { return simplices_of(tables::tile_table(n, 1), s); };
-  const auto fault = [](int n, Signature s, const std::vector<VertexSet>& simplices) {
+  const auto entry = [](int n, Corners s) { return simplices_of(tables::tile_table(n, Triangulation::compact), s); };
+  const auto fault = [](int n, Corners s, const std::vector<VertexSet>& simplices) {
     return fault_of_separate(Parts(n, s, kAllLow), simplices);
   };
   ASSERT_EQ(fault(3, 0b1001, entry(3, 0b1001)), "");

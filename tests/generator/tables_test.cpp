@@ -22,14 +22,14 @@ namespace {
 /// Sorted oriented simplices, with own vertices named by their meaning, not by number.
 std::vector<std::vector<std::uint64_t>> canonical(std::uint32_t n, std::uint32_t own_base, const Decoded& d) {
   std::map<std::uint8_t, std::uint64_t> name;
-  for (const Simplex& s : d.simplices)
+  for (const LocalSimplex& s : d.simplices)
     if (s[0] >= own_base && s[0] < own_base + d.cones)
       for (std::uint32_t i = 1; i < n; ++i) {
         auto& own = name.emplace(s[0], ~std::uint64_t{0}).first->second;
         own = std::min(own, (std::uint64_t{1} << 60) + s[i]);
       }
   std::vector<std::vector<std::uint64_t>> result;
-  for (const Simplex& s : d.simplices) {
+  for (const LocalSimplex& s : d.simplices) {
     std::vector<std::uint64_t> v;
     for (std::uint32_t i = 0; i < n; ++i)
       v.push_back(s[i] < own_base             ? s[i]
@@ -50,9 +50,13 @@ Decoded from_builder(const TileContour& contour) {
   Decoded d;
   d.cones = contour.cone_vertices;
   d.masks = contour.side_masks;
-  for (const Facet& f : contour.facets) d.simplices.insert(d.simplices.end(), f.simplices.begin(), f.simplices.end());
+  for (const LocalFacet& f : contour.facets)
+    d.simplices.insert(d.simplices.end(), f.simplices.begin(), f.simplices.end());
   return d;
 }
+
+constexpr std::array kTriangulations{Triangulation::barycentric, Triangulation::compact};
+constexpr std::array kAlternatives{Alternative::low, Alternative::high};
 
 /// The first signature whose decoded contour differs from the builder's, or -1.
 long first_difference(const tables::TileTable& table, Triangulation triangulation) {
@@ -66,17 +70,18 @@ long first_difference(const tables::TileTable& table, Triangulation triangulatio
   return -1;
 }
 
-class CompiledTableTest : public testing::TestWithParam<std::tuple<int, int>> {};
+class CompiledTableTest : public testing::TestWithParam<std::tuple<int, Triangulation>> {};
 
 TEST_P(CompiledTableTest, HoldsTheBuildersContourOfEverySignature) {
   const auto [dim, t] = GetParam();
   const tables::TileTable& table = tables::tile_table(dim, t);
   EXPECT_EQ(tables::kContractVersion, table.version);
   EXPECT_EQ(static_cast<std::uint32_t>(dim), table.dim);
-  EXPECT_EQ(-1, first_difference(table, t == 0 ? Triangulation::barycentric : Triangulation::compact));
+  EXPECT_EQ(-1, first_difference(table, t));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, CompiledTableTest, testing::Combine(testing::Values(2, 3, 4), testing::Values(0, 1)));
+INSTANTIATE_TEST_SUITE_P(All, CompiledTableTest,
+                         testing::Combine(testing::Values(2, 3, 4), testing::ValuesIn(kTriangulations)));
 
 /// An owning copy of a compiled table, for computing digests and injecting faults.
 TileTables owning(const tables::TileTable& t, Triangulation triangulation) {
@@ -144,14 +149,15 @@ std::string hexadecimal(std::uint64_t number) {
 TEST(Tables, CompiledOnesAreThoseOfTheManifest) {
   if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   for (const int dim : {2, 3, 4})
-    for (const int t : {0, 1}) {
-      const std::string name = "kTile" + std::to_string(dim) + (t == 0 ? "Barycentric" : "Compact");
-      const auto table =
-          owning(tables::tile_table(dim, t), t == 0 ? Triangulation::barycentric : Triangulation::compact);
+    for (const Triangulation t : kTriangulations) {
+      const std::string name =
+          "kTile" + std::to_string(dim) + (t == Triangulation::barycentric ? "Barycentric" : "Compact");
+      const auto table = owning(tables::tile_table(dim, t), t);
       EXPECT_EQ(hexadecimal(digest(table)), reviewed_digest(name)) << name;
-      for (const int alternative : {0, 1}) {
-        const std::string region = "kRegion" + std::to_string(dim - 1) + (t == 0 ? "Barycentric" : "Compact") +
-                                   (alternative == 0 ? "Low" : "High");
+      for (const Alternative alternative : kAlternatives) {
+        const std::string region = "kRegion" + std::to_string(dim - 1) +
+                                   (t == Triangulation::barycentric ? "Barycentric" : "Compact") +
+                                   (alternative == Alternative::low ? "Low" : "High");
         EXPECT_EQ(hexadecimal(digest(owning(tables::region_table(dim - 1, t, alternative)))), reviewed_digest(region))
             << region;
       }
@@ -175,9 +181,8 @@ void expect_noticed(Table& table, Entries& entries, const char* what, const Chan
 TEST(Tables, OneFlippedEntryIsNoticed) {
   const auto flip = [](auto& entry) { entry ^= 1; };
   for (const int dim : {2, 3, 4})
-    for (const int t : {0, 1}) {
-      TileTables table =
-          owning(tables::tile_table(dim, t), t == 0 ? Triangulation::barycentric : Triangulation::compact);
+    for (const Triangulation t : kTriangulations) {
+      TileTables table = owning(tables::tile_table(dim, t), t);
       expect_noticed(table, table.list_of, "list_of", flip);
       expect_noticed(table, table.element_of, "element_of", flip);
       expect_noticed(table, table.slot_swaps, "slot_swaps", flip);
@@ -190,7 +195,7 @@ TEST(Tables, OneFlippedEntryIsNoticed) {
       expect_noticed(table, table.lists, "cone_vertices", [](tables::List& list) { ++list.cone_vertices; });
       expect_noticed(table, table.lists, "side_vertices", [](tables::List& list) { ++list.side_vertices; });
       expect_noticed(table, table.lists, "first_side", [](tables::List& list) { ++list.first_side; });
-      for (const int alternative : {0, 1}) {
+      for (const Alternative alternative : kAlternatives) {
         RegionTables region = owning(tables::region_table(dim - 1, t, alternative));
         expect_noticed(region, region.simplices, "region simplices", flip);
         expect_noticed(region, region.masks, "masks", flip);
@@ -204,7 +209,7 @@ TEST(Tables, OneFlippedEntryIsNoticed) {
 
 /// The decoding test detects the effect of a changed entry on contours.
 TEST(Tables, AFlippedSimplexIsADifferentContour) {
-  const tables::TileTable& good = tables::tile_table(3, 1);
+  const tables::TileTable& good = tables::tile_table(3, Triangulation::compact);
   std::vector<std::uint8_t> simplices(good.simplices, good.simplices + std::size_t{good.simplex_count} * 3);
   tables::TileTable bad = good;
   for (std::size_t at = 0; at < simplices.size(); at += 97) {
@@ -221,7 +226,7 @@ TEST(Tables, ByClassAndFlatHoldTheSame) {
     const ContourBuilder builder(lattice, n, Alternative::low, Triangulation::barycentric);
     std::vector<TileContour> contours;
     for (Signature s = 0; s <= builder.tile().full(); ++s) contours.push_back(builder.build(s));
-    const TileTables by_class = make_tile_tables(builder, contours, Layout::by_class);
+    const TileTables by_class = make_tile_tables(builder, contours, Layout::by_class, tile_classes(builder.tile()));
     EXPECT_LT(by_class.lists.size(), contours.size());
     EXPECT_EQ(-1, first_difference(by_class.view(), Triangulation::barycentric)) << n;
   }
@@ -232,7 +237,7 @@ TEST(Tables, ACompactTriangulationIsRefusedByClassBecauseItDoesNotMoveWithTheSym
   const ContourBuilder builder(lattice, 3, Alternative::low, Triangulation::compact);
   std::vector<TileContour> contours;
   for (Signature s = 0; s <= builder.tile().full(); ++s) contours.push_back(builder.build(s));
-  EXPECT_ANY_THROW(make_tile_tables(builder, contours, Layout::by_class));
+  EXPECT_ANY_THROW(make_tile_tables(builder, contours, Layout::by_class, tile_classes(builder.tile())));
 }
 
 TEST(Manifest, IsWhatTheBuildGenerated) {

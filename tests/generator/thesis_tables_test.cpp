@@ -188,7 +188,7 @@ class Builder {
 
   [[nodiscard]] Facets facets(Signature signature) const {
     Facets result;
-    for (const Facet& facet : builder_.build(signature).facets) {
+    for (const LocalFacet& facet : builder_.build(signature).facets) {
       result.emplace_back();
       for (const std::uint8_t edge : facet.points) {
         result.back().push_back(builder_.tile().edge_names[edge]);
@@ -224,7 +224,7 @@ TEST(ThesisTables, TwoDimensionalLookUpTable) {
 TEST(ThesisTables, ThreeDimensionalTransversal) {
   std::vector<std::uint32_t> printed;
   for (const auto& [signature, facets] : table("7.7").rows) {
-    printed.push_back(signature);
+    printed.push_back(static_cast<std::uint32_t>(signature));
   }
   EXPECT_EQ(printed, transversal(3, group(3, GroupKind::Full, false)).representatives);
   EXPECT_EQ(differences(table("7.7"), Builder(3, Alternative::low)), "");
@@ -233,7 +233,7 @@ TEST(ThesisTables, ThreeDimensionalTransversal) {
 TEST(ThesisTables, TwoDimensionalTransversal) {
   std::vector<std::uint32_t> printed;
   for (const auto& [signature, facets] : table("6.12").rows) {
-    printed.push_back(signature);
+    printed.push_back(static_cast<std::uint32_t>(signature));
   }
   EXPECT_EQ(printed, transversal(2, group(2, GroupKind::Rotations, false)).representatives);
 }

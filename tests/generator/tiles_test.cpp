@@ -106,7 +106,7 @@ TEST(TileContours, HaveHighOnTheirPositiveSide) {
     const ContourBuilder builder(lattice, 3, Alternative::low, Triangulation::compact);
     for (std::uint32_t v = 0; v < tile.corner_count(); ++v) {
       const TileContour contour = builder.build(Signature{1} << v);
-      for (const Simplex& s : contour.facets.at(0).simplices) {
+      for (const LocalSimplex& s : contour.facets.at(0).simplices) {
         std::array<std::array<double, 3>, 3> p{};
         for (std::size_t i = 0; i < 3; ++i)
           for (std::size_t k = 0; k < 3; ++k)
@@ -126,7 +126,7 @@ TEST(TileContours, HaveHighOnTheirPositiveSide) {
 /// The boundaries of a contour's facets as sets of edges, independent of the triangulation.
 std::set<std::set<std::uint8_t>> outlines(const TileContour& contour) {
   std::set<std::set<std::uint8_t>> result;
-  for (const Facet& facet : contour.facets) result.emplace(facet.points.begin(), facet.points.end());
+  for (const LocalFacet& facet : contour.facets) result.emplace(facet.points.begin(), facet.points.end());
   return result;
 }
 

@@ -38,7 +38,7 @@ def main(source, eigen, compilers):
     roots = [source / "runtime/include", source / "tile/include"]
     own = [f"-I{root}" for root in roots]
     include = own + ["-isystem", eigen]
-    headers = sorted(str(header.relative_to(root)) for root, below in zip(roots, ["tegl/**/*.hpp", "tegl/facets/*.hpp"])
+    headers = sorted(str(header.relative_to(root)) for root, below in zip(roots, ["tegl/**/*.hpp", "tegl/tile/*.hpp"])
                      for header in root.glob(below))
     assert len(headers) > 30, f"only {headers} found"
     # Twice, so that a header without a guard is found, too.

@@ -6,7 +6,7 @@ file(REMOVE ${BUILD}/apps/cli/tegl.1)
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB_RECURSE installed RELATIVE ${PREFIX} ${PREFIX}/*)
-foreach(pattern "^include/tegl/extract.hpp$" "^include/tegl/facets/facets.hpp$"
+foreach(pattern "^include/tegl/extract.hpp$" "^include/tegl/tile/facets.hpp$"
     "/cmake/tegl/teglConfig.cmake$" "/cmake/tegl/teglConfigVersion.cmake$"
     "^bin/gen$" "/libtegl\\.(a|so)$" "/LICENSE$")
   set(found ${installed})

@@ -30,9 +30,9 @@ class RecursiveBuilder {
  public:
   explicit RecursiveBuilder(const ExtractOptions& options)
       : lattice_(N),
-        builder_(lattice_, N, options.ambiguity == Ambiguity::low ? gen::Alternative::low : gen::Alternative::high,
-                 options.triangulation == Triangulation::compact ? gen::Triangulation::compact
-                                                                 : gen::Triangulation::barycentric) {}
+        builder_(lattice_, N,
+                 options.ambiguity == Ambiguity::low ? facets::Alternative::low : facets::Alternative::high,
+                 options.triangulation) {}
 
   const gen::TileContour& contour(unsigned signature) {
     const auto [at, is_new] = built_.try_emplace(signature);
@@ -164,8 +164,8 @@ class PlainExtraction {
   void add_tile(const Corner& tile) {
     const unsigned s = signature(tile);
     if (s == 0 || s == (1u << (1u << N)) - 1) return;
-    for (const gen::Facet& facet : builder_.contour(s).facets)
-      for (const gen::Simplex& stored : facet.simplices) {
+    for (const gen::LocalFacet& facet : builder_.contour(s).facets)
+      for (const gen::LocalSimplex& stored : facet.simplices) {
         std::array<Index, N> simplex;
         for (int j = 0; j < N; ++j) simplex[j] = vertex(tile, stored[j]);
         if (is_flipped()) std::swap(simplex[0], simplex[1]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The conditions of a tile's certificate, one function per condition.
-#include "tegl/facets/certificate.hpp"
+#include "tegl/tile/certificate.hpp"
 
 #include <algorithm>
 #include <bit>

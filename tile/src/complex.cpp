@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Recognition of balls and spheres: by a shelling, otherwise by pseudomanifold test, recursion over links and collapse.
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/complex.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Builds face lattices from the corner sets of the maximal faces: intersections, dimensions, order, orientation.
+#include "tegl/tile/face_lattice.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <string>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/complex.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::facets {
 
@@ -123,16 +126,17 @@ void FaceLattice::orient(Face& face) {
     throw std::invalid_argument("a face's boundary that is not connected: no polytope");
 }
 
+std::optional<std::uint32_t> FaceLattice::find(Signature corners) const {
+  const auto at = std::find_if(faces_.begin(), faces_.end(), [&](const Face& f) { return f.corners == corners; });
+  if (at == faces_.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(at - faces_.begin());
+}
+
 FaceLattice FaceLattice::cube(int n) {
   checked(n, 1);
   std::vector<Signature> maximal;
-  for (int axis = 0; axis < n; ++axis)
-    for (int side = 0; side < 2; ++side) {
-      Signature corners = 0;
-      for (int v = 0; v < 1 << n; ++v)
-        if (((v >> axis) & 1) == side) corners |= Signature{1} << v;
-      maximal.push_back(corners);
-    }
+  for (unsigned f = 0; f < 2 * static_cast<unsigned>(n); ++f)
+    maximal.push_back(detail::face_corners(static_cast<unsigned>(n), f));
   return {n, maximal};
 }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::facets {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Assembles tiles from the pieces of their faces. Faces of equal shape, signature and choices share one cached piece.
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "shelling.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::facets {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/complex.hpp"
 
 namespace tegl::facets {
 

@@ -2,7 +2,7 @@
 //
 // The recursion of the certificate over the faces of a tile. Contours are compared by a digest of vertex names. A name
 // is made of face, kind and number, which do not depend on the tile.
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 
 #include <bit>
 #include <cstdint>

@@ -7,16 +7,11 @@
 #include <utility>
 
 #include "base/determinant.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::gen {
 
 namespace {
-
-/// Inserts a bit of value `bit` at position `at`.
-std::uint32_t spread(std::uint32_t v, int at, std::uint32_t bit) {
-  const std::uint32_t below = v & ((1u << at) - 1);
-  return ((v & ~((1u << at) - 1)) << 1) | (bit << at) | below;
-}
 
 std::string edge_name(int n, int axis, std::uint32_t base) {
   std::string name;
@@ -35,20 +30,17 @@ Tile make_cube(int n, const Tile* face) {
   const std::uint32_t half = n > 0 ? 1u << (n - 1) : 0;
   for (int axis = 0; axis < n; ++axis)
     for (std::uint32_t rest = 0; rest < half; ++rest) {
-      const std::uint32_t base = spread(rest, axis, 0);
+      const std::uint32_t base = detail::unsqueeze(rest, static_cast<unsigned>(axis));
       tile.edges.push_back({static_cast<std::uint8_t>(base), static_cast<std::uint8_t>(base | (1u << axis))});
       tile.edge_names.push_back(edge_name(n, axis, base));
     }
-  for (int axis = 0; axis < n; ++axis)
-    for (std::uint32_t side = 0; side < 2; ++side) {
-      SubTile sub{face, {}, {}, (axis % 2 == 0) == (side == 1) ? 1 : -1};
-      for (std::uint32_t v = 0; v < half; ++v) sub.corner.push_back(static_cast<std::uint8_t>(spread(v, axis, side)));
-      for (const auto& ends : face->edges)
-        for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
-          if (tile.edges[e][0] == sub.corner[ends[0]] && tile.edges[e][1] == sub.corner[ends[1]])
-            sub.edge.push_back(static_cast<std::uint8_t>(e));
-      tile.faces.push_back(std::move(sub));
-    }
+  for (unsigned f = 0; f < 2 * static_cast<unsigned>(n); ++f) {
+    SubTile sub{face, {}, {}, detail::face_sign(f)};
+    for (std::uint32_t v = 0; v < half; ++v)
+      sub.corner.push_back(static_cast<std::uint8_t>(detail::lifted_corner(f, v)));
+    for (const auto& [a, b] : face->edges) sub.edge.push_back(tile.edge_between(sub.corner[a], sub.corner[b]));
+    tile.faces.push_back(std::move(sub));
+  }
   return tile;
 }
 
@@ -84,10 +76,7 @@ void add_face(Tile& tile, const Tile* face, std::vector<std::uint8_t> corner) {
   for (std::size_t i = 1; i < corner.size(); ++i)
     frame[i] = difference(tile.corners[corner[i]], tile.corners[corner[0]]);
   SubTile sub{face, std::move(corner), {}, determinant(frame, tile.dim) > 0 ? 1 : -1};
-  for (const auto& ends : face->edges)
-    for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
-      if (tile.edges[e][0] == sub.corner[ends[0]] && tile.edges[e][1] == sub.corner[ends[1]])
-        sub.edge.push_back(static_cast<std::uint8_t>(e));
+  for (const auto& [a, b] : face->edges) sub.edge.push_back(tile.edge_between(sub.corner[a], sub.corner[b]));
   tile.faces.push_back(std::move(sub));
 }
 
@@ -129,6 +118,12 @@ Tile make_octahedron(const Tile* triangle) {
 
 }  // namespace
 
+Signature SubTile::corners() const {
+  Signature result = 0;
+  for (const std::uint8_t v : corner) result |= Signature{1} << v;
+  return result;
+}
+
 Signature Tile::restrict_to(std::uint32_t f, Signature signature) const {
   const auto& corner = faces[f].corner;
   Signature result = 0;
@@ -136,15 +131,15 @@ Signature Tile::restrict_to(std::uint32_t f, Signature signature) const {
   return result;
 }
 
+std::uint8_t Tile::edge_between(std::uint32_t a, std::uint32_t b) const {
+  for (std::uint8_t e = 0; e < edge_count(); ++e)
+    if ((edges[e][0] == a && edges[e][1] == b) || (edges[e][0] == b && edges[e][1] == a)) return e;
+  throw std::logic_error("no edge between two corners of a tile");
+}
+
 std::vector<std::uint8_t> edge_permutation(const Tile& tile, std::span<const std::uint32_t> corner_images) {
   std::vector<std::uint8_t> result;
-  for (const auto& [a, b] : tile.edges) {
-    const std::uint32_t to_a = corner_images[a], to_b = corner_images[b];
-    for (std::uint8_t e = 0; e < tile.edge_count(); ++e)
-      if ((tile.edges[e][0] == to_a && tile.edges[e][1] == to_b) ||
-          (tile.edges[e][0] == to_b && tile.edges[e][1] == to_a))
-        result.push_back(e);
-  }
+  for (const auto& [a, b] : tile.edges) result.push_back(tile.edge_between(corner_images[a], corner_images[b]));
   return result;
 }
 

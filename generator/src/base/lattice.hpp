@@ -11,10 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "tegl/tile/face_lattice.hpp"
+
 namespace tegl::gen {
 
-/// Set of corners of a tile: bit v = corner v. Tiles of up to 32 corners.
-using Signature = std::uint32_t;
+using facets::Signature;
 
 struct Tile;
 
@@ -29,6 +30,8 @@ struct SubTile {
   std::vector<std::uint8_t> corner;  ///< the face's corner -> the tile's corner
   std::vector<std::uint8_t> edge;    ///< the face's edge -> the tile's edge, ends in the same order
   int sign;                          ///< incidence number in the tile's boundary, outward normal first
+
+  [[nodiscard]] Signature corners() const;  ///< the tile's corners in this face
 };
 
 /// A tile of some dimension.
@@ -43,9 +46,11 @@ struct Tile {
   [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }  ///< count
   [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }      ///< count
   /// All corners.
-  [[nodiscard]] Signature full() const { return ~Signature{0} >> (32 - corner_count()); }
+  [[nodiscard]] Signature full() const { return ~Signature{0} >> (64 - corner_count()); }
   /// The signature restricted to face f, in the numbering of the face's corners.
   [[nodiscard]] Signature restrict_to(std::uint32_t f, Signature signature) const;
+  /// The edge between two corners, in either order. Throws std::logic_error if there is none.
+  [[nodiscard]] std::uint8_t edge_between(std::uint32_t a, std::uint32_t b) const;
 };
 
 /// The images of a tile's edges under a permutation of its corners that maps edges to edges.

@@ -12,7 +12,7 @@ namespace tegl::gen {
 
 namespace {
 
-facets::Simplex simplex_of(const Simplex& s, int count) {
+facets::Simplex simplex_of(const LocalSimplex& s, int count) {
   facets::Simplex result = facets::kNoSimplex;
   for (int i = 0; i < count; ++i) result[i] = s[i];
   return result;
@@ -27,11 +27,8 @@ TableCertifier::TableCertifier(const ContourBuilder& builder)
   const std::vector<std::uint32_t>& maximal = faces[lattice_.tile()].faces;
   // the tile's number of each maximal face
   for (const std::uint32_t g : maximal)
-    for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
-      facets::Signature corners = 0;
-      for (const std::uint8_t c : tile.faces[f].corner) corners |= facets::Signature{1} << c;
-      if (corners == faces[g].corners) face_.push_back(f);
-    }
+    for (std::uint32_t f = 0; f < tile.faces.size(); ++f)
+      if (tile.faces[f].corners() == faces[g].corners) face_.push_back(f);
   // A local vertex lies in the smallest face common to all maximal faces that contain it.
   std::map<std::uint32_t, std::uint32_t> by_maximal;
   for (std::uint32_t g = 0; g < faces.size(); ++g) {
@@ -50,16 +47,16 @@ facets::Fault TableCertifier::certify(Signature signature, const TileContour& co
   const int n = builder_.dim();
   // the contour
   tile_.facets.assign(1, {});
-  for (const Facet& facet : contour.facets)
-    for (const Simplex& s : facet.simplices) tile_.facets[0].simplices.push_back(simplex_of(s, n));
+  for (const LocalFacet& facet : contour.facets)
+    for (const LocalSimplex& s : facet.simplices) tile_.facets[0].simplices.push_back(simplex_of(s, n));
   // Sigma and the contours in the faces, from the builder
   tile_.sigma.clear(), tile_.sigma_sign.clear();
   const facets::Face& whole = lattice_.faces()[lattice_.tile()];
   for (std::size_t j = 0; j < face_.size(); ++j) {
     const std::uint32_t f = face_[j];
     tile_.in_face[j].clear(), tile_.in_face_sign[j].clear();
-    for (const Facet& facet : builder_.face_contour(f, signature).facets)
-      for (Simplex s : facet.simplices) {
+    for (const LocalFacet& facet : builder_.face_contour(f, signature).facets)
+      for (LocalSimplex s : facet.simplices) {
         for (int i = 0; i < n - 1; ++i) s[i] = builder_.lift(f, s[i]);
         facets::Simplex simplex = simplex_of(s, n - 1);
         const int sign =

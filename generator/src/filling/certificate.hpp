@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "filling/facets.hpp"
-#include "tegl/facets/certificate.hpp"
+#include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
 

@@ -49,8 +49,8 @@ TileContour FaceContours::sigma(Signature signature) const {
   TileContour result;
   const int k = tile_->dim - 1;  // vertices per simplex of Sigma
   for (std::uint32_t f = 0; f < tile_->faces.size(); ++f)
-    for (const Facet& facet : face_contour(f, signature).facets)
-      for (Simplex simplex : facet.simplices) {
+    for (const LocalFacet& facet : face_contour(f, signature).facets)
+      for (LocalSimplex simplex : facet.simplices) {
         for (int i = 0; i < k; ++i) simplex[i] = lift(f, simplex[i]);
         const int sign = tile_->faces[f].sign * orientation_ * facet.sign;
         if (k == 1) result.boundary_sign.push_back(static_cast<std::int8_t>(sign));

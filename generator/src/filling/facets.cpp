@@ -31,22 +31,16 @@ std::vector<std::uint8_t> ring_of(const Tile& tile) {
   return ring;
 }
 
-std::uint8_t edge_between(const Tile& tile, std::uint8_t a, std::uint8_t b) {
-  for (std::uint8_t e = 0; e < tile.edge_count(); ++e)
-    if ((tile.edges[e][0] == a && tile.edges[e][1] == b) || (tile.edges[e][0] == b && tile.edges[e][1] == a)) return e;
-  throw std::logic_error("no edge between two corners of a ring");
-}
-
 /// Dimension 1: a critical edge has one point. Its sign is that of the boundary of the high part: + if the second end
 /// is high.
 TileContour contour_of_edge(Signature signature) {
   TileContour result;
   if (signature == 1 || signature == 2) {
-    Facet facet;
-    facet.filling = Filling::point;
+    LocalFacet facet;
+    facet.filling = Filling::simplex;
     facet.sign = signature == 2 ? 1 : -1;
     facet.points = {0};
-    facet.simplices = {Simplex{0}};
+    facet.simplices = {LocalSimplex{0}};
     result.facets.push_back(facet);
   }
   return result;
@@ -67,14 +61,14 @@ void cut_runs(const Tile& tile, Signature signature, Alternative alternative, Ti
     if (!inside(start) || inside(start + m - 1)) continue;  // a run starts here
     std::size_t end = start;
     while (inside(end + 1)) ++end;
-    std::uint8_t from = edge_between(tile, ring[(start + m - 1) % m], ring[start]);
-    std::uint8_t to = edge_between(tile, ring[end % m], ring[(end + 1) % m]);
+    std::uint8_t from = tile.edge_between(ring[(start + m - 1) % m], ring[start]);
+    std::uint8_t to = tile.edge_between(ring[end % m], ring[(end + 1) % m]);
     if (sign_of[from] > 0) std::swap(from, to);  // the boundary of a segment is to - from
-    Facet facet;
+    LocalFacet facet;
     facet.boundary_euler = 2;
     facet.boundary_facets = 2;
     facet.points = {from, to};
-    facet.simplices = {Simplex{from, to}};
+    facet.simplices = {LocalSimplex{from, to}};
     contour.facets.push_back(facet);
   }
 }
@@ -115,8 +109,8 @@ ContourBuilder::ContourBuilder(const Lattice& lattice, int n, Alternative altern
 /// The contour around a single high corner is convex, so one of its simplices fixes the sign for all.
 void ContourBuilder::find_orientation() {
   const TileContour one = build(1);
-  const Facet& facet = one.facets.at(0);
-  const Simplex& simplex = facet.simplices.at(0);
+  const LocalFacet& facet = one.facets.at(0);
+  const LocalSimplex& simplex = facet.simplices.at(0);
   const int n = dim();
   const auto on_edge = [&](std::uint8_t e, int i) {
     return 0.5 * (tile().corners[tile().edges[e][0]][i] + tile().corners[tile().edges[e][1]][i]);

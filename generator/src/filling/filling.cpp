@@ -15,7 +15,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "filling/shelling.hpp"
+#include "filling/ball_dissection.hpp"
 #include "filling/side_filling.hpp"
 #include "filling/sigma_complex.hpp"
 
@@ -24,7 +24,7 @@ namespace tegl::gen {
 namespace {
 
 struct Component {
-  std::vector<Simplex> boundary;
+  std::vector<LocalSimplex> boundary;
   std::vector<std::uint8_t> vertices;  // ascending
   int euler = 0;
 };
@@ -50,16 +50,16 @@ int euler_of(int vertices_per_simplex, const Component& c) {
 }
 
 /// Components of Sigma, ordered by smallest vertex; spheres first, so that cone vertices precede side vertices.
-std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary) {
+std::vector<Component> components_of(int n, const std::vector<LocalSimplex>& boundary) {
   // union-find over the vertices of each simplex
   VertexSets sets;
-  for (const Simplex& s : boundary)
+  for (const LocalSimplex& s : boundary)
     for (int i = 1; i < n - 1; ++i) sets.join(s[0], s[i]);
   std::array<int, 256> number;
   number.fill(-1);
   std::vector<Component> components;
   std::vector<std::uint8_t> order;
-  for (const Simplex& s : boundary) order.push_back(static_cast<std::uint8_t>(sets.find(s[0])));
+  for (const LocalSimplex& s : boundary) order.push_back(static_cast<std::uint8_t>(sets.find(s[0])));
   std::vector<std::uint8_t> roots(order);
   std::sort(roots.begin(), roots.end());
   roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
@@ -71,7 +71,7 @@ std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary
   for (std::size_t i = 0; i < boundary.size(); ++i) components[number[order[i]]].boundary.push_back(boundary[i]);
   for (Component& c : components) {
     std::set<std::uint8_t> vertices;
-    for (const Simplex& s : c.boundary) vertices.insert(s.begin(), s.begin() + (n - 1));
+    for (const LocalSimplex& s : c.boundary) vertices.insert(s.begin(), s.begin() + (n - 1));
     c.vertices.assign(vertices.begin(), vertices.end());
     c.euler = euler_of(n - 1, c);
   }
@@ -83,7 +83,7 @@ std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary
 /// The polygon of a 3-tile's component, from its smallest vertex along its orientation.
 std::vector<std::uint8_t> cycle_of(const Component& c) {
   std::array<std::uint8_t, 256> next{};
-  for (const Simplex& s : c.boundary) next[s[0]] = s[1];
+  for (const LocalSimplex& s : c.boundary) next[s[0]] = s[1];
   std::vector<std::uint8_t> cycle{c.vertices.front()};
   while (next[cycle.back()] != cycle.front()) cycle.push_back(next[cycle.back()]);
   if (cycle.size() != c.boundary.size()) throw std::logic_error("a component of a 3-tile's Sigma is not one cycle");
@@ -155,7 +155,7 @@ class ChordTriangulation {
   std::vector<std::uint8_t> polygon_;
 };
 
-bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& cycle, Facet& facet) {
+bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& cycle, LocalFacet& facet) {
   // Both orientations of a polygon must get the same triangles: start at the smallest vertex, go towards its smaller
   // neighbour, and reverse the triangles if that is against the orientation.
   std::vector<std::uint8_t> polygon(cycle);
@@ -163,7 +163,7 @@ bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& c
   if (turned) std::reverse(polygon.begin() + 1, polygon.end());
   const auto triangles = ChordTriangulation(faces, polygon).best();
   for (const auto& t : triangles) {
-    Simplex simplex{polygon[t[0]], polygon[t[1]], polygon[t[2]]};
+    LocalSimplex simplex{polygon[t[0]], polygon[t[1]], polygon[t[2]]};
     if (turned) std::swap(simplex[1], simplex[2]);
     facet.simplices.push_back(simplex);
   }
@@ -171,54 +171,49 @@ bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& c
 }
 
 /// The cone from one of the component's own vertices over all simplices that do not contain it.
-std::vector<Simplex> pulled_cone(const Component& c, std::uint8_t apex) {
-  std::vector<Simplex> cone;
-  for (const Simplex& s : c.boundary)
+std::vector<LocalSimplex> pulled_cone(const Component& c, std::uint8_t apex) {
+  std::vector<LocalSimplex> cone;
+  for (const LocalSimplex& s : c.boundary)
     if (s[0] != apex && s[1] != apex && s[2] != apex) cone.push_back({apex, s[0], s[1], s[2]});
   return cone;
 }
 
-bool pull(const FaceContours& faces, const Component& c, Facet& facet) {
+bool pull(const FaceContours& faces, const Component& c, LocalFacet& facet) {
   const SigmaComplex sigma(faces, c.boundary);
   for (const std::uint8_t apex : c.vertices) {
     auto cone = pulled_cone(c, apex);
     if (!facet.simplices.empty() && cone.size() >= facet.simplices.size()) continue;
-    if (std::all_of(cone.begin(), cone.end(), [&](const Simplex& s) { return sigma.allows(s); }))
+    if (std::all_of(cone.begin(), cone.end(), [&](const LocalSimplex& s) { return sigma.allows(s); }))
       facet.simplices = std::move(cone);
   }
   return !facet.simplices.empty();
 }
 
 /// The cone from an added vertex.
-std::vector<Simplex> cone(int n, const Component& c, std::uint8_t apex) {
-  std::vector<Simplex> result;
-  for (const Simplex& s : c.boundary) {
-    Simplex simplex{apex};
+std::vector<LocalSimplex> cone(int n, const Component& c, std::uint8_t apex) {
+  std::vector<LocalSimplex> result;
+  for (const LocalSimplex& s : c.boundary) {
+    LocalSimplex simplex{apex};
     std::copy_n(s.begin(), n - 1, simplex.begin() + 1);
     result.push_back(simplex);
   }
   return result;
 }
 
-using SignedFace = std::pair<Simplex, int>;
+using SignedFace = std::pair<LocalSimplex, int>;
 
 /// The simplex with ascending vertices, and the sign of the permutation.
-SignedFace sorted_face(Simplex s, int count) {
-  int sign = 1;
-  for (int i = 1; i < count; ++i)
-    for (int j = i; j > 0 && s[j] < s[j - 1]; --j) {
-      std::swap(s[j], s[j - 1]);
-      sign = -sign;
-    }
+SignedFace sorted_face(LocalSimplex s, int count) {
+  const int sign = facets::sort_vertices(s, count);
   return {s, sign};
 }
 
 /// True if the oriented boundary of the n-vertex simplices is exactly `boundary`.
-bool is_bounded_by(int n, const std::vector<Simplex>& simplices, const std::vector<Simplex>& boundary) {
-  std::map<Simplex, int> sum;
-  for (const Simplex& s : simplices)
+bool is_bounded_by(int n, const std::vector<LocalSimplex>& simplices, const std::vector<LocalSimplex>& boundary) {
+  std::map<LocalSimplex, int> sum;
+  for (const LocalSimplex& s : simplices)
     for (int drop = 0; drop < n; ++drop) {
-      Simplex face{};
+      LocalSimplex face{};
       for (int i = 0, k = 0; i < n; ++i)
         if (i != drop) face[k++] = s[i];
       const auto [key, sign] = sorted_face(face, n - 1);
@@ -226,7 +221,7 @@ bool is_bounded_by(int n, const std::vector<Simplex>& simplices, const std::vect
     }
   std::erase_if(sum, [](const auto& entry) { return entry.second == 0; });
   if (sum.size() != boundary.size()) return false;
-  return std::all_of(boundary.begin(), boundary.end(), [&](Simplex s) {
+  return std::all_of(boundary.begin(), boundary.end(), [&](LocalSimplex s) {
     for (int i = n - 1; i < 4; ++i) s[i] = 0;
     const auto [key, sign] = sorted_face(s, n - 1);
     const auto found = sum.find(key);
@@ -235,9 +230,9 @@ bool is_bounded_by(int n, const std::vector<Simplex>& simplices, const std::vect
 }
 
 /// Takes the part of the hull's contour that the component bounds. Returns false if there is none.
-bool take_from_hull(int n, const std::vector<Simplex>& hull, const Component& c, Facet& facet) {
-  std::vector<Simplex> part;
-  for (const Simplex& s : hull) {
+bool take_from_hull(int n, const std::vector<LocalSimplex>& hull, const Component& c, LocalFacet& facet) {
+  std::vector<LocalSimplex> part;
+  for (const LocalSimplex& s : hull) {
     const auto inside = std::count_if(s.begin(), s.begin() + n, [&](std::uint8_t v) {
       return std::binary_search(c.vertices.begin(), c.vertices.end(), v);
     });
@@ -272,7 +267,7 @@ Signature joined_with(const Tile& tile, Signature inside, std::uint8_t corner) {
 /// Fills a component from the hull of the side that the alternative joins. If that hull joins more than the rule does,
 /// uses the hull of the component's own part of that side.
 bool fill_from_hull(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
-                    Facet& facet) {
+                    LocalFacet& facet) {
   const Tile& tile = faces.tile();
   const bool low = faces.alternative() == Alternative::low;
   const Signature inside = low ? ~signature & tile.full() : signature;
@@ -281,7 +276,7 @@ bool fill_from_hull(const FaceContours& faces, const HullContours& hulls, Signat
   for (const Signature corners : {inside, own}) {
     auto hull = hulls.contour(corners);
     if (!low)  // the hull's outside is the low side
-      for (Simplex& s : hull) std::swap(s[tile.dim - 1], s[tile.dim - 2]);
+      for (LocalSimplex& s : hull) std::swap(s[tile.dim - 1], s[tile.dim - 2]);
     if (take_from_hull(tile.dim, hull, c, facet)) return true;
   }
   return false;
@@ -291,35 +286,35 @@ bool fill_from_hull(const FaceContours& faces, const HullContours& hulls, Signat
 std::uint32_t facets_around(const FaceContours& faces, Signature signature, const Component& c) {
   std::uint32_t count = 0;
   for (std::uint32_t f = 0; f < faces.tile().faces.size(); ++f)
-    for (const Facet& facet : faces.face_contour(f, signature).facets)
+    for (const LocalFacet& facet : faces.face_contour(f, signature).facets)
       if (std::binary_search(c.vertices.begin(), c.vertices.end(), faces.lift(f, facet.points.front()))) ++count;
   return count;
 }
 
 /// Fills a component with one simplex if it is that simplex's boundary.
-bool fill_simplex(int n, const Component& c, Facet& facet) {
+bool fill_simplex(int n, const Component& c, LocalFacet& facet) {
   if (c.vertices.size() != static_cast<std::size_t>(n)) return false;
-  facet.simplices = n == 3 ? std::vector{Simplex{facet.points[0], facet.points[1], facet.points[2]}}
+  facet.simplices = n == 3 ? std::vector{LocalSimplex{facet.points[0], facet.points[1], facet.points[2]}}
                            : pulled_cone(c, c.vertices.front());
   return true;
 }
 
 /// Orients tetrahedra that fill a component so that the component is their oriented boundary. Propagates signs over
 /// shared triangles.
-std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& c) {
-  std::map<Simplex, int> known;  // triangle (ascending vertices) -> sign that a tetrahedron on it needs
-  for (const Simplex& s : c.boundary) {
+std::vector<LocalSimplex> oriented(std::vector<LocalSimplex> tetrahedra, const Component& c) {
+  std::map<LocalSimplex, int> known;  // triangle (ascending vertices) -> sign that a tetrahedron on it needs
+  for (const LocalSimplex& s : c.boundary) {
     const auto [key, sign] = sorted_face({s[0], s[1], s[2], 0}, 3);
     known[key] = sign;
   }
-  std::vector<Simplex> result;
+  std::vector<LocalSimplex> result;
   while (!tetrahedra.empty()) {
     const std::size_t before = tetrahedra.size();
-    std::erase_if(tetrahedra, [&](const Simplex& t) {
+    std::erase_if(tetrahedra, [&](const LocalSimplex& t) {
       std::array<SignedFace, 4> faces;
       int sign = 0;
       for (int drop = 0; drop < 4; ++drop) {
-        Simplex face{};
+        LocalSimplex face{};
         for (int i = 0, k = 0; i < 4; ++i)
           if (i != drop) face[k++] = t[i];
         faces[drop] = sorted_face(face, 3);
@@ -339,10 +334,10 @@ std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& 
 }
 
 /// Fills a component with few simplices: from the hull, as a cone from one of its own vertices (a polygon: by chords),
-/// or by a shelling, whichever gives the fewest. The shelling may add one cone vertex.
+/// or by a dissection of the ball, whichever gives the fewest. The dissection may add one cone vertex.
 bool fill_compact(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
-                  std::uint8_t own_vertex, Facet& facet) {
-  Facet other;
+                  std::uint8_t own_vertex, LocalFacet& facet) {
+  LocalFacet other;
   facet.filling = Filling::pulled;
   const bool from_hull = fill_from_hull(faces, hulls, signature, c, facet);
   const bool from_own = faces.dim() == 3 ? !from_hull && cut_by_chords(faces, facet.points, other)
@@ -352,12 +347,12 @@ bool fill_compact(const FaceContours& faces, const HullContours& hulls, Signatur
     facet.simplices = std::move(other.simplices);
   if (faces.dim() == 4 && c.euler == 2) {
     const std::size_t limit = facet.simplices.empty() ? c.boundary.size() - 1 : facet.simplices.size() - 1;
-    Shelling shelled = shell_sphere(c.boundary, SigmaComplex(faces, c.boundary), limit);
-    if (!shelled.empty()) {
-      for (const Simplex& t : shelled.rest)
-        shelled.tetrahedra.push_back({own_vertex, t[0], t[1], t[2]});  // the cone vertex first
-      facet.simplices = oriented(std::move(shelled.tetrahedra), c);
-      facet.filling = shelled.rest.empty() ? Filling::pulled : Filling::cone;
+    BallDissection ball = dissect_ball(c.boundary, SigmaComplex(faces, c.boundary), limit);
+    if (!ball.empty()) {
+      for (const LocalSimplex& t : ball.rest)
+        ball.tetrahedra.push_back({own_vertex, t[0], t[1], t[2]});  // the cone vertex first
+      facet.simplices = oriented(std::move(ball.tetrahedra), c);
+      facet.filling = ball.rest.empty() ? Filling::pulled : Filling::cone;
     }
   }
   return !facet.simplices.empty();
@@ -369,7 +364,7 @@ void fill(const FaceContours& faces, const FillingSources& sources, Signature si
   const int n = faces.dim();
   const bool compact = faces.triangulation() == Triangulation::compact;
   for (const Component& c : components_of(n, contour.boundary)) {
-    Facet facet;
+    LocalFacet facet;
     facet.boundary_euler = c.euler;
     facet.boundary_facets = facets_around(faces, signature, c);
     for (const std::uint8_t v : c.vertices)

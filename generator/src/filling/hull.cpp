@@ -138,7 +138,7 @@ bool HullContours::spans_facet(Edges vertices) const {
   return affine_rank(points) == tile_.dim;
 }
 
-std::vector<Simplex> HullContours::contour(Signature inside) const {
+std::vector<LocalSimplex> HullContours::contour(Signature inside) const {
   // critical edges
   Edges critical = 0;
   for (std::uint32_t e = 0; e < tile_.edge_count(); ++e) {
@@ -146,7 +146,7 @@ std::vector<Simplex> HullContours::contour(Signature inside) const {
     if (((inside >> a) & 1u) != ((inside >> b) & 1u)) critical |= Edges{1} << e;
   }
   // hyperplanes that contain a facet, with its outward normal
-  std::vector<Facet> facets;
+  std::vector<HullFacet> facets;
   for (const Hyperplane& h : hyperplanes_) {
     const bool above = (h.above & critical) != 0 || (h.corners_above & inside) != 0;
     const bool below = (h.below & critical) != 0 || (h.corners_below & inside) != 0;
@@ -159,18 +159,18 @@ std::vector<Simplex> HullContours::contour(Signature inside) const {
   // triangulate each facet
   std::vector<Edges> all;
   for (const Edges face : tile_faces_) all.push_back(face & critical);
-  for (const Facet& facet : facets) all.push_back(facet.vertices);
-  std::vector<Simplex> result;
-  for (const Facet& facet : facets) {
-    Simplex simplex{};
+  for (const HullFacet& facet : facets) all.push_back(facet.vertices);
+  std::vector<LocalSimplex> result;
+  for (const HullFacet& facet : facets) {
+    LocalSimplex simplex{};
     pull(facet.vertices, tile_.dim - 1, all, 0, simplex, facet.outward, result);
   }
   return result;
 }
 
 /// Cones a face of dimension `dim` from its smallest vertex over those of its facets that do not contain it.
-void HullContours::pull(Edges face, int dim, const std::vector<Edges>& all, int depth, Simplex& simplex,
-                        const Point& outward, std::vector<Simplex>& result) const {
+void HullContours::pull(Edges face, int dim, const std::vector<Edges>& all, int depth, LocalSimplex& simplex,
+                        const Point& outward, std::vector<LocalSimplex>& result) const {
   const auto apex = static_cast<std::uint8_t>(std::countr_zero(face));
   simplex[depth] = apex;
   if (dim == 0) return emit(simplex, outward, result);
@@ -187,7 +187,7 @@ void HullContours::pull(Edges face, int dim, const std::vector<Edges>& all, int 
   }
 }
 
-void HullContours::emit(Simplex simplex, const Point& outward, std::vector<Simplex>& result) const {
+void HullContours::emit(LocalSimplex simplex, const Point& outward, std::vector<LocalSimplex>& result) const {
   const int n = tile_.dim;
   std::array<Point, 4> m{};
   for (int r = 1; r < n; ++r)

@@ -20,7 +20,7 @@ class HullContours {
   /// tile's boundary. They are triangulated without further vertices: every face of the hull is coned from its smallest
   /// vertex, so the triangulation in a face of the tile equals that of the face's own hull. Vertices are edge numbers.
   /// The positive side faces out of the hull.
-  [[nodiscard]] std::vector<Simplex> contour(Signature inside) const;
+  [[nodiscard]] std::vector<LocalSimplex> contour(Signature inside) const;
 
  private:
   using Point = std::array<int, 4>;
@@ -30,7 +30,7 @@ class HullContours {
     Edges on = 0, above = 0, below = 0;  ///< sets of midpoints
     Signature corners_above = 0, corners_below = 0;
   };
-  struct Facet {
+  struct HullFacet {
     Edges vertices;
     Point outward;
   };
@@ -38,9 +38,9 @@ class HullContours {
   void add_hyperplanes(std::vector<std::uint8_t>& chosen);
   [[nodiscard]] Point normal_of(const std::vector<std::uint8_t>& chosen) const;
   [[nodiscard]] bool spans_facet(Edges vertices) const;
-  void pull(Edges face, int dim, const std::vector<Edges>& all, int depth, Simplex& simplex, const Point& outward,
-            std::vector<Simplex>& result) const;
-  void emit(Simplex simplex, const Point& outward, std::vector<Simplex>& result) const;
+  void pull(Edges face, int dim, const std::vector<Edges>& all, int depth, LocalSimplex& simplex, const Point& outward,
+            std::vector<LocalSimplex>& result) const;
+  void emit(LocalSimplex simplex, const Point& outward, std::vector<LocalSimplex>& result) const;
 
   const Tile& tile_;
   std::vector<Point> corners_, midpoints_;  ///< coordinates times 2

@@ -31,7 +31,7 @@ void add_up(Chain& chain) {
   chain.resize(kept);
 }
 
-Simplex vertices_of(Key key) {
+LocalSimplex vertices_of(Key key) {
   return {static_cast<std::uint8_t>(key >> 24), static_cast<std::uint8_t>(key >> 16),
           static_cast<std::uint8_t>(key >> 8), static_cast<std::uint8_t>(key)};
 }
@@ -53,10 +53,10 @@ class Traces {
   [[nodiscard]] std::vector<Chain> of(const TileContour& contour) const {
     const int n = builder_.dim();
     Chain boundary;
-    for (const Facet& facet : contour.facets)
-      for (const Simplex& s : facet.simplices)
+    for (const LocalFacet& facet : contour.facets)
+      for (const LocalSimplex& s : facet.simplices)
         for (int i = 0; i < n; ++i) {
-          const Simplex face = without(s, i, n);
+          const LocalSimplex face = without(s, i, n);
           boundary.push_back({key_of(face, n - 1), (i % 2 == 0 ? 1 : -1) * parity(face, n - 1)});
         }
     add_up(boundary);
@@ -71,7 +71,7 @@ class Traces {
 
   void put(const SignedFace& face, std::vector<Chain>& result) const {
     const int count = builder_.dim() - 1;
-    Simplex s = vertices_of(face.key);
+    LocalSimplex s = vertices_of(face.key);
     std::uint32_t common = ~0u;
     for (int i = 0; i < count; ++i) common &= builder_.faces_of(s[i]);
     for (std::uint32_t f = 0; f < result.size(); ++f) {
@@ -164,17 +164,17 @@ std::string unmatched_text(int dim, const PairFigures& figures) {
       figures.unmatched, figures.pairs, dim, figures.below, figures.above, figures.axis);
 }
 
-std::vector<Simplex> open_simplices(const ContourBuilder& builder, const TileContour& below, const TileContour& above,
-                                    int axis) {
+std::vector<LocalSimplex> open_simplices(const ContourBuilder& builder, const TileContour& below,
+                                         const TileContour& above, int axis) {
   const Traces traces(builder);
   const auto face = static_cast<std::uint32_t>(2 * axis + 1);
   Chain both = traces.of(below)[face];
   const Chain other = traces.of(above)[face - 1];
   both.insert(both.end(), other.begin(), other.end());
   add_up(both);
-  std::vector<Simplex> result;
+  std::vector<LocalSimplex> result;
   for (const SignedFace& f : both) {
-    Simplex s = vertices_of(f.key);
+    LocalSimplex s = vertices_of(f.key);
     for (int i = 0; i < builder.dim() - 1; ++i) s[i] = builder.lift(face, s[i]);
     result.push_back(s);
   }
@@ -193,9 +193,9 @@ std::vector<TileContour> contours_by_class(const ContourBuilder& builder, GroupK
     const Element& g = elements[classes.element_of[s]];
     const auto moved = edge_permutation(tile, corner_permutation(g, n));
     TileContour contour = builder.build(classes.representatives[classes.class_of[s]]);
-    for (Facet& facet : contour.facets) {
+    for (LocalFacet& facet : contour.facets) {
       for (std::uint8_t& point : facet.points) point = moved[point];
-      for (Simplex& simplex : facet.simplices) {
+      for (LocalSimplex& simplex : facet.simplices) {
         for (int i = 0; i < n; ++i)
           if (simplex[i] < moved.size()) simplex[i] = moved[simplex[i]];
         if (g.reverses_orientation()) std::swap(simplex[n - 1], simplex[n - 2]);

@@ -37,8 +37,8 @@ struct PairFigures {
 
 /// The (n-2)-simplices in which the contours of two neighbours do not match, as local vertices of the lower tile (on
 /// its face 2 axis + 1). Empty if they match.
-[[nodiscard]] std::vector<Simplex> open_simplices(const ContourBuilder& builder, const TileContour& below,
-                                                  const TileContour& above, int axis);
+[[nodiscard]] std::vector<LocalSimplex> open_simplices(const ContourBuilder& builder, const TileContour& below,
+                                                       const TileContour& above, int axis);
 
 /// The table by equivalence classes: each signature gets its representative's contour, mapped by a group element, which
 /// may include the exchange of high and low. With inversion this is the construction of Lorensen and Cline (1987). n =

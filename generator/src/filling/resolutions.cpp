@@ -15,7 +15,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "symmetry/tile_symmetry.hpp"
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 
 namespace tegl::gen {
 
@@ -26,9 +26,8 @@ using facets::Choice;
 using facets::FaceLattice;
 using facets::Fault;
 using facets::TileCertifier;
-using FacetSignature = facets::Signature;
 
-std::string text_of(const FaceLattice& lattice, FacetSignature signature, const facets::Resolution& resolution,
+std::string text_of(const FaceLattice& lattice, Signature signature, const facets::Resolution& resolution,
                     Fault fault) {
   std::string choices;
   for (std::size_t f = 0; f < resolution.choices.size(); ++f)
@@ -46,7 +45,7 @@ class Worker {
   [[nodiscard]] const ResolutionFigures& figures() const { return figures_; }
 
   /// Certifies one tile and counts each component of its Sigma `weight` times. True if a component is not a sphere.
-  bool certify(FacetSignature signature, Alternative alternative, std::uint64_t weight) {
+  bool certify(Signature signature, Alternative alternative, std::uint64_t weight) {
     const facets::Resolution resolution{choices_, alternative};
     const Fault fault = certifier_.certify(signature, resolution);
     const FaceLattice& lattice = certifier_.lattice();
@@ -113,22 +112,20 @@ ResolutionFigures on_threads(const FaceLattice& lattice, std::uint64_t units, un
 /// bit set of the polygons with a high centre.
 class ResolutionOrbits {
  public:
-  ResolutionOrbits(const FaceLattice& lattice, FacetSignature signature, const std::vector<std::uint32_t>& polygons,
+  ResolutionOrbits(const FaceLattice& lattice, Signature signature, const std::vector<std::uint32_t>& polygons,
                    const std::vector<TileSymmetry>& elements) {
     for (const TileSymmetry& g : elements) {
-      const auto image = [&g](FacetSignature corners) {
-        FacetSignature moved = 0;
+      const auto image = [&g](Signature corners) {
+        Signature moved = 0;
         for (std::size_t c = 0; c < g.corner.size(); ++c) moved |= ((corners >> c) & 1u) << g.corner[c];
         return moved;
       };
       if (g.inverts || image(signature) != signature) continue;
       std::vector<std::size_t> to;
       for (const std::uint32_t f : polygons) {
-        const FacetSignature moved = image(lattice.faces()[f].corners);
-        to.push_back(static_cast<std::size_t>(
-            std::find_if(polygons.begin(), polygons.end(),
-                         [&](std::uint32_t h) { return lattice.faces()[h].corners == moved; }) -
-            polygons.begin()));
+        const std::uint32_t moved = lattice.find(image(lattice.faces()[f].corners)).value();
+        to.push_back(
+            static_cast<std::size_t>(std::lower_bound(polygons.begin(), polygons.end(), moved) - polygons.begin()));
       }
       // One table per byte, so that three look-ups map a set.
       Permutation& permutation = permutations_.emplace_back();
@@ -195,7 +192,7 @@ FaceLattice face_lattice(TileKind kind, int n) {
   return FaceLattice::cube(n);
 }
 
-std::vector<std::uint32_t> ambiguous_polygons(const FaceLattice& lattice, FacetSignature signature) {
+std::vector<std::uint32_t> ambiguous_polygons(const FaceLattice& lattice, Signature signature) {
   std::vector<std::uint32_t> result;
   for (std::uint32_t f = 0; f < lattice.faces().size(); ++f) {
     const facets::Face& face = lattice.faces()[f];
@@ -216,15 +213,15 @@ ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads
   // classes of signatures
   const Lattice tiles(kind, n);
   const FaceLattice lattice = face_lattice(kind, n);
-  const auto elements = symmetries(tiles.tile(n), GroupKind::Full, false);
-  const Transversal classes = transversal(tiles.tile(n), elements);
+  const TileClasses of_tile = tile_classes(tiles.tile(n));
+  const Transversal& classes = of_tile.classes;
   // ambiguous polygons and orbits of each class; split resolutions into units
   std::vector<std::vector<std::uint32_t>> ambiguous;
   std::vector<ResolutionOrbits> orbits;
   std::vector<Unit> units;
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
     ambiguous.push_back(ambiguous_polygons(lattice, classes.representatives[c]));
-    orbits.emplace_back(lattice, classes.representatives[c], ambiguous[c], elements);
+    orbits.emplace_back(lattice, classes.representatives[c], ambiguous[c], of_tile.symmetries);
     const std::uint64_t resolutions = std::uint64_t{1} << ambiguous[c].size();
     for (std::uint64_t begin = 0; begin < resolutions; begin += kUnit)
       units.push_back({c, begin, std::min(resolutions, begin + kUnit)});
@@ -262,7 +259,7 @@ ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std:
       // With half of the corners high, nearly all components of a tile of dimension 5 or more are connected. Half of
       // the tiles therefore get fewer high or fewer low corners, so that the sample includes tiles with several
       // components.
-      FacetSignature signature = random();
+      Signature signature = random();
       if (const std::uint64_t dice = random(); (dice & 1u) != 0) {
         for (std::uint64_t times = dice >> 1 & 3u; times > 0; --times) signature &= random();
         if ((dice & 8u) != 0) signature = ~signature;

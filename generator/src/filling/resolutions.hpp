@@ -10,7 +10,7 @@
 #include <map>
 
 #include "base/lattice.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::gen {
 
@@ -25,7 +25,7 @@ struct ResolutionFigures {
   std::uint64_t classes_with_non_spherical = 0;  ///< classes with such a pair
   std::uint64_t simplices = 0;                   ///< total of all certified tiles
   std::uint64_t max_simplices = 0;               ///< maximum over the tiles
-  std::array<std::uint64_t, 3> by_filling{};     ///< facets of all certified tiles, by facets::Filling
+  std::array<std::uint64_t, 3> by_filling{};     ///< facets of all tiles: simplex, cone, side (facets::Filling)
   std::map<int, std::uint64_t> euler{};  ///< Euler characteristic of a component of Sigma -> number of components
 };
 
@@ -52,7 +52,6 @@ using Progress = std::function<void(double)>;
 [[nodiscard]] facets::FaceLattice face_lattice(TileKind kind, int n);
 
 /// The ambiguous faces of dimension 2, whose boundary changes sign more than twice. Indices, ascending.
-[[nodiscard]] std::vector<std::uint32_t> ambiguous_polygons(const facets::FaceLattice& lattice,
-                                                            facets::Signature signature);
+[[nodiscard]] std::vector<std::uint32_t> ambiguous_polygons(const facets::FaceLattice& lattice, Signature signature);
 
 }  // namespace tegl::gen

@@ -18,7 +18,7 @@
 #include "base/lattice.hpp"
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
-#include "tegl/facets/certificate.hpp"
+#include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
 
@@ -34,7 +34,7 @@ constexpr std::size_t kOwn = kEdges;  ///< number of the first vertex that is no
 constexpr std::size_t kMaxOwn = 8;
 using Triangle = std::array<std::uint8_t, 3>;
 using Polygon = std::vector<std::uint8_t>;  ///< edges, with high on the left seen from outside
-using Filling = std::vector<Triangle>;
+using Triangles = std::vector<Triangle>;
 
 /// The cube's edges and squares in the numbering of the table contract.
 struct Frame {
@@ -48,20 +48,11 @@ struct Frame {
 
   Frame() {
     const Tile& cube = tiles.tile(3);
-    for (std::uint32_t f = 0; f < lattice.faces().size(); ++f) {
-      const facets::Signature corners = lattice.faces()[f].corners;
-      for (std::uint8_t e = 0; e < kEdges; ++e)
-        if (corners == (facets::Signature{1} << cube.edges[e][0] | facets::Signature{1} << cube.edges[e][1]))
-          edge_of_face[f] = e;
-    }
+    for (std::uint8_t e = 0; e < kEdges; ++e)
+      edge_of_face[lattice.find(Signature{1} << cube.edges[e][0] | Signature{1} << cube.edges[e][1]).value()] = e;
     for (std::size_t q = 0; q < 6; ++q) {
-      facets::Signature corners = 0;
-      for (std::size_t i = 0; i < 4; ++i) {
-        squares[q][i] = cube.faces[q].corner[i];
-        corners |= facets::Signature{1} << squares[q][i];
-      }
-      for (std::uint32_t f = 0; f < lattice.faces().size(); ++f)
-        if (lattice.faces()[f].corners == corners) face_of_square[q] = f;
+      std::copy_n(cube.faces[q].corner.begin(), 4, squares[q].begin());
+      face_of_square[q] = lattice.find(cube.faces[q].corners()).value();
       for (const std::uint8_t e : cube.faces[q].edge) squares_of[e] |= 1u << q;
     }
     for (std::size_t e = 0; e < kEdges; ++e)
@@ -121,7 +112,7 @@ class Alone {
     }
   }
 
-  bool passes(const Filling& filling) {
+  bool passes(const Triangles& filling) {
     facets::Facet facet;
     for (const Triangle& t : filling) {
       facets::Simplex& simplex = facet.simplices.emplace_back(facets::kNoSimplex);
@@ -160,7 +151,7 @@ class Search {
     vertices_.push_back(kOwn);
   }
 
-  std::optional<Filling> run() {
+  std::optional<Triangles> run() {
     advance(0);
     return std::exchange(best_, std::nullopt);
   }
@@ -239,8 +230,8 @@ class Search {
   std::size_t triangles_ = 0;
   bool open_[kEdges + 1][kEdges + 1] = {};  ///< directed edges that still need a triangle
   bool used_[kEdges + 1][kEdges + 1] = {};
-  Filling filling_;
-  std::optional<Filling> best_;
+  Triangles filling_;
+  std::optional<Triangles> best_;
   double best_cost_ = 0;
 };
 
@@ -248,17 +239,17 @@ class Search {
 /// so no edge is a chord between two edge points.
 class SideFilling {
  public:
-  SideFilling(const Frame& frame, facets::Signature signature, unsigned high_squares, bool high)
+  SideFilling(const Frame& frame, Signature signature, unsigned high_squares, bool high)
       : frame_(frame), signature_(signature), high_squares_(high_squares), high_(high) {}
 
   /// The triangles of the region bounded by these polygons. Writes to `corners` the corner of each own vertex.
-  Filling run(const std::vector<Polygon>& boundary, std::vector<std::uint8_t>& corners) {
+  Triangles run(const std::vector<Polygon>& boundary, std::vector<std::uint8_t>& corners) {
     for (std::size_t q = 0; q < 6; ++q) square(q);
     unsigned reached = 1u << boundary[0][0], before = 0;
     while (reached != std::exchange(before, reached))
       for (const Triangle& t : all_)
         if ((bits(t) & reached) != 0) reached |= bits(t);
-    Filling filling;
+    Triangles filling;
     for (Triangle t : all_) {
       if ((bits(t) & reached) == 0) continue;
       for (std::uint8_t& v : t) {
@@ -278,13 +269,6 @@ class SideFilling {
   static unsigned bits(const Triangle& t) { return 1u << t[0] | 1u << t[1] | 1u << t[2]; }
   [[nodiscard]] bool inside(std::uint8_t corner) const { return (((signature_ >> corner) & 1u) != 0) == high_; }
 
-  [[nodiscard]] std::uint8_t edge(std::uint8_t a, std::uint8_t b) const {
-    const Tile& cube = frame_.tiles.tile(3);
-    for (std::uint8_t e = 0; e < kEdges; ++e)
-      if (cube.edges[e][0] == std::min(a, b) && cube.edges[e][1] == std::max(a, b)) return e;
-    return 0;
-  }
-
   void square(std::size_t q) {
     // The square's corners in cyclic order, with the same orientation for all six squares seen from outside.
     std::array<std::uint8_t, 4> ring = {frame_.squares[q][0], frame_.squares[q][1], frame_.squares[q][3],
@@ -294,7 +278,7 @@ class SideFilling {
     for (std::size_t i = 0; i < 4; ++i) {
       const std::uint8_t here = ring[i], next = ring[(i + 1) % 4];
       if (inside(here)) outline.push_back(static_cast<std::uint8_t>(kEdges + here));
-      if (inside(here) != inside(next)) outline.push_back(edge(here, next));
+      if (inside(here) != inside(next)) outline.push_back(frame_.tiles.tile(3).edge_between(here, next));
     }
     const bool joined = (((high_squares_ >> q) & 1u) != 0) == high_;
     const auto is_corner = [](std::uint8_t v) { return v >= kEdges; };
@@ -318,7 +302,7 @@ class SideFilling {
   }
 
   /// Reverses all triangles if they do not match the boundary's orientation.
-  static void turn(Filling& filling, const std::vector<Polygon>& boundary) {
+  static void turn(Triangles& filling, const std::vector<Polygon>& boundary) {
     const std::uint8_t a = boundary[0][0], b = boundary[0][1];
     const bool right = std::any_of(filling.begin(), filling.end(), [&](const Triangle& t) {
       return (t[0] == a && t[1] == b) || (t[1] == a && t[2] == b) || (t[2] == a && t[0] == b);
@@ -328,10 +312,10 @@ class SideFilling {
   }
 
   const Frame& frame_;
-  facets::Signature signature_;
+  Signature signature_;
   unsigned high_squares_;
   bool high_;
-  Filling all_;
+  Triangles all_;
 };
 
 /// Collects the entries of the table.
@@ -344,7 +328,7 @@ class Table {
     table_.ambiguous.push_back(static_cast<std::uint8_t>(ambiguous));
   }
 
-  void add(facets::Signature signature, unsigned high_squares, std::vector<Choice>& choices) {
+  void add(Signature signature, unsigned high_squares, std::vector<Choice>& choices) {
     signature_ = signature, high_squares_ = high_squares;
     tables::ResolvedEntry entry{};
     for (const Choice choice : {Choice::separate, Choice::low, Choice::high}) {
@@ -384,15 +368,15 @@ class Table {
 
   /// The triangles of a polygon that the compact table also has for this signature; empty if it has none. So both
   /// tables agree if no square is ambiguous or all are resolved equally.
-  [[nodiscard]] Filling as_in_compact_table(const Polygon& polygon) const {
+  [[nodiscard]] Triangles as_in_compact_table(const Polygon& polygon) const {
     const bool all_high = high_squares_ != 0 && high_squares_ == table_.ambiguous.back();
     const ContourBuilder& first = all_high ? compact_high_ : compact_low_;
     const ContourBuilder& second = all_high ? compact_low_ : compact_high_;
     for (const ContourBuilder* compact : {&first, &second})
-      for (const Facet& facet : compact->build(static_cast<Signature>(signature_)).facets) {
+      for (const LocalFacet& facet : compact->build(static_cast<Signature>(signature_)).facets) {
         if (facet.points != polygon) continue;
-        Filling filling;
-        for (const Simplex& t : facet.simplices) filling.push_back({t[0], t[1], t[2]});
+        Triangles filling;
+        for (const LocalSimplex& t : facet.simplices) filling.push_back({t[0], t[1], t[2]});
         return filling;
       }
     return {};
@@ -403,7 +387,7 @@ class Table {
   void fill(tables::ResolvedList& list, const std::vector<Polygon>& boundary, Choice choice) {
     Alone alone(frame_, tile_, boundary);
     if (boundary.size() == 1)
-      if (const Filling known = as_in_compact_table(boundary[0]); !known.empty() && alone.passes(known))
+      if (const Triangles known = as_in_compact_table(boundary[0]); !known.empty() && alone.passes(known))
         return write(list, known, {});
     if (const auto flat = Search(frame_, alone, boundary, false).run()) return write(list, *flat, {});
     if (const auto coned = Search(frame_, alone, boundary, true).run()) {
@@ -413,7 +397,7 @@ class Table {
       return write(list, *coned, {mask});
     }
     std::vector<std::uint8_t> corners;
-    const Filling side = SideFilling(frame_, signature_, high_squares_, choice == Choice::low).run(boundary, corners);
+    const Triangles side = SideFilling(frame_, signature_, high_squares_, choice == Choice::low).run(boundary, corners);
     if (corners.size() > kMaxOwn || !alone.passes(side))
       throw Error(ErrorCode::CertificateFailed,
                   fmt::format("cube of signature {}, high squares {:#x}: no filling of its {} polygons passes",
@@ -423,7 +407,7 @@ class Table {
     write(list, side, masks);
   }
 
-  void write(tables::ResolvedList& list, const Filling& filling, const std::vector<std::uint32_t>& masks) {
+  void write(tables::ResolvedList& list, const Triangles& filling, const std::vector<std::uint32_t>& masks) {
     for (const Triangle& t : filling)
       for (const std::uint8_t v : t)
         table_.triangles.push_back(static_cast<std::uint8_t>(v < kOwn ? v : v + list.own_vertices));
@@ -438,7 +422,7 @@ class Table {
   ContourBuilder compact_high_{frame_.tiles, 3, Alternative::high, Triangulation::compact};
   ResolvedCube table_;
   // State of the current entry.
-  facets::Signature signature_ = 0;
+  Signature signature_ = 0;
   unsigned high_squares_ = 0;
   TileFacets tile_;
 };
@@ -449,7 +433,7 @@ ResolvedCube make_resolved_cube() {
   const Frame frame;
   Table table(frame);
   std::vector<Choice> choices(frame.lattice.faces().size(), Choice::separate);
-  for (facets::Signature s = 0; s < 256; ++s) {
+  for (Signature s = 0; s < 256; ++s) {
     const auto polygons = ambiguous_polygons(frame.lattice, s);
     unsigned ambiguous = 0;
     for (unsigned q = 0; q < 6; ++q)

@@ -57,7 +57,7 @@ std::vector<Tetrahedron> side_of(const FaceContours& faces, const SignatureRegio
   std::vector<Tetrahedron> side;
   for (std::uint32_t f = 0; f < faces.tile().faces.size(); ++f) {
     const Signature in_cube = faces.tile().restrict_to(f, signature);
-    for (const Simplex& s : regions.regions(in_cube).simplices) {
+    for (const LocalSimplex& s : regions.regions(in_cube).simplices) {
       Tetrahedron t;
       for (int i = 0; i < 4; ++i) t[i] = place_of(faces, regions, f, in_cube, s[i]);
       if (faces.tile().faces[f].sign < 0) std::swap(t[2], t[3]);
@@ -82,9 +82,9 @@ void keep_connected(std::vector<Tetrahedron>& side, int contour_vertex) {
 }
 
 /// +1 if `tetrahedra` induce the triangle's orientation on it, -1 if the opposite one, 0 if it is not a face of them.
-int induced_sign(const std::vector<Simplex>& tetrahedra, const Simplex& triangle) {
+int induced_sign(const std::vector<LocalSimplex>& tetrahedra, const LocalSimplex& triangle) {
   static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  for (const Simplex& t : tetrahedra)
+  for (const LocalSimplex& t : tetrahedra)
     for (const auto& f : kFaces)
       for (int turn = 0; turn < 3; ++turn) {
         const std::uint8_t a = t[f[turn]], b = t[f[(turn + 1) % 3]], c = t[f[(turn + 2) % 3]];
@@ -97,7 +97,7 @@ int induced_sign(const std::vector<Simplex>& tetrahedra, const Simplex& triangle
 }  // namespace
 
 void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Signature signature,
-                  const std::vector<Simplex>& component, TileContour& contour, Facet& facet) {
+                  const std::vector<LocalSimplex>& component, TileContour& contour, LocalFacet& facet) {
   // The low side in the high-connected alternative is the high side in the low-connected one after inversion.
   const Signature high = faces.alternative() == Alternative::low ? signature : ~signature & faces.tile().full();
   auto side = side_of(faces, regions, high);
@@ -121,7 +121,7 @@ void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Si
   }
   // the side must meet Sigma in this component only
   std::map<int, int> sigma_vertices;
-  for (const Simplex& s : component)
+  for (const LocalSimplex& s : component)
     for (int i = 0; i < 3; ++i) sigma_vertices[s[i]] = 1;
   if (sigma_vertices.size() != on_sigma)
     throw std::logic_error("a side is bounded by more than one component: joining them is not the consistent method");
@@ -130,7 +130,7 @@ void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Si
   for (const Tetrahedron& t : side)
     facet.simplices.push_back({number.at(t[0]), number.at(t[1]), number.at(t[2]), number.at(t[3])});
   if (induced_sign(facet.simplices, component.front()) < 0)
-    for (Simplex& s : facet.simplices) std::swap(s[2], s[3]);
+    for (LocalSimplex& s : facet.simplices) std::swap(s[2], s[3]);
 }
 
 }  // namespace tegl::gen

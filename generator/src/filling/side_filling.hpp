@@ -16,6 +16,6 @@ namespace tegl::gen {
 /// contour.side_masks; all cone vertices must be numbered before. `regions`: regions of the tile's faces. Throws
 /// std::logic_error if other components bound that side too.
 void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Signature signature,
-                  const std::vector<Simplex>& component, TileContour& contour, Facet& facet);
+                  const std::vector<LocalSimplex>& component, TileContour& contour, LocalFacet& facet);
 
 }  // namespace tegl::gen

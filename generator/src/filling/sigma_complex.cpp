@@ -17,8 +17,8 @@ std::array<std::uint8_t, 3> sorted(std::uint8_t a, std::uint8_t b, std::uint8_t 
 
 }  // namespace
 
-SigmaComplex::SigmaComplex(const FaceContours& faces, const std::vector<Simplex>& component) : faces_(faces) {
-  for (const Simplex& s : component) {
+SigmaComplex::SigmaComplex(const FaceContours& faces, const std::vector<LocalSimplex>& component) : faces_(faces) {
+  for (const LocalSimplex& s : component) {
     triangles_.push_back(sorted(s[0], s[1], s[2]));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
@@ -32,7 +32,7 @@ bool SigmaComplex::allows_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t 
   return std::binary_search(triangles_.begin(), triangles_.end(), sorted(a, b, c));
 }
 
-bool SigmaComplex::allows(const Simplex& t) const {
+bool SigmaComplex::allows(const LocalSimplex& t) const {
   std::uint32_t common = ~0u;
   for (int i = 0; i < 4; ++i) {
     common &= faces_.faces_of(t[i]);

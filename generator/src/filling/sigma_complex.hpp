@@ -16,11 +16,11 @@ namespace tegl::gen {
 /// The triangulation of one component of a 4-tile's Sigma. Decides which tetrahedra a filling may contain.
 class SigmaComplex {
  public:
-  SigmaComplex(const FaceContours& faces, const std::vector<Simplex>& component);
+  SigmaComplex(const FaceContours& faces, const std::vector<LocalSimplex>& component);
 
   /// True if every edge and triangle of the tetrahedron that lies in a face of the tile belongs to Sigma, and the whole
   /// tetrahedron lies in no face.
-  [[nodiscard]] bool allows(const Simplex& tetrahedron) const;
+  [[nodiscard]] bool allows(const LocalSimplex& tetrahedron) const;
 
  private:
   [[nodiscard]] bool allows_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) const;

@@ -24,16 +24,10 @@ inline Key key_of(std::array<std::uint8_t, 4> v, int count) {
 }
 
 /// Parity of the permutation that sorts the first `count` vertices: +1 or -1.
-inline int parity(const std::array<std::uint8_t, 4>& v, int count) {
-  int sign = 1;
-  for (int i = 0; i < count; ++i)
-    for (int j = i + 1; j < count; ++j)
-      if (v[i] > v[j]) sign = -sign;
-  return sign;
-}
+inline int parity(std::array<std::uint8_t, 4> v, int count) { return facets::sort_vertices(v, count); }
 
-inline Simplex without(const Simplex& s, int drop, int n) {
-  Simplex face{};
+inline LocalSimplex without(const LocalSimplex& s, int drop, int n) {
+  LocalSimplex face{};
   for (int i = 0, k = 0; i < n; ++i)
     if (i != drop) face[k++] = s[i];
   return face;

@@ -8,42 +8,36 @@
 #include <vector>
 
 #include "base/lattice.hpp"
+#include "tegl/tile/facets.hpp"
+#include "tegl/tile/triangulation.hpp"
 
 namespace tegl::gen {
 
-/// Resolution of ambiguous squares: high corners separate (low) or joined (high).
-enum class Alternative { low, high };
-/// Triangulation of facets: coned from barycentres, or with few added vertices.
-enum class Triangulation { barycentric, compact };
+using facets::Alternative;
+using facets::Filling;
+using tegl::Triangulation;
+
 const char* alternative_name(Alternative a) noexcept;      ///< "low", "high"
 const char* triangulation_name(Triangulation t) noexcept;  ///< "barycentric", "compact"
 
-/// How a facet fills its component of Sigma.
-enum class Filling {
-  point,    ///< dimension 1: the point on an edge
-  simplex,  ///< Sigma is a simplex's boundary: that simplex
-  cone,     ///< a cone from an added vertex, the barycentre
-  pulled,   ///< a cone from one of Sigma's own vertices, or a polygon cut by chords: no vertex is added
-  side,     ///< a copy of one side of the tile's boundary, pushed inwards
-};
+/// An oriented simplex by local vertices as in the table contract; the first n count for an n-tile. facets::Simplex
+/// has the vertices of any tile instead.
+using LocalSimplex = std::array<std::uint8_t, 4>;
 
-/// An oriented simplex by local vertices as in the table contract; the first n count for an n-tile.
-using Simplex = std::array<std::uint8_t, 4>;
-
-/// One facet of the contour: a manifold of dimension n - 1.
-struct Facet {
-  Filling filling = Filling::simplex;  ///< how it is filled
-  int sign = 1;                        ///< dimension 1 only: +1 if the edge's second end is high
-  int boundary_euler = 0;              ///< Euler characteristic of its component of Sigma
-  std::vector<std::uint8_t> points;    ///< edge points; n = 3: in cyclic order, n = 2: from, to; else ascending
-  std::vector<Simplex> simplices{};    ///< its triangulation
-  std::uint32_t boundary_facets = 0;   ///< number of (n-2)-facets in its boundary
+/// One facet of the contour, as facets::Facet, by local vertices.
+struct LocalFacet {
+  Filling filling = Filling::simplex;     ///< how it is filled
+  int sign = 1;                           ///< dimension 1 only: +1 if the edge's second end is high
+  int boundary_euler = 0;                 ///< Euler characteristic of its component of Sigma
+  std::vector<std::uint8_t> points;       ///< edge points; n = 3: in cyclic order, n = 2: from, to; else ascending
+  std::vector<LocalSimplex> simplices{};  ///< its triangulation
+  std::uint32_t boundary_facets = 0;      ///< number of (n-2)-facets in its boundary
 };
 
 /// All facets of a tile; positive sides face the high corners.
 struct TileContour {
-  std::vector<Facet> facets;               ///< one per component of Sigma
-  std::vector<Simplex> boundary;           ///< Sigma: oriented (n-2)-simplices, n - 1 vertices each
+  std::vector<LocalFacet> facets;          ///< one per component of Sigma
+  std::vector<LocalSimplex> boundary;      ///< Sigma: oriented (n-2)-simplices, n - 1 vertices each
   std::vector<std::int8_t> boundary_sign;  ///< n = 2 only (0-simplices): +1 or -1
   std::uint32_t cone_vertices = 0;         ///< number of own vertices that are barycentres
   std::vector<std::uint64_t> side_masks;   ///< one per side vertex: the corners and edges of which it is the mean

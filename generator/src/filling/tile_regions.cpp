@@ -51,20 +51,20 @@ std::uint32_t SignatureRegions::mask_of(Signature signature, std::uint8_t vertex
 
 /// The oriented boundary of the high part: the faces' regions and the tile's facets. A facet gets the sign (-1)^k,
 /// because the orientation of facets puts the direction towards high last.
-std::vector<Simplex> SignatureRegions::boundary(Signature signature, const TileContour& contour) const {
+std::vector<LocalSimplex> SignatureRegions::boundary(Signature signature, const TileContour& contour) const {
   const int k = tile_->dim;
-  std::vector<Simplex> result;
-  const auto add = [&](Simplex simplex, int sign) {
+  std::vector<LocalSimplex> result;
+  const auto add = [&](LocalSimplex simplex, int sign) {
     if (sign < 0) std::swap(simplex[k - 1], simplex[k - 2]);
     result.push_back(simplex);
   };
   for (std::uint32_t f = 0; f < tile_->faces.size(); ++f)
-    for (Simplex simplex : of_faces_->regions(tile_->restrict_to(f, signature)).simplices) {
+    for (LocalSimplex simplex : of_faces_->regions(tile_->restrict_to(f, signature)).simplices) {
       for (int i = 0; i < k; ++i) simplex[i] = lift(f, simplex[i]);
       add(simplex, tile_->faces[f].sign);
     }
-  for (const Facet& facet : contour.facets)
-    for (Simplex simplex : facet.simplices) {
+  for (const LocalFacet& facet : contour.facets)
+    for (LocalSimplex simplex : facet.simplices) {
       for (int i = 0; i < k; ++i) simplex[i] = static_cast<std::uint8_t>(simplex[i] + tile_->corner_count());
       add(simplex, k % 2 == 0 ? 1 : -1);
     }
@@ -75,24 +75,24 @@ namespace {
 
 TileRegions regions_of_edge(Signature signature) {
   TileRegions result;
-  if (signature == 1) result.simplices = {Simplex{0, 2}};
-  if (signature == 2) result.simplices = {Simplex{2, 1}};
-  if (signature == 3) result.simplices = {Simplex{0, 1}};
+  if (signature == 1) result.simplices = {LocalSimplex{0, 2}};
+  if (signature == 2) result.simplices = {LocalSimplex{2, 1}};
+  if (signature == 3) result.simplices = {LocalSimplex{0, 1}};
   return result;
 }
 
 /// Splits a closed complex into connected components, ordered by smallest vertex.
-std::vector<std::vector<Simplex>> split(std::vector<Simplex> rest, int vertices_per_simplex) {
-  std::vector<std::vector<Simplex>> components;
+std::vector<std::vector<LocalSimplex>> split(std::vector<LocalSimplex> rest, int vertices_per_simplex) {
+  std::vector<std::vector<LocalSimplex>> components;
   while (!rest.empty()) {
     std::array<bool, 256> reached{};
     std::uint8_t smallest = 255;
-    for (const Simplex& s : rest)
+    for (const LocalSimplex& s : rest)
       smallest = std::min(smallest, *std::min_element(s.begin(), s.begin() + vertices_per_simplex));
     reached[smallest] = true;
     for (bool grown = true; grown;) {
       grown = false;
-      for (const Simplex& s : rest)
+      for (const LocalSimplex& s : rest)
         if (std::any_of(s.begin(), s.begin() + vertices_per_simplex, [&](std::uint8_t v) { return reached[v]; }))
           for (int i = 0; i < vertices_per_simplex; ++i) {
             grown |= !reached[s[i]];
@@ -100,7 +100,8 @@ std::vector<std::vector<Simplex>> split(std::vector<Simplex> rest, int vertices_
           }
     }
     auto& component = components.emplace_back();
-    const auto kept = std::stable_partition(rest.begin(), rest.end(), [&](const Simplex& s) { return !reached[s[0]]; });
+    const auto kept =
+        std::stable_partition(rest.begin(), rest.end(), [&](const LocalSimplex& s) { return !reached[s[0]]; });
     component.assign(kept, rest.end());
     rest.erase(kept, rest.end());
   }
@@ -119,7 +120,7 @@ TileRegions SignatureRegions::build(Signature signature, const TileContour& cont
     std::uint8_t lowest = 255;
     std::array<bool, 256> seen{};
     std::size_t vertices = 0;
-    for (const Simplex& s : component)
+    for (const LocalSimplex& s : component)
       for (int i = 0; i < k; ++i) {
         vertices += seen[s[i]] ? 0 : 1;
         seen[s[i]] = true;
@@ -134,9 +135,9 @@ TileRegions SignatureRegions::build(Signature signature, const TileContour& cont
       apex = static_cast<std::uint8_t>(own_base() + result.own_masks.size());
       result.own_masks.push_back(mask);
     }
-    for (const Simplex& s : component) {
+    for (const LocalSimplex& s : component) {
       if (std::find(s.begin(), s.begin() + k, apex) != s.begin() + k) continue;
-      Simplex cone{apex};
+      LocalSimplex cone{apex};
       std::copy_n(s.begin(), k, cone.begin() + 1);
       result.simplices.push_back(cone);
     }

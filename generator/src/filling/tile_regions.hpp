@@ -18,7 +18,7 @@ enum class RegionStyle { cone, fan };
 
 /// The high part of a k-tile (k <= 3): disjoint balls. Local vertices as in the table contract (RegionTable).
 struct TileRegions {
-  std::vector<Simplex> simplices;        ///< k + 1 vertices each, det > 0
+  std::vector<LocalSimplex> simplices;   ///< k + 1 vertices each, det > 0
   std::vector<std::uint32_t> own_masks;  ///< one per own vertex: corners (bit v) and edges (bit 2^k + e)
 };
 
@@ -40,7 +40,7 @@ class SignatureRegions {
 
  private:
   [[nodiscard]] TileRegions build(Signature signature, const TileContour& contour) const;
-  [[nodiscard]] std::vector<Simplex> boundary(Signature signature, const TileContour& contour) const;
+  [[nodiscard]] std::vector<LocalSimplex> boundary(Signature signature, const TileContour& contour) const;
   [[nodiscard]] std::uint8_t lift(std::uint32_t f, std::uint8_t vertex) const;
 
   const Tile* tile_;

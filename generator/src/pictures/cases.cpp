@@ -19,7 +19,7 @@
 #include "symmetry/tile_symmetry.hpp"
 #include "tables/emit_text.hpp"
 #include "tables/table_set.hpp"
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/complex.hpp"
 
 namespace tegl::gen {
 
@@ -34,14 +34,12 @@ struct Case {
 
 std::vector<Case> cases_of(const Lattice& lattice, GroupKind kind) {
   const int n = lattice.dim();
-  const auto elements = symmetries(lattice.tile(n), kind, false);
-  const Transversal classes = transversal(lattice.tile(n), elements);
-  require_burnside_count(classes, elements);
+  const auto [symmetries, classes] = tile_classes(lattice.tile(n), kind);
   std::vector<Case> cases;
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
     const Signature s = classes.representatives[c];
     const std::uint32_t orbit = classes.orbit_length[c];
-    cases.push_back({s, orbit, static_cast<std::uint32_t>(elements.size()) / orbit, ambiguous_faces(lattice, n, s)});
+    cases.push_back({s, orbit, static_cast<std::uint32_t>(symmetries.size()) / orbit, ambiguous_faces(lattice, n, s)});
   }
   return cases;
 }
@@ -60,7 +58,7 @@ std::string page_opening(int dim, const char* title) {
 /// Facets by their edge points; equal for two contours that differ in triangulation only.
 std::set<std::vector<std::uint8_t>> outlines(const TileContour& contour) {
   std::set<std::vector<std::uint8_t>> result;
-  for (const Facet& facet : contour.facets) {
+  for (const LocalFacet& facet : contour.facets) {
     auto points = facet.points;
     std::sort(points.begin(), points.end());
     result.insert(points);
@@ -73,7 +71,7 @@ std::string described(int dim, const TileContour& contour) {
   if (contour.facets.empty()) return "no contour";
   if (dim == 2) return contour.facets.size() == 1 ? "one segment" : fmt::format("{} segments", contour.facets.size());
   std::vector<std::size_t> sizes;
-  for (const Facet& facet : contour.facets) sizes.push_back(facet.points.size());
+  for (const LocalFacet& facet : contour.facets) sizes.push_back(facet.points.size());
   std::sort(sizes.rbegin(), sizes.rend());
   static constexpr const char* kNames[] = {"triangle", "quadrilateral", "pentagon", "hexagon", "heptagon"};
   std::vector<std::string> names;
@@ -145,14 +143,14 @@ class FlatCatalogue {
 
 std::size_t simplex_count(const TileContour& contour) {
   std::size_t sum = 0;
-  for (const Facet& facet : contour.facets) sum += facet.simplices.size();
+  for (const LocalFacet& facet : contour.facets) sum += facet.simplices.size();
   return sum;
 }
 
 /// Proves it by a collapse to a circle; the certificate proves that the facet is a manifold.
-bool is_solid_torus(const Facet& facet) {
+bool is_solid_torus(const LocalFacet& facet) {
   facets::Simplices simplices;
-  for (const Simplex& s : facet.simplices) {
+  for (const LocalSimplex& s : facet.simplices) {
     facets::Simplex& simplex = simplices.emplace_back(facets::kNoSimplex);
     std::copy(s.begin(), s.end(), simplex.begin());
     facets::sort_vertices(simplex);
@@ -161,9 +159,9 @@ bool is_solid_torus(const Facet& facet) {
 }
 
 /// The facet that fills a non-spherical component of Sigma, or null.
-const Facet* around_torus(const TileContour& contour) {
+const LocalFacet* around_torus(const TileContour& contour) {
   const auto found = std::find_if(contour.facets.begin(), contour.facets.end(),
-                                  [](const Facet& facet) { return facet.boundary_euler != 2; });
+                                  [](const LocalFacet& facet) { return facet.boundary_euler != 2; });
   return found == contour.facets.end() ? nullptr : &*found;
 }
 
@@ -180,7 +178,7 @@ class Catalogue4d {
     std::size_t torus_count = 0;
     for (const Case& c : cases) {
       const TileContour barycentric = barycentric_.build(c.signature), compact = compact_.build(c.signature);
-      const Facet* const torus = around_torus(barycentric);
+      const LocalFacet* const torus = around_torus(barycentric);
       table += row(c, barycentric, compact);
       if (torus == nullptr) continue;
       ++torus_count;
@@ -210,7 +208,7 @@ class Catalogue4d {
 
   static std::string row(const Case& c, const TileContour& barycentric, const TileContour& compact) {
     std::vector<std::string> facets;
-    for (const Facet& facet : barycentric.facets)
+    for (const LocalFacet& facet : barycentric.facets)
       facets.push_back(fmt::format("{}{}", facet.points.size(), facet.boundary_euler == 2 ? "" : " **T**"));
     return fmt::format("| {} | {} | {} | {} {} {} | {} | {}, {} |\n", c.signature, high_corners(c.signature), c.orbit,
                        c.ambiguous[2], c.ambiguous[3], c.ambiguous[4],
@@ -219,9 +217,9 @@ class Catalogue4d {
   }
 
   /// The section of one class with a torus: figures and a film.
-  std::string torus_section(const Case& c, const TileContour& barycentric, const Facet& torus,
+  std::string torus_section(const Case& c, const TileContour& barycentric, const LocalFacet& torus,
                             const TileContour& compact) {
-    const Facet* const small = around_torus(compact);
+    const LocalFacet* const small = around_torus(compact);
     if (small == nullptr || !is_solid_torus(torus) || !is_solid_torus(*small))
       throw Error(ErrorCode::Internal,
                   fmt::format("signature {}: a torus that is not filled by a solid torus", c.signature));

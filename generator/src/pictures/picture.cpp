@@ -146,8 +146,8 @@ class Canvas {
   std::array<double, 2> low_{1e9, 1e9}, high_{-1e9, -1e9};
 };
 
-const std::vector<Facet>& facets_of(const PlacedTile& placed) {
-  static const std::vector<Facet> none{};
+const std::vector<LocalFacet>& facets_of(const PlacedTile& placed) {
+  static const std::vector<LocalFacet> none{};
   return placed.contour == nullptr ? none : placed.contour->facets;
 }
 
@@ -161,8 +161,8 @@ void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
   // collect the triangles of facets and patches
   std::vector<Triangle> triangles;
   std::vector<std::array<Place, 3>> all;
-  for (const Facet& facet : facets_of(placed))
-    for (const Simplex& s : facet.simplices)
+  for (const LocalFacet& facet : facets_of(placed))
+    for (const LocalSimplex& s : facet.simplices)
       all.push_back({place_of(*placed.tile, facet, s[0]), place_of(*placed.tile, facet, s[1]),
                      place_of(*placed.tile, facet, s[2])});
   all.insert(all.end(), placed.patches.begin(), placed.patches.end());
@@ -192,8 +192,8 @@ void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
 
 /// 2D: draws segments, with a short stroke to their high side.
 void draw_segments(const PlacedTile& placed, Canvas& canvas) {
-  for (const Facet& facet : facets_of(placed))
-    for (const Simplex& s : facet.simplices) {
+  for (const LocalFacet& facet : facets_of(placed))
+    for (const LocalSimplex& s : facet.simplices) {
       const Place a = placed.at + place_of(*placed.tile, facet, s[0]),
                   b = placed.at + place_of(*placed.tile, facet, s[1]);
       const Place along = unit(b - a), left{-along[1], along[0], 0};
@@ -223,7 +223,7 @@ void draw_corners(const PlacedTile& placed, const Visible& visible, bool hidden,
 
 }  // namespace
 
-Place place_of(const Tile& tile, const Facet& facet, std::uint8_t vertex) {
+Place place_of(const Tile& tile, const LocalFacet& facet, std::uint8_t vertex) {
   const auto middle = [&tile](std::uint8_t e) {
     return 0.5 * (corner_place(tile, tile.edges[e][0]) + corner_place(tile, tile.edges[e][1]));
   };

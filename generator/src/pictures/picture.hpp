@@ -37,7 +37,7 @@ struct Picture {
 
 /// Position of a local vertex of a contour's facet in a tile of unit size: an edge point at the edge's middle, a
 /// facet's barycentre at the mean of its edge points.
-[[nodiscard]] Place place_of(const Tile& tile, const Facet& facet, std::uint8_t vertex);
+[[nodiscard]] Place place_of(const Tile& tile, const LocalFacet& facet, std::uint8_t vertex);
 
 /// The picture as one SVG element; equal pictures give equal bytes. In 3D the view is from the front, above and
 /// slightly from the left: x to the right, y into the picture, z upwards. Errors: Internal for dimensions other than 2

@@ -28,7 +28,7 @@ class Places {
   Places(const ContourBuilder& builder, Signature signature, const TileContour& contour)
       : builder_(builder), signature_(signature), contour_(contour) {}
 
-  [[nodiscard]] Point of(const Facet& facet, std::uint8_t v) const {
+  [[nodiscard]] Point of(const LocalFacet& facet, std::uint8_t v) const {
     const Tile& tile = builder_.tile();
     if (v < tile.edge_count()) return on_edge(v);
     if (v < builder_.own_base()) return of_slot(v - tile.edge_count());
@@ -56,7 +56,7 @@ class Places {
   [[nodiscard]] Point of_slot(std::uint32_t slot) const {
     const std::uint32_t f = slot / tables::kFaceSlots;
     std::uint32_t cones = 0;
-    for (const Facet& facet : builder_.face_contour(f, signature_).facets) {
+    for (const LocalFacet& facet : builder_.face_contour(f, signature_).facets) {
       if (facet.filling != Filling::cone || cones++ != slot % tables::kFaceSlots) continue;
       std::vector<std::uint8_t> lifted;
       for (const std::uint8_t e : facet.points) lifted.push_back(builder_.lift(f, e));
@@ -125,8 +125,8 @@ std::vector<std::array<Place, 3>> cut(const ContourBuilder& builder, Signature s
                                       double time) {
   const Places places(builder, signature, contour);
   std::vector<std::array<Place, 3>> result;
-  for (const Facet& facet : contour.facets)
-    for (const Simplex& s : facet.simplices)
+  for (const LocalFacet& facet : contour.facets)
+    for (const LocalSimplex& s : facet.simplices)
       cut_tetrahedron({places.of(facet, s[0]), places.of(facet, s[1]), places.of(facet, s[2]), places.of(facet, s[3])},
                       time, result);
   return result;

@@ -167,8 +167,9 @@ void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
   if (f.others != 0)
     fmt::print(" (genus up to {}) in {} signatures, {} classes: {}", f.highest_genus, f.signatures_with_others,
                f.classes_with_others.size(), fmt::join(f.classes_with_others, " "));
-  fmt::print("\n  filled by    simplex {}, cone {}, own vertices {}, side {}\n", f.by_filling[1], f.by_filling[2],
-             f.by_filling[3], f.by_filling[4]);
+  const auto of = [&](Filling filling) { return f.by_filling[static_cast<std::size_t>(filling)]; };
+  fmt::print("\n  filled by    simplex {}, cone {}, own vertices {}, side {}\n", of(Filling::simplex),
+             of(Filling::cone), of(Filling::pulled), of(Filling::side));
   fmt::print("  simplices    {}: {:.2f} per signature, at most {}\n", f.simplices,
              static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.max_simplices);
   if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);

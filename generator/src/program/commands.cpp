@@ -42,7 +42,7 @@ struct ClassReport {
 
 std::string json_of(const Tile& tile, const ClassReport& c) {
   std::vector<std::string> facets, euler;
-  for (const Facet& facet : c.contour.facets) {
+  for (const LocalFacet& facet : c.contour.facets) {
     facets.push_back(fmt::format("[\"{}\"]", fmt::join(edge_names(tile, facet.points), "\", \"")));
     euler.push_back(fmt::format("{}", facet.boundary_euler));
   }
@@ -58,7 +58,7 @@ std::string json_of(const Tile& tile, const ClassReport& c) {
 
 std::string text_of(const Tile& tile, const ClassReport& c) {
   std::vector<std::string> facets, euler;
-  for (const Facet& facet : c.contour.facets) {
+  for (const LocalFacet& facet : c.contour.facets) {
     facets.push_back(fmt::format("({})", fmt::join(edge_names(tile, facet.points), " ")));
     euler.push_back(fmt::format("{}", facet.boundary_euler));
   }
@@ -147,19 +147,17 @@ int run_classes(const Options& options) {
   const Lattice lattice(options.tile, options.dim);
   const Alternative alternative = options.alternative;
   const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
-  const auto elements = symmetries(lattice.tile(options.dim), GroupKind::Full, false);
-  const Transversal classes = transversal(lattice.tile(options.dim), elements);
-  require_burnside_count(classes, elements);
+  const auto [symmetries, classes] = tile_classes(lattice.tile(options.dim));
   if (options.json)
     fmt::print(
         "{{\"tile\": \"{}\", \"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
-        tile_kind_name(options.tile), options.dim, alternative_name(alternative), elements.size());
+        tile_kind_name(options.tile), options.dim, alternative_name(alternative), symmetries.size());
   else
     fmt::print("signature  orbit stabiliser components  Euler      ambiguous  facets\n");
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
     const Signature s = classes.representatives[c];
     const ClassReport report{s, classes.orbit_length[c],
-                             static_cast<std::uint32_t>(elements.size() / classes.orbit_length[c]), builder.build(s),
+                             static_cast<std::uint32_t>(symmetries.size() / classes.orbit_length[c]), builder.build(s),
                              ambiguous_faces(lattice, options.dim, s)};
     if (options.json)
       fmt::print("{}\n  {}", c == 0 ? "" : ",", json_of(builder.tile(), report));

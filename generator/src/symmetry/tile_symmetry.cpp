@@ -142,4 +142,16 @@ void require_burnside_count(const Transversal& classes, std::span<const TileSymm
                             classes.representatives.size(), expected.to_decimal()));
 }
 
+TileClasses tile_classes(const Tile& tile, GroupKind kind) {
+  TileClasses result;
+  if (tile.kind == TileKind::cube)
+    for (const Element& g : group(tile.dim, kind, false))
+      result.symmetries.push_back({corner_permutation(g, tile.dim), g.det, g.inverts});
+  else
+    result.symmetries = symmetries(tile, kind, false);
+  result.classes = transversal(tile, result.symmetries);
+  require_burnside_count(result.classes, result.symmetries);
+  return result;
+}
+
 }  // namespace tegl::gen

@@ -21,6 +21,9 @@ struct TileSymmetry {
   std::vector<std::uint32_t> corner;  ///< the images of the corners
   int det = 1;                        ///< -1 if it reverses the orientation of space
   bool inverts = false;               ///< also exchanges high and low
+
+  /// True if it reverses the orientation of facets: it is either a reflection or an inversion, not both.
+  [[nodiscard]] bool reverses_orientation() const noexcept { return (det < 0) != inverts; }
 };
 
 /// All symmetries in ascending order of (inverts, images); the identity is the first. A backtracking search pruned by
@@ -36,5 +39,15 @@ struct TileSymmetry {
 
 /// Counts the classes again by Burnside's lemma. Errors: CountMismatch if the numbers differ.
 void require_burnside_count(const Transversal& classes, std::span<const TileSymmetry> group);
+
+/// The classes of a tile's signatures under its symmetries without inversion, computed once and passed on.
+struct TileClasses {
+  std::vector<TileSymmetry> symmetries;  ///< of cubes in the order of group(), as the tables number them
+  Transversal classes;                   ///< `element_of`: indices into `symmetries`
+};
+
+/// Computes the classes and counts them again by Burnside's lemma. Errors: as transversal() and
+/// require_burnside_count().
+[[nodiscard]] TileClasses tile_classes(const Tile& tile, GroupKind kind = GroupKind::Full);
 
 }  // namespace tegl::gen

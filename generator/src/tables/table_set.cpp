@@ -28,11 +28,11 @@ PairFigures matching_pairs(const ContourBuilder& builder, const std::vector<Tile
 
 /// Builds and certifies both alternatives of one triangulation and checks their inversion. Returns the low-connected
 /// contours.
-std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high, bool pairs,
-                                       std::vector<CertifiedFigures>& figures) {
+std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high,
+                                       const Transversal& classes, bool pairs, std::vector<CertifiedFigures>& figures) {
   CertifiedFigures of_low, of_high;
-  auto contours = certified_contours(low, of_low);
-  const auto high_contours = certified_contours(high, of_high);
+  auto contours = certified_contours(low, classes, of_low);
+  const auto high_contours = certified_contours(high, classes, of_high);
   check_inversion(low.dim(), contours, high_contours);
   if (pairs) {
     of_low.pairs = matching_pairs(low, contours);
@@ -57,18 +57,16 @@ TableSet make_table_set(const TableRequest& request) {
   set.tile = request.tile;
   set.dim = request.dim;
   set.command = request.command;
-  const auto elements = symmetries(lattice.tile(request.dim), GroupKind::Full, false);
-  set.group_order = elements.size();
-  const Transversal classes = transversal(lattice.tile(request.dim), elements);
-  require_burnside_count(classes, elements);
-  set.orbits = classes.representatives.size();
+  const TileClasses classes = tile_classes(lattice.tile(request.dim));
+  set.group_order = classes.symmetries.size();
+  set.orbits = classes.classes.representatives.size();
   // tables and regions of each triangulation
   for (const Triangulation t : request.triangulations) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
-    const auto contours = certified_low(low, high, false, set.figures);
+    const auto contours = certified_low(low, high, classes.classes, false, set.figures);
     set.tiles.push_back(make_tile_tables(
-        low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t)));
+        low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t), classes));
     if (request.tile != TileKind::cube) continue;  // regions close contours of images, whose tiles are cubes
     for (const Alternative a : {Alternative::low, Alternative::high}) {
       const RegionStyle style = t == Triangulation::compact ? RegionStyle::fan : RegionStyle::cone;
@@ -81,10 +79,11 @@ TableSet make_table_set(const TableRequest& request) {
 
 std::vector<CertifiedFigures> certify_all(int dim, TileKind tile) {
   const Lattice lattice(tile, dim);
+  const TileClasses classes = tile_classes(lattice.tile(dim));
   std::vector<CertifiedFigures> figures;
   for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
     certified_low(ContourBuilder(lattice, dim, Alternative::low, t), ContourBuilder(lattice, dim, Alternative::high, t),
-                  tile == TileKind::cube, figures);
+                  classes.classes, tile == TileKind::cube, figures);
   return figures;
 }
 

@@ -14,9 +14,6 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "filling/certificate.hpp"
-#include "symmetry/symmetry.hpp"
-#include "symmetry/tile_symmetry.hpp"
-#include "symmetry/transversal.hpp"
 
 namespace tegl::gen {
 
@@ -31,27 +28,22 @@ constexpr std::uint64_t kChunk = 64;
 using Canonical = std::array<std::uint32_t, 5>;
 
 template <class Name>
-std::vector<Canonical> canonical(int n, const std::vector<Simplex>& simplices, bool reversed, const Name& name) {
+std::vector<Canonical> canonical(int n, const std::vector<LocalSimplex>& simplices, bool reversed, const Name& name) {
   std::vector<Canonical> result;
-  for (const Simplex& s : simplices) {
-    Canonical c{};
-    int sign = reversed ? -1 : 1;
-    for (int i = 0; i < n; ++i) c[i + 1] = name(s[i]);
-    for (int i = 1; i <= n; ++i)  // insertion sort that counts exchanges
-      for (int j = i; j > 1 && c[j] < c[j - 1]; --j) {
-        std::swap(c[j], c[j - 1]);
-        sign = -sign;
-      }
-    c[0] = sign > 0 ? 1 : 0;
-    result.push_back(c);
+  for (const LocalSimplex& s : simplices) {
+    std::array<std::uint32_t, 4> names{};
+    for (int i = 0; i < n; ++i) names[i] = name(s[i]);
+    const int sign = facets::sort_vertices(names, n) * (reversed ? -1 : 1);
+    result.push_back({sign > 0 ? 1u : 0u, names[0], names[1], names[2], names[3]});
   }
   std::sort(result.begin(), result.end());
   return result;
 }
 
-std::vector<Simplex> all_simplices(const TileContour& contour) {
-  std::vector<Simplex> result;
-  for (const Facet& facet : contour.facets) result.insert(result.end(), facet.simplices.begin(), facet.simplices.end());
+std::vector<LocalSimplex> all_simplices(const TileContour& contour) {
+  std::vector<LocalSimplex> result;
+  for (const LocalFacet& facet : contour.facets)
+    result.insert(result.end(), facet.simplices.begin(), facet.simplices.end());
   return result;
 }
 
@@ -59,11 +51,11 @@ std::vector<Simplex> all_simplices(const TileContour& contour) {
 /// component, a side vertex by its mask.
 class OwnNames {
  public:
-  OwnNames(int n, std::uint32_t own_base, std::uint32_t cones, const std::vector<Simplex>& simplices,
+  OwnNames(int n, std::uint32_t own_base, std::uint32_t cones, const std::vector<LocalSimplex>& simplices,
            const std::vector<std::uint64_t>& masks, std::map<std::uint64_t, std::uint32_t>& mask_numbers)
       : own_base_(own_base) {
     names_.assign(256, 0xffffffff);
-    for (const Simplex& s : simplices)
+    for (const LocalSimplex& s : simplices)
       if (s[0] >= own_base && s[0] < own_base + cones)
         for (int i = 1; i < n; ++i) names_[s[0]] = std::min<std::uint32_t>(names_[s[0]], 256u + s[i]);
     for (std::size_t k = 0; k < masks.size(); ++k)
@@ -83,7 +75,7 @@ void append_list(TileTables& table, const TileContour& contour) {
   list.cone_vertices = static_cast<std::uint8_t>(contour.cone_vertices);
   list.side_vertices = static_cast<std::uint8_t>(contour.side_masks.size());
   list.first_side = static_cast<std::uint32_t>(table.side_masks.size());
-  for (const Simplex& s : all_simplices(contour)) {
+  for (const LocalSimplex& s : all_simplices(contour)) {
     ++list.simplex_count;
     table.simplices.insert(table.simplices.end(), s.begin(), s.begin() + table.dim);
   }
@@ -96,19 +88,16 @@ void append_list(TileTables& table, const TileContour& contour) {
 }
 
 /// The images of corners, edges and cube slots under a symmetry: a row of TileTable::permutations.
-std::vector<std::uint8_t> permutation_row(const Tile& tile, const Element& g) {
-  const auto corner = corner_permutation(g, tile.dim);
-  std::vector<std::uint8_t> row(corner.begin(), corner.end());
-  const auto edges = edge_permutation(tile, corner);
+std::vector<std::uint8_t> permutation_row(const Tile& tile, const TileSymmetry& g) {
+  std::vector<std::uint8_t> row(g.corner.begin(), g.corner.end());
+  const auto edges = edge_permutation(tile, g.corner);
   row.insert(row.end(), edges.begin(), edges.end());
   if (tile.dim != 4) return row;
   for (const SubTile& cube : tile.faces) {
     Signature image = 0;
-    for (const std::uint8_t v : cube.corner) image |= 1u << corner[v];
+    for (const std::uint8_t v : cube.corner) image |= Signature{1} << g.corner[v];
     for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
-      Signature corners = 0;
-      for (const std::uint8_t v : tile.faces[f].corner) corners |= 1u << v;
-      if (corners != image) continue;
+      if (tile.faces[f].corners() != image) continue;
       for (std::uint32_t j = 0; j < tables::kFaceSlots; ++j)
         row.push_back(static_cast<std::uint8_t>(tile.edge_count() + f * tables::kFaceSlots + j));
     }
@@ -117,9 +106,9 @@ std::vector<std::uint8_t> permutation_row(const Tile& tile, const Element& g) {
 }
 
 /// The facets of face f that have a barycentre, in slot order.
-std::vector<const Facet*> slots_of(const ContourBuilder& builder, std::uint32_t f, Signature s) {
-  std::vector<const Facet*> result;
-  for (const Facet& facet : builder.face_contour(f, s).facets)
+std::vector<const LocalFacet*> slots_of(const ContourBuilder& builder, std::uint32_t f, Signature s) {
+  std::vector<const LocalFacet*> result;
+  for (const LocalFacet& facet : builder.face_contour(f, s).facets)
     if (facet.filling == Filling::cone) result.push_back(&facet);
   return result;
 }
@@ -137,7 +126,7 @@ std::uint8_t swaps_of(const ContourBuilder& builder, Signature from, Signature t
         tables::kFaceSlots;
     const std::uint8_t moved = row[tile.corner_count() + builder.lift(f, slots[0]->points.front())];
     const auto targets = slots_of(builder, image, to);
-    const auto has = [&](const Facet& facet) {
+    const auto has = [&](const LocalFacet& facet) {
       return std::any_of(facet.points.begin(), facet.points.end(),
                          [&](std::uint8_t p) { return builder.lift(image, p) == moved; });
     };
@@ -151,8 +140,8 @@ TileContour carried(const ContourBuilder& builder, const TileContour& contour, c
                     std::uint8_t swaps, bool reverse) {
   const std::uint32_t corners = builder.tile().corner_count(), edges = builder.tile().edge_count();
   TileContour result = contour;
-  for (Facet& facet : result.facets)
-    for (Simplex& s : facet.simplices) {
+  for (LocalFacet& facet : result.facets)
+    for (LocalSimplex& s : facet.simplices) {
       for (int i = 0; i < builder.dim(); ++i) {
         if (s[i] >= builder.own_base()) continue;
         s[i] = row[corners + s[i]];
@@ -181,13 +170,12 @@ bool same_contour(const ContourBuilder& builder, const TileContour& a, const Til
   return form(a) == form(b);
 }
 
-void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>& contours, TileTables& table) {
-  const int n = builder.dim();
-  const auto elements = group(n, GroupKind::Full, false);
-  const Transversal classes = transversal(n, elements);
+void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>& contours, const TileClasses& of_tile,
+                   TileTables& table) {
+  const Transversal& classes = of_tile.classes;
   // group elements and lists of the representatives
   std::vector<std::vector<std::uint8_t>> rows;
-  for (const Element& g : elements) {
+  for (const TileSymmetry& g : of_tile.symmetries) {
     rows.push_back(permutation_row(builder.tile(), g));
     table.permutations.insert(table.permutations.end(), rows.back().begin(), rows.back().end());
     table.reverses.push_back(g.reverses_orientation() ? 1 : 0);
@@ -260,8 +248,9 @@ tables::TileTable TileTables::view() const {
           side_masks.data()};
 }
 
-std::vector<TileContour> certified_contours(const ContourBuilder& builder, CertifiedFigures& figures) {
-  const std::uint32_t count = builder.tile().full() + 1;
+std::vector<TileContour> certified_contours(const ContourBuilder& builder, const Transversal& classes,
+                                            CertifiedFigures& figures) {
+  const std::uint64_t count = builder.tile().full() + 1;
   // build and certify on all processors
   std::vector<TileContour> contours(count);
   const auto build = [&](TableCertifier& certifier, std::uint64_t number) {
@@ -278,14 +267,13 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder, Certi
   figures.alternative = builder.alternative();
   figures.triangulation = builder.triangulation();
   figures.signatures = count;
-  const Transversal classes = transversal(builder.tile(), symmetries(builder.tile(), GroupKind::Full, false));
   const int sphere = builder.dim() == 3 ? 0 : 2;
   for (std::uint32_t s = 0; s < count; ++s) {
     std::uint32_t simplices = 0;
     bool others = false;
-    for (const Facet& facet : contours[s].facets) {
+    for (const LocalFacet& facet : contours[s].facets) {
       simplices += static_cast<std::uint32_t>(facet.simplices.size());
-      ++figures.by_filling[static_cast<int>(facet.filling)];
+      ++figures.by_filling[static_cast<std::size_t>(facet.filling)];
       ++(facet.boundary_euler == sphere ? figures.spheres : figures.others);
       others |= facet.boundary_euler != sphere;
       if (builder.dim() == 4)
@@ -316,7 +304,8 @@ void check_inversion(int dim, const std::vector<TileContour>& low, const std::ve
   }
 }
 
-TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout) {
+TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout,
+                            const TileClasses& classes) {
   TileTables table;
   const Tile& tile = builder.tile();
   table.tile = tile.kind;
@@ -332,7 +321,7 @@ TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<Til
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("class layout for a table of the {}: expected a cube", tile_kind_name(tile.kind)));
   if (layout == Layout::by_class) {
-    pack_by_class(builder, contours, table);
+    pack_by_class(builder, contours, classes, table);
   } else {
     for (std::size_t s = 0; s < contours.size(); ++s) {
       append_list(table, contours[s]);
@@ -355,7 +344,7 @@ RegionTables make_region_tables(const RegionBuilder& builder, Triangulation tria
     list.simplex_count = static_cast<std::uint16_t>(regions.simplices.size());
     list.own_vertices = static_cast<std::uint16_t>(regions.own_masks.size());
     list.first_mask = static_cast<std::uint32_t>(table.masks.size());
-    for (const Simplex& simplex : regions.simplices)
+    for (const LocalSimplex& simplex : regions.simplices)
       table.simplices.insert(table.simplices.end(), simplex.begin(), simplex.begin() + table.dim + 1);
     table.masks.insert(table.masks.end(), regions.own_masks.begin(), regions.own_masks.end());
     table.max_own_vertices = std::max<std::uint32_t>(table.max_own_vertices, list.own_vertices);

@@ -14,6 +14,7 @@
 #include "filling/pairs.hpp"
 #include "filling/regions.hpp"
 #include "filling/tile_contour.hpp"
+#include "symmetry/tile_symmetry.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::gen {
@@ -74,21 +75,24 @@ struct CertifiedFigures {
   std::uint32_t highest_genus = 0;                           ///< of a component of Sigma; n = 4
   std::uint64_t signatures_with_others = 0;                  ///< signatures with a facet that is not a ball
   std::vector<Signature> classes_with_others;                ///< representatives, ascending
-  std::uint64_t by_filling[5] = {};                          ///< number of facets by Filling
+  std::array<std::uint64_t, 4> by_filling{};                 ///< number of facets by Filling
   PairFigures pairs;                                         ///< pairs of neighbours; all 0 if pairs were not certified
 };
 
-/// Builds the contours of all signatures and certifies each. Uses all processors; the result does not depend on their
-/// number. Throws Error{CertificateFailed} with the first signature that fails.
-std::vector<TileContour> certified_contours(const ContourBuilder& builder, CertifiedFigures& figures);
+/// Builds the contours of all signatures and certifies each. `classes`: of the builder's tile. Uses all processors; the
+/// result does not depend on their number. Throws Error{CertificateFailed} with the first signature that fails.
+std::vector<TileContour> certified_contours(const ContourBuilder& builder, const Transversal& classes,
+                                            CertifiedFigures& figures);
 
 /// Throws Error{Internal} unless, for every signature s, the contour `high[s]` is `low[~s]` with reversed orientation,
 /// vertex by vertex. This property lets one table serve both alternatives.
 void check_inversion(int dim, const std::vector<TileContour>& low, const std::vector<TileContour>& high);
 
-/// Packs contours. For the class layout, checks that the symmetry group maps the representative's list to every
-/// signature's list, orientation included; throws Error{Internal} if not (compact tables are not equivariant).
-TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout);
+/// Packs contours. `classes`: of the builder's tile; read for the class layout only. For the class layout, checks that
+/// the symmetry group maps the representative's list to every signature's list, orientation included; throws
+/// Error{Internal} if not (compact tables are not equivariant).
+TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout,
+                            const TileClasses& classes);
 
 /// Packs the regions of the k-tile that close the contours of (k+1)-dimensional images.
 RegionTables make_region_tables(const RegionBuilder& builder, Triangulation triangulation, Alternative alternative);

@@ -11,7 +11,7 @@
 #include <functional>
 #include <span>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/choices.hpp"
 
 namespace tegl {
 

@@ -12,14 +12,10 @@
 #include "tegl/ambiguity.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
+#include "tegl/tile/triangulation.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
-
-/// How a tile's facets are divided into simplices. compact: few simplices; see docs/limits.md for intersections in 4D
-/// and biased volumes. barycentric: cones from barycentres, with more simplices of better shape. In 5D both values mean
-/// barycentric.
-enum class Triangulation { compact, barycentric };
 
 /// How the gradient at a sample is computed, from which normals follow. differences: the mean of the forward and the
 /// backward difference quotient. sobel: a mean of these over the sample's own line and the neighbouring lines of

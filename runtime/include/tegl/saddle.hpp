@@ -18,8 +18,8 @@
 #include <cstdint>
 #include <span>
 
-#include "tegl/facets/facets.hpp"
 #include "tegl/image.hpp"
+#include "tegl/tile/choices.hpp"
 
 namespace tegl {
 

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "tegl/dimensions.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl {
 

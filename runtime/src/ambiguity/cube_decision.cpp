@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
-#include "base/corners.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/saddle.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 
@@ -39,8 +39,7 @@ constexpr auto kAxesOf = [] {
 constexpr auto kCornersOfSquares = [] {
   std::array<std::array<std::uint8_t, 4>, 6> result{};
   for (unsigned square = 0; square < 6; ++square)
-    for (unsigned c = 0; c < 4; ++c)
-      result[square][c] = static_cast<std::uint8_t>(unsqueeze(c, square / 2) | square % 2 << square / 2);
+    for (unsigned c = 0; c < 4; ++c) result[square][c] = static_cast<std::uint8_t>(lifted_corner(square, c));
   return result;
 }();
 
@@ -129,29 +128,29 @@ CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::siz
   return decision;
 }
 
-unsigned key_of(unsigned signature, const CubeDecision& decision) noexcept {
+CubeKey key_of(unsigned signature, const CubeDecision& decision) noexcept {
   const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[signature];
   const unsigned r = packed_squares(decision.high_squares, ambiguous);
-  return CubeKey(signature, r, decision.centre).bits();
+  return {signature, r, decision.centre};
 }
 
 }  // namespace
 
 template <int N>
-unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
-                  unsigned signature) noexcept {
-  if (!ambiguous_signatures<3>()[signature]) return signature;
+CubeKey cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                 unsigned signature) noexcept {
+  if (!ambiguous_signatures<3>()[signature]) return CubeKey(signature);
   std::array<double, 8> values;
   estimator.source().corner_values(base, axes, values.data());
   return key_of(signature, decide<N>(estimator, base, axes, values, signature));
 }
-template unsigned cube_key<3>(const FaceEstimator<3>&, const std::array<std::size_t, 3>&, unsigned, unsigned) noexcept;
-template unsigned cube_key<4>(const FaceEstimator<4>&, const std::array<std::size_t, 4>&, unsigned, unsigned) noexcept;
+template CubeKey cube_key<3>(const FaceEstimator<3>&, const std::array<std::size_t, 3>&, unsigned, unsigned) noexcept;
+template CubeKey cube_key<4>(const FaceEstimator<4>&, const std::array<std::size_t, 4>&, unsigned, unsigned) noexcept;
 
 template <>
 unsigned resolved_key<3>(const FaceEstimator<3>& estimator, const std::array<std::size_t, 3>& base,
                          unsigned signature) noexcept {
-  return cube_key<3>(estimator, base, 7, signature);
+  return cube_key<3>(estimator, base, 7, signature).bits();
 }
 
 template <int N>

@@ -16,8 +16,8 @@ namespace tegl::detail {
 
 /// Key of the cube along `axes` based at `base`, in an image of three or four dimensions.
 template <int N>
-unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
-                  unsigned signature) noexcept;
+CubeKey cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                 unsigned signature) noexcept;
 
 /// Decides all faces of a row's tiles, one word of tiles at a time (N = 3 or 4). Faster than deciding tile by tile if
 /// many of a word's tiles are ambiguous.

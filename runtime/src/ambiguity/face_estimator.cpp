@@ -154,7 +154,7 @@ FaceEstimator<N>::FaceEstimator(const SampleSource<N>& source, const Index& size
     : source_(source),
       ambiguity_(options.ambiguity),
       estimator_(options.estimator),
-      triangulation_(options.triangulation == Triangulation::barycentric ? 0 : 1),
+      triangulation_(options.triangulation),
       isovalue_(source.isovalue()) {
   around_.image = &source;
   around_.read = [](const void* image, const std::ptrdiff_t* index) {

@@ -46,8 +46,8 @@ class FaceEstimator {
   FaceEstimator& operator=(const FaceEstimator&) = delete;
 
   [[nodiscard]] const SampleSource<N>& source() const noexcept { return source_; }
-  /// Triangulation of the contour, numbered as in the tables.
-  [[nodiscard]] int triangulation() const noexcept { return triangulation_; }
+  /// Triangulation of the contour.
+  [[nodiscard]] Triangulation triangulation() const noexcept { return triangulation_; }
 
   /// Whether the centre of an ambiguous square is high. `values`: at its corners.
   [[nodiscard]] bool is_square_high(const Index& base, unsigned axes, std::span<const double, 4> values) const noexcept;
@@ -75,7 +75,7 @@ class FaceEstimator {
   const SampleSource<N>& source_;
   Ambiguity ambiguity_;
   const Estimator& estimator_;
-  int triangulation_;
+  Triangulation triangulation_;
   double isovalue_;
   AmbiguousFace::Surroundings around_;
   mutable std::atomic<bool> failed_ = false;

@@ -9,6 +9,7 @@
 
 #include "tegl/generated/tables.hpp"
 #include "tegl/saddle.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 
@@ -19,7 +20,7 @@ constexpr auto kSquaresOfCubes = [] {
   std::array<std::array<std::uint32_t, 64>, 8> result{};
   for (unsigned f = 0; f < 8; ++f)
     for (unsigned square = 0; square < 6; ++square) {
-      const unsigned axis = square / 2 < f / 2 ? square / 2 : square / 2 + 1;
+      const unsigned axis = lifted_axis(f, square / 2);
       const unsigned base = (f % 2) << (f / 2) | (square % 2) << axis;
       const unsigned axes = 15u ^ 1u << (f / 2) ^ 1u << axis;
       for (unsigned q = 0; q < 24; ++q)
@@ -213,7 +214,7 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
   for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
     const auto f = static_cast<unsigned>(std::countr_zero(rest));
-    tile.cubes[f] = cubes.key(tile.lists[f]);
+    tile.cubes[f] = cubes.key(tile.lists[f]).bits();
   }
   return true;
 }

@@ -22,7 +22,7 @@ struct ResolvedTile {
 /// Whether a 4D tile is combined from its cubes if ambiguities are resolved from the data. This holds if the data
 /// affect the tile, and always in the barycentric triangulation, as the cubes' barycentres are listed with their tiles.
 inline bool is_put_together(const FaceEstimator<4>& estimator, unsigned signature) noexcept {
-  return estimator.triangulation() == kBarycentric || ambiguous_signatures<4>()[signature];
+  return estimator.triangulation() == Triangulation::barycentric || ambiguous_signatures<4>()[signature];
 }
 /// Resolves a 4D tile.
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,

@@ -281,7 +281,7 @@ class FacetExtraction {
   [[nodiscard]] std::uint16_t cube_type(const KnownKind& kind, std::size_t row, std::size_t i) const noexcept {
     if constexpr (N > 2) {
       const auto base = place_of(row, i);
-      const unsigned key = cube_key<N>(*estimator_, base, kind.axes, rows_.signature(kind.corners, row, i));
+      const CubeKey key = cube_key<N>(*estimator_, base, kind.axes, rows_.signature(kind.corners, row, i));
       const unsigned list = list_of_key(key);
       const CubeList& cube = ResolvedCubes::instance().lists()[list];
       if (estimator_->is_callers())

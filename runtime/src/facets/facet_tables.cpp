@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "ambiguity/face_estimator.hpp"
-#include "base/corners.hpp"
 #include "base/disjoint_sets.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -36,7 +36,7 @@ unsigned edge_named(unsigned name) noexcept {
   name /= 8;
   const unsigned sides = name % 4, a = name / 4 / FacetTables::kMaxDim, b = name / 4 % FacetTables::kMaxDim;
   const unsigned along = 3 - a - b;
-  return along << 2 | squeeze((sides >> 1) << a | (sides & 1u) << b, along);
+  return edge_number(3, along, (sides >> 1) << a | (sides & 1u) << b);
 }
 
 }  // namespace
@@ -198,11 +198,10 @@ void FacetTables::add_square(unsigned signature, bool high) {
   std::array<FacetEntry, 4> points{};
   unsigned count = 0;
   for (unsigned face = 0; face < 4; ++face) {
-    const unsigned ends = face_signature(2, signature, face / 2, face % 2);
+    const unsigned ends = face_signature(2, signature, face);
     if (std::popcount(ends) != 1) continue;
     const int rising = ends == 2 ? 1 : -1;
-    points[count++] = {static_cast<std::uint8_t>(face), 0,
-                       static_cast<std::int8_t>(rising * face_sign(face / 2, face % 2))};
+    points[count++] = {static_cast<std::uint8_t>(face), 0, static_cast<std::int8_t>(rising * face_sign(face))};
   }
   Lists& lists = lists_[2];
   const auto add = [&](const FacetEntry& a, const FacetEntry& b) {
@@ -225,7 +224,7 @@ void FacetTables::add_square(unsigned signature, bool high) {
 
 FacetTables::FaceTypes FacetTables::face_types(unsigned dim, unsigned signature) noexcept {
   FaceTypes types{};
-  for (unsigned face = 0; face < 2 * dim; ++face) types[face] = face_signature(dim, signature, face / 2, face % 2);
+  for (unsigned face = 0; face < 2 * dim; ++face) types[face] = face_signature(dim, signature, face);
   return types;
 }
 
@@ -234,7 +233,7 @@ std::vector<FacetTables::Part> FacetTables::parts(unsigned dim, const FaceTypes&
   for (unsigned face = 0; face < 2 * dim; ++face) {
     for (unsigned number = 0; number < count(dim - 1, types[face]); ++number)
       result.push_back({{static_cast<std::uint8_t>(face), static_cast<std::uint8_t>(number),
-                         static_cast<std::int8_t>(face_sign(face / 2, face % 2))},
+                         static_cast<std::int8_t>(face_sign(face))},
                         result.size()});
   }
   return result;

@@ -121,15 +121,4 @@ class FacetTables {
   std::vector<std::uint16_t> points_;     ///< by facet of cubes
 };
 
-/// Signature of the face of a `dim`-cube at the lower (side 0) or upper end of an axis.
-constexpr unsigned face_signature(unsigned dim, unsigned signature, unsigned axis, unsigned side) noexcept {
-  unsigned result = 0;
-  for (unsigned v = 0, to = 0; v < 1u << dim; ++v)
-    if ((v >> axis & 1u) == side) result |= (signature >> v & 1u) << to++;
-  return result;
-}
-
-/// Incidence number of that face in the cube: outward normal first, axes ascending.
-constexpr int face_sign(unsigned axis, unsigned side) noexcept { return (axis % 2 == 0) == (side == 1) ? 1 : -1; }
-
 }  // namespace tegl::detail

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/corners.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -15,9 +15,7 @@ namespace {
 /// By square q: bit mask of its corners in the cube.
 constexpr auto kSquareCorners = [] {
   std::array<std::uint8_t, 6> result{};
-  for (unsigned q = 0; q < 6; ++q)
-    for (unsigned v = 0; v < 8; ++v)
-      if ((v >> (q / 2) & 1u) == q % 2) result[q] = static_cast<std::uint8_t>(result[q] | 1u << v);
+  for (unsigned q = 0; q < 6; ++q) result[q] = static_cast<std::uint8_t>(face_corners(3, q));
   return result;
 }();
 
@@ -26,15 +24,6 @@ std::uint32_t lifted_corners(unsigned cube, unsigned corners) noexcept {
   std::uint32_t result = 0;
   for (; corners != 0; corners &= corners - 1)
     result |= 1u << lifted_corner(cube, static_cast<unsigned>(std::countr_zero(corners)));
-  return result;
-}
-
-/// The corners and their neighbours along edges.
-std::uint32_t grown(std::uint32_t corners) noexcept {
-  std::uint32_t result = corners;
-  for (unsigned axis = 0; axis < 4; ++axis)
-    for (unsigned v = 0; v < 16; ++v)
-      if ((corners >> v & 1u) != 0) result |= 1u << (v ^ 1u << axis);
   return result;
 }
 
@@ -53,11 +42,11 @@ std::size_t ResolvedFacets::begin(std::uint16_t signature, const std::array<std:
       std::uint64_t points = 0;
       for (unsigned rest = tables_->points(cubes[f], number); rest != 0; rest &= rest - 1)
         points |= std::uint64_t{1} << tables.lifted(f, static_cast<unsigned>(std::countr_zero(rest)));
-      parts_.push_back({{static_cast<std::uint8_t>(f), static_cast<std::uint8_t>(number),
-                         static_cast<std::int8_t>(face_sign(f / 2, f % 2))},
-                        static_cast<std::uint8_t>(tables_->entries(3, cubes[f], number).size()),
-                        points,
-                        0});
+      parts_.push_back(
+          {{static_cast<std::uint8_t>(f), static_cast<std::uint8_t>(number), static_cast<std::int8_t>(face_sign(f))},
+           static_cast<std::uint8_t>(tables_->entries(3, cubes[f], number).size()),
+           points,
+           0});
     }
   }
   // Sigma is a surface, so parts that share a point are connected. Merge them into components.
@@ -100,7 +89,7 @@ std::uint32_t ResolvedFacets::region(std::size_t component, bool high) const noe
   };
   for (std::uint32_t before = 0; reached != before;) {
     before = reached;
-    reached = grown(reached) & corners;
+    reached = with_neighbours(reached) & corners;
     for (unsigned f = 0; f < 8; ++f) {
       if (cubes_[f] == kNone) continue;
       if (tables_->inside(cubes_[f]).joins == (high ? facets::Choice::high : facets::Choice::low))

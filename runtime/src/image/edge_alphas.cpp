@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/corners.hpp"
 #include "image/extract_source.hpp"
+#include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/edge_alphas.cpp"

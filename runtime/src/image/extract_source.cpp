@@ -8,10 +8,10 @@
 #include <limits>
 #include <utility>
 
-#include "base/corners.hpp"
 #include "image/edge_stencil.hpp"
 #include "image/sobel.hpp"
 #include "tegl/image.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 

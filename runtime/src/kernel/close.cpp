@@ -10,6 +10,7 @@
 #include "ambiguity/cube_decision.hpp"
 #include "kernel/contour_output.hpp"
 #include "kernel/extract_generate.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/cube_regions.hpp"
 
 namespace tegl::detail {
@@ -44,17 +45,13 @@ TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, s
 
 /// Whether all corners and edges in a region's mask belong to one square of the cube.
 bool lies_in_square(std::uint32_t mask) noexcept {
-  for (unsigned square = 0; square < 6; ++square) {
-    const unsigned axis = square / 2, side = square % 2;
-    const auto has = [&](unsigned v) {
-      if (v < 8) return (v >> axis & 1u) == side;
-      return (v - 8) / 4 != axis && (edge_base(3, v - 8) >> axis & 1u) == side;
-    };
-    std::uint32_t rest = mask;
-    while (rest != 0 && has(static_cast<unsigned>(std::countr_zero(rest)))) rest &= rest - 1;
-    if (rest == 0) return true;
-  }
-  return false;
+  static constexpr auto kSquares = [] {
+    std::array<std::uint32_t, 6> squares{};
+    for (unsigned q = 0; q < 6; ++q)
+      squares[q] = static_cast<std::uint32_t>(face_corners(3, q)) | face_edges(3, q) << 8;
+    return squares;
+  }();
+  return std::any_of(kSquares.begin(), kSquares.end(), [&](std::uint32_t square) { return (mask & ~square) == 0; });
 }
 
 /// Position of a vertex that a region of a cube adds in the barycentric triangulation. The weights are unequal, as in
@@ -337,10 +334,10 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
   using Regions = CubeRegions;
   // numbers of shared vertices
-  const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
+  const CubeKey key = cube_key<N>(*estimator_, index, kAxes, signature);
   corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
   const unsigned own = cube_vertices(estimator_->triangulation(), key);
-  if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key, own))
+  if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key.bits(), own))
     return estimator_->report_change(index);
   if (own != 0) {
     const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);
@@ -353,7 +350,7 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   };
   // new vertices and tetrahedra of each region
   const EdgePlaces<N, kAxes> places(source_, index, signature);
-  const bool barycentric = estimator_->triangulation() == kBarycentric;
+  const bool barycentric = estimator_->triangulation() == Triangulation::barycentric;
   const Regions& regions = Regions::of_caps(estimator_->triangulation());
   for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
     // A caller's estimator may change its answer: then a square has no barycentre although one is needed now.

@@ -9,8 +9,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "base/corners.hpp"
 #include "kernel/extract_layers.hpp"
+#include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 

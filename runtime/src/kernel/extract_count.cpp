@@ -149,9 +149,9 @@ void Counter<N>::list_cubes(CubePlane& plane, const SlabView<N>& view, std::size
       for (; mixed != 0; mixed &= mixed - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
         base[0] = w * kWordBits + bit;
-        const unsigned key = cube_key<N>(*estimator_, base, Axes, cells.signature(bit));
+        const CubeKey key = cube_key<N>(*estimator_, base, Axes, cells.signature(bit));
         if (const unsigned own = detail::cube_vertices(estimator_->triangulation(), key); own != 0)
-          plane.add(row, base[0], key, own);
+          plane.add(row, base[0], key.bits(), own);
       }
     }
   }

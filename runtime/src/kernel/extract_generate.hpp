@@ -238,7 +238,7 @@ class TileWriter {
       const unsigned axis = cube / 2, side = cube % 2;
       const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
       if (!plane.has_listed(view.shape->shifted(row, side << axis), at + (axis == 0 ? side : 0), tile.cubes[cube],
-                            detail::cube_vertices(estimator_->triangulation(), tile.cubes[cube])))
+                            detail::cube_vertices(estimator_->triangulation(), CubeKey(tile.cubes[cube]))))
         return false;
     }
     return true;

@@ -15,10 +15,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/corners.hpp"
 #include "image/bitplanes.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/row_table.hpp"
 
 namespace tegl::detail {

@@ -9,8 +9,9 @@
 #include <cstdint>
 
 #include "ambiguity/tesseract_decision.hpp"
-#include "base/corners.hpp"
 #include "image/extract_source.hpp"
+#include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
 #include "tile/tesseract_fill.hpp"
 
@@ -82,18 +83,12 @@ class SharedPlaces<4> {
   static constexpr auto kEdgesOfCubes = [] {
     std::array<std::array<std::uint8_t, tables::edge_count(3)>, 8> result{};
     for (unsigned cube = 0; cube < 8; ++cube)
-      for (unsigned e = 0; e < tables::edge_count(3); ++e) {
-        const unsigned omitted = cube / 2;
-        const unsigned base = unsqueeze(edge_base(3, e), omitted) | (cube % 2) << omitted;
-        const unsigned axis = e >> 2 < omitted ? e >> 2 : (e >> 2) + 1;
-        result[cube][e] = static_cast<std::uint8_t>(axis << 3 | squeeze(base, axis));
-      }
+      for (unsigned e = 0; e < tables::edge_count(3); ++e)
+        result[cube][e] = static_cast<std::uint8_t>(lifted_edge(4, cube, e));
     return result;
   }();
 
-  [[nodiscard]] unsigned cube_signature(unsigned cube) const noexcept {
-    return squeezed_corners<4>(signature_ >> (cube % 2 << cube / 2), cube / 2);
-  }
+  [[nodiscard]] unsigned cube_signature(unsigned cube) const noexcept { return face_signature(4, signature_, cube); }
 
   [[gnu::noinline]] void find(unsigned v) noexcept {
     if (v >= kEdges) return find_cube((v - kEdges) / tables::kFaceSlots);
@@ -167,7 +162,7 @@ class ResolvedPlaces {
   }
 
   void find_cube(unsigned cube) noexcept {
-    const SimplexList<3> list(variant_table<3>(kBarycentric).tile(), cubes_.key(lists_[cube]));
+    const SimplexList<3> list(variant_table<3>(Triangulation::barycentric).tile(), cubes_.key(lists_[cube]).bits());
     std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points{};
     own_places<3>(
         list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data());

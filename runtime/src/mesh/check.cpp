@@ -21,7 +21,7 @@
 #include "base/progress.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "tegl/error.hpp"
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/complex.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {

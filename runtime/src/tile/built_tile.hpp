@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "tegl/error.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tile/cube_symmetries.hpp"
 
 namespace tegl::detail {

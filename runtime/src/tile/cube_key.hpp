@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/choices.hpp"
 
 namespace tegl::detail {
 
@@ -20,7 +20,12 @@ class CubeKey {
 
   explicit constexpr CubeKey(unsigned bits) noexcept : bits_(static_cast<std::uint16_t>(bits)) {}
   constexpr CubeKey(unsigned signature, unsigned resolution, facets::Choice choice) noexcept
-      : CubeKey(signature | (1 + 3 * resolution + static_cast<unsigned>(choice)) << 8) {}
+      : CubeKey(of_variant(signature, 1 + 3 * resolution + static_cast<unsigned>(choice))) {}
+
+  /// The cube with this signature and variant.
+  [[nodiscard]] static constexpr CubeKey of_variant(unsigned signature, unsigned variant) noexcept {
+    return CubeKey(signature | variant << 8);
+  }
 
   [[nodiscard]] constexpr std::uint16_t bits() const noexcept { return bits_; }
   [[nodiscard]] constexpr unsigned signature() const noexcept { return bits_ & 255u; }

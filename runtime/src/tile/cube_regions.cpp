@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/corners.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -34,14 +34,8 @@ constexpr Set set_of(const Triangle& t) { return bit(t[0]) | bit(t[1]) | bit(t[2
 /// Local vertices in each square.
 const std::array<Set, 6> kSquares = [] {
   std::array<Set, 6> result{};
-  for (unsigned q = 0; q < 6; ++q) {
-    const unsigned axis = q / 2, side = q % 2;
-    for (unsigned v = 0; v < 8; ++v)
-      if ((v >> axis & 1u) == side) result[q] |= bit(v);
-    for (unsigned e = 0; e < 12; ++e)
-      if (e / 4 != axis && (edge_base(3, e) >> axis & 1u) == side) result[q] |= bit(kFirstEdge + e);
-    result[q] |= bit(kFirstSquare + q);
-  }
+  for (unsigned q = 0; q < 6; ++q)
+    result[q] = face_corners(3, q) | Set{face_edges(3, q)} << kFirstEdge | bit(kFirstSquare + q);
   return result;
 }();
 
@@ -51,7 +45,7 @@ bool in_one_square(Set vertices) {
 
 std::uint8_t edge_between(unsigned a, unsigned b) {
   const auto axis = static_cast<unsigned>(std::countr_zero(a ^ b));
-  return static_cast<std::uint8_t>(kFirstEdge + (axis << 2 | squeeze(std::min(a, b), axis)));
+  return static_cast<std::uint8_t>(kFirstEdge + edge_number(3, axis, a));
 }
 
 /// One side of a cube with its contour.
@@ -68,8 +62,7 @@ struct Side {
   void add_square(unsigned q, std::vector<Triangle>& to) const {
     const unsigned axis = q / 2, b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2, at = (q % 2) << axis;
     std::array<unsigned, 4> ring = {at, at | 1u << b, at | 1u << b | 1u << c, at | 1u << c};
-    const bool is_outwards = (q % 2 == 1) == (axis != 1);
-    if (is_outwards == high) std::reverse(ring.begin(), ring.end());
+    if ((face_sign(q) > 0) == high) std::reverse(ring.begin(), ring.end());
     std::vector<std::uint8_t> outline;
     unsigned corners = 0;
     for (unsigned i = 0; i < 4; ++i) {
@@ -370,22 +363,22 @@ class RegionMaker {
 
 }  // namespace
 
-const CubeRegions& CubeRegions::instance(int triangulation) {
-  if (triangulation == kBarycentric) {
-    static const CubeRegions barycentric(kBarycentric, false);
+const CubeRegions& CubeRegions::instance(Triangulation triangulation) {
+  if (triangulation == Triangulation::barycentric) {
+    static const CubeRegions barycentric(Triangulation::barycentric, false);
     return barycentric;
   }
-  static const CubeRegions compact(kCompact, false);
+  static const CubeRegions compact(Triangulation::compact, false);
   return compact;
 }
 
-const CubeRegions& CubeRegions::of_caps(int triangulation) {
-  if (triangulation == kCompact) return instance(kCompact);
-  static const CubeRegions barycentric(kBarycentric, true);
+const CubeRegions& CubeRegions::of_caps(Triangulation triangulation) {
+  if (triangulation == Triangulation::compact) return instance(Triangulation::compact);
+  static const CubeRegions barycentric(Triangulation::barycentric, true);
   return barycentric;
 }
 
-CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
+CubeRegions::CubeRegions(Triangulation triangulation, bool has_square_centres) {
   const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
   const std::vector<CubeList>& lists = cubes.lists();
   whole_ = static_cast<unsigned>(lists.size());
@@ -408,7 +401,7 @@ CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
       }
       // regions
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
-        RegionMaker maker(triangulation == kBarycentric);
+        RegionMaker maker(triangulation == Triangulation::barycentric);
         maker.fill(part, contour);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);

@@ -35,10 +35,10 @@ class CubeRegions {
   };
 
   /// For copies of a tesseract's sides. In a square, each polygon is a fan from its lowest corner.
-  static const CubeRegions& instance(int triangulation = kCompact);
+  static const CubeRegions& instance(Triangulation triangulation = Triangulation::compact);
   /// For closing contours at the image border. Squares are triangulated as in tables::region_table, which closes
   /// contours of 3D images.
-  static const CubeRegions& of_caps(int triangulation);
+  static const CubeRegions& of_caps(Triangulation triangulation);
 
   /// Regions of list number `list`; kNone: of a cube entirely on that side.
   [[nodiscard]] std::span<const Region> regions(unsigned list, bool high) const noexcept {
@@ -57,7 +57,7 @@ class CubeRegions {
   }
 
  private:
-  CubeRegions(int triangulation, bool has_square_centres);
+  CubeRegions(Triangulation triangulation, bool has_square_centres);
 
   unsigned whole_;  ///< index of the cube without contour, after the lists
   std::vector<std::uint32_t> first_region_;

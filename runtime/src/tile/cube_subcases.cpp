@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/corners.hpp"
+#include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/variant_table.hpp"
 
 namespace tegl::detail {
@@ -80,22 +81,22 @@ std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsign
   return place;
 }
 
-const ResolvedCubes& ResolvedCubes::instance(int triangulation) {
-  if (triangulation == kBarycentric) {
-    static const ResolvedCubes barycentric(kBarycentric);
+const ResolvedCubes& ResolvedCubes::instance(Triangulation triangulation) {
+  if (triangulation == Triangulation::barycentric) {
+    static const ResolvedCubes barycentric(Triangulation::barycentric);
     return barycentric;
   }
-  static const ResolvedCubes compact(kCompact);
+  static const ResolvedCubes compact(Triangulation::compact);
   return compact;
 }
 
-ResolvedCubes::ResolvedCubes(int triangulation) {
+ResolvedCubes::ResolvedCubes(Triangulation triangulation) {
   // signatures of cubes
   for (unsigned tile = 0; tile < 256; ++tile)
     for (unsigned f = 0; f < kCubes; ++f) {
       for (unsigned half = 0; half < 2; ++half) {
         const unsigned corners = tile << (8 * half);
-        signatures_[half][tile] |= std::uint64_t{squeezed_corners<4>(corners >> (f % 2 << f / 2), f / 2)} << (8 * f);
+        signatures_[half][tile] |= std::uint64_t{face_signature(4, corners, f)} << (8 * f);
       }
     }
   // squares of cubes
@@ -110,14 +111,6 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
         for (unsigned set = 0; set < 16; ++set)
           if ((set >> sides & 1u) != 0) squares_[pair][set] |= bits;
       }
-  // resolution numbers
-  for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
-    for (unsigned high = 0; high < 64; ++high) {
-      unsigned result = 0, at = 0;
-      for (unsigned q = 0; q < 6; ++q)
-        if ((ambiguous >> q & 1u) != 0) result |= (high >> q & 1u) << at++;
-      compressed_[ambiguous << 6 | high] = static_cast<std::uint8_t>(result);
-    }
   // lists, frames and parts
   number_lists(triangulation);
   make_frames();
@@ -141,7 +134,7 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
   triangles_.resize(triangles_.size() + kWordsBehind);
 }
 
-void ResolvedCubes::number_lists(int triangulation) {
+void ResolvedCubes::number_lists(Triangulation triangulation) {
   // properties of entries and signatures
   list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
   for (unsigned entry = 0; entry < kTile3Resolved.entry_count; ++entry)
@@ -161,10 +154,10 @@ void ResolvedCubes::number_lists(int triangulation) {
           list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
           lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
           const CubeKey resolved(s, entry - kTile3Resolved.first_entry[s], static_cast<facets::Choice>(choice));
-          key_of_.push_back((ambiguous_signatures<3>()[s] ? resolved : CubeKey(s)).bits());
+          key_of_.push_back(ambiguous_signatures<3>()[s] ? resolved : CubeKey(s));
           Summary& summary = summaries_.emplace_back();
           summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;
-          if (triangulation == kCompact)
+          if (triangulation == Triangulation::compact)
             take_compact(*lists[choice]);
           else
             take_barycentric();
@@ -190,8 +183,8 @@ void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
 
 /// Takes triangles, masks and summary of the list numbered last from the table of 3D contours.
 void ResolvedCubes::take_barycentric() {
-  const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
-  const tables::List& list = table.lists[table.list_of[key_of_.back()]];
+  const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
+  const tables::List& list = table.lists[table.list_of[key_of_.back().bits()]];
   const std::uint8_t* const first = table.simplices + 3 * std::size_t{list.first_simplex};
   const std::span<const std::uint8_t> triangles(first, 3 * std::size_t{list.simplex_count});
   of_cube_.insert(of_cube_.end(), triangles.begin(), triangles.end());
@@ -212,8 +205,7 @@ void ResolvedCubes::take_barycentric() {
 void ResolvedCubes::make_frames() {
   for (unsigned f = 0; f < kCubes; ++f) {
     for (unsigned e = 0; e < kCubeEdges; ++e) {
-      const unsigned axis = e / 4 < f / 2 ? e / 4 : e / 4 + 1;
-      const unsigned edge = axis << 3 | squeeze(lifted_corner(f, edge_base(3, e)), axis);
+      const unsigned edge = lifted_edge(4, f, e);
       lifted_[f][e] = static_cast<std::uint8_t>(edge);
       edges_of_[f] |= 1u << edge;
     }
@@ -221,7 +213,7 @@ void ResolvedCubes::make_frames() {
       lifted_[f][kCubeEdges + j] = static_cast<std::uint8_t>(kEdges + kMostOwn * f + j);
     // Sign from a tile with one high corner, in the cube: its tetrahedron is (vertex on the edge that leaves the cube,
     // triangle of the cube), and all cubes must orient it equally.
-    reversed_[f] = (f / 2 + f % 2) % 2 == 0;
+    reversed_[f] = face_sign(f) < 0;
   }
   for (unsigned f = 0; f < kCubes; ++f)
     for (unsigned e = 0; e < kEdges; ++e)
@@ -257,8 +249,7 @@ void ResolvedCubes::make_parts(unsigned cube, unsigned list) {
   }
 }
 
-unsigned list_of_key(unsigned key) noexcept {
-  const CubeKey cube(key);
+unsigned list_of_key(CubeKey cube) noexcept {
   if (cube.signature() == 0 || cube.signature() == 255) return ResolvedCubes::kNone;
   unsigned squares = 0;
   unsigned bit = 0;

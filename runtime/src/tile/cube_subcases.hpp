@@ -11,14 +11,11 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/facets.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tile/cube_key.hpp"
 
 namespace tegl::detail {
-
-/// Triangulations, numbered as in the generated tables (tables::tile_table).
-inline constexpr int kBarycentric = 0, kCompact = 1;
 
 /// A list of the table and its cube.
 struct CubeList {
@@ -61,7 +58,7 @@ class ResolvedCubes {
   using Lists = std::array<std::uint16_t, kCubes>;  ///< by cube of a tile
 
   /// List numbers are the same in both triangulations.
-  static const ResolvedCubes& instance(int triangulation = kCompact);
+  static const ResolvedCubes& instance(Triangulation triangulation = Triangulation::compact);
 
   /// Byte f: signature of cube f.
   [[nodiscard]] std::uint64_t signatures(std::uint16_t tile) const noexcept {
@@ -76,7 +73,7 @@ class ResolvedCubes {
   /// Entry of tables::kTile3Resolved. Bits of `high_squares` for unambiguous squares are ignored.
   [[nodiscard]] unsigned entry(unsigned signature, unsigned high_squares) const noexcept {
     const Signature of = of_signatures_[signature];
-    return unsigned{of.first_entry} + compressed_[of.ambiguous << 6 | high_squares];
+    return unsigned{of.first_entry} + kPackedSquares[of.ambiguous][high_squares];
   }
   /// Number of a list, less than lists().size(), or kNone for a cube of one sign.
   [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, facets::Choice choice) const noexcept {
@@ -90,8 +87,8 @@ class ResolvedCubes {
   [[nodiscard]] bool has_choice(unsigned entry) const noexcept { return has_choice_[entry] != 0; }
   /// Number of own vertices of a list; 0 for kNone.
   [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept { return summary(list).own_vertices; }
-  /// A key (cube_key.hpp) whose filling is the list.
-  [[nodiscard]] std::uint16_t key(unsigned list) const noexcept { return key_of_[list]; }
+  /// A key whose filling is the list.
+  [[nodiscard]] CubeKey key(unsigned list) const noexcept { return key_of_[list]; }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
   /// Triangles of a list in the cube, three local vertices each.
   [[nodiscard]] std::span<const std::uint8_t> triangles_of(unsigned list) const noexcept {
@@ -130,8 +127,8 @@ class ResolvedCubes {
   [[nodiscard]] bool is_reversed(unsigned cube) const noexcept { return reversed_[cube]; }
 
  private:
-  explicit ResolvedCubes(int triangulation);
-  void number_lists(int triangulation);
+  explicit ResolvedCubes(Triangulation triangulation);
+  void number_lists(Triangulation triangulation);
   void take_compact(const tables::ResolvedList& list);
   void take_barycentric();
   void make_frames();
@@ -144,10 +141,9 @@ class ResolvedCubes {
     std::uint16_t ambiguous;  ///< ambiguous squares
   };
   std::array<Signature, 256> of_signatures_{};
-  std::array<std::uint8_t, 64 * 64> compressed_{};
   std::vector<CubeList> lists_;
   std::vector<std::uint16_t> list_of_;
-  std::vector<std::uint16_t> key_of_;  ///< by list
+  std::vector<CubeKey> key_of_;        ///< by list
   std::vector<std::uint8_t> of_cube_;  ///< triangles of the lists
   std::vector<std::uint32_t> first_of_cube_{0};
   std::vector<std::array<std::uint32_t, kMostOwn>> masks_;  ///< by list
@@ -164,13 +160,7 @@ class ResolvedCubes {
   std::array<bool, kCubes> reversed_{};
 };
 
-/// Corner of the tile for a corner of its cube `cube`.
-constexpr unsigned lifted_corner(unsigned cube, unsigned corner) noexcept {
-  const unsigned axis = cube / 2, below = corner & ((1u << axis) - 1);
-  return below | (corner >> axis) << (axis + 1) | (cube % 2) << axis;
-}
-
 /// Number of the list (ResolvedCubes) for a cube's key; kNone for a cube without a contour.
-unsigned list_of_key(unsigned key) noexcept;
+unsigned list_of_key(CubeKey key) noexcept;
 
 }  // namespace tegl::detail

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/corners.hpp"
 #include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 

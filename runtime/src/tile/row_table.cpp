@@ -34,7 +34,7 @@ RowTable::RowTable(const tables::TileTable& table, const std::array<unsigned, 25
   for (unsigned s = 0; s < 256; ++s) {
     variant_places_[s] = static_cast<std::uint16_t>(counts[s] == 1 ? s : entries_.size());
     for (unsigned variant = 0; counts[s] != 1 && variant < counts[s]; ++variant)
-      entries_.push_back(entry_of_list(s | variant << 8));
+      entries_.push_back(entry_of_list(CubeKey::of_variant(s, variant).bits()));
   }
   count_simplices();
 }

@@ -7,7 +7,8 @@
 #include <bit>
 #include <cstring>
 
-#include "base/corners.hpp"
+#include "tegl/table_contract.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/cube_regions.hpp"
 #include "tile/local_simplices.hpp"
 #include "tile/variant_table.hpp"
@@ -32,19 +33,9 @@ constexpr std::array<std::uint32_t, 24> kCornersOfSquares = [] {
 }();
 constexpr std::array<std::uint32_t, 8> kCornersOfCubes = [] {
   std::array<std::uint32_t, 8> result{};
-  for (unsigned f = 0; f < 8; ++f)
-    for (unsigned v = 0; v < 16; ++v)
-      if ((v >> (f / 2) & 1u) == f % 2) result[f] |= 1u << v;
+  for (unsigned f = 0; f < 8; ++f) result[f] = static_cast<std::uint32_t>(face_corners(4, f));
   return result;
 }();
-
-/// The corners of a set and their neighbours along edges.
-constexpr std::uint32_t grown(std::uint32_t corners) {
-  constexpr std::array<std::uint32_t, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};
-  std::uint32_t result = corners;
-  for (unsigned a = 0; a < 4; ++a) result |= (corners & kLower[a]) << (1u << a) | (corners >> (1u << a) & kLower[a]);
-  return result;
-}
 
 /// A pair of axes that squares span. Bit i of `base` is set if corner i is the lowest corner of such a square;
 /// square[i] is then its number.
@@ -89,13 +80,14 @@ Choice choice_of(const ResolvedKey& key, unsigned cube) {
 
 }  // namespace
 
-ResolvedTesseract::ResolvedTesseract(int triangulation)
-    : is_barycentric_(triangulation == kBarycentric),
+ResolvedTesseract::ResolvedTesseract(Triangulation triangulation)
+    : is_barycentric_(triangulation == Triangulation::barycentric),
       cubes_(ResolvedCubes::instance(triangulation)),
       in_table_(in_table().data()) {}
 
 const CubeRegions& ResolvedTesseract::regions() {
-  if (regions_ == nullptr) regions_ = &CubeRegions::instance(is_barycentric_ ? kBarycentric : kCompact);
+  if (regions_ == nullptr)
+    regions_ = &CubeRegions::instance(is_barycentric_ ? Triangulation::barycentric : Triangulation::compact);
   return *regions_;
 }
 
@@ -307,7 +299,7 @@ void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
     std::uint32_t reached = from;
     for (std::uint32_t before = 0; reached != before;) {
       before = reached;
-      reached = grown(grown(reached) & corners) & corners;
+      reached = with_neighbours(with_neighbours(reached) & corners) & corners;
       for (unsigned j = 0; j < count; ++j) reached |= (reached & joined[j]) != 0 ? joined[j] : 0;
     }
     components_[c].region = reached;
@@ -554,14 +546,14 @@ bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
   return settled[signature];
 }
 
-const RowTable& estimated_tesseracts(int triangulation) {
+const RowTable& estimated_tesseracts(Triangulation triangulation) {
   const auto make = [](bool all) {
-    RowTable result(tables::tile_table(4, kCompact));
+    RowTable result(tables::tile_table(4, Triangulation::compact));
     for (unsigned s = 0; s < 65536; ++s)
       if (all || ambiguous_signatures<4>()[s]) result.mark_as_own(s);
     return result;
   };
-  if (triangulation == kBarycentric) {
+  if (triangulation == Triangulation::barycentric) {
     static const RowTable barycentric = make(true);
     return barycentric;
   }

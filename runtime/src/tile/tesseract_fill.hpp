@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tile/cube_regions.hpp"
 #include "tile/cube_subcases.hpp"
 #include "tile/row_table.hpp"
@@ -82,7 +82,7 @@ class ResolvedTesseract {
   static constexpr std::uint64_t kIsBarycentre = std::uint64_t{1} << 63;  ///< bit of masks
   static constexpr unsigned kRepeat = 48;                                 ///< first of eight bits of masks
 
-  explicit ResolvedTesseract(int triangulation = kCompact);
+  explicit ResolvedTesseract(Triangulation triangulation = Triangulation::compact);
 
   /// The result is valid until the next call.
   const ResolvedView& find(const ResolvedKey& key) { return find(key, lists_of(key)); }
@@ -161,6 +161,6 @@ class ResolvedTesseract {
 };
 
 /// The compact table of 4D tiles. Every tile that may be resolved from the data is marked as having own vertices.
-const RowTable& estimated_tesseracts(int triangulation);
+const RowTable& estimated_tesseracts(Triangulation triangulation);
 
 }  // namespace tegl::detail

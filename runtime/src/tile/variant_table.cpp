@@ -99,7 +99,7 @@ void cone_discs(Polygons& polygons) {
 }  // namespace
 
 template <int N>
-VariantTable<N>::VariantTable(int triangulation) : list_of_(kKeys<N>) {
+VariantTable<N>::VariantTable(Triangulation triangulation) : list_of_(kKeys<N>) {
   const tables::TileTable& plain = tables::tile_table(N, triangulation);
   for (unsigned s = 0; s < 1u << (1u << N); ++s) add_plain(s, plain, s, false);
   add_variants(triangulation);
@@ -130,13 +130,13 @@ void VariantTable<N>::add_plain(unsigned key, const tables::TileTable& from, uns
 
 /// The high-connected square is the low-connected one of the complement, reversed (table contract).
 template <>
-void VariantTable<2>::add_variants(int triangulation) {
+void VariantTable<2>::add_variants(Triangulation triangulation) {
   for (unsigned s = 0; s < 16; ++s)
     if (ambiguous_signatures<2>()[s]) add_plain(s | 16, tables::tile_table(2, triangulation), ~s & 15, true);
 }
 
 template <>
-void VariantTable<3>::add_variants(int triangulation) {
+void VariantTable<3>::add_variants(Triangulation triangulation) {
   const auto& table = tables::kTile3Resolved;
   for (unsigned s = 0; s < 256; ++s) {
     if (!ambiguous_signatures<3>()[s]) continue;
@@ -146,7 +146,7 @@ void VariantTable<3>::add_variants(int triangulation) {
       const std::array<const tables::ResolvedList*, 3> lists = {&entry.separate, &entry.low, &entry.high};
       for (unsigned choice = 0; choice < lists.size(); ++choice) {
         Polygons polygons(*lists[choice]);
-        if (triangulation == 0) cone_discs(polygons);
+        if (triangulation == Triangulation::barycentric) cone_discs(polygons);
         const CubeKey key(s, r, static_cast<facets::Choice>(choice));
         add(key.bits(), polygons.triangles, polygons.cones, polygons.masks);
       }
@@ -202,12 +202,12 @@ void VariantTable<3>::make_rows() {
 }
 
 template <int N>
-const VariantTable<N>& variant_table(int triangulation) {
-  if (triangulation == 0) {
-    static const VariantTable<N> barycentric(0);
+const VariantTable<N>& variant_table(Triangulation triangulation) {
+  if (triangulation == Triangulation::barycentric) {
+    static const VariantTable<N> barycentric(Triangulation::barycentric);
     return barycentric;
   }
-  static const VariantTable<N> compact(1);
+  static const VariantTable<N> compact(Triangulation::compact);
   return compact;
 }
 
@@ -235,7 +235,7 @@ const std::array<bool, 256>& ambiguous_signatures<3>() noexcept {
 
 template class VariantTable<2>;
 template class VariantTable<3>;
-template const VariantTable<2>& variant_table<2>(int);
-template const VariantTable<3>& variant_table<3>(int);
+template const VariantTable<2>& variant_table<2>(Triangulation);
+template const VariantTable<3>& variant_table<3>(Triangulation);
 
 }  // namespace tegl::detail

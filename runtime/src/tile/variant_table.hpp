@@ -18,7 +18,7 @@ namespace tegl::detail {
 template <int N>
 class VariantTable {
  public:
-  explicit VariantTable(int triangulation);
+  explicit VariantTable(Triangulation triangulation);
   VariantTable(const VariantTable&) = delete;
   VariantTable& operator=(const VariantTable&) = delete;
 
@@ -30,7 +30,7 @@ class VariantTable {
   void add(unsigned key, const std::vector<std::uint8_t>& simplices, unsigned cones,
            const std::vector<std::uint64_t>& masks);
   void add_plain(unsigned key, const tables::TileTable& from, unsigned signature, bool reversed);
-  void add_variants(int triangulation);
+  void add_variants(Triangulation triangulation);
   void finish();
   void make_rows();
 
@@ -42,9 +42,9 @@ class VariantTable {
   std::vector<RowTable> rows_;
 };
 
-/// The table of a triangulation (0: barycentric, 1: compact), built at first use.
+/// The table of a triangulation, built at first use.
 template <int N>
-const VariantTable<N>& variant_table(int triangulation);
+const VariantTable<N>& variant_table(Triangulation triangulation);
 
 /// Whether a tile depends on the data beyond its signature: a square is ambiguous, or it may have several facets. By
 /// signature.
@@ -58,8 +58,8 @@ template <>
 const std::array<bool, 65536>& ambiguous_signatures<4>() noexcept;  // tesseract_fill.cpp
 
 /// Number of vertices that a cube owns, by key.
-inline unsigned cube_vertices(int triangulation, unsigned key) {
-  return variant_table<3>(triangulation).rows().own_vertices(key);
+inline unsigned cube_vertices(Triangulation triangulation, CubeKey key) {
+  return variant_table<3>(triangulation).rows().own_vertices(key.bits());
 }
 
 }  // namespace tegl::detail

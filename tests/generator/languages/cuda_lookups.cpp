@@ -12,17 +12,17 @@
 
 namespace tegl::test {
 
-Lookups cuda_lookups(int dim, int triangulation) {
+Lookups cuda_lookups(int dim, Triangulation triangulation) {
   if (dim == 2) {
-    return triangulation == 0 ? TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile2_barycentric)
-                              : TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile2_compact);
+    return triangulation == Triangulation::barycentric ? TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile2_barycentric)
+                                                       : TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile2_compact);
   }
   if (dim == 3) {
-    return triangulation == 0 ? TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile3_barycentric)
-                              : TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile3_compact);
+    return triangulation == Triangulation::barycentric ? TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile3_barycentric)
+                                                       : TEGL_LOOKUPS_WITHOUT_SIDES(tegl_tile3_compact);
   }
-  return triangulation == 0 ? TEGL_LOOKUPS_WITH_SIDES(tegl_tile4_barycentric)
-                            : TEGL_LOOKUPS_WITH_SIDES(tegl_tile4_compact);
+  return triangulation == Triangulation::barycentric ? TEGL_LOOKUPS_WITH_SIDES(tegl_tile4_barycentric)
+                                                     : TEGL_LOOKUPS_WITH_SIDES(tegl_tile4_compact);
 }
 
 ResolvedLookups cuda_resolved_lookups() { return TEGL_RESOLVED_LOOKUPS; }

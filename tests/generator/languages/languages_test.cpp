@@ -4,6 +4,7 @@
 // tables for every signature.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -24,7 +25,7 @@ namespace {
 using gen::Decoded;
 using test::Lookups;
 
-const char* const kTriangulations[] = {"barycentric", "compact"};
+constexpr std::array kTriangulations{Triangulation::barycentric, Triangulation::compact};
 
 std::string table_text(const std::string& name) {
   std::ifstream in(std::string(TEGL_TABLE_DIR) + "/" + name, std::ios::binary);
@@ -33,8 +34,8 @@ std::string table_text(const std::string& name) {
 }
 
 /// The contents of the file for a shader's storage buffer.
-std::vector<std::uint32_t> words_of(int triangulation) {
-  const std::string bytes = table_text(std::string("tile4_") + kTriangulations[triangulation] + ".u32");
+std::vector<std::uint32_t> words_of(Triangulation triangulation) {
+  const std::string bytes = table_text(std::string("tile4_") + gen::triangulation_name(triangulation) + ".u32");
   std::vector<std::uint32_t> words(bytes.size() / 4, 0);
   for (std::size_t i = 0; i < 4 * words.size(); ++i)
     words[i / 4] |= std::uint32_t{static_cast<std::uint8_t>(bytes[i])} << (8 * (i % 4));
@@ -47,7 +48,7 @@ Decoded look_up(const Lookups& table, int dim, std::uint32_t signature) {
   Decoded result;
   result.cones = table.cone_vertices(signature);
   for (std::uint32_t i = 0; i < table.simplex_count(signature); ++i) {
-    gen::Simplex simplex{};
+    gen::LocalSimplex simplex{};
     for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(dim); ++j)
       simplex[j] = static_cast<std::uint8_t>(table.vertex(signature, i, j));
     result.simplices.push_back(simplex);
@@ -66,7 +67,7 @@ long first_difference(const Lookups& emitted, const tables::TileTable& table) {
   return -1;
 }
 
-class PackedTable : public testing::TestWithParam<std::tuple<std::string, int, int>> {
+class PackedTable : public testing::TestWithParam<std::tuple<std::string, int, Triangulation>> {
  protected:
   Lookups lookups() {
     const auto& [language, dim, triangulation] = GetParam();
@@ -106,10 +107,10 @@ TEST_P(PackedTable, NamesTheEdgesAndNumbersOfItsTile) {
 INSTANTIATE_TEST_SUITE_P(All, PackedTable,
                          testing::Combine(testing::Values(std::string("glsl"), std::string("wgsl"),
                                                           std::string("cuda")),
-                                          testing::Values(2, 3, 4), testing::Values(0, 1)));
+                                          testing::Values(2, 3, 4), testing::ValuesIn(kTriangulations)));
 
 TEST(PackedWords, OneFlippedWordIsNoticed) {
-  for (const int triangulation : {0, 1}) {
+  for (const Triangulation triangulation : kTriangulations) {
     std::vector<std::uint32_t> words = words_of(triangulation);
     const std::uint32_t lists = words.at(4), simplices = words.at(5);
     std::vector<std::size_t> places{words.at(12) + 3 * (lists / 2), words.at(12) + 3 * (lists / 3) + 1};
@@ -126,13 +127,13 @@ TEST(PackedWords, OneFlippedWordIsNoticed) {
 }
 
 TEST(PackedWords, BeginWithWhatTheyAre) {
-  const auto words = words_of(0);
+  const auto words = words_of(Triangulation::barycentric);
   ASSERT_GT(words.size(), 18u);
   EXPECT_EQ(0x4c474554u, words[0]);
   EXPECT_EQ(tables::kContractVersion, words[1]);
   EXPECT_EQ(4u, words[2]);
   EXPECT_EQ(0u, words[3]);
-  EXPECT_EQ(1u, words_of(1)[3]);
+  EXPECT_EQ(1u, words_of(Triangulation::compact)[3]);
 }
 
 /// Expects the runtime's table reader and the tests' reader to agree.
@@ -151,7 +152,7 @@ void expect_same_reading(const tables::TileTable& table) {
 }
 
 TEST(RuntimeReader, FindsWhatTheContractSays) {
-  for (const int triangulation : {0, 1}) {
+  for (const Triangulation triangulation : kTriangulations) {
     expect_same_reading<2>(tables::tile_table(2, triangulation));
     expect_same_reading<3>(tables::tile_table(3, triangulation));
     expect_same_reading<4>(tables::tile_table(4, triangulation));
@@ -201,28 +202,27 @@ struct FromJson {
 
 TEST(JsonTables, HoldTheContourOfEverySignature) {
   for (const int dim : {2, 3, 4})
-    for (const int t : {0, 1}) {
-      const auto file =
-          nlohmann::json::parse(table_text("tile" + std::to_string(dim) + "_" + kTriangulations[t] + ".json"));
+    for (const Triangulation t : kTriangulations) {
+      const std::string name = gen::triangulation_name(t);
+      const auto file = nlohmann::json::parse(table_text("tile" + std::to_string(dim) + "_" + name + ".json"));
       EXPECT_EQ(file.at("kind"), "tile");
-      EXPECT_EQ(file.at("triangulation"), kTriangulations[t]);
+      EXPECT_EQ(file.at("triangulation"), name);
       const FromJson read(file);
       EXPECT_EQ(tables::kContractVersion, read.table.version);
       EXPECT_EQ(tables::tile_table(dim, t).max_simplices, read.table.max_simplices);
       long different = -1;
       for (std::uint32_t s = 0; different < 0 && s < 1u << (1u << dim); ++s)
         if (gen::decode(read.table, s) != gen::decode(tables::tile_table(dim, t), s)) different = s;
-      EXPECT_EQ(-1, different) << dim << " " << kTriangulations[t];
+      EXPECT_EQ(-1, different) << dim << " " << name;
     }
 }
 
 TEST(JsonTables, HoldTheRegions) {
-  const char* const alternatives[] = {"low", "high"};
   for (const int k : {1, 2, 3})
-    for (const int t : {0, 1})
-      for (const int a : {0, 1}) {
+    for (const Triangulation t : kTriangulations)
+      for (const facets::Alternative a : {facets::Alternative::low, facets::Alternative::high}) {
         const std::string name =
-            "region" + std::to_string(k) + "_" + kTriangulations[t] + "_" + alternatives[a] + ".json";
+            "region" + std::to_string(k) + "_" + gen::triangulation_name(t) + "_" + gen::alternative_name(a) + ".json";
         const auto file = nlohmann::json::parse(table_text(name));
         const tables::RegionTable& table = tables::region_table(k, t, a);
         const std::size_t count = std::size_t{1} << (1u << k);

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "tegl/tile/triangulation.hpp"
+
 namespace tegl::test {
 
 /// Functions that a table lacks are null: only 4D has side vertices.
@@ -18,11 +20,10 @@ struct Lookups {
   std::uint32_t corners, edges, first_tile_vertex, max_simplices, max_tile_vertices, words;
 };
 
-/// Triangulation 0: barycentric, 1: compact. For glsl and wgsl in 4D, `words` is the content of a shader's storage
-/// buffer; it is not copied.
-Lookups glsl_lookups(int dim, int triangulation, const std::uint32_t* words);
-Lookups wgsl_lookups(int dim, int triangulation, const std::uint32_t* words);
-Lookups cuda_lookups(int dim, int triangulation);
+/// For glsl and wgsl in 4D, `words` is the content of a shader's storage buffer; it is not copied.
+Lookups glsl_lookups(int dim, Triangulation triangulation, const std::uint32_t* words);
+Lookups wgsl_lookups(int dim, Triangulation triangulation, const std::uint32_t* words);
+Lookups cuda_lookups(int dim, Triangulation triangulation);
 
 /// The look-up functions of the complete table of the cube.
 struct ResolvedLookups {

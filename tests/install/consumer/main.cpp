@@ -7,10 +7,10 @@
 
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/facets/certificate.hpp"
-#include "tegl/facets/complex.hpp"
-#include "tegl/facets/facets.hpp"
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/certificate.hpp"
+#include "tegl/tile/complex.hpp"
+#include "tegl/tile/facets.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/tile_facets.hpp"
 

@@ -24,6 +24,7 @@
 #include "tegl/extract.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::test {
 namespace {

@@ -13,7 +13,7 @@
 #include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
-#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 #include "tegl/io.hpp"
 #include "tegl/io/active_tiles.hpp"
 #include "tegl/io/elements.hpp"

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "ambiguity/tesseract_decision.hpp"
-#include "base/corners.hpp"
-#include "tegl/facets/certificate.hpp"
-#include "tegl/facets/facets.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/certificate.hpp"
+#include "tegl/tile/corners.hpp"
+#include "tegl/tile/facets.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tile/cube_regions.hpp"
 
@@ -70,19 +70,19 @@ const tables::ResolvedList& list_of(const ResolvedKey& key, unsigned cube) {
 }
 
 /// The triangles of a cube.
-std::span<const std::uint8_t> triangles_of(const ResolvedKey& key, unsigned cube, int triangulation) {
+std::span<const std::uint8_t> triangles_of(const ResolvedKey& key, unsigned cube, Triangulation triangulation) {
   const tables::ResolvedList& list = list_of(key, cube);
-  if (triangulation == kCompact)
+  if (triangulation == Triangulation::compact)
     return {tables::kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle},
             3 * std::size_t{list.triangle_count}};
   // The lists that 3D images use.
-  const ResolvedCubes& cubes = ResolvedCubes::instance(kBarycentric);
+  const ResolvedCubes& cubes = ResolvedCubes::instance(Triangulation::barycentric);
   const auto& lists = cubes.lists();
   const unsigned signature = cube_signature(key.signature, cube);
   for (unsigned number = 0; number < lists.size(); ++number) {
     if (lists[number].signature != signature || lists[number].list->first_triangle != list.first_triangle) continue;
-    const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
-    const tables::List& of_key = table.lists[table.list_of[cubes.key(number)]];
+    const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
+    const tables::List& of_key = table.lists[table.list_of[cubes.key(number).bits()]];
     return {table.simplices + 3 * std::size_t{of_key.first_simplex}, 3 * std::size_t{of_key.simplex_count}};
   }
   return {};
@@ -140,7 +140,8 @@ class AsBuilt {
   [[nodiscard]] const FaceLattice& lattice() const { return lattice_; }
   [[nodiscard]] std::uint32_t face_of_edge(unsigned e) const { return edge_face_[e]; }
 
-  facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view, int triangulation = kCompact) const {
+  facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view,
+                                Triangulation triangulation = Triangulation::compact) const {
     facets::TileFacets tile;
     for (unsigned v = 0; v < kFirstOwn + view.own_vertices; ++v) {
       facets::Vertex vertex;
@@ -340,11 +341,11 @@ class ResolvedTiles : public ::testing::Test {
  protected:
   /// Certifies a key in the compact triangulation, and every fourth key in the barycentric one.
   void expect_certified(const ResolvedKey& key) {
-    ASSERT_NO_FATAL_FAILURE(expect_certified(key, tile_, kCompact));
-    if (keys_certified_++ % 4 == 0) expect_certified(key, barycentric_, kBarycentric);
+    ASSERT_NO_FATAL_FAILURE(expect_certified(key, tile_, Triangulation::compact));
+    if (keys_certified_++ % 4 == 0) expect_certified(key, barycentric_, Triangulation::barycentric);
   }
 
-  void expect_certified(const ResolvedKey& key, ResolvedTesseract& from, int triangulation) {
+  void expect_certified(const ResolvedKey& key, ResolvedTesseract& from, Triangulation triangulation) {
     const ResolvedSize size = from.size(key);
     const ResolvedView& view = from.find(key);
     ASSERT_EQ(size.simplices, view.simplex_count);
@@ -360,7 +361,7 @@ class ResolvedTiles : public ::testing::Test {
 
   Keys keys_;
   AsBuilt as_built_;
-  ResolvedTesseract tile_, barycentric_{kBarycentric};
+  ResolvedTesseract tile_, barycentric_{Triangulation::barycentric};
   std::size_t keys_certified_ = 0;
   facets::Certifier certifier_;
   std::map<int, int> genera_;  ///< genus -> number of components of Sigma
@@ -410,7 +411,8 @@ TEST_F(ResolvedTiles, FillingsAreThoseOfTheEngine) {
         << " signature " << key.signature << " squares " << key.squares << " low " << int{key.low_cubes} << " high "
         << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
     if (i % 4 != 0) continue;
-    ASSERT_EQ(Topology(as_built_(key, barycentric_.find(key), kBarycentric)), Topology(as_built_.built(key)))
+    ASSERT_EQ(Topology(as_built_(key, barycentric_.find(key), Triangulation::barycentric)),
+              Topology(as_built_.built(key)))
         << "barycentric, signature " << key.signature << " squares " << key.squares;
   }
 }

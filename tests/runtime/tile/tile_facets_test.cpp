@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tegl/error.hpp"
-#include "tegl/facets/certificate.hpp"
+#include "tegl/tile/certificate.hpp"
 
 namespace tegl {
 namespace {

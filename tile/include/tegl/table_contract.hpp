@@ -36,6 +36,8 @@
 
 #include <cstdint>
 
+#include "tegl/tile/triangulation.hpp"
+
 namespace tegl::tables {
 
 /// Version of the layout below. Emitted tables carry it; the runtime checks it at compile time.

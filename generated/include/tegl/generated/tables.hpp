@@ -4,6 +4,8 @@
 #pragma once
 
 #include "tegl/table_contract.hpp"
+#include "tegl/tile/choices.hpp"
+#include "tegl/tile/triangulation.hpp"
 
 namespace tegl::tables {
 
@@ -18,11 +20,10 @@ extern const RegionTable kRegion1BarycentricLow, kRegion1BarycentricHigh, kRegio
 extern const RegionTable kRegion2BarycentricLow, kRegion2BarycentricHigh, kRegion2CompactLow, kRegion2CompactHigh;
 extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegion3CompactLow, kRegion3CompactHigh;
 
-/// The table of the dim-tile's contours, dim = 2, 3, 4; triangulation 0: barycentric, 1: compact.
-const TileTable& tile_table(int dim, int triangulation) noexcept;
+/// The table of the dim-tile's contours, dim = 2, 3, 4.
+const TileTable& tile_table(int dim, Triangulation triangulation) noexcept;
 
-/// The table of the k-tile's high regions, k = 1, 2, 3; triangulation as above; alternative 0: low-connected, 1:
-/// high-connected.
-const RegionTable& region_table(int k, int triangulation, int alternative) noexcept;
+/// The table of the k-tile's high regions, k = 1, 2, 3.
+const RegionTable& region_table(int k, Triangulation triangulation, facets::Alternative alternative) noexcept;
 
 }  // namespace tegl::tables

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -48,12 +49,13 @@ constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
   return result;
 }
 
-/// Sorts the vertices; returns the sign of the permutation.
-constexpr int sort_vertices(Simplex& simplex) noexcept {
+/// Sorts the first `count` vertices; returns the sign of the permutation. For simplices of any vertex type.
+template <class Vertex, std::size_t Size>
+constexpr int sort_vertices(std::array<Vertex, Size>& simplex, int count = static_cast<int>(Size)) noexcept {
   int sign = 1;
-  for (int i = 1; i < kMaxVertices; ++i)
+  for (int i = 1; i < count; ++i)
     for (int j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) {
-      const VertexId larger = simplex[j - 1];
+      const Vertex larger = simplex[j - 1];
       simplex[j - 1] = simplex[j], simplex[j] = larger;
       sign = -sign;
     }

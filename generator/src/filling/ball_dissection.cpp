@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Search for a short sequence of tetrahedra that dismantles a ball.
-#include "filling/shelling.hpp"
+#include "filling/ball_dissection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ class Front {
 
   [[nodiscard]] std::size_t vertices_left() const { return left_; }
   [[nodiscard]] unsigned degree(std::uint8_t v) const { return degree_[v]; }
-  [[nodiscard]] const std::vector<Simplex>& tetrahedra() const { return tetrahedra_; }
+  [[nodiscard]] const std::vector<LocalSimplex>& tetrahedra() const { return tetrahedra_; }
 
   /// Removes the tetrahedron around a vertex of degree 3. If 4 vertices are left, the rest is one tetrahedron.
   bool remove(std::uint8_t v) {
@@ -81,12 +81,12 @@ class Front {
   }
 
   /// The triangles, each with ascending vertices.
-  [[nodiscard]] std::vector<Simplex> triangles() const {
-    std::vector<Simplex> result;
+  [[nodiscard]] std::vector<LocalSimplex> triangles() const {
+    std::vector<LocalSimplex> result;
     for (std::uint8_t a = 0; a < vertices_.size(); ++a)
       for (std::uint8_t b = 0; b < vertices_.size(); ++b)
         if (const std::uint8_t c = third_[a][b]; c != kNone && a < b && a < c) {
-          Simplex t{vertices_[a], vertices_[b], vertices_[c], 0};
+          LocalSimplex t{vertices_[a], vertices_[b], vertices_[c], 0};
           std::sort(t.begin(), t.begin() + 3);
           if (std::find(result.begin(), result.end(), t) == result.end()) result.push_back(t);
         }
@@ -125,7 +125,7 @@ class Front {
     --degree_[a], --degree_[b], --degree_[c];
   }
   bool take(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) {
-    Simplex t{vertices_[a], vertices_[b], vertices_[c], vertices_[d]};
+    LocalSimplex t{vertices_[a], vertices_[b], vertices_[c], vertices_[d]};
     std::sort(t.begin(), t.end());
     if (!sigma_->allows(t)) return false;
     tetrahedra_.push_back(t);
@@ -139,7 +139,7 @@ class Front {
   std::array<std::uint8_t, kMost> degree_{};
   std::bitset<kMost * kMost> used_edges_;  ///< edges of the front, now or earlier
   std::bitset<kMost * kMost * kMost> used_triangles_;
-  std::vector<Simplex> tetrahedra_;
+  std::vector<LocalSimplex> tetrahedra_;
 };
 
 /// One step at a vertex of minimum degree (in one of four steps: up to one more): removes it or one of its edges.
@@ -167,13 +167,13 @@ bool step(Front& front, std::size_t vertices, Dice& dice) {
 }
 
 /// The triangles with consistent orientation, in an order and with a sign that do not depend on the input order.
-std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<Simplex>& sphere,
+std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<LocalSimplex>& sphere,
                                                    const std::vector<std::uint8_t>& vertices) {
   const auto number = [&](std::uint8_t v) {
     return static_cast<std::uint8_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
   };
   std::vector<std::array<std::uint8_t, 3>> triangles;
-  for (const Simplex& s : sphere) {
+  for (const LocalSimplex& s : sphere) {
     std::array<std::uint8_t, 3> t{number(s[0]), number(s[1]), number(s[2])};
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     triangles.push_back(t);
@@ -193,15 +193,15 @@ std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<Simplex>& s
 
 }  // namespace
 
-Shelling shell_sphere(const std::vector<Simplex>& sphere, const SigmaComplex& sigma, std::size_t limit) {
+BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const SigmaComplex& sigma, std::size_t limit) {
   std::set<std::uint8_t> seen;
-  for (const Simplex& s : sphere) seen.insert(s.begin(), s.begin() + 3);
+  for (const LocalSimplex& s : sphere) seen.insert(s.begin(), s.begin() + 3);
   const std::vector<std::uint8_t> vertices(seen.begin(), seen.end());
   if (vertices.size() < 5 || vertices.size() > kMost) return {};
   const Front start(vertices, canonical(sphere, vertices), sigma);
   constexpr int kTries = 40;
   Dice dice(0x9e3779b9u);
-  Shelling best;
+  BallDissection best;
   // random descents; a new best result lowers the limit
   for (int i = 0; i < kTries && limit + 3 >= vertices.size(); ++i) {
     Front front = start;

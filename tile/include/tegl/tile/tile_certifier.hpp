@@ -6,8 +6,8 @@
 #include <functional>
 #include <memory>
 
-#include "tegl/facets/certificate.hpp"
-#include "tegl/facets/facets.hpp"
+#include "tegl/tile/certificate.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::facets {
 

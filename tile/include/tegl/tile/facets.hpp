@@ -19,56 +19,11 @@
 #include <span>
 #include <vector>
 
-#include "tegl/facets/complex.hpp"
+#include "tegl/tile/choices.hpp"
+#include "tegl/tile/complex.hpp"
+#include "tegl/tile/face_lattice.hpp"
 
 namespace tegl::facets {
-
-/// Set of corners of a tile: bit v = corner v.
-using Signature = std::uint64_t;
-
-/// A face of a polytope.
-struct Face {
-  int dim = 0;                         ///< dimension
-  Signature corners = 0;               ///< the tile's corners in this face
-  std::vector<std::uint32_t> faces{};  ///< indices of the faces of codimension one, ascending
-  std::vector<int> signs{};            ///< incidence numbers of `faces` in this face's boundary, outward normal first
-};
-
-/// The faces of a polytope, of every dimension; the polytope itself is the last. Faces are sorted by dimension, then by
-/// their ascending corners in lexicographic order. Consequence: an embedding of a face that keeps the order of corners
-/// keeps the order of faces, and of everything built from them.
-class FaceLattice {
- public:
-  /// Builds the lattice from the corner sets of the faces of codimension one of a polytope of dimension `dim` with up
-  /// to 64 corners. Throws std::invalid_argument for a dimension above 6 and if faces are missing or too many. The
-  /// checks are necessary conditions only: some families of sets that belong to no polytope pass.
-  FaceLattice(int dim, std::span<const Signature> maximal_faces);
-  static FaceLattice cube(int n);        ///< n = 1 ... 6; corner v has coordinate i = v >> i & 1
-  static FaceLattice simplex(int n);     ///< n = 1 ... 6; n + 1 corners
-  static FaceLattice octahedron(int n);  ///< n = 2 ... 6; corners 2 a and 2 a + 1 are the ends of axis a
-
-  [[nodiscard]] int dim() const { return faces_.back().dim; }               ///< dimension of the polytope
-  [[nodiscard]] const std::vector<Face>& faces() const& { return faces_; }  ///< all faces, ascending by dimension
-  [[nodiscard]] std::vector<Face> faces() const&& { return faces_; }        ///< for a temporary: a copy
-  /// Index of the polytope itself.
-  [[nodiscard]] std::uint32_t tile() const { return static_cast<std::uint32_t>(faces_.size() - 1); }
-
- private:
-  void check(const Face& face) const;
-  void orient(Face& face);
-
-  std::vector<Face> faces_;
-};
-
-/// How a face of dimension 2 or more fills its contour.
-enum class Choice : std::uint8_t {
-  separate,  ///< spheres are coned; other components and ambiguous polygons follow the default alternative
-  low,       ///< the centre is low: high regions of the boundary are copied, or coned if one sphere bounds them
-  high,      ///< the centre is high: low regions of the boundary are copied, or coned if one sphere bounds them
-};
-
-/// The sign of a centre that `Choice` leaves open.
-enum class Alternative : std::uint8_t { low, high };
 
 /// How the ambiguities of a tile are resolved.
 struct Resolution {
@@ -97,8 +52,15 @@ struct Vertex {
   std::vector<Simplex> of{};             ///< barycentre: the component of Sigma; centre: the simplices around it
 };
 
-/// How a facet is filled: a single simplex, a cone over its boundary, or a copy of one side of its boundary.
-enum class Filling : std::uint8_t { simplex, cone, side };
+/// How a facet fills its component of Sigma.
+enum class Filling : std::uint8_t {
+  simplex,  ///< Sigma is a simplex's boundary: that simplex
+  cone,     ///< a cone from an added vertex, the barycentre
+  side,     ///< a copy of one side of the tile's boundary, pushed inwards
+  /// Simplices on Sigma's own vertices: no vertex is added. Only in the generator's compact tables, not by
+  /// FacetBuilder.
+  pulled,
+};
 
 /// One facet of the contour: a manifold of dimension n - 1 with boundary on the tile's boundary.
 struct Facet {
