@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/stopwatch.hpp"
+#include "image/row_source.hpp"
 #include "kernel/tableless.hpp"
 #include "kernel/tile_selection.hpp"
 #include "search/index_file.hpp"

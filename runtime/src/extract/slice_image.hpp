@@ -18,6 +18,7 @@
 
 #include "ambiguity/moved_estimator.hpp"
 #include "base/slice_at.hpp"
+#include "image/row_source.hpp"
 #include "kernel/tableless.hpp"
 #include "tegl/slice.hpp"
 

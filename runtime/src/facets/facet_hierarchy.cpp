@@ -10,6 +10,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "facets/facet_extraction.hpp"
+#include "image/row_source.hpp"
 #include "kernel/extract_kernel.hpp"
 
 namespace tegl {

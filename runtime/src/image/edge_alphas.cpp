@@ -4,9 +4,10 @@
 // Multiplications and additions are not fused, so that all instruction sets give identical bytes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/corners.hpp"
-#include "image/extract_source.hpp"
+#include "image/edge_alphas.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/edge_alphas.cpp"

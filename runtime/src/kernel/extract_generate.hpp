@@ -31,7 +31,7 @@ class TileWriter {
 
   /// `flip`: reverses the tables' orientation. `rows`: flat table for the fast path, or null. `estimator`: as in
   /// Counter.
-  TileWriter(const SampleSource<N>& source, const TableSet<N>& tables, const RowTable* rows,
+  TileWriter(const EdgeCrossings<N>& source, const TableSet<N>& tables, const RowTable* rows,
              const FaceEstimator<N>* estimator, const Placement<N, Real>& placement, bool flip, bool has_cubes)
       : source_(source),
         estimator_(estimator),
@@ -376,7 +376,7 @@ class TileWriter {
     }
   }
 
-  const SampleSource<N>& source_;
+  const EdgeCrossings<N>& source_;
   const FaceEstimator<N>* estimator_;
   const tables::TileTable& table_;
   const tables::TileTable* cube_;

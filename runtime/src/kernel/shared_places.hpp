@@ -10,7 +10,7 @@
 
 #include "ambiguity/tesseract_decision.hpp"
 #include "base/corners.hpp"
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "tile/extract_tables.hpp"
 #include "tile/tesseract_fill.hpp"
 
@@ -22,7 +22,7 @@ class EdgePlaces {
  public:
   static constexpr int kDim = std::popcount(Axes);
 
-  EdgePlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
+  EdgePlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
     source.cell_alphas(base, Axes, critical_edges<kDim>(signature), alphas_.data());
   }
   [[nodiscard]] TilePoint<kDim> operator()(unsigned edge) const noexcept {
@@ -38,7 +38,7 @@ class EdgePlaces {
 template <int N>
 class SharedPlaces {
  public:
-  SharedPlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature,
+  SharedPlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature,
                const tables::TileTable* /*cube*/) noexcept
       : edges_(source, base, signature) {}
   [[nodiscard]] TilePoint<N> operator()(unsigned v) noexcept { return edges_(v); }
@@ -51,7 +51,7 @@ class SharedPlaces {
 template <>
 class SharedPlaces<4> {
  public:
-  SharedPlaces(const SampleSource<4>& source, const std::array<std::size_t, 4>& base, unsigned signature,
+  SharedPlaces(const EdgeCrossings<4>& source, const std::array<std::size_t, 4>& base, unsigned signature,
                const tables::TileTable* cube) noexcept
       : edges_(source, base, signature), signature_(signature), cube_(cube) {}
 

@@ -8,6 +8,7 @@
 
 #include "base/workers.hpp"
 #include "image/locate.hpp"
+#include "image/row_source.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_normals.hpp"
 #include "mesh/simplex_geometry.hpp"
