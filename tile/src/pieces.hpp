@@ -11,6 +11,7 @@
 
 #include "shelling.hpp"
 #include "tegl/facets/facets.hpp"
+#include "tegl/tile/disjoint_sets.hpp"
 
 namespace tegl::facets {
 
@@ -42,16 +43,8 @@ struct Piece {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Disjoint sets of vertices (union-find).
-class VertexSets {
- public:
-  void reset(std::size_t vertices);
-  void join(const Simplices& simplices);
-  VertexId root(VertexId v);
-
- private:
-  std::vector<VertexId> parent_;
-};
+/// Disjoint sets of vertices.
+using VertexSets = detail::BasicDisjointSets<VertexId>;
 
 /// Builds the piece of a face from the pieces of its own faces. Reuses its memory.
 class PieceBuilder {
