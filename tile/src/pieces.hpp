@@ -89,7 +89,6 @@ class PieceBuilder {
     return std::span(sigma_).subspan(c.begin, c.end - c.begin);
   }
   VertexId new_vertex(VertexKind kind, VertexId copied = kNoVertex, std::span<const Simplex> of = {});
-  void build_corner(bool high);
   void build_edge();
   void number_vertices();
   void collect_sigma();

@@ -4,8 +4,6 @@
 #include "tegl/slice.hpp"
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 #include "base/progress.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Extraction with an index of the active tiles.
-#include <string>
 
 #include <fmt/format.h>
 

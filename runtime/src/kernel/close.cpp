@@ -4,7 +4,6 @@
 // dimension N - 1. Its cap is the high set, built tile by tile from the region tables.
 #include "kernel/close.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "ambiguity/cube_decision.hpp"

@@ -4,7 +4,6 @@
 #include "tegl/normals.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "base/workers.hpp"
 #include "image/locate.hpp"

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
-#include <tuple>
 
 namespace tegl::detail {
 

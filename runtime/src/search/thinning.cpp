@@ -6,7 +6,6 @@
 // remaining tiles connect all extrema.
 #include <algorithm>
 #include <bitset>
-#include <cmath>
 #include <optional>
 #include <unordered_map>
 
