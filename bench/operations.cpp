@@ -115,8 +115,10 @@ void add_parts(Subject<T>& subject, std::vector<Operation>& list) {
                     for (const auto& component : found) largest = std::max(largest, component.simplices);
                     return fmt::format("the largest has {} tetrahedra", largest);
                   }});
-  list.push_back({"`split_components`",
-                  [&] { return counted(split_components(subject.contour, subject.labels).size(), "contours"); }});
+  list.push_back({"`split_components`", [&] {
+                    return counted(split_components(subject.contour, subject.labels, subject.work_options()).size(),
+                                   "contours");
+                  }});
   list.push_back(
       {"`measure`", [&] { return fmt::format("size {:.6g}", measure(subject.contour, subject.work_options()).size); }});
   list.push_back({"`measure_cuts`, 1000 times", [&] {
@@ -129,13 +131,13 @@ template <Value T>
 void add_tracks(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`track`", [&] {
                     TrackOptions options;
-                    options.threads = subject.threads;
+                    options.work = subject.work_options();
                     const TrackGraph graph = track(subject.contour, options);
                     return fmt::format("{} events, {} tracks", graph.events.size(), graph.tracks.size());
                   }});
   list.push_back({"`track`, measured 100 times", [&] {
                     TrackOptions options;
-                    options.threads = subject.threads;
+                    options.work = subject.work_options();
                     options.times = subject.times(100);
                     return counted(track(subject.contour, options).segments.size(), "segments");
                   }});
@@ -174,9 +176,9 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
     options.method = method;
     options.ratio = 0.2;
     options.measure = false;  // the row of `deviation` measures that
-    options.threads = subject.threads;
+    options.work = subject.work_options();
     options.scale = automatic_scale(subject.contour);
-    subject.simplified = simplify(subject.contour, options);
+    subject.simplified = simplify(subject.contour, options).contour;
     return counted(subject.simplified.simplices.size(), "tetrahedra");
   };
   list.push_back({"`simplify` to a fifth, `facets`", [simplified] { return simplified(SimplifyMethod::facets); }});
@@ -184,7 +186,7 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`simplify` to a fifth, `quadric`", [simplified] { return simplified(SimplifyMethod::quadric); }});
   list.push_back({"`deviation` from that (`simplify`), and back", [&] {
                     DeviationOptions<4> options;
-                    options.threads = subject.threads;
+                    options.work = subject.work_options();
                     options.scale = automatic_scale(subject.contour);
                     const Deviation from = deviation(subject.contour, subject.simplified, options);
                     const Deviation back = deviation(subject.simplified, subject.contour, options);

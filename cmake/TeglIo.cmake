@@ -29,6 +29,6 @@ elseif(TEGL_BUILD_IO STREQUAL "AUTO")
   message(STATUS "tegl: no target tegl::io (file formats). Not found: ${tegl_io_missing}")
   set(TEGL_BUILD_IO OFF)
 else()
-  message(FATAL_ERROR "TEGL_BUILD_IO=${TEGL_BUILD_IO} (file formats, tegl::io) needs what was not found: "
+  message(FATAL_ERROR "TEGL_BUILD_IO=${TEGL_BUILD_IO} (file formats, tegl::io) needs packages that were not found: "
     "${tegl_io_missing}. Install it, or configure with -DTEGL_BUILD_IO=OFF.")
 endif()

@@ -23,8 +23,7 @@ int main() {
 
   tegl::SimplifyOptions<3> options;
   options.max_error = 0.05;  // maximum distance between the contours, in both directions
-  tegl::SimplifyStats stats;
-  const auto small = tegl::simplify(contour, options, &stats);
+  const auto [small, stats] = tegl::simplify(contour, options);
   std::printf("%llu -> %llu triangles, error at most %.4f\n", static_cast<unsigned long long>(stats.simplices_before),
               static_cast<unsigned long long>(stats.simplices_after), *stats.error());
 

@@ -34,7 +34,7 @@ is_debian_12() { (. /etc/os-release 2>/dev/null && [[ ${ID:-} == debian && ${VER
 
 # elsewhere: what helps on a system that lacks packages.
 elsewhere() {
-  printf '%s' "tegl is built and tested on Debian 12, and this is $(system_name). Either get them by other means and build " \
+  printf '%s' "tegl is built and tested on Debian 12, and this is $(system_name). Either install them in another way and build " \
     "by hand ($root/docs/getting-started.md), or work in a container: " \
     "docker run -it -v '$root:/tegl' -w /tegl debian:12"
 }
@@ -43,7 +43,7 @@ elsewhere() {
 # neither network nor root.
 install_packages() {
   local missing unknown as_root=() current=yes
-  command -v apt-get >/dev/null || fail "no apt-get here to install packages with: $*. $(elsewhere)"
+  command -v apt-get >/dev/null || fail "no apt-get to install these packages: $*. $(elsewhere)"
   mapfile -t missing < <(missing_packages "$@")
   if [[ ${#missing[@]} -eq 0 ]]; then
     echo "Set-up: all $# packages are installed."
@@ -52,18 +52,18 @@ install_packages() {
   is_debian_12 || say "This is $(system_name). tegl is built and tested on Debian 12; packages may be missing here"
   say "Installing ${#missing[@]} of $# Debian packages: ${missing[*]}"
   if [[ $(id -u) -ne 0 ]]; then
-    command -v sudo >/dev/null || fail "not root, and no sudo. Let root run, once, and then begin again:
+    command -v sudo >/dev/null || fail "neither root nor sudo. Run this as root once, then start again:
   apt-get update && apt-get install --no-install-recommends ${missing[*]}"
     as_root=(sudo)
   fi
   fetch_package_lists "${as_root[@]}" || current=
   mapfile -t unknown < <(unknown_packages "${missing[@]}")
   if [[ ${#unknown[@]} -ne 0 ]]; then
-    [[ -n $current ]] || fail "not all lists of packages could be fetched (see above), and these are in none that is there: ${unknown[*]}"
-    fail "packages that are not to be had here: ${unknown[*]}. $(elsewhere)"
+    [[ -n $current ]] || fail "some lists of packages could not be fetched (see the messages before), and the others do not contain: ${unknown[*]}"
+    fail "packages that this system does not provide: ${unknown[*]}. $(elsewhere)"
   fi
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" ||
-    fail "apt-get could not install them: see above. If the network failed, begin again: what was fetched is kept"
+    fail "apt-get could not install them (see its messages). If the network failed, start again: fetched packages are kept"
   mapfile -t missing < <(missing_packages "$@")
   [[ ${#missing[@]} -eq 0 ]] || fail "apt-get succeeded, but these packages are still not installed: ${missing[*]}"
 }
@@ -75,7 +75,7 @@ fetch_package_lists() {
   "$@" apt-get -o APT::Update::Error-Mode=any update 2>&1 | tee "$log" || status=$?
   if [[ $status -ne 0 ]] && ! grep -qE '^(Hit|Get):' "$log"; then
     rm "$log"
-    fail "no list of packages could be fetched: is there a network (behind a proxy: is http_proxy set)? Begin again when there is"
+    fail "no list of packages could be fetched: check the network (behind a proxy: http_proxy), then start again"
   fi
   rm "$log"
   return "$status"

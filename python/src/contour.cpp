@@ -168,7 +168,7 @@ void bind_contour(py::module_& m) {
                   "A contour from arrays, which are copied. Attributes: (name, unit, values) each.")
       .def("take_arrays", &take_arrays,
            "(vertices, simplices, normals): the memory itself, to write to. The contour is empty afterwards.")
-      .def_property_readonly("ndim", of_contour(ndim), "N: how many coordinates vertices have.")
+      .def_property_readonly("ndim", of_contour(ndim), "N, the number of coordinates of a vertex.")
       .def_property_readonly("vertices", of_contour(vertices))
       .def_property_readonly("simplices", of_contour(simplices))
       .def_property_readonly("normals", of_contour(normals))

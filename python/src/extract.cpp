@@ -169,7 +169,7 @@ std::unique_ptr<AnyContour> cut_any(const AnyImage& image, double level, int axi
 }  // namespace
 
 void bind_extract(py::module_& m) {
-  py::class_<AnyGrid>(m, "Grid", "Where the samples of an image are.");
+  py::class_<AnyGrid>(m, "Grid", "The coordinates of an image's samples.");
   py::class_<AnyImage>(m, "Image", doc::Image)
       .def(py::init(&make_image), py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("names"),
            py::arg("units"))

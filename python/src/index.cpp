@@ -152,7 +152,7 @@ py::tuple pick(const AnyImage& image, double level, const std::vector<double>& p
 void bind_index(py::module_& m) {
   py::class_<AnyIndex>(m, "Index", doc::ActiveTiles)
       .def_property_readonly("method", &AnyIndex::method)
-      .def_property_readonly("memory", &AnyIndex::memory, "Bytes that the index holds beside the image.")
+      .def_property_readonly("memory", &AnyIndex::memory, "Memory of the index in bytes, without the image.")
       .def("contour", &contour_of, py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"))
       .def("find", &find, py::arg("level"), "The numbers of the active tiles, ascending.")
       .def("save", &save, py::arg("path"), doc::write_active_tiles);

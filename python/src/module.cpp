@@ -65,8 +65,8 @@ thread_local bool has_files = false;
 FileLock::FileLock(const Progress& progress) {
   if (has_files)
     throw Error(ErrorCode::InvalidArgument,
-                "a progress function of a call that reads or writes a file asks for another file; expected none before "
-                "that call is done");
+                "a progress function reads or writes another file while its call reads or writes a file; expected it "
+                "to wait until that call is done");
   while (!file_mutex().try_lock_for(std::chrono::milliseconds(50)))
     if (progress && !progress(0.0))
       throw Error(ErrorCode::Cancelled, "cancelled while another file is read or written");
@@ -126,7 +126,7 @@ PYBIND11_MODULE(_tegl, m) {
   m.doc() = "The compiled part of tegl. Axes are in the library's order here: use the package tegl.";
   // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the module keeps it as long as the interpreter lives.
   static PyObject* const cancelled = PyErr_NewExceptionWithDoc(
-      "tegl.Cancelled", "A progress function returned False: the work was ended.", PyExc_RuntimeError, nullptr);
+      "tegl.Cancelled", "A progress function returned False, which cancelled the call.", PyExc_RuntimeError, nullptr);
   m.add_object("Cancelled", py::reinterpret_borrow<py::object>(cancelled));
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {

@@ -41,9 +41,9 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
 
 py::dict check_any(const AnyContour& contour, const py::object& progress) {
   Call call(progress);
-  const Progress tell = call.progress();
+  const WorkOptions work{.progress = call.progress()};
   const MeshReport report =
-      call.run([&] { return std::visit([&](const auto& c) { return check(c, tell); }, contour.contour); });
+      call.run([&] { return std::visit([&](const auto& c) { return check(c, work); }, contour.contour); });
   py::dict result;
   put(result, "dim", report.dim);
   put(result, "vertices", report.vertices);
@@ -144,12 +144,12 @@ py::list components_any(const AnyContour& contour, const ComponentLabels& labels
 std::vector<AnyContour> split_any(const AnyContour& contour, const ComponentLabels& labels,
                                   const py::object& progress) {
   Call call(progress);
-  const Progress tell = call.progress();
+  const WorkOptions work{.progress = call.progress()};
   return call.run([&] {
     return std::visit(
         [&](const auto& c) {
           std::vector<AnyContour> result;
-          for (auto& part : split_components(c, labels, tell)) result.push_back({std::move(part), contour.isovalue});
+          for (auto& part : split_components(c, labels, work)) result.push_back({std::move(part), contour.isovalue});
           return result;
         },
         contour.contour);
@@ -159,12 +159,12 @@ std::vector<AnyContour> split_any(const AnyContour& contour, const ComponentLabe
 std::unique_ptr<AnyContour> select_any(const AnyContour& contour, const ComponentLabels& labels,
                                        const std::vector<bool>& keep, const py::object& progress) {
   Call call(progress);
-  const Progress tell = call.progress();
+  const WorkOptions work{.progress = call.progress()};
   return call.run([&] {
     return std::visit(
         [&](const auto& c) {
           return std::unique_ptr<AnyContour>(
-              new AnyContour{select_components(c, labels, keep, tell), contour.isovalue});
+              new AnyContour{select_components(c, labels, keep, work), contour.isovalue});
         },
         contour.contour);
   });
@@ -187,8 +187,7 @@ SimplifyOptions<N> simplify_options(const py::dict& arguments, Call& call) {
   if (!arguments["scale"].is_none()) result.scale = to_array<N>("scale", py::cast<Numbers>(arguments["scale"]));
   result.measure = py::cast<bool>(arguments["measure"]);
   result.allow_nonmanifold = py::cast<bool>(arguments["allow_nonmanifold"]);
-  result.threads = py::cast<unsigned>(arguments["threads"]);
-  result.progress = call.progress();
+  result.work = {py::cast<unsigned>(arguments["threads"]), call.progress()};
   return result;
 }
 
@@ -216,11 +215,9 @@ py::tuple simplify_any(const AnyContour& contour, const py::dict& arguments, con
       [&]<int N, class Real>(const Contour<N, Real>& c) -> py::tuple {
         if constexpr (N <= 4) {
           const SimplifyOptions<N> options = simplify_options<N>(arguments, call);
-          SimplifyStats stats;
-          auto result = std::make_unique<AnyContour>(call.run([&] {
-            return AnyContour{simplify(c, options, &stats), contour.isovalue};
-          }));
-          return py::make_tuple(std::move(result), to_dict(stats));
+          Simplification<N, Real> result = call.run([&] { return simplify(c, options); });
+          auto simplified = std::make_unique<AnyContour>(AnyContour{std::move(result.contour), contour.isovalue});
+          return py::make_tuple(std::move(simplified), to_dict(result.stats));
         } else {
           throw_dimension("simplification", N, "2 to 4 dimensions");
         }
@@ -252,7 +249,7 @@ void sample_any(AnyContour& contour, const AnyImage& image, const std::string& n
                       fmt::format("the image has {} axes; expected {}, as the contour", image.view.index() + 2, N));
         for (const Attribute& attribute : c.vertex_attributes)
           if (attribute.name == name)
-            throw Error(ErrorCode::InvalidArgument, fmt::format("the contour has an attribute '{}' already", name));
+            throw Error(ErrorCode::InvalidArgument, fmt::format("the contour already has an attribute '{}'", name));
         Attribute made = call.run(
             [&] { return std::visit([&](const auto& view) { return sample(view, c, name, unit, options); }, *views); });
         c.vertex_attributes.push_back(std::move(made));
@@ -293,7 +290,7 @@ void bind_operations(py::module_& m) {
   m.def("automatic_scale", &automatic_scale_any, py::arg("contour"), doc::automatic_scale);
   m.def("sample", &sample_any, py::arg("contour"), py::arg("image"), py::arg("name"), py::arg("unit"),
         py::arg("threads"), py::arg("progress"), doc::sample);
-  m.def("has_fast_simplify", &has_fast_simplify, "Whether the method 'fast' is there.");
+  m.def("has_fast_simplify", &has_fast_simplify, "Whether the method 'fast' is available.");
 }
 
 }  // namespace tegl::python

@@ -22,8 +22,7 @@ std::unique_ptr<TrackGraph> track_any(const AnyContour& contour, double min_life
   options.last = last;
   options.handles = handles;
   options.label_simplices = label_simplices;
-  options.threads = threads;
-  options.progress = call.progress();
+  options.work = {threads, call.progress()};
   return call.run([&] {
     return std::visit(
         [&]<int N, class Real>(const Contour<N, Real>& c) -> std::unique_ptr<TrackGraph> {

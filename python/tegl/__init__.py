@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contours of 2D to 5D arrays that are always oriented manifolds without holes: lines, surfaces, and the surfaces of
-what moves, which can be cut at any time.
+"""Contours (isolines, isosurfaces, space-time isosurfaces) of 2D to 5D arrays. They are oriented manifolds, open only
+at the border of the array and at missing values. The contour of a 4D array can be cut at any time.
 
     import numpy, tegl
 
@@ -11,7 +11,7 @@ what moves, which can be cut at any time.
     print(surface.measure().content, surface.check().is_closed)
     surface.save("surface.ply")
 
-`tegl.marching_cubes` is that of scikit-image. docs/python.md has more.
+`tegl.marching_cubes` replaces the function of scikit-image. docs/python.md has more.
 """
 
 from . import _tegl

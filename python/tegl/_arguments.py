@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From what callers have (arrays, masked arrays, xarray's, what tegl.read gave) to the library's images.
+"""Converts arguments (arrays, masked arrays, xarrays, results of tegl.read) to the library's images.
 
-The library's axes are the array's the other way round, so that its first axis is the one that runs fastest in a NumPy
-array of C order and its last one, the time, is the array's first. With `time_axis=-1` they are the array's own. All
-that goes in and comes out is turned around here and in `Contour`; the library's numbers never show.
+The library's axes are the array's axes in reverse order: its first axis is the fastest one of a NumPy array in C order,
+and its last axis, the time, is the array's first. With `time_axis=-1` both orders are equal. This module and `Contour`
+reverse all arguments and results; users never see the library's order.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _TIME_NAMES = ("t", "time")
 Progress = Callable[[float], object]
 #: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
 Place = typing.Union[float, str, datetime.date, datetime.timedelta, np.generic]
-#: Several of them.
+#: Several coordinates.
 Places = typing.Union["list[typing.Any]", "tuple[typing.Any, ...]", "np.ndarray[typing.Any, typing.Any]"]
 
 
 class Labelled(typing.Protocol):
-    """An xarray of one place or of several: its type does not say."""
+    """An xarray of one place or of several: the type is the same."""
 
     @property
     def dims(self) -> typing.Any: ...
@@ -43,13 +43,13 @@ _Documented = typing.TypeVar("_Documented", bound=typing.Callable[..., typing.An
 
 
 def documents(*names: str) -> typing.Callable[[_Documented], _Documented]:
-    """Puts the library's own comments behind a docstring."""
+    """Appends the library's comments to a docstring."""
 
     def decorate(function: _Documented) -> _Documented:
         texts = [_tegl.docs[name] for name in names]
         if function.__doc__:  # None under python -OO
-            function.__doc__ = (inspect.cleandoc(function.__doc__) + "\n\nFrom the library's reference, whose axes are those of "
-                                "the array from the last to the first (its last axis is the array's `time_axis`):\n\n"
+            function.__doc__ = (inspect.cleandoc(function.__doc__) + "\n\nFrom the library's reference, with the array's axes "
+                                "in reverse order (its last axis is the array's `time_axis`):\n\n"
                                 + "\n\n".join(texts) + "\n")
         return function
 
@@ -64,16 +64,16 @@ class UniformAxis(typing.NamedTuple):
 
 
 def core_of(contour) -> _tegl.Contour:
-    """The library's own contour."""
+    """The library's contour."""
     core = getattr(contour, "_core", None)
     if not isinstance(core, _tegl.Contour):
-        raise TypeError(f"{type(contour).__name__} is no contour; expected a tegl.Contour, as tegl.contour(array, level) "
-                        "and tegl.load(path) give")
+        raise TypeError(f"{type(contour).__name__} is not a contour; expected a tegl.Contour, from "
+                        "tegl.contour(array, level) or tegl.load(path)")
     return core
 
 
 def part_of(progress, first: float, last: float):
-    """The progress of a call that takes the whole from `first` to `last`."""
+    """The progress function of a part of a call, from `first` to `last` of the whole."""
     if progress is not None and not callable(progress):
         raise TypeError(f"progress is {progress!r}; expected a function that takes a fraction, or None")
     return None if progress is None else lambda fraction: progress(
@@ -81,8 +81,8 @@ def part_of(progress, first: float, last: float):
 
 
 def _in_array_order(text: str, ndim: int) -> str:
-    """A message of the library, which numbers axes from the array's last one: numbers of axes, points (x, y, z) and sizes
-    x x y x z, turned around."""
+    """A message of the library, with numbers of axes, points (x, y, z) and sizes (x x y x z) in the order of the array's
+    axes."""
     text = re.sub(r"\b(axis|row|column) (\d)\b", lambda found: f"{found[1]} {ndim - 1 - int(found[2])}", text)
     text = text.replace("of its last axis", "of its axis 0")
     for pattern, separator in ((r"(?<=\()[^(),]+(?:, [^(),]+){%d}(?=\))" % (ndim - 1), ", "),
@@ -119,7 +119,7 @@ class Prepared:
         return self.image.ndim
 
     def terms(self, about: str = "") -> contextlib.AbstractContextManager[None]:
-        """Errors of the library in here are told in the array's order of axes; but not the name of the file `about`."""
+        """Converts the library's errors to the array's order of axes, except the name of the file `about`."""
         return _array_terms(self.is_reversed, self.ndim, about)
 
     def turned(self, per_axis: Sequence) -> list:
@@ -146,7 +146,7 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
 
 
 def turn_around(time_axis: int, ndim: int) -> bool:
-    """Whether the library's axes are the array's from the last to the first."""
+    """Whether the library's axes are the array's in reverse order."""
     if as_whole("time_axis", time_axis) not in (0, -1, ndim - 1):
         raise ValueError(f"time_axis is {time_axis!r}; expected 0 or -1, the array's first or last axis; numpy.moveaxis "
                          "gives a view with another axis first")
@@ -169,8 +169,8 @@ def number_on_axis(at: object, unit: str) -> float:
 
 
 def as_number(name: str, value: object) -> float:
-    """A real number, by the name that the caller knows it by. Text, truth values, dates and complex numbers are none,
-    although float() takes some of them."""
+    """A real number; `name` is for errors. Text, truth values, dates and complex numbers are refused, although float()
+    takes some of them."""
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     if not isinstance(value, (str, bytes, bytearray, bool)) and kind not in ("b", "c", "m", "M", "S", "U") and \
             not (kind and np.ndim(typing.cast(float, value))):
@@ -193,15 +193,15 @@ def as_whole(name: str, value: object, least: int | None = None) -> int:
 
 
 def threads_of(threads: object) -> int:
-    """How many threads; 0: all."""
+    """The number of threads; 0: all."""
     number = 0 if threads is None else as_whole("threads", threads)
     if number < 0:
         raise ValueError(f"threads is {number}; expected 0 (all) or more")
-    return min(number, 2**31 - 1)  # more than the machine has are as many
+    return min(number, 2**31 - 1)  # the library limits it to the machine's
 
 
 def as_bool(name: str, value: object) -> bool:
-    """A truth value, Python's or NumPy's, and nothing that merely counts as one, such as text."""
+    """A truth value of Python or NumPy; text and numbers are refused."""
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{name} is {value!r}; expected True or False")
     return bool(value)
@@ -241,7 +241,7 @@ def _per_axis(value, ndim: int, name: str, default: float) -> list[float]:
 
 
 def _reals(what_is: str, values: object, expected: str) -> np.ndarray:
-    """Numbers in double precision; neither text nor dates, which NumPy makes numbers of as well."""
+    """Numbers in double precision; text and dates, which NumPy would convert, are refused."""
     try:
         array = np.asarray(values)
         if array.dtype.kind in "iuf" or (array.dtype.kind == "O" and not any(isinstance(v, str) for v in array.flat)):
@@ -252,14 +252,14 @@ def _reals(what_is: str, values: object, expected: str) -> np.ndarray:
 
 
 def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
-    """Uniform if that is exact to the last bit; else all coordinates. `axis` is what errors call it."""
+    """Uniform if that is exact to the last bit; else all coordinates. `axis`: its name in errors."""
     if isinstance(coordinates, UniformAxis):
         return coordinates
     values = _reals(f"the coordinates of {axis} are", coordinates, "numbers, ascending or descending")
     if values.ndim != 1:
         raise ValueError(f"the coordinates of {axis} have {values.ndim} dimensions; expected 1")
     if len(values) != size:
-        raise ValueError(f"{axis} has {size} samples and {len(values)} coordinates; expected as many")
+        raise ValueError(f"{axis} has {size} samples and {len(values)} coordinates; expected equal numbers")
     if not np.isfinite(values).all():
         wrong = int(np.argmin(np.isfinite(values)))
         raise ValueError(f"coordinate {wrong} of {axis} is {values[wrong]}; expected a finite number")
@@ -289,7 +289,7 @@ def _affine(affine, ndim: int) -> np.ndarray | None:
 
 
 def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
-    """Coordinates (None where there are none), names, units, the axis of the time, if there is one, and the values' unit."""
+    """Coordinates (None if there are none), names, units, the time axis or None, and the values' unit."""
     coordinates: list = []
     units: list[str] = []
     time_axis = None
@@ -315,7 +315,7 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
 
 
 def _values(array: np.ndarray) -> np.ndarray:
-    """The array in a type that the library has; as it is wherever that can be."""
+    """The array in a type of the library; without a copy if possible."""
     if array.dtype.name not in _TYPES:
         if array.dtype.kind == "b":
             return array.view(np.uint8)
@@ -334,7 +334,7 @@ def _values(array: np.ndarray) -> np.ndarray:
 
 
 def _in_order(mask, data):
-    """An xarray's mask with its dimensions, and what lies along them, in the order of those of `data`."""
+    """An xarray's mask with its dimensions and coordinates in the order of those of `data`."""
     if set(mask.dims) != set(data.dims):
         raise ValueError(f"mask has the dimensions {', '.join(map(str, mask.dims))}; expected those of the array, "
                          f"{', '.join(map(str, data.dims))}")
@@ -363,10 +363,10 @@ def booleans(mask) -> np.ndarray:
 
 
 def _masked(array: np.ndarray, mask) -> np.ndarray:
-    """Where the mask is False, values are missing: NaN, in a copy."""
+    """A copy with NaN (missing values) if the mask is False."""
     mask = booleans(mask)
     if mask.shape != array.shape:
-        raise ValueError(f"mask has the shape {mask.shape}; expected {array.shape}, that of the array")
+        raise ValueError(f"mask has the shape {mask.shape}; expected {array.shape}, as the array")
     if mask.all():
         return array
     kind = array.dtype if array.dtype.kind == "f" else np.dtype(np.float64 if array.itemsize > 2 else np.float32)
@@ -375,11 +375,11 @@ def _masked(array: np.ndarray, mask) -> np.ndarray:
 
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
             time_axis=None) -> Prepared:
-    """The library's view of an array: no values are copied but where the type or a mask asks for it."""
+    """The library's view of an array. Values are copied only if the type or a mask requires it."""
     if isinstance(data, (str, os.PathLike)):
         raise TypeError(f"{data!r} is a path; expected an array, or tegl.read({data!r})")
     if hasattr(data, "data_vars"):
-        raise TypeError(f"a dataset of {', '.join(map(repr, data.data_vars))}; expected one of them, dataset[name]")
+        raise TypeError(f"a dataset of {', '.join(map(repr, data.data_vars))}; expected one of its arrays, dataset[name]")
     names: Sequence[str] | None = None
     units: Sequence[str] | None = None
     known: Sequence | None = None
@@ -417,7 +417,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         raise ValueError(f"coords has {len(coords)} entries; expected one for each of {ndim} axes")
     spacings, origins = _per_axis(spacing, ndim, "spacing", 1.0), _per_axis(origin, ndim, "origin", 0.0)
     if coords is not None and (spacing is not None or origin is not None):
-        raise ValueError("coords with spacing or origin; expected the one or the other")
+        raise ValueError("coords with spacing or origin; expected only coords, or only spacing and origin")
     names = labels_of("axis_names", axis_names if axis_names is not None else names, ndim)
     units = labels_of("axis_units", axis_units if axis_units is not None else units, ndim)
     if axis_names is not None:
@@ -477,12 +477,12 @@ def _extent_of(axes: Sequence[UniformAxis | list[float]], sizes: Sequence[int], 
     if affine is None:
         return np.sort(ends, axis=0)
     products = ends[:, None, :] * affine[:, :-1]  # end, row, column
-    products[:, affine[:, :-1] == 0] = 0  # also where the end is infinite
+    products[:, affine[:, :-1] == 0] = 0  # also if the end is infinite
     return np.stack([np.minimum(*products).sum(axis=1), np.maximum(*products).sum(axis=1)]) + affine[:, -1]
 
 
 def is_double(dtype, prepared: Prepared) -> bool:
-    """Whether coordinates are to be of double precision. Those of the array have to fit into what they are."""
+    """Whether coordinates have double precision. The array's coordinates must be in the range of the type."""
     try:
         kind = None if dtype is None else np.dtype(dtype)  # None would be float64
     except TypeError:
@@ -494,13 +494,13 @@ def is_double(dtype, prepared: Prepared) -> bool:
     least, most = np.finfo(kind).tiny, np.finfo(kind).max
     for axis, reach in enumerate(np.abs(prepared.extent).max(axis=0)):
         if reach != 0 and not least <= reach <= most:
-            raise ValueError(f"coordinates along axis {axis} reach {reach:g}; expected {least:.3g} to {most:.3g}, as {kind} "
-                             "holds" + (", or dtype=numpy.float64" if kind == np.dtype(np.float32) else ""))
+            raise ValueError(f"coordinates along axis {axis} reach {reach:g}; expected {least:.3g} to {most:.3g}, the range of "
+                             f"{kind}" + (", or dtype=numpy.float64" if kind == np.dtype(np.float32) else ""))
     return kind == np.dtype(np.float64)
 
 
 def normals_kind(normals: object, gradient: object) -> str:
-    """Which normals `_tegl.extract` is to make: "" for none."""
+    """The kind of normals for `_tegl.extract`: "" for none."""
     kinds = typing.get_args(_kinds.Normals)
     if isinstance(normals, str) and normals in kinds:
         kind = normals
@@ -521,7 +521,7 @@ EXTRACT_OPTIONS = ("triangulation", "ambiguity", "direction", "close", "epsilon"
 
 def extract_options(*, triangulation="compact", ambiguity="low", direction="descent", close=False, epsilon=0.0,
                     normals=False, gradient="differences", threads=0, **unknown) -> dict:
-    """What `_tegl.extract` takes."""
+    """The options of `_tegl.extract`."""
     if unknown:
         raise TypeError(f"no argument is named '{next(iter(unknown))}'; expected one of {', '.join(EXTRACT_OPTIONS)}")
     gradients = typing.get_args(_kinds.Gradient)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The contour as Python sees it, what it can do, and its components."""
+"""The class Contour, its operations, and its components."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from ._track import TrackGraph
 class Contour:
     """Simplices in the space of an array: segments (2D), triangles (3D), tetrahedra (4D) or 4-simplices (5D).
 
-    `tegl.contour` makes them, and so do `load`, `slice`, `simplify` and the others. The arrays look into the library's
-    memory: nothing is copied, they are for reading only, and they keep the memory alive.
+    Results of `tegl.contour`, `load`, `slice`, `simplify` and other functions. The arrays are read-only views of the
+    library's memory, which they keep alive: nothing is copied.
 
     Columns of `vertices` are in the order of the array's axes, as in scikit-image. Orientation, in this order of the
     columns: the normal n of a simplex with vertices v0, v1, ... for which det(v1 - v0, v2 - v0, ..., n) > 0 faces the
     lower values (`direction` "descent") or the higher ones ("ascent"). So with "descent" the signed content of a closed
-    contour, (-1)^(N-1) times the sum over its simplices of det(vertices[simplex]) / N!, is positive where what is
-    enclosed is high: triangles turn counterclockwise seen from the low side.
+    contour, (-1)^(N-1) times the sum over its simplices of det(vertices[simplex]) / N!, is positive if high values are
+    inside: triangles are counterclockwise, seen from the low side.
     """
 
     _core: _tegl.Contour
     _is_reversed: bool
     _grid: _tegl.Grid | None
-    _extent: np.ndarray | None  #: that of the image, 2 x N in the order of the columns of `vertices`; None: not known
+    _extent: np.ndarray | None  #: of the image, 2 x N in the order of the columns of `vertices`; None: not known
 
     def __init__(self, vertices, simplices, *, normals=None, axis_names: Sequence[str] | None = None,
                  axis_units: Sequence[str] | None = None, direction: _kinds.Direction = "descent",
                  isovalue: float | None = None,
                  vertex_attributes: Mapping[str, typing.Any] | None = None,
                  simplex_attributes: Mapping[str, typing.Any] | None = None, time_axis: int = 0) -> None:
-        """A contour from arrays (any mesh of simplices), which are copied. Attributes: name -> numbers, a row each."""
+        """A contour from arrays (any mesh of simplices), which are copied. Attributes: name -> numbers, one row each."""
         vertices = _arguments.real("vertices", vertices)
         if vertices.ndim != 2 or not 2 <= vertices.shape[1] <= 5:
             raise ValueError(f"vertices have the shape {vertices.shape}; expected (#V, N) with N = 2 to 5")
@@ -101,7 +101,7 @@ class Contour:
 
     @property
     def ndim(self) -> int:
-        """N: how many coordinates vertices have."""
+        """N, the number of coordinates of a vertex."""
         return self._core.ndim
 
     @property
@@ -116,7 +116,7 @@ class Contour:
 
     @property
     def normals(self) -> np.ndarray | None:
-        """#V x N of length 1, or 0 where the gradient vanishes; None if they were not asked for."""
+        """#V x N, of length 1, or 0 if the gradient vanishes; None if they were not requested."""
         normals = self._core.normals
         return None if normals is None else self._turned(normals)
 
@@ -127,40 +127,40 @@ class Contour:
 
     @property
     def simplex_attributes(self) -> dict[str, np.ndarray]:
-        """Numbers of every simplex: name -> #S, or #S x width, in double precision. The columns of `normal`, which
-        `normals="flat"` makes, are in the order of those of `vertices`."""
+        """Numbers of every simplex: name -> #S, or #S x width, in double precision. The columns of `normal`, from
+        `normals="flat"`, are in the order of those of `vertices`."""
         return {name: self._turned(values) if _is_flat_normal("simplex_attributes", name, values) else values
                 for name, (values, _) in self._core.simplex_attributes.items()}
 
     @property
     def attribute_units(self) -> dict[str, str]:
-        """The units of all attributes; empty where they are not known."""
+        """The units of all attributes; empty if not known."""
         return {name: unit for attributes in (self._core.vertex_attributes, self._core.simplex_attributes)
                 for name, (_, unit) in attributes.items()}
 
     @property
     def axis_names(self) -> tuple[str, ...]:
-        """Of the columns of `vertices`; empty where an axis has none."""
+        """Names of the columns of `vertices`; empty for an axis without one."""
         return tuple(self._listed(self._core.axis_names))
 
     @property
     def axis_units(self) -> tuple[str, ...]:
-        """Of the columns of `vertices`; empty where an axis has none."""
+        """Units of the columns of `vertices`; empty for an axis without one."""
         return tuple(self._listed(self._core.axis_units))
 
     @property
     def time_axis(self) -> int:
-        """The axis that cuts are across, and along which parts are tracked, if nothing else is said: 0 or N - 1."""
+        """The axis across which contours are cut by default, and along which parts are tracked: 0 or N - 1."""
         return 0 if self._is_reversed else self.ndim - 1
 
     @property
     def direction(self) -> _kinds.Direction:
-        """Which way the orientation and the normals point: "descent" (towards low) or "ascent"."""
+        """The direction of orientation and normals: "descent" (towards lower values) or "ascent"."""
         return self._core.direction
 
     @property
     def isovalue(self) -> float | None:
-        """The level that it is a contour of; None if a file did not say."""
+        """The level of the contour; None if a file does not contain it."""
         return self._core.isovalue
 
     def __reduce__(self):
@@ -181,7 +181,7 @@ class Contour:
         return f"<tegl.Contour{level}: {len(self._core.vertices)} vertices, {len(self._core.simplices)} {what}>"
 
     def _extent_around(self) -> tuple[np.ndarray | None, str]:
-        """The extent that cuts have to meet, and what has it: the image, or, if that is not known, the contour itself."""
+        """The extent for the places of cuts, and its source: the image or, if that is not known, the contour itself."""
         if self._extent is not None:
             return self._extent, "image"
         return _outside.extent_around(self.vertices), "contour"
@@ -223,7 +223,7 @@ class Contour:
         is_list = _results.is_list
         if normal is not None:
             if at is not None or axis is not None or offset is None or more:
-                raise ValueError("normal goes with offset alone; expected normal= and offset=, or at=")
+                raise ValueError("normal without offset, or with other arguments; expected normal= and offset=, or at=")
             direction = _arguments.as_numbers("normal", normal, "a number for each axis")
             places: typing.Any = _arguments.as_numbers("offset", offset) if is_list(offset) else \
                 _arguments.as_number("offset", offset)
@@ -253,7 +253,7 @@ class Contour:
         return found if several else found[0]
 
     def components(self, *, threads: int = 0, progress: Progress | None = None) -> Components:
-        """The connected pieces: see `tegl.components`."""
+        """The connected components: see `tegl.components`."""
         core, threads = self._core, _arguments.threads_of(threads)
         labels = _tegl.label_components(core, threads, _arguments.part_of(progress, 0.0, 0.3))
         found = []
@@ -289,7 +289,7 @@ class Contour:
         return Measures(**found)
 
     def check(self, *, progress: Progress | None = None) -> MeshReport:
-        """Is it a manifold? See `tegl.check`."""
+        """Checks whether the contour is a manifold: see `tegl.check`."""
         return MeshReport(**_tegl.check(self._core, progress))
 
     @typing.overload
@@ -314,7 +314,7 @@ class Contour:
                  scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
                  allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
                  return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
-        """Fewer simplices, the same manifold: see `tegl.simplify`."""
+        """The contour with fewer simplices and the same topology: see `tegl.simplify`."""
         return self._simplify(ratio, count, max_error, method, border, max_curvature, scale, measure, allow_nonmanifold,
                               threads, progress, return_stats)
 
@@ -333,7 +333,7 @@ class Contour:
             factors = self._listed(given)
         number, either, truth = _arguments.as_number, _arguments.or_none, _arguments.as_bool
         if ratio is not None and (number("ratio", ratio) > 1 or ratio < 0):
-            raise ValueError(f"ratio is {ratio}; expected 0 to 1, the share of the simplices that are left, or count= with "
+            raise ValueError(f"ratio is {ratio}; expected 0 to 1, the fraction of the simplices to keep, or count= with "
                              "their number")
         is_reported = truth("return_stats", return_stats)
         options = {"method": _arguments.as_text("method", method), "border": _arguments.as_text("border", border),
@@ -351,7 +351,7 @@ class Contour:
         """Hypersurface elements: see `tegl.elements`."""
         core = self._core
         if _arguments.as_bool("by_cell", by_cell) and self._grid is None:
-            raise ValueError("by_cell of a contour whose grid is not known; expected one that tegl.contour made")
+            raise ValueError("by_cell for a contour whose grid is not known; expected a contour from tegl.contour")
         found = _tegl.elements(core, self._grid if by_cell else None, _arguments.threads_of(threads), progress)
         return Elements(found, self._is_reversed,
                         "normal" in core.simplex_attributes and "normal" not in core.vertex_attributes)
@@ -359,7 +359,7 @@ class Contour:
     def track(self, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
               first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
               allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
-        """What becomes of the parts: see `tegl.track`."""
+        """Tracks the parts of the contour: see `tegl.track`."""
         allow_empty = _arguments.as_bool("allow_empty", allow_empty)
         unit = self.axis_units[self.time_axis]
         if times is None:
@@ -384,20 +384,20 @@ class Contour:
     @_arguments.documents("sample")
     def sample(self, array, name: str, unit: str = "", *, threads: int = 0, progress: Progress | None = None,
                **grid) -> np.ndarray:
-        """The values of another array at the vertices, which become the attribute `name`: #V numbers.
+        """The values of another array at the vertices, added to the contour as the attribute `name`: #V numbers.
 
-        The array, with spacing, origin, coords, ... as `tegl.contour` takes them, has the contour's number of axes, in the
-        same order, and the same world coordinates; its grid may be another. What is cut, split or simplified from the
-        contour afterwards has the attribute, too, and so have its elements.
+        The array (with spacing, origin, coords, ... as in `tegl.contour`) has as many axes as the contour, in the same
+        order, and the same world coordinates; its grid may differ. Later cuts, splits and simplifications of the contour
+        inherit the attribute, and so do its elements.
         """
         prepared = _arguments.prepare(array, **{"time_axis": self.time_axis, **grid})
         if prepared.is_reversed != self._is_reversed:
-            raise ValueError(f"time_axis of the array is another than that of the contour, {self.time_axis}")
+            raise ValueError(f"the array has another time_axis than the contour; expected {self.time_axis}")
         if prepared.names != self.axis_names and sorted(prepared.names) == sorted(self.axis_names):
             raise ValueError(f"the array has the axes {', '.join(prepared.names)}; expected the contour's order, "
                              f"{', '.join(self.axis_names)}")
         if not _arguments.as_text("name", name):
-            raise ValueError("name is ''; expected one, for the attribute")
+            raise ValueError("name is ''; expected a name for the attribute")
         _tegl.sample(self._core, prepared.image, name, _arguments.as_text("unit", unit), _arguments.threads_of(threads),
                      progress)
         return self.vertex_attributes[name]
@@ -406,7 +406,7 @@ class Contour:
     def save(self, path: str | os.PathLike, *, progress: Progress | None = None) -> None:
         """Writes a file, in the format of its suffix: .ply, .gltf, .glb, .obj (2D, 3D), .stl (3D) or .vtkhdf (4D too).
 
-        Files have x, y, z and t: the library's order of axes, so that what NumPy has as (t, z, y, x) comes out right.
+        Files have the coordinates x, y, z and t, from arrays over (t, z, y, x).
         """
         _tegl.write_contour(self._core, os.fspath(path), progress)
 
@@ -420,11 +420,11 @@ class Contour:
     # For other programs. Their points are x, y, z (and t): the library's order of axes, as in files.
 
     def points_and_cells(self) -> tuple[np.ndarray, list[tuple[str, np.ndarray]]]:
-        """(points, cells) as meshio has them: points #V x N as x, y, z, t; cells [("triangle", #S x N)]."""
+        """(points, cells) in the form of meshio: points #V x N as x, y, z, t; cells [("triangle", #S x N)]."""
         return _export.points_and_cells(self._core)
 
     def to_meshio(self) -> typing.Any:
-        """A meshio.Mesh, points as x, y, z; the t of 4D contours as point data. Needs meshio."""
+        """A meshio.Mesh with points x, y, z; the t of 4D contours is point data. Needs meshio."""
         return _export.to_meshio(self._core)
 
     def to_vtk(self) -> typing.Any:
@@ -433,7 +433,7 @@ class Contour:
         return _export.to_vtk(self._core)
 
     def to_pyvista(self) -> typing.Any:
-        """The same as a mesh of pyvista. Needs pyvista."""
+        """The mesh of `to_vtk` as a mesh of pyvista. Needs pyvista."""
         return _export.to_pyvista(self._core)
 
 
@@ -445,12 +445,12 @@ class Components(Sequence[Component]):
 
     @property
     def vertex_labels(self) -> np.ndarray:
-        """#V; 2**32 - 1 for vertices in no simplex."""
+        """#V labels; 2**32 - 1 for vertices in no simplex."""
         return self._labels.vertices
 
     @property
     def simplex_labels(self) -> np.ndarray:
-        """#S."""
+        """#S labels."""
         return self._labels.simplices
 
     def __len__(self) -> int:
@@ -470,13 +470,13 @@ class Components(Sequence[Component]):
 
     @_arguments.documents("split_components")
     def split(self, *, progress: Progress | None = None) -> list[Contour]:
-        """A contour for each."""
+        """One contour per component."""
         return [Contour._of(part, self._contour._is_reversed, self._contour._extent, self._contour._grid)
                 for part in _tegl.split_components(self._contour._core, self._labels, progress)]
 
     @_arguments.documents("select_components")
     def select(self, keep, *, progress: Progress | None = None) -> Contour:
-        """The contour of some: a truth value for each component, or the labels of those to keep."""
+        """The contour of selected components: a truth value for each component, or the labels of those to keep."""
         chosen = np.atleast_1d(np.asarray(keep))
         if chosen.dtype != bool:
             if chosen.size and chosen.dtype.kind not in "iu":
@@ -489,19 +489,19 @@ class Components(Sequence[Component]):
         return Contour._of(core, self._contour._is_reversed, self._contour._extent, self._contour._grid)
 
     def largest(self, count: int = 1, *, progress: Progress | None = None) -> Contour:
-        """The contour of the largest ones by size."""
+        """The contour of the largest components by size."""
         count = _arguments.as_whole("count", count, 0)
         order = sorted(range(len(self)), key=lambda label: (-self._found[label].size, label))
         return self.select(np.array(order[:count], dtype=np.int64), progress=progress)
 
 
 def _is_flat_normal(of: str, name: str, values: np.ndarray) -> bool:
-    """Whether an attribute is the normals of simplices: the one whose columns go by the axes."""
+    """Whether an attribute is the normals of simplices, whose columns belong to the axes."""
     return of == "simplex_attributes" and name == "normal" and values.ndim == 2
 
 
 def _restored(of: type[Contour], *parts) -> Contour:
-    """What was pickled, or copied: of its image it knows the extent, and no more of the grid."""
+    """A contour from a pickle or a copy: it has the extent of its image, but not the grid."""
     return of._of(_tegl.Contour.from_arrays(*parts[:-2]), *parts[-2:])
 
 
@@ -510,12 +510,12 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bo
          separate_process: bool = False, progress: Progress | None = None) -> Contour:
     """Reads a contour from a file: .vtkhdf, .ply, .gltf, .glb, .stl, .obj.
 
-    Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;
-    with -1 they are x, y, z (, t).
+    Files have x, y, z and t. With `time_axis=0` the columns are (t,) z, y, x, as for contours of arrays in C order; with
+    -1 they are x, y, z (, t).
 
-    A file may name further files: buffers of glTF, links and external storage of HDF5. These are read in the folder of
-    `path` and below it; with `allow_outside_paths=True` elsewhere, too. With `separate_process` a .vtkhdf is read in a
-    child process, as `tegl.read` does it.
+    A file may refer to further files: buffers of glTF, links and external storage of HDF5. These are read in the folder
+    of `path` and below it; with `allow_outside_paths=True` also elsewhere. With `separate_process` a .vtkhdf is read in a
+    child process, as in `tegl.read`.
     """
     core = _tegl.load_contour(os.fspath(path), _arguments.as_bool("allow_outside_paths", allow_outside_paths),
                               _arguments.as_bool("separate_process", separate_process), progress)
@@ -524,7 +524,7 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bo
 
 @_arguments.documents("MeshReport")
 def check(contour: Contour, *, progress: Progress | None = None) -> MeshReport:
-    """Counts a contour's invariants: is it a manifold, closed, oriented? In how many pieces?"""
+    """Checks whether a contour is an oriented manifold and closed, and counts its components and faults."""
     _arguments.core_of(contour)
     return Contour.check(contour, progress=progress)
 
@@ -544,7 +544,7 @@ def measure(contour: Contour, *, at=None, allow_empty: bool = False, threads: in
             progress: Progress | None = None) -> Measures | CutMeasures:
     """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times.
 
-    Times outside of the image are a ValueError, as in `slice`; with `allow_empty` their sizes and contents are 0.
+    A time outside of the image is a ValueError, as in `slice`; with `allow_empty` its size and content are 0.
     """
     _arguments.core_of(contour)
     return Contour.measure(contour, at=at, allow_empty=allow_empty, threads=threads, progress=progress)
@@ -552,7 +552,7 @@ def measure(contour: Contour, *, at=None, allow_empty: bool = False, threads: in
 
 @_arguments.documents("label_components", "components", "Component")
 def components(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> Components:
-    """The connected components: labels, what each is, contours of some."""
+    """The connected components of a contour: their labels and measures; contours of selected ones."""
     _arguments.core_of(contour)
     return Contour.components(contour, threads=threads, progress=progress)
 
@@ -560,9 +560,9 @@ def components(contour: Contour, *, threads: int = 0, progress: Progress | None 
 @_arguments.documents("elements", "elements_by_cell", "Elements")
 def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
              progress: Progress | None = None) -> Elements:
-    """Hypersurface elements of a contour: one for each simplex, or (`by_cell`) for each piece in a cell of the grid.
+    """Hypersurface elements of a contour: one per simplex, or (`by_cell`) per connected part in a cell of the grid.
 
-    `by_cell` is for contours straight from `tegl.contour`, or some of their components, whose grid is known.
+    `by_cell` needs a contour whose grid is known: from `tegl.contour`, or components of such a contour.
     """
     _arguments.core_of(contour)
     return Contour.elements(contour, by_cell=by_cell, threads=threads, progress=progress)
@@ -593,15 +593,15 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
              scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
              allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
              return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
-    """The same contour with fewer simplices, and a bound of the error: the attribute "simplification_error".
+    """A contour with fewer simplices and the same topology; the attribute "simplification_error" bounds the error.
 
     ratio, count, max_error
-        How far: to this share of the simplices (0.1: a tenth), to so many, or as long as the error stays below this.
-        One of them, or several: what is reached first ends it.
+        The goal: this fraction of the simplices (0.1: a tenth), this number of them, or the fewest within this error.
+        With several, the first one reached ends the simplification.
     method, border
         "quadric", "facets", "vertices" or "fast"; "fixed" or "within".
     scale
-        A number for each axis of the array by which its lengths count, or "auto".
+        A weight for the lengths along each axis of the array, or "auto".
     return_stats
         Whether to return (contour, SimplifyStats).
     """
@@ -614,11 +614,11 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
 def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
           first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
           allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
-    """Follows the parts of a contour along its time axis: births, merges, splits, deaths.
+    """Tracks the parts of a contour along its time axis: births, merges, splits, deaths.
 
     times
-        When to measure the parts, ascending; a whole number: at so many even times. Times outside of the image are a
-        ValueError, as in `tegl.slice`, unless `allow_empty` is True: there are no parts then.
+        Times at which parts are measured, ascending; or a whole number of evenly spaced times. A time outside of the
+        image is a ValueError, as in `tegl.slice`; with `allow_empty` there are no parts at it.
     """
     _arguments.core_of(contour)
     return Contour.track(contour, min_lifetime=min_lifetime, times=times, first=first, last=last, handles=handles,

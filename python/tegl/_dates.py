@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Dates and durations as numbers on an axis, by the unit that it has: "hours since 1900-1-1 00:00:0.0 UTC".
 
-Units are spelled as UDUNITS reads them, which netCDF and xarray go by; calendars are those of the CF conventions
-(section 4.4.1). Only those in which all have the same dates are counted in: the standard one, which is Julian before
-1582-10-15 and Gregorian from then on, and the proleptic Gregorian one, which is NumPy's and Python's own.
+Units are spelled as in UDUNITS, like in netCDF and xarray; calendars are those of the CF conventions (section 4.4.1).
+Supported calendars: the standard one, which is Julian before 1582-10-15 and Gregorian from then on, and the proleptic
+Gregorian one of NumPy and Python.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _REFORM = (1582, 10, 15)  # the first day of the Gregorian calendar; the one bef
 
 
 def unit_with_calendar(unit: str, calendar: str) -> str:
-    """A unit and the calendar that it is counted in, as tegl's readers have it: where that makes a difference."""
+    """A unit with its calendar, if that makes a difference, in the form of tegl's readers."""
     calendar = calendar.lower()
     found = _SINCE.match(unit)
     if not calendar or calendar in _COMMON or found is None or found["calendar"] is not None:
@@ -43,9 +43,9 @@ def unit_with_calendar(unit: str, calendar: str) -> str:
 
 
 def dates_as_numbers(times: np.ndarray, axis: str) -> tuple[np.ndarray, str]:
-    """Days since the second in which the first of these dates is, and the unit that says so."""
+    """Days since the second of the first of these dates, and the unit with that start."""
     if np.isnat(times).any():
-        raise ValueError(f"coordinate {int(np.argmax(np.isnat(times)))} of '{axis}' is no date (NaT); expected dates")
+        raise ValueError(f"coordinate {int(np.argmax(np.isnat(times)))} of '{axis}' is not a date (NaT); expected dates")
     times = times.astype("datetime64[ns]")
     start = times.min().astype("datetime64[s]")
     return (times - start) / np.timedelta64(1, "D"), f"days since {start}"
@@ -61,14 +61,14 @@ def _day_number(year: int, month: int, day: int, is_julian: bool) -> int:
 
 
 def _nanoseconds(what: str, date: tuple[int, int, int], rest: int, is_mixed: bool) -> int:
-    """Of a date and the nanoseconds of the day, from a fixed moment. `what` is what errors call it."""
+    """Of a date and the nanoseconds of the day, from a fixed moment. `what`: its name in errors."""
     is_julian = is_mixed and date < _REFORM
     if is_mixed and (1582, 10, 4) < date < _REFORM:
-        raise ValueError(f"{what} is a day that the standard calendar leaves out; expected none from 1582-10-05 to 14")
+        raise ValueError(f"{what} is a day that the standard calendar skips; expected no day from 1582-10-05 to 14")
     number = _day_number(*date, is_julian)
     after = _day_number(date[0] + date[1] // 12, date[1] % 12 + 1, 1, is_julian) if 1 <= date[1] <= 12 else 0
     if not (1 <= date[1] <= 12 and date[2] >= 1 and number < after):
-        raise ValueError(f"{what} is no day; expected one that there is")
+        raise ValueError(f"{what} is not a day of the calendar; expected an existing day")
     return number * 86400 * _SECOND + rest
 
 
@@ -76,7 +76,7 @@ def _start(unit: str, text: str, is_mixed: bool) -> int:
     """The moment from which a unit counts."""
     found = _START.match(text)
     if found is None:
-        raise ValueError(f"the unit '{unit}' counts from '{text}', which is no date that is understood; expected such as "
+        raise ValueError(f"the unit '{unit}' counts from '{text}', which is not a known form of dates; expected such as "
                          "2000-1-1 12:00:00 UTC, or a number for the coordinate")
     hour, minute, second = (int(found[part] or 0) for part in ("hour", "minute", "second"))
     if hour > 23 or minute > 59 or second > 59:
@@ -89,16 +89,15 @@ def _start(unit: str, text: str, is_mixed: bool) -> int:
         rest -= (1 if zone[0] == "+" else -1) * (hours * 3600 + minutes * 60) * _SECOND
     year = int(found["year"])
     if is_mixed and year == 0:
-        raise ValueError(f"the unit '{unit}' counts from the year 0, which the standard calendar has not; expected another "
+        raise ValueError(f"the unit '{unit}' counts from the year 0, which the standard calendar lacks; expected another "
                          "year, or a number for the coordinate")
-    # Before the year 1 comes the year -1 there, which is 0 in the count of years that calculations go by.
+    # In that calendar the year -1 comes before the year 1; calculations use 0 for it.
     date = (year + 1 if is_mixed and year < 0 else year, int(found["month"]), int(found["day"]))
     return _nanoseconds(f"the start of the unit '{unit}'", date, rest, is_mixed)
 
 
 def as_date(at: object) -> np.datetime64 | None:
-    """What a date is, in any of the forms that Python has for them: NumPy's, xarray's, pandas', its own, and text. None for
-    what is no date."""
+    """A date in any of its forms: NumPy's, xarray's, pandas', Python's, or text. None for other objects."""
     is_date = isinstance(at, (str, datetime.date)) or (
         getattr(getattr(at, "dtype", None), "kind", "") == "M" and np.ndim(typing.cast(float, at)) == 0)
     if not is_date:
@@ -111,26 +110,26 @@ def as_date(at: object) -> np.datetime64 | None:
         try:
             date = np.datetime64(typing.cast(str, at))
         except ValueError:
-            raise ValueError(f"the coordinate {at!r} is no number, and no date; expected one") from None
+            raise ValueError(f"the coordinate {at!r} is neither a number nor a date; expected one of them") from None
     else:
         date = typing.cast(np.datetime64, np.asarray(at)[()])
     if np.isnat(date):
-        raise ValueError("the coordinate is no date (NaT); expected one")
+        raise ValueError("the coordinate is not a date (NaT); expected a date")
     return date
 
 
 def date_on_axis(at: object, date: np.datetime64, unit: str) -> float:
-    """A date as a number of an axis with this unit. `at` is what errors call it."""
+    """A date as a number of an axis with this unit. `at`: its name in errors."""
     found = _SINCE.match(unit)
     if found is None:
         raise ValueError(f"the coordinate {at!r} is a date, and the axis has the unit '{unit}'; expected a number")
     length = _UNITS.get(found["unit"].lower())
     if length is None:
-        raise ValueError(f"the coordinate {at!r} is a date, and the axis has '{unit}', whose '{found['unit']}' have no one "
+        raise ValueError(f"the coordinate {at!r} is a date, and the axis has '{unit}', whose '{found['unit']}' have no fixed "
                          "length; expected a number, or days, hours, minutes or seconds since a date")
     calendar = (found["calendar"] or "standard").lower()
     if calendar not in (*_COMMON, _PROLEPTIC):
-        raise ValueError(f"the coordinate {at!r} is a date, and the axis has '{unit}', of another calendar; expected a "
+        raise ValueError(f"the coordinate {at!r} is a date, and the axis has '{unit}', in another calendar; expected a "
                          "number")
     is_mixed = calendar != _PROLEPTIC
     day = date.astype("datetime64[D]")
@@ -143,13 +142,13 @@ def date_on_axis(at: object, date: np.datetime64, unit: str) -> float:
 
 
 def duration_of(at: object) -> int | None:
-    """The nanoseconds of a duration: NumPy's, xarray's, pandas' or Python's. None for what is none."""
+    """The nanoseconds of a duration: NumPy's, xarray's, pandas' or Python's. None for other objects."""
     is_numpy = getattr(getattr(at, "dtype", None), "kind", "") == "m" and np.ndim(typing.cast(float, at)) == 0
     if not is_numpy and not isinstance(at, datetime.timedelta):
         return None
     length: typing.Any = np.asarray(at)[()] if is_numpy else np.timedelta64(typing.cast(datetime.timedelta, at))
     if np.isnat(length):
-        raise ValueError("the coordinate is no duration (NaT); expected one")
+        raise ValueError("the coordinate is not a duration (NaT); expected a duration")
     return int(length.astype("timedelta64[ns]").astype(int))
 
 

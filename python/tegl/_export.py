@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The library's contours for VTK, pyvista and meshio, which are imported when they are asked for. Points are x, y, z (and
-t): the library's order of axes, as in files."""
+"""The library's contours for VTK, pyvista and meshio, which are imported on demand. Points are x, y, z (and t): the
+library's order of axes, as in files."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def _imported(module: str, function: str, what: str) -> typing.Any:
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        raise ImportError(f"{function} needs {what}, which Python does not find: {error}") from error
+        raise ImportError(f"{function} needs {what}, which cannot be imported: {error}") from error
 
 
 def points_and_cells(contour: _tegl.Contour) -> tuple[np.ndarray, list[tuple[str, np.ndarray]]]:
@@ -27,7 +27,7 @@ def points_and_cells(contour: _tegl.Contour) -> tuple[np.ndarray, list[tuple[str
 
 
 def _points(contour: _tegl.Contour) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """#V x 3, and what has no place in them."""
+    """Points, #V x 3, and the remaining coordinates."""
     vertices = contour.vertices
     extra = {}
     if contour.ndim == 4:

@@ -23,52 +23,54 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
-    """The contour {value = level} of an array of 2 to 5 axes: what separates samples >= level from the others.
+    """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
         A NumPy array of real numbers with any strides, a masked array, an xarray.DataArray (with its coordinates, names
-        and units), or an image that `tegl.read` gave. uint8, int8, uint16, int16, int32, float32 and float64 are looked
-        at where they lie; bool counts as uint8; other types are copied to one of these. NaN is a missing value: no
-        contour there.
+        and units), or an image from `tegl.read`. uint8, int8, uint16, int16, int32, float32 and float64 are read in
+        place; bool counts as uint8; other types are copied to one of these. NaN is a missing value: there is no
+        contour next to it.
     spacing, origin
-        The distance of samples along each axis, and the coordinate of the first one, in the order of the array's axes;
-        or one number for all.
+        Distance of the samples along each axis, and coordinate of the first one, in the order of the array's axes; or
+        one number for all.
     coords
-        Instead: the coordinates of the samples along each axis, ascending or descending in any steps; None for an axis
-        whose coordinates are the indices.
+        The coordinates of the samples along each axis, instead of `spacing` and `origin`: ascending or descending, in
+        any steps; None for an axis whose coordinates are the indices.
     affine
-        A matrix of N x (N+1) or (N+1) x (N+1) numbers that takes these coordinates to those of the world, as NIfTI has.
+        A matrix of N x (N+1) or (N+1) x (N+1) numbers that maps these coordinates to world coordinates, as in NIfTI.
     mask
-        True where samples count, as in scikit-image; the others are missing. (numpy.ma's masks, which say the opposite,
-        are understood as they are meant.) With a mask the values are copied.
+        True for valid samples, as in scikit-image; the others are missing. (The mask of a masked array of numpy.ma, which
+        has the opposite sense, is handled too.) With a mask the values are copied.
     time_axis
-        The axis that `slice`, `track` and `measure` take for the time: 0, the first, if nothing else is said (for xarray
-        the one with dates or named "time" or "t"), or -1, the last.
+        The axis that `slice`, `track` and `measure` use as the time: 0, the first (default), or -1, the last. Default
+        for xarray: the axis with dates or named "time" or "t".
     triangulation
-        "compact", or "barycentric": more simplices, none of which is flat unless points fall together.
+        "compact", or "barycentric": more simplices, none of them flat unless points coincide.
     ambiguity
-        What joins what in a tile: "low" or "high", always the same way; "mean" or "saddle", by the values.
+        The rule for ambiguous cells: "low" separates and "high" joins the samples inside; "mean" and "saddle" decide by
+        the values.
     direction
-        Which way simplices and normals point: "descent", to lower values, or "ascent".
+        The direction of simplices and normals: "descent", towards lower values, or "ascent".
     close
-        Whether the contour is closed where it meets the border of the array.
+        Whether the contour is closed at the border of the array.
     epsilon
-        How far, as a share of an edge, vertices stay away from samples: above 0 no simplex is flat that need not be.
+        Minimum distance of vertices from samples, as a fraction of an edge: above 0, it avoids flat simplices.
     normals, gradient
-        Whether to have normals: True, or one of "gradient" (the same: from the gradients of the values), "sobel" (the
-        same, from gradients by the Sobel kernel, as gradient="sobel" says, too), "geometric" (from the simplices around
-        each vertex) and "flat" (of simplices: the attribute `normal` in `simplex_attributes`). See docs/normals.md.
+        Whether to compute normals: True or "gradient" (from the gradients of the values), "sobel" (from gradients by the
+        Sobel kernel; also True with gradient="sobel"), "geometric" (from the simplices around each vertex) or "flat" (of
+        simplices: the attribute `normal` in `simplex_attributes`). See docs/normals.md.
     dtype
-        Of the vertices: float32 or float64.
+        Type of the vertices: float32 or float64.
     allow_empty
-        Whether a level that no sample is above or below gives an empty contour. Otherwise it is a ValueError that names
-        the range of the values.
+        Whether a level outside of the values gives an empty contour. Otherwise it is a ValueError with the range of the
+        values.
     threads
-        How many work; 0: all that there are. The result is the same.
+        Number of threads; 0: all processors. The result does not depend on it.
     progress
-        Called with a fraction now and then; returning False ends the work with `tegl.Cancelled`. Ctrl-C ends it, too.
+        Called repeatedly with the fraction done. If it returns False, the call raises `tegl.Cancelled`. Ctrl-C ends the
+        call too.
 
-    Vertices have their columns in the order of the array's axes. Errors are ValueErrors with the library's text;
+    The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
     """
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
@@ -129,7 +131,7 @@ def slice(contour_or_array: typing.Any, level: float, *, axis: int | str | None 
 def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | str | None = None, normal=None,
           offset=None, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
           **more) -> Contour | list[Contour]:
-    """The cut of a contour by a hyperplane, one dimension less: what a moving surface is like at a time.
+    """The cut of a contour by a hyperplane, one dimension lower: a moving surface at one time.
 
     ::
 
@@ -138,15 +140,15 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
         tegl.slice(contour, at=3.0, axis=2)                  # or by its number
         tegl.slice(contour, at=[1.5, 7.3])                   # several, in one pass: a list
         tegl.slice(contour, normal=(0, 1, 1, 0), offset=9)   # any hyperplane <normal, x> = offset
-        tegl.slice(array, 20.0, at=7.3)                      # straight from an array: only the layers beside it are read
+        tegl.slice(array, 20.0, at=7.3)                      # directly from an array: reads only the adjacent layers
 
-    The last form takes the arguments of `tegl.contour` too. An axis whose name is that of an argument (level, offset) is
-    cut by at= and axis=. Places may be dates, of any kind or as text, where the axis's unit says since when it counts, and
-    durations where it counts hours, days, ... Of 3D and 4D contours.
+    The last form also takes the arguments of `tegl.contour`. An axis with the name of an argument (level, offset) is
+    given by at= and axis=. Places may be dates (of any type, or text) if the axis's unit contains a start date, and
+    durations if the unit is hours, days, ... For 3D and 4D contours.
 
-    A place outside of the image, or of a contour that does not know its image, is a ValueError that names the range and
-    its unit, and so is a level that no sample of the array is above or below; with `allow_empty` the cut is empty
-    instead. Within the image a cut that meets no contour is empty in any case.
+    A place outside of the image (or of the contour, if its image is unknown) is a ValueError with the range and its
+    unit, and so is a level outside of the array's values; with `allow_empty` the cut is empty instead. A cut within the
+    image that misses the contour is always empty.
     """
     if isinstance(contour_or_array, Contour):
         if level is not None and "level" in contour_or_array.axis_names:  # an axis of pressures
@@ -155,7 +157,7 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
             raise ValueError(f"level is {level} and the first argument a contour, which has its level; expected at=")
         return contour_or_array._cut(at, axis, normal, offset, allow_empty, threads, progress, more)
     if level is None:
-        raise ValueError("a cut of an array needs a level; expected tegl.slice(array, level, at=...)")
+        raise ValueError("no level for the cut of an array; expected tegl.slice(array, level, at=...)")
     return _cut_image(contour_or_array, _arguments.as_number("level", level), at, axis, normal, offset, allow_empty,
                       threads, progress, more)
 
@@ -164,7 +166,7 @@ _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_un
 
 
 def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
-    if normal is not None:  # there is no short way to an oblique cut
+    if normal is not None:  # an oblique cut needs the whole contour
         whole = contour(array, level, allow_empty=allow_empty, threads=threads,
                         progress=_arguments.part_of(progress, 0.0, 0.5), **more)
         return whole._cut(at, axis, normal, offset, allow_empty, threads, _arguments.part_of(progress, 0.5, 1.0), {})
@@ -180,7 +182,7 @@ def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, pro
     wanted = [_arguments.number_on_axis(place, unit) for place in given]
     kind = np.float64 if is_double else np.float32
 
-    extent = prepared.extent if prepared.ndim in (3, 4) else None  # of others the library says that there are no cuts
+    extent = prepared.extent if prepared.ndim in (3, 4) else None  # for others the library raises the error
     if not _arguments.as_bool("allow_empty", allow_empty):
         _outside.require_places(extent, number, wanted, given, kind, prepared.names[number], unit, "image")
 
@@ -211,27 +213,27 @@ def _nothing(prepared: _arguments.Prepared, axis: int, level: float, direction: 
 
 @dataclasses.dataclass(frozen=True)
 class Image:
-    """An array with its coordinates, as `tegl.read` gives it. All that is listed by axis is in the array's order."""
+    """An array with its coordinates, the result of `tegl.read`. Lists by axis are in the order of the array's axes."""
 
     array: np.ndarray
     coords: tuple[np.ndarray, ...]  #: of the samples along each axis
     axis_names: tuple[str, ...]
     axis_units: tuple[str, ...]
-    affine: np.ndarray | None  #: N x (N+1), from `coords` to the world; None: they are the world's
+    affine: np.ndarray | None  #: N x (N+1), maps `coords` to world coordinates; None: identity
     time_axis: int  #: 0 or N - 1
     value_name: str
     value_unit: str
     format: str  #: such as "netCDF"
-    variable: str  #: that was read, of a file with several
-    variables: tuple[str, ...]  #: all that can be read as an image
-    world_frame: str  #: such as "RAS"; "" where there is none
-    #: where the coordinates of each axis grow to, as far as the file says so: "up", "down" (depths, pressures) or "unknown"
+    variable: str  #: the variable that was read, of a file with several
+    variables: tuple[str, ...]  #: all variables that can be read as an image
+    world_frame: str  #: such as "RAS"; "" if there is none
+    #: direction of growing coordinates of each axis, from the file: "up", "down" (depths, pressures) or "unknown"
     axis_directions: tuple[_kinds.AxisDirection, ...]
     _axes: tuple = dataclasses.field(repr=False, default=())
 
     def __repr__(self) -> str:
-        """Three lines: the values, the axes, and where it comes from."""
-        def shown(text: str) -> str:  # as it is, but for what a terminal would take as more than text
+        """Three lines: values, axes, source."""
+        def shown(text: str) -> str:  # with control characters escaped
             return text if text.isprintable() else repr(text)[1:-1]
 
         def along(axis: int) -> str:
@@ -254,16 +256,16 @@ class Image:
         return (self._axes, self.axis_names, self.axis_units, self.affine, self.time_axis, self.value_unit, self.array)
 
     def contour(self, level: float, **options: typing.Any) -> Contour:
-        """`tegl.contour` of it."""
+        """The contour of this image: see `tegl.contour`."""
         return contour(self, level, **options)
 
     def to_xarray(self) -> typing.Any:
-        """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map as the
+        """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map is its
         attribute "affine"."""
         try:
             import xarray
         except ImportError as error:
-            raise ImportError(f"to_xarray needs xarray, which Python does not find: {error}") from error
+            raise ImportError(f"to_xarray needs xarray, which cannot be imported: {error}") from error
         dims = [name or f"axis_{number}" for number, name in enumerate(self.axis_names)]
         coords = {dim: (dim, values, {**({"units": unit} if unit else {}),
                                       **({"positive": direction} if direction != "unknown" else {})})
@@ -291,33 +293,33 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         tegl.read("ocean.nc", "temp")                             # a variable of a file
         tegl.read("ensemble.nc", fix={"member": 3})               # the fourth member of a variable of 5 axes
         tegl.read("scan/")                                        # a folder of DICOM files
-        tegl.read("scan/", series="T1")                           # one series of several there
+        tegl.read("scan/", series="T1")                           # one of several series in it
         tegl.read(glob.glob("step_*.nrrd"), sort="name", time_step=0.5, time_unit="s")
 
     path
-        A file or a folder; or a list of files of one shape that become one image with one axis more: 3D files over time,
-        2D ones as the slices of a volume. As `tegl contour` on the terminal reads them.
+        A file or a folder; or a list of files of one shape that form one image with one more axis: 3D files over time,
+        2D files as the slices of a volume. `tegl contour` reads them in the same way.
     variable, series
-        netCDF: the variable to read. DICOM: the series, by its UID, its description or its number. Needed where there
-        are several.
+        netCDF: the variable to read. DICOM: the series, by its UID, its description or its number. Needed if there are
+        several.
     times, time_step, time_unit
-        Of a list: where each file lies along the new axis, in the order of the list; or how far one is from the next, in
-        the order of `sort`; and the unit. Without, as the files say, else 0, 1, 2 ...
+        For a list: the coordinate of each file along the new axis, in the order of the list; or the distance of
+        neighbours, in the order of `sort`; and the unit. Default: the coordinates in the files, else 0, 1, 2 ...
     sort
-        Of a list: "name", by the numbers in the names; "time", by `times`, or those in the headers; or "given".
+        For a list, its order: "name", by the numbers in the names; "time", by `times` or the times in the headers; or
+        "given".
     fix
-        netCDF: an index, from 0 on, of each of these dimensions. Only the samples there are read, and the image does not
-        have these dimensions as axes.
+        netCDF: an index, counted from 0, for each of these dimensions. Only the samples there are read, and the image
+        does not have these dimensions as axes.
     allow_outside_paths
-        Whether a file of samples that a header names (NRRD, MetaImage) is also read if it lies outside of the header's
-        folder.
+        Whether a file of samples that a header refers to (NRRD, MetaImage) is also read outside of the header's folder.
     separate_process
-        Whether netCDF-4 and DICOM are read in a child process: a file so damaged that their libraries crash, loop or
-        take all memory is then a ValueError, and this process goes on. For files of unknown origin. The array is the
+        Whether netCDF-4 and DICOM are read in a child process, for files of unknown origin: a damaged file that makes
+        their libraries crash, loop or use all memory is then a ValueError, and this process goes on. The array is the
         same, without a copy; starting the child takes a few milliseconds.
 
-    The array's first axis is the one that runs slowest in the file: (t, z, y, x), in C order. With `time_axis=-1` the
-    axes are the other way round, (x, y, z, t) in Fortran order, as nibabel has them.
+    The array's first axis is the slowest one in the file: (t, z, y, x), in C order. With `time_axis=-1` the axes are in
+    the reverse order, (x, y, z, t) in Fortran order, as in nibabel.
     """
     paths = [_path(one) for one in path] if isinstance(path, (list, tuple)) else [_path(path)]
     if series is not None and variable:

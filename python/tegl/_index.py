@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contours at many isovalues, or of one component, without looking at all samples."""
+"""Contours at many isovalues, or of one component, without reading all samples."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from ._contour import Contour
 
 @dataclasses.dataclass(frozen=True)
 class PickReport:
-    """What was picked."""
+    """The result of a search from a point."""
 
     found: bool  #: whether any tile is active
     tile: tuple[int, ...]  #: the lowest corner of the active tile nearest to the point, in the order of the array's axes
-    distance: float  #: from the point to it, in steps of the grid
-    tiles: int  #: that were reached from it
-    components: int  #: of the contour in those, of which one was picked
+    distance: float  #: from the point to that tile, in steps of the grid
+    tiles: int  #: number of tiles reached from it
+    components: int  #: number of the contour's components in those tiles; one was picked
 
 
 class Index:
-    """An index of the active tiles of an array, built once: contours at any isovalue in the time that they take alone.
+    """An index of the active tiles of an array, built once. It gives contours at any isovalue without reading all samples.
 
-    The array's values must not change; the index keeps the array. Arrays of 2 to 4 axes.
+    The array's values must not change; the index keeps the array. For arrays of 2 to 4 axes.
     """
 
     @_arguments.documents("build_active_tiles", "ActiveMethod")
     def __init__(self, array, method: _kinds.IndexMethod = "interval-tree", *, spacing=None, origin=None, coords=None,
                  affine=None, mask=None, axis_names=None, axis_units=None, time_axis: int | None = None, threads: int = 0,
                  progress: Progress | None = None) -> None:
-        """Builds an index. Arguments as of `tegl.contour`; methods: "interval-tree", "span-space", "min-max-tree",
+        """Builds an index. Arguments as in `tegl.contour`; methods: "interval-tree", "span-space", "min-max-tree",
         "seed-set", "full-scan"."""
         self._prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine,
                                             mask=mask, axis_names=axis_names, axis_units=axis_units,
@@ -49,7 +49,7 @@ class Index:
     @_arguments.documents("read_active_tiles")
     def load(cls, path: str | os.PathLike, array, *, threads: int = 0, progress: Progress | None = None,
              **grid: typing.Any) -> Index:
-        """Reads an index that `save`, or `tegl index`, wrote of this array."""
+        """Reads an index of this array, written by `save` or `tegl index`."""
         self = cls.__new__(cls)
         self._prepared = _arguments.prepare(array, **grid)
         name = os.fspath(path)
@@ -109,9 +109,9 @@ class Index:
     @_arguments.documents("extract_component")
     def pick(self, point, level: float, *, dtype=np.float32, allow_empty: bool = False, return_report: bool = False,
              progress: Progress | None = None, **options: typing.Any) -> Contour | tuple[Contour, PickReport]:
-        """The one component of the contour that is nearest to a point, in the array's coordinates.
+        """The component of the contour that is nearest to a point, in the array's coordinates.
 
-        It is found from the point, without the index. With `return_report`: (contour, PickReport).
+        The search starts at the point and does not use the index. With `return_report`: (contour, PickReport).
         """
         numbers = _arguments.as_numbers("point", point, "its coordinates along the array's axes")
         is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The names that options take, for type checkers. The library has the lists that count; the tests compare both."""
+"""The values of options, for type checkers. The lists of the library are authoritative; tests compare both."""
 
 import typing
 

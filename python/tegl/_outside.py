@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Levels that no sample is above or below, and places of cuts beyond the data: errors that name the range, unless the
-caller allows empty results. A cut within the data that meets no contour is an empty result, and no error.
+"""Levels outside of the values, and cuts outside of the data: errors with the range, unless the caller allows empty
+results. A cut within the data that misses the contour is an empty result, not an error.
 
 The extent of an image, or of a contour without one, is an array of 2 x N: the lowest and the highest world coordinate
 along each of the array's axes.
@@ -41,20 +41,20 @@ def _range_not_around(array: np.ndarray, level: float) -> tuple[typing.Any, typi
 
 
 def require_level(prepared: Prepared, level: float, what: str = "contour") -> None:
-    """Raises a ValueError unless the level lies between the values of an array. For results that are empty: then one pass
-    over the values says whether they had to be."""
+    """Raises a ValueError unless the level lies between the values of an array. For empty results: one pass over the
+    values finds out whether the level is the reason."""
     found = _range_not_around(prepared.image.array, level)
     if found is None:
         return
-    least, most = map(str, found)  # as short as their type allows, which format() is not
+    least, most = map(str, found)  # the shortest form for their type, unlike format()
     unit = f" {prepared.value_unit}" if prepared.value_unit else ""
     allowed = ALLOWED.format(what)
     if least == "nan":
-        raise ValueError(f"level is {level}, and all values of the array are missing (NaN or masked); expected some, {allowed}")
+        raise ValueError(f"level is {level}, and all values of the array are missing (NaN or masked); expected values, {allowed}")
     if least == most:
         raise ValueError(f"level is {level}, and all values of the array are {least}{unit}; expected a level between two values, "
                          f"{allowed}")
-    raise ValueError(f"level is {level}; expected one above {least} and up to {most}{unit}, the lowest and the highest value "
+    raise ValueError(f"level is {level}; expected a level above {least} and up to {most}{unit}, the minimum and maximum "
                      f"of the array, {allowed}")
 
 
@@ -63,8 +63,8 @@ def without_axis(extent: np.ndarray | None, axis: int) -> np.ndarray | None:
 
 
 def is_outside(extent: np.ndarray | None, axis: int, place: float, dtype) -> bool:
-    """Whether a place along an axis lies outside of an extent, when both are rounded as coordinates are. A place that is
-    not finite is left to the library."""
+    """Whether a place along an axis lies outside of an extent, with both rounded like coordinates. The library checks
+    places that are not finite."""
     if extent is None or not np.isfinite(place):
         return False
     with np.errstate(over="ignore"):
@@ -74,19 +74,19 @@ def is_outside(extent: np.ndarray | None, axis: int, place: float, dtype) -> boo
 
 def require_places(extent: np.ndarray | None, axis: int, places: Sequence[float], given: Sequence, dtype, name: str,
                       unit: str, of: str) -> None:
-    """Raises a ValueError unless all places along an axis lie in the extent. `given`: the places as the caller has them."""
+    """Raises a ValueError unless all places along an axis lie in the extent. `given`: the places in the caller's form."""
     for place, said in zip(places, given):
         if extent is None or not is_outside(extent, axis, place, dtype):
             continue
         low, high = map(str, extent[:, axis].astype(dtype))
         called = f"axis {axis}" + (f" ('{name}')" if name else "")
         said_as = "" if isinstance(said, (int, float, np.number)) else f" ({said})"
-        raise ValueError(f"the place along {called} is {place}{said_as}; expected one between {low} and {high}"
+        raise ValueError(f"the place along {called} is {place}{said_as}; expected a place between {low} and {high}"
                          f"{' ' + unit if unit else ''}, the ends of the {of}, {ALLOWED.format('cut')}")
 
 
 def extent_around(vertices: np.ndarray) -> np.ndarray | None:
-    """That of the vertices of a contour. Without vertices, or with some that are not finite, there is none."""
+    """The extent of a contour's vertices; None without vertices, or if some are not finite."""
     if not len(vertices):
         return None
     ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)]).astype(np.float64)
@@ -94,7 +94,7 @@ def extent_around(vertices: np.ndarray) -> np.ndarray | None:
 
 
 def require_offsets(extent: np.ndarray | None, normal: Sequence[float], offsets: Sequence[float], dtype, of: str) -> None:
-    """The same for hyperplanes <normal, x> = offset. Which of them meet a box is known up to rounding."""
+    """Raises a ValueError unless all hyperplanes <normal, x> = offset meet the extent, up to rounding."""
     if extent is None or len(normal) != extent.shape[1] or not np.isfinite(normal).all():
         return
     ends = extent * np.asarray(normal, dtype=np.float64)
@@ -102,5 +102,5 @@ def require_offsets(extent: np.ndarray | None, normal: Sequence[float], offsets:
     slack = 4 * np.finfo(dtype).eps * np.abs(ends).max(axis=0).sum()
     for offset in offsets:
         if np.isfinite(offset) and not low - slack <= offset <= high + slack:
-            raise ValueError(f"offset is {offset}; expected one between {low:g} and {high:g}, the ends of the {of} along this "
+            raise ValueError(f"offset is {offset}; expected an offset between {low:g} and {high:g}, the ends of the {of} along this "
                              f"normal, {ALLOWED.format('cut')}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What operations on contours give, and where cuts of contours and of arrays are."""
+"""Results of operations on contours, and the places of cuts of contours and arrays."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._arguments import Progress
 
 @dataclasses.dataclass(frozen=True)
 class MeshReport:
-    """What `tegl.check` found, as counts: see docs/command-line.md, `tegl check`."""
+    """The counts of `tegl.check`: see docs/command-line.md, `tegl check`."""
 
     dim: int
     vertices: int
@@ -29,25 +29,25 @@ class MeshReport:
     bad_links: int
     orientation_conflicts: int
     degenerate_simplices: int
-    nonfinite_vertices: int  #: with coordinates that are infinite or no numbers
+    nonfinite_vertices: int  #: with infinite or NaN coordinates
 
     @property
     def is_manifold(self) -> bool:
-        """Whether it is an oriented manifold, with or without a border. Simplices of zero size do not count."""
+        """Whether the mesh is an oriented manifold, with or without a border. Simplices of zero size are allowed."""
         return not (self.nonmanifold_simplices or self.bad_links or self.orientation_conflicts or self.unused_vertices)
 
     @property
     def is_closed(self) -> bool:
-        """Whether it has no border."""
+        """Whether the mesh has no border."""
         return self.boundary_simplices == 0
 
 
 @dataclasses.dataclass(frozen=True)
 class Measures:
-    """What a contour measures."""
+    """Measures of a contour."""
 
     size: float  #: length (2D), area (3D), 3-volume (4D), 4-volume (5D)
-    content: float | None  #: the enclosed area, volume, ...: positive where it is high; None: the contour is open
+    content: float | None  #: the enclosed area, volume, ...: positive if high values are inside; None: the contour is open
     centroid: np.ndarray
     lowest: np.ndarray
     highest: np.ndarray
@@ -57,22 +57,22 @@ class Measures:
 
 @dataclasses.dataclass(frozen=True)
 class CutMeasures:
-    """What cuts of a contour measure, number by number."""
+    """Measures of the cuts of a contour, one entry per cut."""
 
     at: np.ndarray
     size: np.ndarray  #: length (3D), area (4D), 3-volume (5D) of the cut
-    content: np.ndarray  #: the enclosed area, volume, ...; NaN where the cut is open
+    content: np.ndarray  #: the enclosed area, volume, ...; NaN if the cut is open
 
 
 @dataclasses.dataclass(frozen=True)
 class Component:
-    """What is known of one component."""
+    """Measures of one component."""
 
     label: int
     vertices: int
     simplices: int
     size: float  #: length, area, volume
-    content: float | None  #: what it encloses; negative: a cavity; None: it is open
+    content: float | None  #: enclosed area or volume; negative: a cavity; None: the component is open
     centroid: np.ndarray
     lowest: np.ndarray
     highest: np.ndarray
@@ -91,7 +91,7 @@ class ElementSum:
 
 
 class Elements:
-    """A contour as points with normals times volume, to integrate over it. Columns are in the array's order of axes."""
+    """A contour as points with normals times volume, for integrals over it. Columns are in the order of the array's axes."""
 
     def __init__(self, core: _tegl.Elements, is_reversed: bool, has_flat_normals: bool = False) -> None:
         self._core, self._is_reversed, self._has_flat_normals = core, is_reversed, has_flat_normals
@@ -116,7 +116,7 @@ class Elements:
 
     @property
     def counts(self) -> np.ndarray:
-        """#E: of how many simplices each is made."""
+        """#E: number of simplices of each element."""
         return self._core.counts
 
     @property
@@ -132,7 +132,7 @@ class Elements:
         return f"<tegl.Elements: {len(self)}>"
 
     def sum(self) -> ElementSum:
-        """Of normals and measures, compensated. The normals of a closed contour sum to zero."""
+        """Sums of normals and measures (compensated). The normals of a closed contour sum to zero."""
         found = _tegl.sum_of(self._core)
         for name in ("normal", "absolute"):
             found[name] = np.array(found[name][::-1] if self._is_reversed else found[name])
@@ -142,7 +142,7 @@ class Elements:
     def save(self, path: str | os.PathLike, *, axes: _kinds.ElementAxes = "time_first",
              components: _kinds.ElementComponents = "covariant", header: bool = False,
              progress: Progress | None = None) -> None:
-        """Writes .dat or .txt in Cornelius's columns, or .h5."""
+        """Writes .dat or .txt with the columns of Cornelius, or .h5."""
         _tegl.write_elements(self._core, os.fspath(path), _arguments.as_text("axes", axes),
                              _arguments.as_text("components", components), _arguments.as_bool("header", header),
                              progress)
@@ -150,24 +150,24 @@ class Elements:
 
 @dataclasses.dataclass(frozen=True)
 class SimplifyStats:
-    """What a simplification did."""
+    """Figures of a simplification."""
 
     simplices_before: int
     simplices_after: int
     vertices_before: int
     vertices_after: int
     error_of_original: float | None  #: no point of the original is farther than this from the result
-    error_of_result: float | None  #: and none of the result from the original
-    end: _kinds.SimplifyEnd  #: what stopped it: "count", "error", "shape" or "rounds" (see docs/simplification.md)
+    error_of_result: float | None  #: no point of the result is farther than this from the original
+    end: _kinds.SimplifyEnd  #: reason for the end: "count", "error", "shape" or "rounds" (see docs/simplification.md)
     rounds: int
 
 
 def named_axis(names: Sequence[str], ndim: int, time_axis: int, at, axis, more: dict) -> tuple[int, typing.Any]:
-    """Which axis, and where; names of axes are taken out of `more`."""
+    """The axis and the place of a cut; names of axes are removed from `more`."""
     if at is None and not any(names):
         for name, place in more.items():  # such as x=2
             if name not in _arguments.EXTRACT_OPTIONS:
-                raise ValueError(f"no axis is named '{name}', as the axes have no names; expected at={place!r} and axis= with a "
+                raise ValueError(f"no axis is named '{name}': the axes have no names; expected at={place!r} and axis= with a "
                                  f"number from 0 to {ndim - 1}, or names for the axes: tegl.contour(array, level, "
                                  "axis_names=...)")
     named = [name for name in more if name in names]

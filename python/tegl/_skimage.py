@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""marching_cubes, as scikit-image 0.19.3 has it."""
+"""marching_cubes with the interface of scikit-image 0.19.3."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     Returns (verts, faces, normals, values): #V x 3 coordinates in the order of the volume's axes, #F x 3 vertex numbers,
     #V x 3 normals towards lower values, and for each vertex the largest range of the samples of a cube around it.
 
-    What differs: docs/scikit-image.md. In short, the same vertices (but in another order), each once; surfaces are closed
-    manifolds whatever the values; NaN is a missing value; the volume is not copied.
+    docs/scikit-image.md lists the differences. In short: the vertices are the same, in another order, each once; surfaces
+    are manifolds for all values; NaN is a missing value; the volume is not copied.
 
     level
-        By default the mean of the least and the greatest value. As in scikit-image, samples *above* it are inside.
+        Default: the mean of minimum and maximum. As in scikit-image, samples *above* the level are inside.
     gradient_direction
-        "descent": what is inside is higher, and faces turn clockwise seen from outside (scikit-image's left-hand rule);
-        "ascent": the other way round.
+        "descent": values inside are higher, and faces are clockwise seen from outside (scikit-image's left-hand rule);
+        "ascent": the reverse.
     step_size
-        Every so many samples are looked at.
+        Only every step_size-th sample along each axis is used.
     allow_degenerate
-        False: triangles with corners in the same place are left out, and such vertices are one.
+        False: coincident vertices are merged, and triangles with two equal corners are removed.
     method
-        "lewiner": ambiguous cubes as the trilinear interpolant has them; "lorensen": always the same way.
+        Ambiguous cubes: "lewiner": resolved by the trilinear interpolant; "lorensen": by a fixed rule.
     mask
-        True where cubes are looked at, by their corner of the highest indices (as scikit-image does).
+        True for the cubes to be contoured, by their corner with the highest indices (as in scikit-image).
     """
     is_whole = _arguments.as_bool("allow_degenerate", allow_degenerate)
     data, level, step = _checked(volume, level, spacing, step_size, method, mask)
     if gradient_direction not in ("descent", "ascent"):
         raise ValueError(f"Incorrect input {gradient_direction} in `gradient_direction`, see docstring.")
     prepared = _arguments.prepare(data[::step, ::step, ::step])
-    # Here samples at the level are high, there they are low.
+    # Samples at the level are high in tegl and low in scikit-image.
     above = np.nextafter(level, np.inf)
     options = _arguments.extract_options(ambiguity="saddle" if method == "lewiner" else "low", normals=True)
     cubes = None if mask is None else _arguments.booleans(mask)[::step, ::step, ::step].T
@@ -51,8 +51,7 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     values = _tegl.ranges_around(prepared.image, core)
     verts, simplices, normals = core.take_arrays()
     verts, normals, faces = verts[:, ::-1], normals[:, ::-1], simplices.view(np.int32)
-    # Turned around with the columns, the triangles would be oriented as the library's are: descent for scikit-image is
-    # the other way.
+    # With the columns reversed, triangles have the library's orientation, which is the opposite of scikit-image's.
     if gradient_direction == "ascent":
         faces = faces[:, ::-1]
     if step != 1:
@@ -66,7 +65,7 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
 
 
 def _checked(volume, level, spacing, step_size, method, mask) -> tuple[np.ndarray, float, int]:
-    """The volume, the level, the step. What scikit-image refuses is refused with its words."""
+    """The volume, the level, the step. Errors have the messages of scikit-image."""
     if method not in ("lewiner", "lorensen", "_lorensen"):
         raise ValueError("method should be one of 'lewiner', 'lorensen' or '_lorensen'.")
     if method == "_lorensen" and mask is not None:

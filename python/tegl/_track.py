@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What becomes of the parts of a moving contour: events, and the segments between them."""
+"""The tracks of the parts of a moving contour: events, and the segments between them."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from . import _arguments, _kinds, _tegl
 
 @dataclasses.dataclass(frozen=True)
 class TrackEvent:
-    """Parts appear, meet, part or vanish."""
+    """A moment at which parts appear, merge, split or vanish."""
 
     kind: _kinds.EventKind
     time: float
     place: np.ndarray  #: the other coordinates, in the order of the array's axes
     vertex: int
     at_border: bool
-    segments_in: list[int]  #: that end here
-    segments_out: list[int]  #: that start here
+    segments_in: list[int]  #: segments that end here
+    segments_out: list[int]  #: segments that start here
     euler_change: int
 
 
 @dataclasses.dataclass(frozen=True)
 class TrackHandle:
-    """The shape of a part changes while the number of parts does not."""
+    """A change of the topology of one part, without a change of the number of parts."""
 
     time: float
     place: np.ndarray
@@ -44,8 +44,8 @@ class TrackSample:
     """A part at one time."""
 
     time: float
-    measure: float  #: area; of lines: length
-    content: float  #: volume (area) inside; NaN: open
+    measure: float  #: area; for 3D contours length
+    content: float  #: enclosed volume (or area); NaN: open
     centroid: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
@@ -53,7 +53,7 @@ class TrackSample:
 
 @dataclasses.dataclass(frozen=True)
 class TrackSegment:
-    """One part from one event to the next."""
+    """One part between two events."""
 
     event_from: int
     event_to: int
@@ -69,7 +69,7 @@ class TrackSegment:
 
 @dataclasses.dataclass(frozen=True)
 class Track:
-    """A part that goes on, as the largest one, through merges and splits."""
+    """A part that continues through merges and splits, as the largest of the parts involved."""
 
     number: int
     segments: list[int]
@@ -99,17 +99,17 @@ class TrackGraph:
 
     @property
     def first(self) -> float:
-        """When the data begin."""
+        """The time at which the data begin."""
         return self._core.first
 
     @property
     def last(self) -> float:
-        """When the data end."""
+        """The time at which the data end."""
         return self._core.last
 
     @property
     def time_unit(self) -> str:
-        """Of the times; may be empty."""
+        """Unit of the times; may be empty."""
         return self._unit
 
     @property
@@ -121,7 +121,7 @@ class TrackGraph:
         return f"<tegl.TrackGraph: {len(self.events)} events, {len(self.segments)} segments, {len(self.tracks)} tracks>"
 
     def to_dict(self) -> dict[str, typing.Any]:
-        """All of it as dicts and lists of numbers, such as json takes."""
+        """The graph as dicts and lists of numbers, for json."""
 
         def plain(value):
             if isinstance(value, np.ndarray):
@@ -136,11 +136,11 @@ class TrackGraph:
                 "segments": plain(self.segments), "tracks": plain(self.tracks), "handles": plain(self.handles)}
 
     def to_networkx(self) -> typing.Any:
-        """A networkx.MultiDiGraph: events are nodes and segments edges, with what is known of them. Needs networkx."""
+        """A networkx.MultiDiGraph: events are nodes and segments edges, with their fields. Needs networkx."""
         try:
             networkx = importlib.import_module("networkx")
         except ImportError as error:
-            raise ImportError(f"to_networkx needs networkx, which Python does not find: {error}") from error
+            raise ImportError(f"to_networkx needs networkx, which cannot be imported: {error}") from error
         graph = networkx.MultiDiGraph(first=self.first, last=self.last, time_unit=self._unit)
         for number, event in enumerate(self.events):
             graph.add_node(number, **{field.name: getattr(event, field.name) for field in dataclasses.fields(event)})

@@ -40,7 +40,7 @@ def test_what_is_left_out_is_a_warning(folder, recwarn):
     image = tegl.read(folder)
     assert image.format == "DICOM" and image.array.shape == (4, 4, 5) and not recwarn.list
     (folder / "notes.dcm").write_text("no DICOM")
-    with pytest.warns(UserWarning, match="left out: .*notes.dcm"):
+    with pytest.warns(UserWarning, match="skipped: .*notes.dcm"):
         assert np.array_equal(tegl.read(folder).array, image.array)
 
 

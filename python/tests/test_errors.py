@@ -15,7 +15,7 @@ CONTOUR = tegl.contour(VOLUME, 0.1)
 MOVING = tegl.contour(noise((5, 6, 7, 8), 0), 0.1)
 INDEX = tegl.Index(VOLUME)
 CORNERS, FACE = np.eye(3), [[0, 1, 2]]
-OUTSIDE = ("the place along %s is 30.0; expected one between 0.0 and %s, the ends of the image, or allow_empty=True for an "
+OUTSIDE = ("the place along %s is 30.0; expected a place between 0.0 and %s, the ends of the image, or allow_empty=True for an "
            "empty cut")
 THREADS = "threads is -1; expected 0 (all) or more"
 
@@ -54,7 +54,7 @@ def contour(**arguments):
      "the first in layer 4 of its axis 0"),
     # Coordinates that the vertices cannot hold.
     (lambda: contour(spacing=(1, 1e300, 1)), ValueError,
-     "coordinates along axis 1 reach 7e+300; expected 1.18e-38 to 3.4e+38, as float32 holds, or dtype=numpy.float64"),
+     "coordinates along axis 1 reach 7e+300; expected 1.18e-38 to 3.4e+38, the range of float32, or dtype=numpy.float64"),
     (lambda: contour(origin=1e39), ValueError, "coordinates along axis 0 reach 1e+39"),
     (lambda: contour(spacing=1e-300), ValueError, "coordinates along axis 0 reach 6e-300; expected 1.18e-38 to"),
     (lambda: contour(affine=np.diag([1, 1, 1e60, 1])), ValueError, "coordinates along axis 2 reach 8e+60"),
@@ -62,8 +62,8 @@ def contour(**arguments):
     (lambda: tegl.slice(VOLUME, 0.1, at=1e300, spacing=1e300), ValueError, "coordinates along axis 0 reach 6e+300"),
     (lambda: tegl.Index(VOLUME, spacing=1e300).contour(0.1), ValueError, "coordinates along axis 0 reach 6e+300"),
     # What is no contour.
-    (lambda: tegl.simplify(VOLUME, scale="auto"), TypeError, "ndarray is no contour; expected a tegl.Contour"),
-    (lambda: tegl.elements(VOLUME, by_cell=True), TypeError, "ndarray is no contour; expected a tegl.Contour"),
+    (lambda: tegl.simplify(VOLUME, scale="auto"), TypeError, "ndarray is not a contour; expected a tegl.Contour"),
+    (lambda: tegl.elements(VOLUME, by_cell=True), TypeError, "ndarray is not a contour; expected a tegl.Contour"),
     # Arguments by name.
     (lambda: CONTOUR.slice(3, threads=-1), ValueError, THREADS), (lambda: CONTOUR.measure(threads=-1), ValueError, THREADS),
     (lambda: tegl.measure(MOVING, at=2, threads=-1), ValueError, THREADS),
@@ -129,7 +129,7 @@ def contour(**arguments):
     (lambda: CONTOUR.simplify(0.5, allow_nonmanifold="no"), TypeError, "allow_nonmanifold is 'no'; expected True or"),
     (lambda: CONTOUR.simplify(0.5, return_stats="no"), TypeError, "return_stats is 'no'; expected True or False"),
     (lambda: CONTOUR.simplify("0.5"), TypeError, "ratio is '0.5'; expected a number"),
-    (lambda: CONTOUR.simplify(100), ValueError, "ratio is 100; expected 0 to 1, the share of the simplices that are left, "
+    (lambda: CONTOUR.simplify(100), ValueError, "ratio is 100; expected 0 to 1, the fraction of the simplices to keep, "
      "or count= with their number"),
     (lambda: INDEX.pick((1, 2, 3), 0.1, return_report="no"), TypeError, "return_report is 'no'; expected True or False"),
     (lambda: tegl.marching_cubes(VOLUME, "0.1"), TypeError, "level is '0.1'; expected a number"),
@@ -143,7 +143,7 @@ def contour(**arguments):
     (lambda: contour(axis_names=["a", "b", "a"]), ValueError, "axis_names has 'a' more than once; expected different"),
     (lambda: tegl.slice(VOLUME, 0.1, at=3, lat=2), TypeError, "no argument is named 'lat'; expected one of triangulation"),
     (lambda: tegl.slice(VOLUME, "a", at=3), TypeError, "level is 'a'; expected a number"),
-    (lambda: CONTOUR.slice("soon"), ValueError, "the coordinate 'soon' is no number, and no date; expected one"),
+    (lambda: CONTOUR.slice("soon"), ValueError, "the coordinate 'soon' is neither a number nor a date; expected one of them"),
     (lambda: CONTOUR.slice([1, None]), TypeError, "the coordinate is None; expected a number"),
     (lambda: CONTOUR.slice(3, axis=1.5), TypeError, "axis is 1.5; expected a whole number"),
     (lambda: CONTOUR.slice(normal="abc", offset=3), TypeError, "normal is 'abc'; expected a number for each axis"),
@@ -153,7 +153,7 @@ def contour(**arguments):
     (lambda: CONTOUR.track(min_lifetime="a"), TypeError, "min_lifetime is 'a'; expected a number"),
     (lambda: CONTOUR.track().save("a.svg", title=3), TypeError, "title is 3; expected text"),
     (lambda: CONTOUR.sample(VOLUME, 3), TypeError, "name is 3; expected text"),
-    (lambda: CONTOUR.sample(VOLUME, ""), ValueError, "name is ''; expected one"),
+    (lambda: CONTOUR.sample(VOLUME, ""), ValueError, "name is ''; expected a name"),
     (lambda: CONTOUR.sample(VOLUME, "a", 3), TypeError, "unit is 3; expected text"),
     (lambda: CONTOUR.simplify(ratio="a"), TypeError, "ratio is 'a'; expected a number"),
     (lambda: CONTOUR.simplify(count=1.5), TypeError, "count is 1.5; expected a whole number"),
@@ -258,7 +258,7 @@ def said(call):
 
 def test_a_level_outside_of_the_values_is_an_error_that_names_them():
     least, most = VOLUME.min(), VOLUME.max()
-    expected = (f"expected one above {least!s} and up to {most!s}, the lowest and the highest value of the array, or "
+    expected = (f"expected a level above {least!s} and up to {most!s}, the minimum and maximum of the array, or "
                 "allow_empty=True for an empty contour")
     above, below = float(most) + 1, float(least)
     assert said(lambda: contour(level=above)) == f"level is {above}; {expected}"
@@ -288,7 +288,7 @@ def test_a_level_is_outside_of_values_that_are_all_alike_or_missing():
     flat, none = np.full((3, 4, 5), 7.0), np.full((3, 4, 5), np.nan)
     assert said(lambda: tegl.contour(flat, 7)) == ("level is 7.0, and all values of the array are 7.0; expected a level between "
                                                    "two values, or allow_empty=True for an empty contour")
-    missing = ("level is 7.0, and all values of the array are missing (NaN or masked); expected some, or allow_empty=True for an "
+    missing = ("level is 7.0, and all values of the array are missing (NaN or masked); expected values, or allow_empty=True for an "
                "empty contour")
     assert said(lambda: tegl.contour(none, 7)) == missing
     assert said(lambda: tegl.contour(flat, 7, mask=np.zeros(flat.shape, bool))) == missing
@@ -304,7 +304,7 @@ def test_a_level_is_outside_of_values_that_are_all_alike_or_missing():
 def test_a_place_outside_of_the_image_is_an_error_with_its_unit(dtype):
     moving = tegl.contour(hourly(), 0.1, dtype=dtype)
     most = moving.vertices.dtype.type(5 / 24)
-    text = (f"the place along axis 0 ('time') is 31.25; expected one between 0.0 and {most!s} days since 2020-01-01T00:00:00, the "
+    text = (f"the place along axis 0 ('time') is 31.25; expected a place between 0.0 and {most!s} days since 2020-01-01T00:00:00, the "
             "ends of the image, or allow_empty=True for an empty cut")
     calls = {"slice": lambda **more: moving.slice(31.25, **more), "slices": lambda **more: moving.slice([0.1, 31.25], **more),
              "name": lambda **more: moving.slice(time=31.25, **more), "measure": lambda **more: moving.measure(at=31.25, **more),
@@ -314,7 +314,7 @@ def test_a_place_outside_of_the_image_is_an_error_with_its_unit(dtype):
     for name, call in calls.items():
         assert said(call) == text, name
         call(allow_empty=True)
-    assert "is 366.0 (2021-01-01); expected one between 0.0 and" in said(lambda: moving.slice("2021-01-01"))
+    assert "is 366.0 (2021-01-01); expected a place between 0.0 and" in said(lambda: moving.slice("2021-01-01"))
     empty = moving.slice(31.25, allow_empty=True)
     direct = calls["direct"](allow_empty=True)
     for cut in (empty, direct):
@@ -330,9 +330,9 @@ def test_a_place_outside_of_the_image_is_an_error_with_its_unit(dtype):
 def test_oblique_planes_outside_of_the_image_are_an_error():
     moving = contour()
     assert said(lambda: moving.slice(normal=(1, 1, 0), offset=99)) == (
-        "offset is 99.0; expected one between 0 and 13, the ends of the image along this normal, or allow_empty=True for an "
+        "offset is 99.0; expected an offset between 0 and 13, the ends of the image along this normal, or allow_empty=True for an "
         "empty cut")
-    assert "offset is 8.0; expected one between -7 and 6, " in said(lambda: moving.slice(normal=(1, -1, 0), offset=[-1, 8]))
+    assert "offset is 8.0; expected an offset between -7 and 6, " in said(lambda: moving.slice(normal=(1, -1, 0), offset=[-1, 8]))
     assert len(moving.slice(normal=(1, 1, 0), offset=99, allow_empty=True).simplices) == 0
     moving.slice(normal=(1, 1, 0), offset=13.0)
 
@@ -348,14 +348,14 @@ def test_places_are_in_the_image_that_a_contour_is_of():
     for name, one in made.items():
         assert len(one.slice(1).simplices) == 0, name
         assert "between 0.0 and 8.0, the ends of the image" in said(lambda: one.slice(8.5)), name
-        assert "axis 2 is 16.5; expected one between 0.0 and 16.0" in said(lambda: one.slice(16.5, axis=2)), name
+        assert "axis 2 is 16.5; expected a place between 0.0 and 16.0" in said(lambda: one.slice(16.5, axis=2)), name
     cut = whole.slice(4)
     assert len(cut.slice(0.5).simplices) == 0 and "between 0.0 and 16.0" in said(lambda: cut.slice(16.5))
     direct = tegl.slice(array, 0.0, at=4, spacing=(1, 2, 2, 2))
     assert len(direct.slice(0.5).simplices) == 0 and "between 0.0 and 16.0" in said(lambda: direct.slice(16.5))
     alone = tegl.Contour(whole.vertices, whole.simplices)
     low, high = alone.vertices[:, 0].min(), alone.vertices[:, 0].max()
-    assert f"is 1.0; expected one between {low!s} and {high!s}, the ends of the contour" in said(lambda: alone.slice(1))
+    assert f"is 1.0; expected a place between {low!s} and {high!s}, the ends of the contour" in said(lambda: alone.slice(1))
     assert len(tegl.Contour(np.empty((0, 3)), np.empty((0, 3), int)).slice(1).simplices) == 0
     falling = tegl.contour(array, 0.0, coords=[np.arange(9.0)[::-1] ** 2, None, None, None])
     assert "between 0.0 and 64.0" in said(lambda: falling.slice(65))
@@ -364,7 +364,7 @@ def test_places_are_in_the_image_that_a_contour_is_of():
 
 
 def test_an_axis_without_a_name_is_cut_by_its_number():
-    text = ("no axis is named 'x', as the axes have no names; expected at=2 and axis= with a number from 0 to 2, or names for "
+    text = ("no axis is named 'x': the axes have no names; expected at=2 and axis= with a number from 0 to 2, or names for "
             "the axes: tegl.contour(array, level, axis_names=...)")
     assert said(lambda: CONTOUR.slice(x=2)) == text
     assert said(lambda: tegl.slice(CONTOUR, x=2)) == text

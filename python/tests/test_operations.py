@@ -83,7 +83,7 @@ def test_cuts_straight_from_an_array_are_those_of_the_contour(moving_balls):
     (dict(at=1, q=1), "no axis is named 'q'"),
     (dict(at=1, axis="q"), "no axis is named 'q'"),
     (dict(at=1, axis=4), "axis is 4; expected -4 to 3"),
-    (dict(normal=(1, 0, 0, 0)), "normal goes with offset"),
+    (dict(normal=(1, 0, 0, 0)), "normal without offset"),
     (dict(offset=1), "offset without normal"),
     (dict(normal=(1, 0, 0), offset=1), "the normal has 3 numbers; expected one for each of 4 axes"),
     (dict(normal=(0, 0, 0, 0), offset=1), "normal"),
@@ -491,7 +491,7 @@ def test_what_is_no_contour_or_no_array_is_a_type_error():
     array = noise((5, 6, 7), 1)
     for call in (tegl.check, tegl.measure, tegl.components, tegl.elements, tegl.track,
                  lambda value: tegl.simplify(value, ratio=0.5)):
-        with pytest.raises(TypeError, match="ndarray is no contour; expected a tegl.Contour"):
+        with pytest.raises(TypeError, match="ndarray is not a contour; expected a tegl.Contour"):
             call(array)
     with pytest.raises(TypeError, match="is a path; expected an array"):
         tegl.contour("ocean.nc", 20.0)

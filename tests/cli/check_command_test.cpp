@@ -97,7 +97,7 @@ TEST_F(Check, TellsDegenerateTriangles) {
   EXPECT_EQ(run.exit, 0) << "a manifold all the same";
   EXPECT_EQ(run.json()["degenerate_simplices"], 1);
   EXPECT_EQ(run_tegl({"check", file, "--require", "nondegenerate"}).exit, 1);
-  EXPECT_THAT(run_tegl({"check", file}).out, HasSubstr("1 triangle of zero size (of a contour by tegl: where samples"))
+  EXPECT_THAT(run_tegl({"check", file}).out, HasSubstr("1 triangle of zero size (if tegl made the contour: samples"))
       << "a mesh of another's may have other reasons";
 }
 

@@ -92,8 +92,8 @@ TEST_F(Contour, GoesIntoStlAndObjWhereTheseHoldIt) {
   refused({disc_file}, "'.stl' cannot hold a 2D contour, which is made of lines");
   refused({write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 1}))},
           "cut the contour first ('tegl slice')");
-  refused({ball_file, "--normals"}, "no place for normals of vertices");
-  refused({ball_file, "--attribute", ball_file}, "no place for attributes");
+  refused({ball_file, "--normals"}, "cannot hold normals of vertices");
+  refused({ball_file, "--attribute", ball_file}, "cannot hold attributes");
   refused({ball_file, "--stream"}, "expected .vtkhdf");
   const RunResult line = run_tegl({"slice", ball_file, "--iso", "0", "--at", "z=5", "-o", path("no.stl")});
   EXPECT_EQ(line.exit, 6);
@@ -133,11 +133,11 @@ TEST_F(Contour, FarFromTheOriginSaysHowManyVerticesSinglePrecisionLoses) {
       places.insert({read.coordinates[i], read.coordinates[i + 1], read.coordinates[i + 2]});
     EXPECT_GT(together, vertices / 10);
     EXPECT_EQ(vertices - together, places.size());
-    const std::string some = std::to_string(together) + " of " + std::to_string(vertices) + " vertices fall together";
-    EXPECT_THAT(run.err, HasSubstr(out + ": in single precision, which " + extension + " has, " + some));
-    EXPECT_THAT(run.err, HasSubstr("expected a format with double, .ply, .obj or .vtkhdf"));
+    const std::string some = std::to_string(together) + " of " + std::to_string(vertices) + " vertices coincide";
+    EXPECT_THAT(run.err, HasSubstr(out + ": " + extension + " has single precision, in which " + some));
+    EXPECT_THAT(run.err, HasSubstr("expected a format with double precision (.ply, .obj or .vtkhdf)"));
     const RunResult told = run_tegl({"contour", file, "--iso", "128.5", "-o", out});
-    EXPECT_THAT(told.out, HasSubstr("fall together (single precision)"));
+    EXPECT_THAT(told.out, HasSubstr("coincide (single precision)"));
     EXPECT_EQ(run_tegl({"contour", file, "--iso", "128.5", "-o", out, "--quiet"}).err, "");
     const RunResult cut = run_tegl({"components", file, "--iso", "128.5", "--split",
                                     path("{label}" + std::string(extension)), "--largest", "1", "--json"});
@@ -163,8 +163,9 @@ TEST_F(Contour, OfTiesSaysThatStlMakesThemOne) {
   const auto vertices = run.json()["vertices"].get<std::size_t>();
   const auto together = run.json()["vertices_together"].get<std::size_t>();
   EXPECT_EQ(vertices - together, read_mesh(path("out.stl")).coordinates.size() / 3);
-  EXPECT_THAT(run.err, HasSubstr(std::to_string(together) + " of " + std::to_string(vertices) +
-                                 " vertices are at the place of others, and .stl has no numbers to tell them apart"));
+  EXPECT_THAT(run.err,
+              HasSubstr(std::to_string(together) + " of " + std::to_string(vertices) +
+                        " vertices coincide with others, and .stl has no vertex numbers that distinguish them"));
   EXPECT_THAT(run.err, HasSubstr("--epsilon"));
   const RunResult glb = run_tegl({"contour", file, "--iso", "3", "-o", path("out.glb"), "--json"});
   EXPECT_EQ(glb.err, "") << "numbered";
@@ -175,10 +176,10 @@ TEST_F(Contour, WithAttributesThatOptionsPromiseIsRefusedWhereThereIsNoPlaceForT
   for (const char* const name : {"a.stl", "a.obj"}) {
     const RunResult run = run_tegl({"contour", file, "--iso", "0,1", "--one-file", "-o", path(name)});
     EXPECT_EQ(run.exit, 6) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("has no place for attributes; expected .vtkhdf"));
+    EXPECT_THAT(run.err, HasSubstr("cannot hold attributes; expected .vtkhdf"));
     const RunResult components = run_tegl({"components", file, "--iso", "0", "-o", path(name)});
     EXPECT_EQ(components.exit, 6) << components.err;
-    EXPECT_THAT(components.err, HasSubstr("has no place for attributes; expected .vtkhdf"));
+    EXPECT_THAT(components.err, HasSubstr("cannot hold attributes; expected .vtkhdf"));
     EXPECT_EQ(run_tegl({"contour", file, "--iso", "0,1", "-o", path(name)}).exit, 0) << "a file each";
     EXPECT_EQ(run_tegl({"components", file, "--iso", "0", "--split", path("{label}" + std::string(name))}).exit, 0);
   }

@@ -22,7 +22,7 @@ TEST_F(Demo, IsAReportWithAMapWhereThereIsNoTerminal) {
   EXPECT_EQ(run.err, "");
   EXPECT_THAT(run.out, Not(HasSubstr("\x1b")));
   EXPECT_THAT(run.out, HasSubstr("%%%"));
-  EXPECT_THAT(run.out, HasSubstr("What next"));
+  EXPECT_THAT(run.out, HasSubstr("Next steps"));
   EXPECT_THAT(run.out, HasSubstr("tegl contour $DATA --iso 20 -o ocean.vtkhdf"));
   EXPECT_TRUE(files().empty());
 }
@@ -49,7 +49,7 @@ TEST_F(Demo, PlaysOnATerminalAndLeavesItAsItWas) {
   EXPECT_THAT(run.out, HasSubstr("t =  6.50"));
   EXPECT_THAT(run.out, HasSubstr("t = 12.00"));
   EXPECT_GT(run.out.rfind("\x1b[?25h"), run.out.rfind("▀")) << "the cursor is back";
-  EXPECT_THAT(run.out, HasSubstr("What next"));
+  EXPECT_THAT(run.out, HasSubstr("Next steps"));
 }
 
 TEST_F(Demo, PlaysWithoutColoursWhereNoneAreWanted) {
@@ -97,7 +97,7 @@ TEST_F(Demo, StandsInASmallWindowOrPlaysNothing) {
           {setting, "COLUMNS=" + std::to_string(window.columns), "LINES=" + std::to_string(window.lines)});
       EXPECT_EQ(run.exit, 0);
       const std::string& shown = run.out;
-      EXPECT_THAT(shown, HasSubstr("What next"));
+      EXPECT_THAT(shown, HasSubstr("Next steps"));
       const std::size_t begin = shown.find("\x1b[?25l");
       EXPECT_EQ(begin != std::string::npos, window.fits);
       if (window.columns < 17) {

@@ -139,13 +139,13 @@ TEST_F(ElementsCommand, SayWhatIsWrongBeforeTheLongWork) {
   const std::string flat = write("flat.nrrd", nrrd_bytes(noise({5, 5}, 1)));
   fails({file, "--iso", "0", "--attribute", flat, "-o", path("e.dat")}, 4, "expected 3");
   ASSERT_EQ(run_tegl({"contour", file, "--iso", "0", "-o", path("c.ply")}).exit, 0);
-  fails({path("c.ply"), "--per", "cell", "-o", path("e.dat")}, 2, "knows no cells");
+  fails({path("c.ply"), "--per", "cell", "-o", path("e.dat")}, 2, "has no cells");
   for (const std::string& name : files()) EXPECT_EQ(name.find("e."), std::string::npos) << name;
 }
 
 TEST_F(ElementsCommand, TellWhetherTheyCloseUp) {
   EXPECT_THAT(run_tegl({"elements", ball_file({9, 9, 9}, 3.0), "--iso", "0", "-o", path("e.dat")}).out,
-              HasSubstr("closes up"));
+              HasSubstr("closed (Gauss)"));
   EXPECT_THAT(run_tegl({"elements", ball_file({9, 9, 9}, 6.0), "--iso", "0", "-o", path("e.dat")}).out,
               HasSubstr("0 up to rounding"));  // the ball leaves through all sides, so the missing parts add up to 0
   const std::string plane = write("p.nrrd", nrrd_bytes(sample({5, 5, 5}, [](const auto& x) { return x[2] - 1.5; })));

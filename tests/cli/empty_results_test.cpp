@@ -100,7 +100,7 @@ TEST_F(EmptyResults, OfAnIsovalueWithinValuesThatNeverMeetAreNone) {
   const std::string file = write("split.nrrd", nrrd_bytes(split));
   const RunResult run = run_tegl({"contour", file, "--iso", "2", "-o", path("out.ply")});
   EXPECT_EQ(run.exit, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("no contour at 2: every tile that it passes touches a missing sample"));
+  EXPECT_THAT(run.err, HasSubstr("no contour at 2: every active tile has a missing sample"));
   expect_empty_mesh("out.ply", 2);
   const std::string raw =
       write("split.raw", {reinterpret_cast<const char*>(split.values.data()), split.values.size() * sizeof(float)});

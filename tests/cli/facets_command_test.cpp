@@ -62,7 +62,7 @@ TEST_F(FacetsCommand, SaysWhatItFoundAndCanLeaveOutTheCheck) {
   const std::string image = write("ball.nrrd", nrrd_bytes(ball({12, 12, 12}, 4.3)));
   const RunResult run = run_tegl({"contour", image, "--iso", "0", "--facets", "-o", path("out.VTU")});
   EXPECT_EQ(run.exit, 0) << run.err;
-  for (const char* words : {"polygons", "Euler        2", "none: closed", "meet two by two"})
+  for (const char* words : {"polygons", "Euler        2", "none: closed", "at most two facets at each ridge"})
     EXPECT_THAT(run.out, HasSubstr(words));
   EXPECT_EQ(contour({image, "--iso", "0", "--facets", "--no-check", "-o", path("out.vtkhdf")})["euler"], nullptr);
   const RunResult quiet = run_tegl({"contour", image, "--iso", "0", "--facets", "-q", "-o", path("q.vtu")});

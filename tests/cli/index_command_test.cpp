@@ -135,7 +135,7 @@ TEST_F(Index, RefusesWrongUsage) {
   const RunResult streamed = run_tegl({"contour", file(), "--index", file(), "--raw", "40x30x20", "--raw-type", "float",
                                        "--iso", "0", "--stream", "-o", path("x.vtkhdf")});
   EXPECT_EQ(streamed.exit, 2);
-  EXPECT_THAT(streamed.err, HasSubstr("--index is for images in memory"));
+  EXPECT_THAT(streamed.err, HasSubstr("--index with --stream"));
   EXPECT_THAT(files(), ElementsAre("ball.nrrd"));
 }
 

@@ -207,14 +207,14 @@ TEST(Output, WhatOptionsAskForIsNotLeftOut) {
       EXPECT_NO_THROW(require_output_keeps(name, normals, true)) << name;
   for (const char* name : {"a.stl", "a.obj"}) {
     EXPECT_NO_THROW(require_output_keeps(name, "", false));
-    EXPECT_THAT(error_of([&] { require_output_keeps(name, "", true); }).what(), HasSubstr("no place for attributes"));
+    EXPECT_THAT(error_of([&] { require_output_keeps(name, "", true); }).what(), HasSubstr("cannot hold attributes"));
   }
   // STL stores normals of facets, OBJ normals of vertices.
   EXPECT_NO_THROW(require_output_keeps("a.stl", "flat", false));
   EXPECT_NO_THROW(require_output_keeps("a.obj", "sobel", false));
   const Error error = error_of([] { require_output_keeps("A.STL", "gradient", false); });
   EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
-  EXPECT_THAT(error.what(), HasSubstr("'.stl' has no place for normals of vertices; expected .vtkhdf, .ply, .obj"));
+  EXPECT_THAT(error.what(), HasSubstr("'.stl' cannot hold normals of vertices; expected .vtkhdf, .ply, .obj"));
   EXPECT_THAT(error_of([] { require_output_keeps("a.obj", "flat", false); }).what(),
               HasSubstr("normals of triangles; expected .vtkhdf, .ply with --normals flat"));
 }

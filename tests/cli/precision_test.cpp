@@ -117,7 +117,7 @@ TEST_F(Precision, CompressionIsRefusedWhereAFormatHasNone) {
                                              {"track", solid_, "--iso", "0.3", "--compress", "-o", path("a.json")}}) {
     const RunResult run = run_tegl(command);
     EXPECT_EQ(run.exit, 2);
-    EXPECT_THAT(run.err, HasSubstr("--compress without a contour's file"));
+    EXPECT_THAT(run.err, HasSubstr("--compress without a file of a contour"));
   }
 }
 

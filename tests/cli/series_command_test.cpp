@@ -160,7 +160,7 @@ TEST_F(SeriesCommand, SaysWhatItLeavesOutOfAFolder) {
   const RunResult info = run_tegl({"info", path("scan"), "--json"});
   EXPECT_EQ(info.json()["axes"][2]["size"], 4);
   EXPECT_THAT(info.json()["remarks"][0], HasSubstr("notes.dcm"));
-  EXPECT_THAT(info.err, HasSubstr("tegl: left out: " + notes));
+  EXPECT_THAT(info.err, HasSubstr("tegl: skipped: " + notes));
   const std::vector<std::string> contour = {"contour", path("scan"), "--iso", "50", "-o", path("out.ply")};
   EXPECT_THAT(run_tegl(contour).err, HasSubstr(notes));
   std::vector<std::string> streamed = contour;

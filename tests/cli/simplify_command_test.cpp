@@ -179,9 +179,9 @@ TEST_F(SimplifyCommand, SaysWhatStoppedIt) {
   const auto text = [&](const char* error) {
     return run_tegl({"simplify", file_, "--iso", "0", "--ratio", "0", "--max-error", error, "-o", path("b.ply")}).out;
   };
-  EXPECT_THAT(text("0.05"), HasSubstr("fewer would go beyond --max-error"));
-  EXPECT_THAT(text("0"), HasSubstr("nothing may go within --max-error 0"));
-  EXPECT_THAT(text("1000"), HasSubstr("may not go, for the topology"));
+  EXPECT_THAT(text("0.05"), HasSubstr("fewer simplices would exceed --max-error"));
+  EXPECT_THAT(text("0"), HasSubstr("no simplex can be removed within --max-error 0"));
+  EXPECT_THAT(text("1000"), HasSubstr("topology, border or the shapes of simplices prevent"));
 }
 
 TEST_F(SimplifyCommand, RefusesWhatIsNoManifoldUnlessAllowed) {

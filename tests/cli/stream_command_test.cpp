@@ -172,7 +172,7 @@ TEST_F(Stream, SaysSoAndLeavesNoFileWhenMemoryRunsOut) {
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 70);
   std::ifstream said(path("said"));
-  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(said), {}), HasSubstr("layers.raw: memory ran out"));
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(said), {}), HasSubstr("layers.raw: out of memory"));
   std::filesystem::remove(path("said"));
   EXPECT_EQ(files(), before);
 }

@@ -98,7 +98,7 @@ TEST_F(View, ShowsTwoAndThreeDimensionsAndSeveralFiles) {
   EXPECT_EQ(run_tegl({"view", flat, "--iso", "0", "-o", path("flat.html"), "-q"}).exit, 0);
   const RunResult mixed = run_tegl({"view", two, flat, "--iso", "0", "-o", path("mixed.html")});
   EXPECT_EQ(mixed.exit, 4);
-  EXPECT_THAT(mixed.err, HasSubstr("flat.nrrd: a contour in 2D, shown with one in 3D"));
+  EXPECT_THAT(mixed.err, HasSubstr("flat.nrrd: a contour in 2D on a page with one in 3D"));
   EXPECT_THAT(files(), Not(testing::Contains("mixed.html")));
 }
 
@@ -116,7 +116,7 @@ TEST_F(View, LeavesOutTheSmallerComponentsBeyondTheLimitAndSaysSo) {
   const RunResult told = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit});
   EXPECT_THAT(told.out, HasSubstr("the largest of 2 components"));
   const RunResult quiet = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit, "-q"});
-  EXPECT_THAT(quiet.err, HasSubstr("shown are the largest of 2 components"));
+  EXPECT_THAT(quiet.err, HasSubstr("the page shows the largest of 2 components"));
   const RunResult none = run_tegl({"view", two, "--iso", "0", "-o", path("none.html"), "--limit", "10"});
   EXPECT_EQ(none.exit, 4);
   EXPECT_THAT(none.err, HasSubstr("two.nrrd: the largest component has"));

@@ -76,7 +76,7 @@ TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
       tegl::split_components(surface, tegl::label_components(surface));
   tegl::SimplifyOptions<3> fewer;
   fewer.ratio = 0.1;  // vtkQuadricDecimation
-  const tegl::Contour<3> small = tegl::simplify(surface, fewer);
+  const tegl::Contour<3> small = tegl::simplify(surface, fewer).contour;
   tegl::write_mesh(tegl::to_mesh(small), "small.ply");  // vtkPLYWriter
   // [/vtk_filters]
   EXPECT_NEAR(volume, ball_volume(), 0.03 * ball_volume());  // the spacings' product is 1

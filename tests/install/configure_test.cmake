@@ -26,7 +26,7 @@ endif()
 # Without the libraries of the file formats: the core alone, and a word about the rest.
 set(without_netcdf -DCONSUMER_USES=add_subdirectory -DTEGL_SOURCE=${TEGL_SOURCE} -DCMAKE_DISABLE_FIND_PACKAGE_netCDF=ON)
 configure(core_only succeeds "no target tegl::io [^.]*\\. Not found: netCDF \\(Debian: libnetcdf-dev\\)" ${without_netcdf})
-configure(io_forced fails "TEGL_BUILD_IO=ON [^:]*tegl::io[^:]* needs what was not found: netCDF \\(Debian: libnetcdf-dev\\)"
+configure(io_forced fails "TEGL_BUILD_IO=ON [^:]*tegl::io[^:]* needs packages that were not found: netCDF \\(Debian: libnetcdf-dev\\)"
   ${without_netcdf} -DTEGL_BUILD_IO=ON)
 # A package without file formats: what is installed, less that component.
 if(PREFIX)

@@ -301,7 +301,7 @@ class Compression(unittest.TestCase):
         path = self.write("bits.dcm", [streams[0]], values[0].astype(np.uint8), JPEG2000Lossless)
         self.assert_error(path, "MalformedFile", "16 bits per sample", "at most 8")
         path = self.write("jpeg.dcm", [b"\xff\xd8\xff\xe0" + bytes(100)], values[0], JPEG2000Lossless)
-        self.assert_error(path, "MalformedFile", "no JPEG 2000", "ff 4f ff 51")
+        self.assert_error(path, "MalformedFile", "JPEG 2000 code stream", "ff 4f ff 51")
 
     def test_compressed_pixels_that_are_cut_short_are_never_an_image(self):
         folder, _ = self.scan("sound", "uint12", planes=1)

@@ -254,13 +254,13 @@ class Dicom(unittest.TestCase):
         writer = Writer(self.folder)
         for k in range(5):
             writer.plane(np.zeros((4, 5), dtype=np.uint8), (0.3 * k * k, 0, 2 * k))
-        self.assert_refused("UnsupportedData", "beside the line", "straight line")
+        self.assert_refused("UnsupportedData", "away from the line", "straight line")
         for path in files_of(self.folder):
             path.unlink()
         for t in range(2):  # on a line each, but not on the same one
             for k in range(4):
                 writer.plane(np.zeros((4, 5), dtype=np.uint8), (3 * t, 0, 2 * k), TriggerTime=30 * t)
-        self.assert_refused("UnsupportedData", "lies 3 mm beside the line")
+        self.assert_refused("UnsupportedData", "lies 3 mm away from the line")
 
     def test_what_is_no_dicom_is_left_out_of_a_folder_and_said(self):
         Writer(self.folder).volume()
@@ -278,7 +278,7 @@ class Dicom(unittest.TestCase):
                 for paths in ([self.folder], [*scan, path]):
                     image = self.assert_both_ways(*paths)
                     self.assertEqual(len(image["remarks"]), 1)
-                    self.assertIn(f"left out: {path}", image.pop("remarks")[0])
+                    self.assertIn(f"skipped: {path}", image.pop("remarks")[0])
                     self.assertEqual(image, plain)
                 for how in ("whole", "layers"):  # by itself it is an error
                     self.assertIn(dump(path, how=how).get("error"), ("MalformedFile", "UnsupportedData"))
@@ -288,7 +288,7 @@ class Dicom(unittest.TestCase):
         self.assertIn("empty.dcm and 5 more", self.assert_both_ways()["remarks"][0])
         for path in scan:
             path.unlink()
-        self.assert_refused("UnsupportedData", "no image in DICOM")
+        self.assert_refused("UnsupportedData", "contains no DICOM image")
 
     def test_damaged_dicom_is_never_left_out(self):
         Writer(self.folder).volume(planes=6)
@@ -329,7 +329,7 @@ class Dicom(unittest.TestCase):
             data.PixelData = bytes(60)
             data.save_as(path, write_like_original=False)
         image = self.assert_both_ways()
-        self.assertIn("left out, a series of 2 files", image["remarks"][0])
+        self.assertIn("skipped, a series of 2 files", image["remarks"][0])
         self.assertIn("RGB", image["remarks"][0])
 
     def test_several_series_are_listed_and_chosen(self):
@@ -393,20 +393,20 @@ class Dicom(unittest.TestCase):
         for _ in range(2):
             for k in range(3):
                 writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k))
-        self.assert_refused("UnsupportedData", "2 slices at one place", "Trigger Time")
+        self.assert_refused("UnsupportedData", "2 slices at one position", "Trigger Time")
         writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, 1))
-        self.assert_refused("UnsupportedData", "one of 3 at its place", "expected 2", "twice")
+        self.assert_refused("UnsupportedData", "one of 3 slices at", "expected 2", "duplicates")
 
     def test_a_copy_of_a_slice_is_named_and_a_moment_that_lacks_one(self):
         writer = Writer(self.folder)
         for k in range(9):
             writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k), name=f"D{k}.dcm", TriggerTime=0)
         shutil.copy(self.folder / "D3.dcm", self.folder / "D3 copy.dcm")
-        self.assert_refused("UnsupportedData", "one of 2 at its place, 3 mm", "expected 1", "D3.dcm", "D3 copy.dcm")
+        self.assert_refused("UnsupportedData", "one of 2 slices at 3 mm", "expected 1", "D3.dcm", "D3 copy.dcm")
         (self.folder / "D3 copy.dcm").unlink()
         for k in (0, 1, 2, 3, 4, 6, 7, 8):
             writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k), name=f"E{k}.dcm", TriggerTime=30)
-        self.assert_refused("UnsupportedData", "D5.dcm: is one of 1 at its place, 5 mm", "expected 2", "missing")
+        self.assert_refused("UnsupportedData", "D5.dcm: is one of 1 slices at 5 mm", "expected 2", "missing")
 
     def test_planes_that_do_not_fit_are_refused(self):
         def refused(parts, **tags):

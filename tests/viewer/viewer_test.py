@@ -228,7 +228,7 @@ class Viewer(unittest.TestCase):
         browser = self.view("one", self.folder / "balls.vtkhdf", "--tracks", 1)
         label = browser.element("#graph .event.merge").get_attribute("aria-label")
         self.assertRegex(label, r"^t [\d.]+: 2 parts merge \(1 of them drawn\) at \(")
-        self.assertEqual(browser.element("#graph-note").text, "1 of 2 tracks, those that live longest, with 3 of 4 events.")
+        self.assertEqual(browser.element("#graph-note").text, "1 of 2 tracks, those with the longest lifetime, with 3 of 4 events.")
         events = browser.run("return tegl.app.timeline.events()")
         self.assertEqual([(event["parts_in"], event["parts_out"]) for event in events if event["kind"] == "merge"], [(2, 1)])
         write_balls(self.folder / "apart.nrrd", is_backwards=True)
@@ -584,7 +584,7 @@ class Viewer(unittest.TestCase):
         tegl("contour", self.folder / "ras.nii", "--iso", 0, "-o", self.folder / "saved.ply", "-q")
         browser = self.view("saved", self.folder / "saved.ply")
         self.assertEqual(ends(browser), "")
-        self.assertIn("is not known", browser.element("#world").text)
+        self.assertIn("are unknown", browser.element("#world").text)
         browser = self.view("told", self.folder / "saved.ply", "--world", "lps")
         self.assertEqual(ends(browser), "RLAPIS")
         self.assertLess(browser.run(side), 0)
@@ -598,14 +598,14 @@ class Viewer(unittest.TestCase):
         # What is turned around says so.
         self.assertNotIn("mirror", browser.element("#world").text)
         browser.element("#flip").click()
-        self.assertIn("Shown as in a mirror", browser.element("#world").text)
+        self.assertIn("The view is a mirror image", browser.element("#world").text)
         # Worlds that differ are not mixed silently.
         write_nrrd(self.folder / "lps.nrrd", (8, 8, 8), lambda x, y, z: 3 - ((x - 4)**2 + (y - 4)**2 + (z - 4)**2)**0.5,
                    'space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace units: "mm" "mm" "mm"\n')
         self.assertEqual(ends(self.view("lps", self.folder / "lps.nrrd", "--iso", 0)), "RLAPIS")
         browser = self.view("mixed", self.folder / "ras.nii", self.folder / "lps.nrrd", "--iso", 0)
         self.assertEqual(ends(browser), "")
-        self.assertIn("different worlds, RAS and LPS", browser.element("#notice").text)
+        self.assertIn("different world frames, RAS and LPS", browser.element("#notice").text)
         # Nor has the ocean sides of a patient.
         self.assertEqual(ends(self.open()) + browser.element("#world").text, "")
 
@@ -629,9 +629,9 @@ class Viewer(unittest.TestCase):
                  "tegl.time = null": "tegl.time: null; expected a number",
                  "tegl.clip(7, 0, 1)": "tegl.clip: 7; expected an axis, 0 to 2 (x, y, z)",
                  "tegl.clip('x', 0, 1)": "tegl.clip: 'x'; expected an axis",
-                 "tegl.clip(0, 10, -10)": "tegl.clip: [10,-10]; expected two shares of the axis from 0 to 1",
-                 "tegl.clip(0, 0.8, 0.2)": "tegl.clip: [0.8,0.2]; expected two shares",
-                 "tegl.clip(0)": "tegl.clip: [undefined,undefined]; expected two shares",
+                 "tegl.clip(0, 10, -10)": "tegl.clip: [10,-10]; expected two fractions of the axis from 0 to 1",
+                 "tegl.clip(0, 0.8, 0.2)": "tegl.clip: [0.8,0.2]; expected two fractions",
+                 "tegl.clip(0)": "tegl.clip: [undefined,undefined]; expected two fractions",
                  "tegl.theme('blue')": "tegl.theme: 'blue'; expected 'light', 'dark'",
                  "tegl.play(1)": "tegl.play: 1; expected true or false"}
         browser = self.open()
@@ -651,7 +651,7 @@ class Viewer(unittest.TestCase):
         tegl("slice", self.folder / "balls.vtkhdf", "--at", "t=1", "-o", self.folder / "still.ply", "-q")
         browser = self.view("still", self.folder / "still.ply")
         for call in ("tegl.time = 1", "tegl.play(true)"):
-            self.assertIn("expected a page with a contour in 4D", browser.run(f"try {{ {call} }} catch (error) {{ return error.message }}"))
+            self.assertIn("expected a page with a 4D contour", browser.run(f"try {{ {call} }} catch (error) {{ return error.message }}"))
 
     def test_the_screenshot_is_a_png_of_the_canvas(self):
         browser = self.open()

@@ -24,11 +24,12 @@ constexpr const char* kExamples =
 class CheckCommand final : public Command {
  public:
   explicit CheckCommand(CLI::App& program)
-      : Command(program, "check", "Count the faults of a mesh: is it an oriented manifold?",
+      : Command(program, "check", "Check whether a mesh is an oriented manifold, and count its faults",
                 "the mesh: .ply, .gltf, .glb, .vtkhdf, .stl or .obj") {
     add_quiet();
     app()
-        .add_option("--require", required_, "fail also unless: closed (no border), nondegenerate (no zero sizes)")
+        .add_option("--require", required_,
+                    "further requirements: closed (no border), nondegenerate (no simplices of zero size)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"closed", "nondegenerate"}));
@@ -63,16 +64,17 @@ class CheckCommand final : public Command {
   /// Texts for a mesh of unknown origin.
   static Wording wording() {
     Wording wording;
-    wording.no_size = "of a contour by tegl: where samples equal the isovalue, which --epsilon there avoids";
+    wording.no_size = "if tegl made the contour: samples equal the isovalue; 'tegl contour --epsilon' avoids them";
     return wording;
   }
 
   [[nodiscard]] std::string missed_requirement(const MeshReport& report) const {
     for (const std::string& requirement : required_) {
-      if (report.simplices == 0) return fmt::format("empty, unlike --require {} demands", requirement);
-      if (requirement == "closed" && report.boundary_simplices > 0) return "not closed, as --require closed demands";
+      if (report.simplices == 0) return fmt::format("empty; --require {} expects simplices", requirement);
+      if (requirement == "closed" && report.boundary_simplices > 0)
+        return "has a border; --require closed expects none";
       if (requirement == "nondegenerate" && report.degenerate_simplices > 0) {
-        return "has simplices of zero size, unlike --require nondegenerate demands";
+        return "has simplices of zero size; --require nondegenerate expects none";
       }
     }
     return {};

@@ -27,8 +27,8 @@ constexpr const char* kExamples =
     "  tegl components head.nii.gz --iso 60 --largest 1 -o skin.ply\n"
     "  tegl components cells.vtkhdf --select 'size > 10 and t contains 7.3' -o some.vtkhdf\n"
     "  tegl components cells.ply --select 'closed and x within 0..50' --split 'cell_{label}.ply'\n"
-    "Conditions: label, rank (1: the largest), vertices, simplices, size (length, area or volume), content (what is\n"
-    "enclosed; negative for a cavity), euler, boundary: with <, <=, >, >=, =, != and a number; closed, open;\n"
+    "Conditions: label, rank (1: the largest), vertices, simplices, size (length, area or volume), content (enclosed\n"
+    "area or volume; negative for a cavity), euler, boundary: with <, <=, >, >=, =, != and a number; closed; open;\n"
     "AXIS contains NUMBER, AXIS meets LOW..HIGH, AXIS within LOW..HIGH for the range that the component has along an\n"
     "axis; AXIS.min, AXIS.max, AXIS.span, AXIS.centroid; and, or, not, parentheses.";
 
@@ -67,24 +67,29 @@ std::string integer(double value) { return fmt::format("{:.0f}", value); }
 class ComponentsCommand final : public ContourInputCommand {
  public:
   explicit ComponentsCommand(CLI::App& program)
-      : ContourInputCommand(program, "components", "The connected components of a contour: what each is, and some") {
+      : ContourInputCommand(program, "components",
+                            "List the connected components of a contour, and write some or all of them") {
     app()
-        .add_option("--select", conditions_, "only components that fulfil the condition; given again: all of them")
+        .add_option("--select", conditions_,
+                    "only components that meet this condition; several conditions must all be met")
         ->allow_extra_args(false)
         ->type_name("CONDITION");
     app()
-        .add_option("--largest", largest_, "of these, so many, the largest by size")
+        .add_option("--largest", largest_, "only this many of them, the largest by size")
         ->check(whole_number(1))
         ->type_name("COUNT");
     app()
-        .add_option("-o,--output", output_,
-                    fmt::format("one file with the components chosen, their labels as attribute: {}", kContourFiles))
+        .add_option(
+            "-o,--output", output_,
+            fmt::format("one file with the selected components and their labels as an attribute: {}", kContourFiles))
         ->type_name("FILE");
     compress_.add_to(app());
-    app().add_option("--split", split_, "a file for each; {label} in the name stands for its label")->type_name("FILE");
+    app()
+        .add_option("--split", split_, "one file per component; {label} in the name is replaced by its label")
+        ->type_name("FILE");
     app().add_option("--csv", csv_, "the table as CSV")->type_name("FILE");
     app()
-        .add_option("--rows", rows_, "rows of the table that is shown, the largest first; 0: all")
+        .add_option("--rows", rows_, "number of table rows shown, the largest components first; 0: all")
         ->check(whole_number(0))
         ->type_name("COUNT")
         ->capture_default_str();
@@ -126,8 +131,10 @@ class ComponentsCommand final : public ContourInputCommand {
     require_different_outputs(outputs);
     if (split_.empty()) return;
     if (split_.find(kLabel) == std::string::npos)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--split is '{}'; expected {{label}} in it, for the label of each component", split_));
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--split is '{}'; expected a name with {{label}}, which the label of each component replaces",
+                      split_));
     require_output(split_name(0), files());
     require_output_keeps(split_name(0), normals(), false);
     compress_.require_known(split_name(0));
@@ -158,8 +165,9 @@ class ComponentsCommand final : public ContourInputCommand {
     choose(found, conditions);
     WrittenFiles written;
     if (!output_.empty()) {
-      add_component_attribute(contour, labels);
-      const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen, bar.stage("select")), input);
+      contour = add_component_attribute(std::move(contour), labels);
+      const Mesh mesh =
+          mesh_of(select_components(contour, labels, found.chosen, {threads(), bar.stage("select")}), input);
       const Progress progress = bar.stage("write");
       written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress, compress_.compression()); });
       lost_ = lost_vertices(mesh, output_);
@@ -183,7 +191,7 @@ class ComponentsCommand final : public ContourInputCommand {
           std::all_of(conditions.begin(), conditions.end(), [&](const auto& condition) { return condition(facts); }));
     std::vector<std::size_t> order = by_size(found);
     if (order.empty() && !found.facts.empty())
-      throw Error(ErrorCode::EmptyResult, fmt::format("none of the {} fulfils the condition; expected one at least",
+      throw Error(ErrorCode::EmptyResult, fmt::format("none of the {} meets the conditions; expected at least one",
                                                       counted(found.facts.size(), "component", "components")));
     for (std::size_t i = largest_; largest_ > 0 && i < order.size(); ++i) found.chosen[order[i]] = false;
   }
@@ -208,7 +216,7 @@ class ComponentsCommand final : public ContourInputCommand {
       throw Error(ErrorCode::InvalidArgument, fmt::format("--split would write {} files; expected at most {} (choose "
                                                           "components with --select or --largest)",
                                                           count, kMostFiles));
-    const std::vector<Contour<N, double>> parts = split_components(contour, labels, bar.stage("split"));
+    const std::vector<Contour<N, double>> parts = split_components(contour, labels, {threads(), bar.stage("split")});
     const Progress progress = bar.stage("write");
     std::size_t done = 0;
     LostVertices lost;
@@ -282,8 +290,8 @@ class ComponentsCommand final : public ContourInputCommand {
       return !unit ? without : unit->empty() ? "none" : unit->c_str();
     };
     text += report_line("units", fmt::format("{}: {}, enclosed: {}", measure_name(dim, dim + 1),
-                                             named(size_unit, "mixed, as the axes have several"),
-                                             named(in, "in part none, as some axes have none")));
+                                             named(size_unit, "mixed (the axes have different units)"),
+                                             named(in, "incomplete (some axes have no unit)")));
     text += shown_table(found, dim).to_text(rows_ == 0 ? chosen : rows_);
     if (rows_ != 0 && chosen > rows_)
       text += fmt::format("  ... and {} smaller ones (--rows 0 shows all)\n", grouped(chosen - rows_));

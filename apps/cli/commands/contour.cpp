@@ -74,36 +74,34 @@ void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
 class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
-      : Command(program, "contour", "The contour of an image in 2D, 3D or 4D",
-                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); several files are "
-                "one image with an axis "
-                "more",
+      : Command(program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D, 3D or 4D",
+                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); several files form "
+                "one image with one more axis",
                 Files::image) {
     options_.add_to(app(), true);
     app()
         .add_option("-o,--output", output_,
                     std::string("the result: ") + kContourFiles +
-                        "; with --facets .vtu or, in 2D and 3D, .vtkhdf; with several isovalues {iso} in it stands for "
-                        "the number, {n} for its place")
+                        "; with --facets .vtu or, in 2D and 3D, .vtkhdf; with several isovalues, {iso} in the name is "
+                        "replaced by the isovalue and {n} by its position")
         ->type_name("FILE")
         ->required();
     app().add_flag("--one-file", one_file_,
                    "several isovalues: all contours in one file, with the isovalue as an attribute");
     app().add_flag("--facets", facets_, "the contour without triangulation: segments, polygons or polyhedra");
-    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    app().add_flag("--no-check", no_check_, "skip the check of the result");
     app()
-        .add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote")
+        .add_option("--index", index_, "an index of the image's active tiles, written by 'tegl index'")
         ->type_name("FILE");
     app()
-        .add_option(
-            "--pick", pick_,
-            "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
-            "the image's axes")
+        .add_option("--pick", pick_,
+                    "only the component nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D), in the units of the "
+                    "image's axes")
         ->type_name("X,Y,Z[,T]");
     attributes_.add_to(app());
     compress_.add_to(app());
     app().add_flag("--stream", stream_,
-                   "read layer by layer and write as it comes, with little memory: one FILE of any format, --raw, or "
+                   "read and write layer by layer, with little memory: one FILE of any format, --raw, or "
                    "several FILEs, "
                    "to .vtkhdf");
     add_image_options();
@@ -133,7 +131,8 @@ class ContourCommand final : public Command {
       also_read({index_});
       require_input(index_);
       if (is_streamed())
-        throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream");
+        throw Error(ErrorCode::InvalidArgument,
+                    "--index with --stream; expected one of the two: an index needs the image in memory");
     }
     also_read(attributes_.files());
     attributes_.require_inputs();
@@ -168,9 +167,9 @@ class ContourCommand final : public Command {
                               facets_ ? "--facets" : "--stream"));
     for (const char* const place : {"{iso}", "{n}"})
       if (output_.find(place) != std::string::npos)
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("--output is '{}' with --one-file; expected a name without {}, as there is one file",
-                                output_, place));
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format("--output is '{}' with --one-file; expected a name without {}, for one file", output_, place));
   }
 
   /// Reports one object for one isovalue, a list for several.
@@ -286,8 +285,9 @@ class ContourCommand final : public Command {
     std::vector<double> point;
     if (app().count("--pick") == 0) return point;
     if (is_streamed() || !index_.empty() || facets_)
-      throw Error(ErrorCode::InvalidArgument,
-                  "--pick finds tiles from its point, in memory; expected no --index, --facets or --stream");
+      throw Error(
+          ErrorCode::InvalidArgument,
+          "--pick with --index, --facets or --stream; expected --pick without them: it searches the image in memory");
     for (std::size_t at = 0; at <= pick_.size();) {
       const std::size_t comma = std::min(pick_.find(',', at), pick_.size());
       point.push_back(parse_finite("--pick", std::string_view(pick_).substr(at, comma - at)));
@@ -358,9 +358,11 @@ class ContourCommand final : public Command {
     // validate options and files
     const auto given = options_.given();
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--facets with {}; expected one of the two: facets are in memory and not triangulated",
-                              is_streamed() ? "--stream" : "--triangulation"));
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format(
+              "--facets with {}; expected one of the two: facets need the image in memory and are not triangulated",
+              is_streamed() ? "--stream" : "--triangulation"));
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}, which is for simplices; expected {}",
@@ -406,7 +408,7 @@ class ContourCommand final : public Command {
     for (const ContourResult& result : results) require_output_grows(result.output);
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
+                  fmt::format("{} with a streamed contour, which is never in memory as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
     // open, extract and write in one pass
@@ -425,8 +427,10 @@ class ContourCommand final : public Command {
   static void require_output_grows(const std::string& output) {
     const MeshFileFormat* const format = find_mesh_file_format(output);
     if (format != nullptr && format->extension == ".vtkhdf") return;
-    throw Error(ErrorCode::WriteFailed,
-                fmt::format("{}: a streamed contour needs a file that can grow; expected .vtkhdf", output));
+    throw Error(
+        ErrorCode::WriteFailed,
+        fmt::format("{}: this format cannot be written in parts, which a streamed contour needs; expected .vtkhdf",
+                    output));
   }
 
   ExtractionOptions options_;

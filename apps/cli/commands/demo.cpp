@@ -38,8 +38,8 @@ constexpr const char* kExamples =
     "  tegl demo\n"
     "  tegl demo --frames 240\n"
     "  tegl demo --no-animation\n"
-    "The map shows the world from above: the brighter, the deeper one has to dive until the water is colder than\n"
-    "20 degrees; '.' is land. It plays on a terminal alone; elsewhere the report comes with one map as text.";
+    "The map of the world shows the depth at which the water becomes colder than 20 degrees: brighter is deeper, '.'\n"
+    "is land. The animation plays on a terminal only; otherwise the report contains one map as text.";
 
 constexpr double kIsovalue = 20;
 
@@ -51,7 +51,7 @@ fs::path find_data() {
   if (!fs::exists(data, error))
     throw Error(
         ErrorCode::FileNotFound,
-        fmt::format("{}: the demo's data are missing; expected them there, as tegl is installed", data.string()));
+        fmt::format("{}: the demo's data are missing; expected the file that is installed with tegl", data.string()));
   return data;
 }
 
@@ -179,14 +179,15 @@ std::string month_text(double t) {
 class DemoCommand final : public Command {
  public:
   explicit DemoCommand(CLI::App& program)
-      : Command(program, "demo", "See what tegl does, on data that come with it", "no file") {
+      : Command(program, "demo", "Show an animation and a report of the data that come with tegl", "no file") {
     app().remove_option(app().get_option("FILE"));
     app()
-        .add_option("--frames", frames_, "of the animation")
+        .add_option("--frames", frames_, "frames of the animation")
         ->check(whole_number(2, 100000))
         ->type_name("COUNT")
         ->capture_default_str();
-    app().add_flag("--no-animation", no_animation_, "one map at the beginning of August in its place");
+    app().add_flag("--no-animation", no_animation_,
+                   "show one map, of the beginning of August, instead of the animation");
     add_quiet();
     app().footer(kExamples);
   }
@@ -321,10 +322,10 @@ class DemoCommand final : public Command {
     } else if (with_map) {
       const Map map = draw_world(*width, image, slice(contour, kTimes[2]));
       text += console.has_colours() && knows_unicode() ? coloured(map) : plain(map);
-      text += fmt::format("How deep the water is 20 degrees warm or more, at t = {} ({})\n\n", kTimes[2],
-                          month_text(kTimes[2]));
+      text +=
+          fmt::format("Depth of the water of 20 degrees or more at t = {} ({})\n\n", kTimes[2], month_text(kTimes[2]));
     }
-    text += fmt::format("{}\n", console.bold("Where the world's ocean is 20 degrees warm, through a year"));
+    text += fmt::format("{}\n", console.bold("The 20 degree surface of the world's ocean over a year"));
     text += report_line("data", data.string());
     text += report_line(
         "image", fmt::format("{} x {} x {} x {} samples: longitude, latitude, depth, month", image.grid.axes[0].size(),
@@ -336,8 +337,8 @@ class DemoCommand final : public Command {
                           fmt::format("t = {:5.2f}, {:<12} {}", t, month_text(t),
                                       counted_simplices(2, slice(contour, t).simplices.size())));
     text += fmt::format(
-        "\nTime is an axis like the others: the data have 12 months, the film as many moments as you like.\n\n{}\n",
-        console.bold("What next"));
+        "\nTime is an axis like the others: the data have 12 months, the animation any number of times.\n\n{}\n",
+        console.bold("Next steps"));
     text += "  DATA=" + printable(data.string()) + "\n";
     for (const char* const command : {"tegl info $DATA", "tegl contour $DATA --iso 20 -o ocean.vtkhdf",
                                       "tegl slice ocean.vtkhdf --at t=7.3 -o july.ply",

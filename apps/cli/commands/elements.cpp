@@ -28,8 +28,8 @@ constexpr const char* kExamples =
     "  tegl elements hydro.nc --var e --iso 0.3 --attribute hydro.nc:T --attribute hydro.nc:ux -o surface.dat "
     "--header\n"
     "  tegl elements ocean.vtkhdf -o ocean.h5\n"
-    "Each element is a line: the centroid, then the normal times the volume (d sigma), then attributes, time first.\n"
-    "It is how the surface lies, without a metric: the same for Euclid and for Minkowski.";
+    "Each line is one element: centroid, normal times volume (d sigma), attributes; the time is the first axis.\n"
+    "Elements need no metric: they are the same in Euclidean and Minkowski space.";
 
 /// Result of a run, in one type for all dimensions.
 struct ElementReport {
@@ -62,26 +62,29 @@ class ElementsCommand final : public ContourInputCommand {
  public:
   explicit ElementsCommand(CLI::App& program)
       : ContourInputCommand(program, "elements",
-                            "A contour as centroids with normal vectors times volume, as freeze-out codes take them") {
+                            "Write a contour as centroids and normals times volume, the input of freeze-out codes") {
     app()
-        .add_option("-o,--output", output_, "the elements: .dat or .txt (columns as Cornelius has them), or .h5")
+        .add_option("-o,--output", output_, "the elements: .dat or .txt (with the columns of Cornelius), or .h5")
         ->type_name("FILE")
         ->required();
     app()
         .add_option("--per", per_,
-                    "an element for each simplex, or for each piece of the contour in a cell of the image's grid")
+                    "one element per simplex, or per connected part of the contour in a cell of the image's grid")
         ->check(CLI::IsMember({"simplex", "cell"}))
         ->capture_default_str();
     attributes_.add_to(app());
     app()
-        .add_option("--order", order_, "of the axes in the file: time-first (the last axis leads), or as-is")
+        .add_option("--order", order_,
+                    "order of the axes in the file: time-first (the last axis becomes the first) or as-is")
         ->check(CLI::IsMember({"time-first", "as-is"}))
         ->capture_default_str();
     app()
-        .add_option("--components", components_, "of the normals; contravariant: by the metric (+,-,-,-), time last")
+        .add_option(
+            "--components", components_,
+            "components of the normals: covariant, or contravariant by the metric (+,-,-,-) with + for the last axis")
         ->check(CLI::IsMember({"covariant", "contravariant"}))
         ->capture_default_str();
-    app().add_flag("--header", header_, "text: a first line with the names of the columns");
+    app().add_flag("--header", header_, "text files: a first line with the names of the columns");
     app().footer(kExamples);
   }
 
@@ -93,7 +96,7 @@ class ElementsCommand final : public ContourInputCommand {
     attributes_.require_inputs();
     if (per_ == "cell" && find_mesh_file_format(file()) != nullptr)
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--per cell with {}, a saved contour, which knows no cells; expected an image", file()));
+                  fmt::format("--per cell with {}, a saved contour, which has no cells; expected an image", file()));
     // read and make elements
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, per_ == "cell");
@@ -207,11 +210,10 @@ class ElementsCommand final : public ContourInputCommand {
       sum += fmt::format("{}{} {}", a == 0 ? "" : ", ", report.axes[a], number(report.sum[a]));
     return report_line("sum", sum) +
            report_line(
-               "",
-               report.closure_error < 1e-9
-                   ? fmt::format("0 up to rounding ({:.1e} of the whole): it closes up (Gauss)", report.closure_error)
-                   : fmt::format("the contour is open: {:.3g} % of what there is along one axis is not balanced",
-                                 100.0 * report.closure_error));
+               "", report.closure_error < 1e-9
+                       ? fmt::format("0 up to rounding ({:.1e} of the whole): closed (Gauss)", report.closure_error)
+                       : fmt::format("the contour is open: {:.3g} % of the absolute sum along one axis does not cancel",
+                                     100.0 * report.closure_error));
   }
 
   [[nodiscard]] std::string to_text(const Console& console, const ContourInput& input,
@@ -220,7 +222,7 @@ class ElementsCommand final : public ContourInputCommand {
         fmt::format("{}\n", console.bold(fmt::format("Elements of a contour in {}D", input.space_dim())));
     text += input_text(input);
     text += report_line("elements", fmt::format("{}, one per {}", grouped(report.count),
-                                                per_ == "cell" ? "piece in a cell" : "simplex"));
+                                                per_ == "cell" ? "connected part in a cell" : "simplex"));
     if (report.count > 0) text += sum_text(report);
     text += report_line("measure", number(report.measure));
     for (const auto& range : report.attributes) {

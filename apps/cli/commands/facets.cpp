@@ -35,7 +35,7 @@ std::string fault_text(const FacetReport& report) {
   const auto add = [&](std::uint64_t count, const char* what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
   };
-  add(report.branching, "ridges that do not bound one or two facets");
+  add(report.branching, "ridges that bound neither one nor two facets");
   add(report.conflicts, "orientation conflicts");
   add(report.open_boundaries, "facets with an open boundary");
   return text;
@@ -146,10 +146,10 @@ std::string to_text(const Console& console, const FacetsResult& result) {
     const auto& [singular, plural] = kFacetNames.at(static_cast<std::size_t>(result.image_dim - 2));
     text += report_line("border", report.border == 0 ? "none: closed" : counted(report.border, singular, plural));
     const std::string faults = fault_text(report);
-    text += report_line("check",
-                        faults.empty() ? console.green("facets meet two by two, oriented alike") : console.red(faults));
+    text += report_line(
+        "check", faults.empty() ? console.green("oriented; at most two facets at each ridge") : console.red(faults));
   } else {
-    text += report_line("check", "left out");
+    text += report_line("check", "skipped");
   }
   text += report_line("seconds", fmt::format("{:.3f}", result.seconds.total()));
   return text + report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
@@ -189,10 +189,9 @@ std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const 
   using Triangles = std::variant<Contour<3, float>, Contour<3, double>>;
   const auto* const typed = std::get_if<AnyImageN<3>>(&image);
   if (typed == nullptr)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--triangulation is for polygons, and the contour of a {}D image has none; expected "
-                            "compact or barycentric",
-                            image_dim(image)));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--triangulation is for the polygons of 3D images; the image "
+                                                        "has {} dimensions: expected compact or barycentric",
+                                                        image_dim(image)));
   ExtractOptions options = work.options;
   options.progress = bar.stage("facets");
   Stopwatch watch;

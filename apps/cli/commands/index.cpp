@@ -29,8 +29,8 @@ constexpr const char* kExamples =
     "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
     "  tegl index ocean.nc --var TEMP --method min-max-tree -o ocean.tindex\n"
     "  tegl info ocean.tindex\n"
-    "An index finds the tiles that a contour passes without looking at all of them. It belongs to one image: the\n"
-    "same values, in the same order.";
+    "An index finds the active tiles (the grid cells that a contour crosses) without scanning the image. It is valid\n"
+    "for one image only: the same values in the same order.";
 
 /// The result of building and writing.
 struct IndexResult {
@@ -76,31 +76,31 @@ std::string to_text(const Console& console, const IndexResult& result) {
 class IndexCommand final : public Command {
  public:
   explicit IndexCommand(CLI::App& program)
-      : Command(program, "index", "An index of an image's active tiles, for contours at many isovalues",
+      : Command(program, "index", "Build an index of an image's active tiles, for contours at many isovalues",
                 "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder)", Files::image) {
     std::vector<std::string> names;
     for (const ActiveMethod method : active_methods()) names.emplace_back(active_method_name(method));
-    app().add_option("-o,--output", output_, "the index; FILE with .tindex behind it if left out")->type_name("FILE");
     app()
-        .add_option("--method", method_,
-                    "how active tiles are to be found: docs/active-tiles.md says when to use which")
+        .add_option("-o,--output", output_, "the index; default: the name of FILE followed by .tindex")
+        ->type_name("FILE");
+    app()
+        .add_option("--method", method_, "search structure for active tiles; docs/active-tiles.md compares them")
         ->check(CLI::IsMember(names))
         ->capture_default_str();
     std::vector<std::string> seeds;
     for (const SeedMethod method : seed_methods()) seeds.emplace_back(seed_method_name(method));
     app()
-        .add_option("--seeds", seeds_, "with --method seed-set: how seeds are found (docs/seed-sets.md)")
+        .add_option("--seeds", seeds_, "with --method seed-set: method that selects the seeds (docs/seed-sets.md)")
         ->check(CLI::IsMember(seeds))
         ->capture_default_str();
     app()
-        .add_option(
-            "--scan-order", scan_order_,
-            "with --method seed-set: the axes, the one that a scan runs along first, such as 2,0,1; 'cover' and "
-            "'volume-thinning' do not depend on it")
+        .add_option("--scan-order", scan_order_,
+                    "with --method seed-set: order of the axes, the axis of a scan line first, such as 2,0,1; 'cover' "
+                    "and 'volume-thinning' do not depend on it")
         ->type_name("AXES")
         ->delimiter(',');
     app()
-        .add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
+        .add_option("--threads", threads_, "number of threads; 0: all processors")
         ->type_name("COUNT")
         ->check(CLI::Range(0u, 4096u).description(""))
         ->capture_default_str();

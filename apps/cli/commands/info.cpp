@@ -23,9 +23,9 @@ constexpr const char* kExamples =
     "  tegl info brain.nii.gz\n"
     "  tegl info ocean.nc --var TEMP --json\n"
     "  tegl info ensemble.nc --fix member=3\n"
-    "Suggested values: 'otsu' splits the values into two classes best, 'contrast' has the steepest mean step\n"
-    "along its contour, 'median' and 'percentile p' leave 50 or p % of the samples below. 'edges' is the number\n"
-    "of grid edges that the contour cuts: about the number of its vertices.";
+    "Suggested values: 'otsu' is Otsu's threshold between two classes, 'contrast' has the largest mean gradient\n"
+    "along its contour, 'median' and 'percentile p' have 50 or p % of the samples below. 'edges' is the number\n"
+    "of grid edges that the contour crosses: about the number of its vertices.";
 constexpr std::size_t kJsonBins = 256;
 constexpr std::size_t kTextBins = 16;
 constexpr std::size_t kMostAxes = 4;
@@ -234,7 +234,7 @@ std::string values_text(const Console& console, const Description& description) 
   std::string text =
       report_line("samples", fmt::format("{}, {} missing", grouped(values.samples), grouped(values.missing)));
   if (values.infinite > 0)
-    text += report_line("", fmt::format("{} infinite, left out below", grouped(values.infinite)));
+    text += report_line("", fmt::format("{} infinite, excluded below", grouped(values.infinite)));
   if (values.finite() == 0) return text + report_line("values", "none: all samples are missing or infinite");
   text += report_line("values", fmt::format("{} .. {}{}, mean {}, std {}", number(values.min), number(values.max), unit,
                                             number(values.mean), number(values.deviation)));
@@ -243,7 +243,7 @@ std::string values_text(const Console& console, const Description& description) 
     percentiles += fmt::format("{}{} %: {}", percentiles.empty() ? "" : ", ", percent, number(value));
   }
   text += report_line("percentiles", percentiles);
-  text += fmt::format("\n{}\n", console.bold("Histogram (from each value on; bars: square root of the count)"));
+  text += fmt::format("\n{}\n", console.bold("Histogram (lower bound of each bin; bar: square root of the count)"));
   text += histogram_text(values.histogram, console.width());
   if (values.suggestions.empty())
     return text +
@@ -328,7 +328,7 @@ class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
       : Command(
-            program, "info", "What is in a file: axes, values, histogram, isovalues worth a try",
+            program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
             "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); or an index (.tindex)",
             Files::image) {
     add_image_options();
@@ -340,9 +340,8 @@ class InfoCommand final : public Command {
     // an index file
     if (is_index_file(file())) {
       if (const auto given = images().given(); !given.empty() || files().size() > 1)
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("{} is an index, which has no variables; expected it alone, without {}", file(),
-                                given.empty() ? "other files" : given.front()));
+        throw Error(ErrorCode::InvalidArgument, fmt::format("{} is an index, not an image; expected it without {}",
+                                                            file(), given.empty() ? "other files" : given.front()));
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }

@@ -26,7 +26,7 @@ constexpr const char* kExamples =
     "  tegl contour ocean.nc --iso 20 --close -o ocean.vtkhdf\n"
     "  tegl measure ocean.vtkhdf --at t=1.5,3.25,7.3\n"
     "  tegl measure ocean.vtkhdf --samples 100 --csv curve.csv\n"
-    "What an open contour encloses is not defined; --close closes the contour of an image at its border.";
+    "Only closed contours have an enclosed area or volume; --close closes the contour of an image at its border.";
 
 /// The measures, independent of the dimension.
 struct Found {
@@ -44,13 +44,15 @@ class MeasureCommand final : public ContourInputCommand {
  public:
   explicit MeasureCommand(CLI::App& program)
       : ContourInputCommand(program, "measure",
-                            "Length, area or volume of a contour, what it encloses, and over time") {
+                            "Measure a contour: length, area or volume, enclosed volume, and both over time") {
     app()
-        .add_option("--at", at_, "also of the cuts there: t=7.3, or the last axis by its own name; t=1,2.5 for several")
+        .add_option("--at", at_,
+                    "measure the cuts at these times too: t=7.3, or the name of the last axis; t=1,2.5 for several")
         ->allow_extra_args(false)
         ->type_name("AXIS=NUMBER");
     app()
-        .add_option("--samples", samples_, "also of so many cuts, evenly from the contour's first to its last")
+        .add_option("--samples", samples_,
+                    "measure this many cuts too, evenly spaced from the contour's first to its last time")
         ->check(whole_number(2, 1000000))
         ->type_name("COUNT");
     app().add_option("--csv", csv_, "the measures of the cuts as CSV")->type_name("FILE");
@@ -63,7 +65,7 @@ class MeasureCommand final : public ContourInputCommand {
     if (!csv_.empty()) {
       require_text_output(csv_, files());
       if (cuts.empty() && samples_ == 0)
-        throw Error(ErrorCode::InvalidArgument, "--csv without cuts; expected --at or --samples too");
+        throw Error(ErrorCode::InvalidArgument, "--csv without cuts; expected also --at or --samples");
     }
     ProgressBar bar(streams.err, wants_progress());
     const ContourInput input = read_contour(bar);
@@ -187,9 +189,8 @@ class MeasureCommand final : public ContourInputCommand {
     const std::optional<std::string> unit = measure_unit(all, dim);
     std::string text = fmt::format("{}\n", console.bold(fmt::format("Measures of a contour in {}D", dim + 1)));
     text += input_text(input);
-    text +=
-        report_line(measure_name(dim, dim + 1), with_unit(number(found.size), unit) +
-                                                    (unit ? "" : " (of axes in different units: of little meaning)"));
+    text += report_line(measure_name(dim, dim + 1),
+                        with_unit(number(found.size), unit) + (unit ? "" : " (mixes axes of different units)"));
     if (found.content)
       text += report_line("encloses", fmt::format("{} {}", measure_name(dim + 1, dim + 1),
                                                   with_unit(number(*found.content), content_unit(all))));

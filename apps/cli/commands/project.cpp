@@ -25,13 +25,12 @@ namespace {
 
 constexpr const char* kExamples =
     "Examples:\n"
-    "  tegl project heart.nii.gz --iso 400 --close -o swept.glb          (all that the wall sweeps, coloured by time)\n"
+    "  tegl project heart.nii.gz --iso 400 --close -o swept.glb          (the space that the wall sweeps, by time)\n"
     "  tegl project fingers.vtkhdf --as cuts --count 6 -o positions.ply  (six positions in one file)\n"
     "  tegl project fingers.vtkhdf --as tetrahedra -o all.vtkhdf         (everything; cut or clip it in ParaView)\n"
     "  tegl project fingers.vtkhdf --along 1,0,0,0 -o along_x.vtkhdf     (an outline in y, z and t)\n"
-    "The attribute t (or by the axis's name) says when; color is it from dark blue (first) to yellow (last). The "
-    "outline\n"
-    "of a contour that is not closed (--close) is open at the first and the last time.";
+    "The attribute t (or the axis's name) is the time; color shows it from dark blue (first) to yellow (last). The\n"
+    "outline of a contour that is not closed (--close) is open at the first and the last time.";
 
 /// Colours of increasing lightness: viridis, by S. van der Walt and N. Smith, 2015, at eighths.
 constexpr std::array<std::array<double, 3>, 9> kColors = {{{68, 1, 84},
@@ -99,19 +98,20 @@ void append(Mesh& to, const Mesh& more) {
 class ProjectCommand final : public ContourInputCommand {
  public:
   explicit ProjectCommand(CLI::App& program)
-      : ContourInputCommand(program, "project", "A 4D contour seen in space, coloured by time: what it sweeps") {
+      : ContourInputCommand(program, "project",
+                            "Project a 4D contour into space, coloured by time: the region that it sweeps") {
     app()
-        .add_option("--as", kind_, "what to show: the outline of the projection, cuts in one file, or all tetrahedra")
+        .add_option("--as", kind_, "kind of result: the outline of the projection, cuts in one file, or all tetrahedra")
         ->check(CLI::IsMember({"outline", "cuts", "tetrahedra"}))
         ->capture_default_str();
     app()
-        .add_option("--along", along_, "the direction to look along, as 1,0,0,0; else along time")
+        .add_option("--along", along_, "direction of the projection, such as 1,0,0,0; default: along the time")
         ->type_name("A,B,C,D");
     app()
-        .add_option("--eye", eye_, "perspective: how far an eye is before the first time; 0: parallel")
+        .add_option("--eye", eye_, "perspective: distance of the eye before the first time; 0: parallel projection")
         ->type_name("NUMBER");
     app()
-        .add_option("--count", count_, "of --as cuts: how many")
+        .add_option("--count", count_, "number of cuts with --as cuts")
         ->check(whole_number(1, 100000))
         ->type_name("COUNT")
         ->capture_default_str();
@@ -119,7 +119,7 @@ class ProjectCommand final : public ContourInputCommand {
         .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
-    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
     attributes_.add_to(app());
     app().footer(kExamples);
@@ -152,8 +152,8 @@ class ProjectCommand final : public ContourInputCommand {
     result.seconds.slice = watch.lap();
     if (result.mesh.simplices.empty() && !contour->simplices.empty())
       throw Error(ErrorCode::EmptyResult,
-                  "nothing has an outline along this direction: it stands still; expected "
-                  "something that moves (or --as cuts)");
+                  "the projection along this direction has no outline: the contour does not move along it; expected a "
+                  "moving contour, another direction or --as cuts");
     // check, write, report
     if (!no_check_ && kind_ != "tetrahedra") check_result(result, bar);
     write_result(result, bar);
@@ -173,10 +173,10 @@ class ProjectCommand final : public ContourInputCommand {
     wording.heading = kind_ == "outline" ? fmt::format("Outline of a contour in 4D along {}", along)
                       : kind_ == "cuts"  ? fmt::format("{} cuts of a contour in 4D along {}", count_, along)
                                          : fmt::format("Tetrahedra of a contour in 4D, seen along {}", along);
-    wording.unchecked = no_check_ ? "left out" : "left out: projected tetrahedra overlap, and are no manifold";
+    wording.unchecked = no_check_ ? "skipped" : "skipped: projected tetrahedra overlap and are not a manifold";
     if (kind_ == "outline") {
-      wording.no_size = "where the contour lies flat across the direction, as at a closed one's ends";
-      wording.open = "where the contour is open; --close of an image closes it";
+      wording.no_size = "the contour is perpendicular to the direction, as at the first and last time if it is closed";
+      wording.open = "the contour itself is open there; --close closes the contour of an image";
     }
     return wording;
   }

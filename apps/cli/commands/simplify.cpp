@@ -27,9 +27,8 @@ constexpr const char* kExamples =
     "  tegl simplify skull.ply --ratio 0.1 -o tenth.ply\n"
     "  tegl simplify ocean.vtkhdf --count 20000 --scale auto -o small.vtkhdf\n"
     "  tegl simplify head.ply --method fast --ratio 0.05 -o preview.glb\n"
-    "Error and bound are distances: no point of either contour is farther from the other. The result has the bound of\n"
-    "each vertex as the attribute 'simplification_error'. Where axes differ in their units, --scale says what is as "
-    "long as what.";
+    "Errors are distances: no point of either contour is farther than the error from the other. The result has the\n"
+    "bound at each vertex as the attribute 'simplification_error'. --scale relates axes of different units.";
 
 const std::map<std::string, SimplifyMethod> kMethods = {{"quadric", SimplifyMethod::quadric},
                                                         {"facets", SimplifyMethod::facets},
@@ -41,42 +40,41 @@ const std::map<std::string, SimplifyBorder> kBorders = {{"fixed", SimplifyBorder
 class SimplifyCommand final : public ContourInputCommand {
  public:
   explicit SimplifyCommand(CLI::App& program)
-      : ContourInputCommand(program, "simplify", "Fewer simplices, the same manifold, and a bound of the error") {
+      : ContourInputCommand(program, "simplify",
+                            "Simplify a contour: fewer simplices, the same topology, with an error bound") {
     app()
         .add_option("--method", method_,
-                    "quadric: edges, by quadrics; facets: by curvature; vertices: by distance, keeps places; "
-                    "fast: triangles by meshoptimizer")
+                    "quadric: edge collapses by quadric error; facets: by curvature; vertices: by distance, keeps "
+                    "vertex positions; fast: triangles, by meshoptimizer")
         ->check(CLI::IsMember(kMethods))
         ->capture_default_str();
     app()
         .add_option("--ratio", ratio_,
-                    "as many simplices as this share of those there are, 0 to 1, with the least error found; "
-                    "that takes rounds, in 4D minutes (see --no-bound)")
+                    "fraction of the simplices to keep, 0 to 1, with the smallest error found; takes several rounds, "
+                    "in 4D minutes (see --no-bound)")
         ->type_name("NUMBER");
-    app().add_option("--count", count_, "so many simplices")->type_name("COUNT");
-    app().add_option("--max-error", max_error_, "no farther than this from the original")->type_name("NUMBER");
+    app().add_option("--count", count_, "number of simplices to keep")->type_name("COUNT");
+    app().add_option("--max-error", max_error_, "maximum distance between result and original")->type_name("NUMBER");
     app()
-        .add_option("--max-curvature", max_curvature_, "facets: none of more curvature (1 / radius) goes")
+        .add_option("--max-curvature", max_curvature_, "facets: remove no simplices of higher curvature (1 / radius)")
         ->type_name("NUMBER");
     app()
-        .add_option("--border", border_, "of open contours; fixed: untouched; within: vertices move along it")
+        .add_option("--border", border_, "border of open contours; fixed: unchanged; within: vertices move along it")
         ->check(CLI::IsMember(kBorders))
         ->capture_default_str();
     app()
-        .add_option(
-            "--scale", scale_,
-            "a number for each axis, by which its lengths count: 1,1,1,0.5; or auto: axes with other units than "
-            "the first by how fine the contour is along them")
+        .add_option("--scale", scale_,
+                    "weight of lengths along each axis: 1,1,1,0.5; or auto: by the contour's resolution along axes "
+                    "whose unit differs from the first one's")
         ->type_name("NUMBERS|auto");
-    app().add_flag(
-        "--no-bound", no_bound_,
-        "leave out the bound of the error (and that of an earlier simplification), and the rounds that make it small");
-    app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: write what is no manifold, too");
+    app().add_flag("--no-bound", no_bound_,
+                   "skip the error bound, also the one of an earlier simplification, and the rounds that reduce it");
+    app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: also write a result that is not a manifold");
     app()
         .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
-    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
     app().footer(kExamples);
   }
@@ -96,8 +94,13 @@ class SimplifyCommand final : public ContourInputCommand {
     ContourResult result = input.to_result();
     result.output = output_;
     result.compression = compress_.compression();
-    std::visit([&](const auto& contour) { result.mesh = to_mesh(simplified(contour, input, stats, bar)); },
-               input.contour);
+    std::visit(
+        [&](const auto& contour) {
+          auto [fewer, found] = simplified(contour, input, bar);
+          stats = found;
+          result.mesh = to_mesh(std::move(fewer));
+        },
+        input.contour);
     input.contour = AnyContour();
     // check and write
     if (!no_check_) check_result(result, bar);
@@ -119,12 +122,12 @@ class SimplifyCommand final : public ContourInputCommand {
                   "no goal; expected --ratio, --count or --max-error (or --method facets with --max-curvature)");
     if (no_bound_ && !max_error_.empty())
       throw Error(ErrorCode::InvalidArgument,
-                  "--no-bound with --max-error, which needs the bound; expected one of them");
+                  "--no-bound with --max-error, which needs the bound; expected one of the two");
     const auto require_method = [&](bool given, const char* option, const char* method) {
       if (given && method_ != method)
-        throw Error(
-            ErrorCode::InvalidArgument,
-            fmt::format("{} is for --method {}, not for {}; expected the one or the other", option, method, method_));
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("{} is for --method {}, not for --method {}; expected one of the two", option, method,
+                                method_));
     };
     require_method(!max_curvature_.empty(), "--max-curvature", "facets");
     if (!ratio_.empty()) require_between("--ratio", ratio_, 0.0, 1.0);
@@ -144,10 +147,10 @@ class SimplifyCommand final : public ContourInputCommand {
 
   /// Simplifies; error messages name the options of the command line.
   template <int N>
-  static Contour<N, double> simplify_or_explain(const Contour<N, double>& contour, const SimplifyOptions<N>& options,
-                                                SimplifyStats& stats) {
+  static Simplification<N, double> simplify_or_explain(const Contour<N, double>& contour,
+                                                       const SimplifyOptions<N>& options) {
     try {
-      return tegl::simplify(contour, options, &stats);
+      return tegl::simplify(contour, options);
     } catch (const Error& error) {
       if (options.method != SimplifyMethod::fast || error.code() != ErrorCode::UnsupportedData) throw;
       throw Error(error.code(), fmt::format("{} (on the command line: --allow-nonmanifold, --method)", error.what()));
@@ -155,9 +158,8 @@ class SimplifyCommand final : public ContourInputCommand {
   }
 
   template <int N>
-  Contour<N, double> simplified(const Contour<N, double>& contour, const ContourInput& input, SimplifyStats& stats,
-                                ProgressBar& bar) {
-    if (contour.simplices.empty()) return contour;
+  Simplification<N, double> simplified(const Contour<N, double>& contour, const ContourInput& input, ProgressBar& bar) {
+    if (contour.simplices.empty()) return {.contour = contour};
     SimplifyOptions<N> options;
     options.method = kMethods.at(method_);
     options.border = kBorders.at(border_);
@@ -167,12 +169,11 @@ class SimplifyCommand final : public ContourInputCommand {
     if (!max_curvature_.empty()) options.max_curvature = parse_finite("--max-curvature", max_curvature_);
     options.measure = !no_bound_;
     options.allow_nonmanifold = allow_nonmanifold_;
-    options.threads = threads();
     options.scale = scale(contour);
     used_scale_.assign(options.scale.begin(), options.scale.end());
     if (input.image) options.planes = planes<N>(input.image->image);
-    options.progress = bar.stage("simplify");
-    return simplify_or_explain(contour, options, stats);
+    options.work = {threads(), bar.stage("simplify")};
+    return simplify_or_explain(contour, options);
   }
 
   [[nodiscard]] std::uint64_t parse_count() const {
@@ -238,14 +239,12 @@ class SimplifyCommand final : public ContourInputCommand {
   [[nodiscard]] std::string why_not_fewer(const SimplifyStats& stats) const {
     const bool by_count = !ratio_.empty() || !count_.empty();
     if (stats.end == SimplifyEnd::rounds)
-      return fmt::format("none of {} rounds kept --max-error {}, and the contour is left as it was", stats.rounds,
-                         max_error_);
-    if (stats.end == SimplifyEnd::shape)
-      return "what is left may not go, for the topology, the border or the shapes of simplices";
+      return fmt::format("none of {} rounds met --max-error {}; the contour is unchanged", stats.rounds, max_error_);
+    if (stats.end == SimplifyEnd::shape) return "topology, border or the shapes of simplices prevent further removals";
     if (stats.end == SimplifyEnd::error && stats.simplices_after == stats.simplices_before && !max_error_.empty())
-      return fmt::format("nothing may go within --max-error {}", max_error_);
+      return fmt::format("no simplex can be removed within --max-error {}", max_error_);
     if (stats.end == SimplifyEnd::error && by_count)
-      return fmt::format("fewer would go beyond {}", max_error_.empty() ? "--max-curvature" : "--max-error");
+      return fmt::format("fewer simplices would exceed {}", max_error_.empty() ? "--max-curvature" : "--max-error");
     return {};
   }
 
@@ -290,7 +289,7 @@ class SimplifyCommand final : public ContourInputCommand {
                                                 with_unit(number(*stats.error()), unit),
                                                 number(*stats.error_of_original), number(*stats.error_of_result)));
       if (!unit && scale_.empty())
-        lines += report_line("", "the axes have different units, which this mixes; --scale says how");
+        lines += report_line("", "(mixes axes of different units; --scale sets the ratio of their lengths)");
       if (!scale_.empty()) lines += report_line("scale", fmt::format("{:.4g}", fmt::join(used_scale_, ", ")));
     }
     lines += check_text(console, result.size(), result.report);

@@ -32,12 +32,10 @@ constexpr const char* kExamples =
     "  tegl slice ocean.vtkhdf --at x=329.5 -o meridian.vtkhdf       (a surface in y, z and t)\n"
     "  tegl slice ocean.vtkhdf --at t=7.3 --attribute ocean.nc -o july.ply\n"
     "  tegl slice ocean.vtkhdf --plane 1,0,0,5=200 --scale t=10 -o moving.vtkhdf   (where x + 5 t = 200)\n"
-    "An axis goes by the file's name for it or by x, y, z, t; numbers are in its own unit, whole or not. Across an "
-    "axis\n"
-    "the cut has the other axes as its coordinates; else orthonormal ones, which --json reports as 'frame'.\n"
-    "Of an image, the layers beside each cut alone are contoured (of --plane, all of it); a saved contour is cut as "
-    "it\n"
-    "is, all cuts of one direction in one pass.";
+    "An axis has the name in the file or x, y, z, t; numbers are in its unit and need not be whole. A cut across an\n"
+    "axis has the other axes as its coordinates; other cuts have orthonormal ones, which --json reports as 'frame'.\n"
+    "For an image, only the layers next to each cut are contoured (with --plane, all of them). A saved contour is cut\n"
+    "directly, all cuts of one direction in one pass.";
 
 void require_cuttable(int dim, std::string_view what) {
   if (dim == 3 || dim == 4) return;
@@ -173,7 +171,7 @@ void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& 
       auto& own = result.mesh.vertex_attributes;
       if (std::any_of(own.begin(), own.end(), [&](const Attribute& other) { return other.name == all.name; }))
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("--attribute: the contour has an attribute '{}' already; expected another", all.name));
+                    fmt::format("--attribute: the contour already has an attribute '{}'; expected another", all.name));
       const std::size_t end = first + result.mesh.coordinates.size() / (N - 1);
       own.push_back({all.name,
                      all.unit,
@@ -188,10 +186,11 @@ void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& 
 class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
-      : Command(program, "slice", "A cut of a 4D contour at a time, or by any other hyperplane",
-                "a 4D image, or a 4D contour that 'tegl contour' saved (.vtkhdf); or a 3D one", Files::image) {
+      : Command(program, "slice", "Cut a 4D contour at a time, or by any other hyperplane",
+                "a 4D or 3D image, or a 4D or 3D contour saved by 'tegl contour' (.vtkhdf ...)", Files::image) {
     app()
-        .add_option("--at", at_, "where to cut an axis: t=7.3, x=2; t=1,2.5 for several; t=0:10:21 for 21 from 0 to 10")
+        .add_option("--at", at_,
+                    "axis and place of the cut: t=7.3, x=2; t=1,2.5 for several; t=0:10:21 for 21 from 0 to 10")
         ->allow_extra_args(false)
         ->type_name("AXIS=NUMBERS");
     app()
@@ -200,7 +199,7 @@ class SliceCommand final : public Command {
         ->allow_extra_args(false)
         ->type_name("A,B,..=NUMBERS");
     app()
-        .add_option("--scale", scale_, "stretches axes, so that lengths along all of them compare: t=10,z=2")
+        .add_option("--scale", scale_, "factors that stretch axes, to make lengths along them comparable: t=10,z=2")
         ->allow_extra_args(false)
         ->type_name("AXIS=FACTOR");
     options_.add_to(app(), false);
@@ -209,11 +208,11 @@ class SliceCommand final : public Command {
     app()
         .add_option("-o,--output", output_,
                     std::string("the result: ") + kContourFiles +
-                        "; {t} in it stands for the number, {axis} for its axis, {n} for 1, 2, 3 ... with zeros in "
-                        "front, so that films sort")
+                        "; in the name, {t} is replaced by the number, {axis} by its axis, and {n} by 1, 2, 3 ... with "
+                        "leading zeros")
         ->type_name("FILE")
         ->required();
-    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    app().add_flag("--no-check", no_check_, "skip the check of the result");
     add_image_options();
     add_quiet();
     app().footer(kExamples);
@@ -225,7 +224,7 @@ class SliceCommand final : public Command {
     for (Cut& cut : parse_planes(planes_)) cuts.push_back(std::move(cut));
     if (cuts.empty())
       throw Error(ErrorCode::InvalidArgument,
-                  "neither --at nor --plane is given; expected a place to cut, as in --at t=7.3");
+                  "neither --at nor --plane is given; expected one of them, as in --at t=7.3");
     outputs_ = cut_outputs(output_, cuts);
     require_inputs();
     for (const std::string& output : outputs_) {
@@ -356,7 +355,7 @@ class SliceCommand final : public Command {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
     refuse_image_options(files(), given, images(),
-                         "--at, --plane, --scale, --threads, --allow-empty and --output alone");
+                         "only --at, --plane, --scale, --threads, --allow-empty and --output");
     Stopwatch watch;
     const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), options_.allows_empty());
     require_cuts(mesh.space_dim, "contour");

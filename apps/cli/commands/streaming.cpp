@@ -62,7 +62,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
   for (int a = 0; a < N; ++a)
     if (source.grid().axes[a].size() < 2)
       throw Error(ErrorCode::EmptyResult,
-                  fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
+                  fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
                               axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
   // open the output files
   RangedLayers<T, N> layers(source, results);
@@ -114,11 +114,10 @@ void require_open_files(std::size_t contours) {
   limit.rlim_cur = std::min(needed, limit.rlim_max);
   if (needed <= limit.rlim_max && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
   const rlim_t most = std::max(own, limit.rlim_max);
-  throw Error(
-      ErrorCode::InvalidArgument,
-      fmt::format("--iso has {} numbers to be streamed in one pass, each into a file that is open all along, and "
-                  "the system allows {} open files (ulimit -n); expected at most {}: more in several runs",
-                  contours, most, most > kOthers ? most - kOthers : 1));
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("--iso has {} numbers; --stream keeps a file open for each, and the system allows {} open "
+                          "files (ulimit -n): expected at most {} numbers per run",
+                          contours, most, most > kOthers ? most - kOthers : 1));
 }
 
 std::vector<std::string> stream_contours(OpenLayersResult& input, const StreamOptions& options,

@@ -32,9 +32,9 @@ constexpr const char* kExamples =
     "  tegl contour heart.nii.gz --iso 400 -o heart.vtkhdf\n"
     "  tegl track heart.vtkhdf --min-lifetime 0.5 -o heart.json -o heart.dot --csv heart\n"
     "  tegl track heart.vtkhdf --largest 5 -o heart.svg -o by_track.vtkhdf\n"
-    "Each part of the moving surface is followed from its birth to its death, through merges and splits, at their\n"
+    "Each part of the moving surface is tracked from birth to death, through merges and splits, at their\n"
     "exact times between the steps. 'begin' and 'end' are at the first and last step of the data, 'enter' and 'leave'\n"
-    "at the image's other borders and beside missing values.";
+    "at the image's other borders and at missing values.";
 
 /// Adds attributes with the track and the segment in which each simplex first appears; -1: none.
 template <int N>
@@ -88,7 +88,7 @@ std::vector<std::pair<std::string, std::size_t>> kinds_of(const TrackGraph& grap
 class TrackCommand final : public ContourInputCommand {
  public:
   explicit TrackCommand(CLI::App& program)
-      : ContourInputCommand(program, "track", "What becomes of the parts of a moving contour") {
+      : ContourInputCommand(program, "track", "Track the parts of a moving contour: births, merges, splits, deaths") {
     app()
         .add_option("-o,--output", outputs_,
                     "the graph as .json or .dot, its picture as .svg, or the contour with the track of each simplex "
@@ -98,22 +98,23 @@ class TrackCommand final : public ContourInputCommand {
         .add_option("--csv", csv_, "tables: NAME-events.csv, NAME-segments.csv and NAME-samples.csv")
         ->type_name("NAME");
     app()
-        .add_option(
-            "--min-lifetime", min_lifetime_,
-            "leave out branches that live shorter than this, in the unit of the last axis; what splits and merges "
-            "again goes only if none of its ways splits in between")
+        .add_option("--min-lifetime", min_lifetime_,
+                    "remove branches with a shorter lifetime, in the unit of the last axis; parts that split and merge "
+                    "again are removed only if none of them splits in between")
         ->type_name("NUMBER");
     app()
-        .add_option("--samples", samples_, "how many times to measure the parts, evenly over the whole time")
+        .add_option("--samples", samples_,
+                    "number of times at which parts are measured, evenly spaced over the whole time")
         ->check(whole_number(0, 1000000))
         ->type_name("COUNT")
         ->capture_default_str();
-    CLI::Option* const longest = app()
-                                     .add_option("--longest", longest_, "only so many tracks, those that live longest")
-                                     ->check(whole_number(1))
-                                     ->type_name("COUNT");
+    CLI::Option* const longest =
+        app()
+            .add_option("--longest", longest_, "only this many tracks, those with the longest lifetime")
+            ->check(whole_number(1))
+            ->type_name("COUNT");
     app()
-        .add_option("--largest", largest_, "only so many tracks, those that grow largest")
+        .add_option("--largest", largest_, "only this many tracks, those with the largest size")
         ->check(whole_number(1))
         ->type_name("COUNT")
         ->excludes(longest);
@@ -159,7 +160,7 @@ class TrackCommand final : public ContourInputCommand {
                   fmt::format("--min-lifetime is {}; expected 0 or more", options.min_lifetime));
     }
     if (largest_ && samples_ == 0)
-      throw Error(ErrorCode::InvalidArgument, "--largest needs samples to measure by; expected --samples above 0");
+      throw Error(ErrorCode::InvalidArgument, "--largest needs measured sizes; expected --samples above 0");
     compress_.require_file(
         !std::all_of(outputs_.begin(), outputs_.end(), [](const auto& output) { return is_track_file(output); }));
     for (const std::string& output : outputs_) {
@@ -198,8 +199,7 @@ class TrackCommand final : public ContourInputCommand {
     if (first < last) options.times = even_times(first, last, samples_);
     options.label_simplices =
         std::any_of(outputs_.begin(), outputs_.end(), [](const auto& output) { return !is_track_file(output); });
-    options.threads = threads();
-    options.progress = bar.stage("track");
+    options.work = {threads(), bar.stage("track")};
     return track(contour, options);
   }
 
@@ -317,8 +317,8 @@ class TrackCommand final : public ContourInputCommand {
       text += report_line(i == 0 ? "longest" : "", line);
     }
     if (any_measure && !unit)
-      text += report_line("", fmt::format("({}s are of axes in different units: of little meaning)",
-                                          kMeasures[static_cast<std::size_t>(last - 1)]));
+      text += report_line(
+          "", fmt::format("({}s mix axes of different units)", kMeasures[static_cast<std::size_t>(last - 1)]));
     return text;
   }
 

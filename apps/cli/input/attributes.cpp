@@ -70,14 +70,14 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
     const ReadImageResult input = read_attribute(from.file, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,
-                  fmt::format("{}: an image of {} dimensions on a contour in {}D; expected {}", from.file,
+                  fmt::format("{}: an image of {} dimensions for a contour in {}D; expected {}", from.file,
                               image_dim(input.image), N, N));
     const std::string name = input.info.variable.empty() ? stem(from.file) : input.info.variable;
     for (const Attribute& other : contour.vertex_attributes)
       if (other.name == name)
         throw Error(
             ErrorCode::InvalidArgument,
-            fmt::format("--attribute {}: the contour has an attribute '{}' already; expected each once", text, name));
+            fmt::format("--attribute {}: the contour already has an attribute '{}'; expected each once", text, name));
     const auto sampling = [&](double fraction) { return progress(0.7 + 0.3 * fraction); };
     const auto sample_owned = [&](const auto& owned) {
       contour.vertex_attributes.push_back(

@@ -34,8 +34,8 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
   app_->parse_complete_callback(
       [this, files] { worked_on_ = files == Files::each ? std::vector{files_.front()} : files_; });
   app_->add_flag("--allow-outside-paths", images_.allow_outside_paths(),
-                 "read further files that FILE names (samples of NRRD and MetaImage headers, glTF buffers, HDF5 links) "
-                 "wherever they lie, not only in its folder and below");
+                 "read files that FILE refers to (samples of NRRD and MetaImage headers, glTF buffers, HDF5 links) "
+                 "from anywhere, not only from its folder and below");
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
   images_.add_in_process_to(*app_);
 }

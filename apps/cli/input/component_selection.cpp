@@ -201,7 +201,7 @@ class Parser {
         };
       }
     }
-    fail(fmt::format("expected one of {}; closed, open; or an axis, {}, alone or with .min, .max, .span or .centroid",
+    fail(fmt::format("expected one of {}; closed; open; or an axis, {}, with or without .min, .max, .span or .centroid",
                      kQuantities, fmt::join(axes_, ", ")));
   }
 

@@ -49,10 +49,11 @@ Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
   const auto first = std::find_if_not(mesh.coordinates.begin(), mesh.coordinates.end(), is_finite);
   if (first == mesh.coordinates.end()) return mesh;
   const auto others = mesh.coordinates.end() - first - 1 - std::count_if(first + 1, mesh.coordinates.end(), is_finite);
-  throw Error(ErrorCode::MalformedFile,
-              fmt::format("a coordinate of vertex {} is {} ({} others like that); expected finite ones",
-                          (first - mesh.coordinates.begin()) / mesh.space_dim,
-                          std::isnan(*first) ? std::abs(*first) : *first, others));  // NaN is printed without its sign
+  throw Error(
+      ErrorCode::MalformedFile,
+      fmt::format("a coordinate of vertex {} is {}, and {} other vertices have such coordinates; expected finite ones",
+                  (first - mesh.coordinates.begin()) / mesh.space_dim, std::isnan(*first) ? std::abs(*first) : *first,
+                  others));  // NaN is printed without its sign
 }
 
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty) {
@@ -119,12 +120,12 @@ void refuse_image_options(const std::vector<std::string>& files, std::vector<std
                           const ImageOptions& images, const std::string& expected) {
   const std::string& file = files.front();
   if (files.size() > 1)
-    throw Error(
-        ErrorCode::InvalidArgument,
-        fmt::format("{} is a saved contour, one of {} files; expected one, or images alone", file, files.size()));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} is a saved contour, and one of {} files; expected one saved contour, or images only",
+                            file, files.size()));
   for (std::string& option : images.given()) refused.push_back(std::move(option));
   if (refused.empty()) return;
-  throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a saved contour, which {} cannot change; expected {}",
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a saved contour, which does not take {}; expected {}",
                                                       file, fmt::join(refused, ", "), expected));
 }
 
@@ -144,7 +145,7 @@ std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const 
 ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
                                          Files files)
     : Command(program, name, description,
-              "an image (with --iso), or a contour that 'tegl contour' saved (.vtkhdf, .ply, .glb ...)", files) {
+              "an image (with --iso), or a contour saved by 'tegl contour' (.vtkhdf, .ply, .glb ...)", files) {
   options_.add_to(app(), false);
   add_image_options();
   add_quiet();
@@ -159,7 +160,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   if (find_mesh_file_format(file()) != nullptr) {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
-    refuse_image_options(files(), given, images(), "none of the options for images but --threads");
+    refuse_image_options(files(), given, images(), "no option for images except --threads");
     const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), allows_empty());
     result.contour = to_any_contour(mesh);
     result.isovalue = mesh.isovalue;

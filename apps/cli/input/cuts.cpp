@@ -162,11 +162,9 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   for (const std::string& argument : at) {
     const auto [axis, values] = halves("--at", argument, "an axis and a number, as in t=7.3");
     if (values.find('=') != std::string_view::npos)
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("--at {} names several axes; expected one for each --at: --at {}=2,3 for two places, --at "
-                      "{}=2 --at y=3 for two axes",
-                      argument, axis, axis));
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--at {} has several axes; expected one axis per --at: --at "
+                                                          "{}=2,3 for two places, --at {}=2 --at y=3 for two axes",
+                                                          argument, axis, axis));
     for (const auto& [value, text] : numbers_of(fmt::format("--at {}", argument), values))
       cuts.push_back({axis, value, text, {}, {}, {}, {}, false});
   }

@@ -28,34 +28,33 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
           ->allow_extra_args(false)
           ->type_name(of_images_alone ? "NUMBERS" : "NUMBER"),
       app.add_option("--triangulation", triangulation_,
-                     of_images_alone
-                         ? "compact: few simplices; barycentric: even ones; of the polygons of 3D images: fan, zigzag, "
-                           "halving-chord, halving-kink"
-                         : "compact: few simplices; barycentric: even ones")
+                     of_images_alone ? "compact: few simplices; barycentric: more and evener ones; for polygons of 3D "
+                                       "images: fan, zigzag, halving-chord, halving-kink"
+                                     : "compact: few simplices; barycentric: more and evener ones")
           ->check(triangulations)
           ->capture_default_str(),
       app.add_option("--ambiguity", ambiguity_,
-                     "samples inside that meet across a diagonal: low parts, high joins them; from the data: mean (by "
-                     "the mean of the samples around) or saddle (as the multilinear interpolant has it)")
+                     "ambiguous cells: inside samples across a diagonal are separate (low), joined (high) or resolved "
+                     "from the data, by the mean of the samples (mean) or the multilinear interpolant (saddle)")
           ->check(CLI::IsMember({"low", "high", "mean", "saddle"}))
           ->capture_default_str(),
       app.add_flag("--close", close_, "close the contour at the image's border"),
-      app.add_flag(
-             "--normals{gradient}", normals_,
-             "normals: along the image's gradient (gradient, or sobel for noisy images), of the contour's shape at "
-             "its vertices (geometric) or its simplices (flat); gradient if nothing follows")
+      app.add_flag("--normals{gradient}", normals_,
+                   "normals: from the image's gradient (gradient, or sobel for noisy images) or from the contour, at "
+                   "vertices (geometric) or simplices (flat); gradient if no value is given")
           ->check(CLI::IsMember({"gradient", "sobel", "geometric", "flat"})),
       app.add_option("--gradient-direction", direction_, "the contour faces lower (descent) or higher values (ascent)")
           ->check(CLI::IsMember({"descent", "ascent"}))
           ->capture_default_str(),
-      app.add_option("--epsilon", epsilon_, "keep vertices this share of an edge away from the samples, in [0, 0.5)")
+      app.add_option("--epsilon", epsilon_,
+                     "minimum distance of vertices from samples, as a fraction of an edge, in [0, 0.5)")
           ->type_name("NUMBER")
           ->capture_default_str(),
-      app.add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
+      app.add_option("--threads", threads_, "number of threads; 0: all processors")
           ->type_name("COUNT")
           ->check(CLI::Range(0u, 4096u).description(""))
           ->capture_default_str(),
-      app.add_option("--precision", precision_, "arithmetic of the vertices")
+      app.add_option("--precision", precision_, "precision of the vertices")
           ->check(CLI::IsMember({"float", "double"}))
           ->capture_default_str(),
   };
@@ -104,10 +103,9 @@ std::optional<PolygonTriangulation> ExtractionOptions::polygon_triangulation() c
 
 ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   if (polygon_triangulation() && !knows_polygons)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--triangulation {} is for the polygons of 3D images in memory, by 'tegl contour' without "
-                            "--stream, --index and --pick; expected compact or barycentric",
-                            triangulation_));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--triangulation {} is for 'tegl contour' of 3D images without "
+                                                        "--stream, --index and --pick; expected compact or barycentric",
+                                                        triangulation_));
   ExtractOptions options;
   options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
   options.ambiguity = ambiguity_ == "low"    ? Ambiguity::low
@@ -151,12 +149,12 @@ Error outside_error(double isovalue, const ValueRange& range, const std::string&
   constexpr const char* kAllow = "(--allow-empty: an empty result)";
   if (std::isnan(range.min))
     return {ErrorCode::EmptyResult,
-            fmt::format("all samples are missing; a contour needs values on both sides of it {}", kAllow)};
+            fmt::format("all samples are missing; expected values on both sides of the isovalue {}", kAllow)};
   if (range.min == range.max) {
     const auto texts = numbers_apart({range.min, isovalue});
     return {ErrorCode::EmptyResult,
-            fmt::format("all values are {}; a contour needs values on both sides of the isovalue {} {}", texts[0],
-                        texts[1], kAllow)};
+            fmt::format("all values are {}; expected values on both sides of the isovalue {} {}", texts[0], texts[1],
+                        kAllow)};
   }
   const auto texts = numbers_apart({isovalue, range.min, range.max});
   return {ErrorCode::EmptyResult, fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
@@ -169,7 +167,7 @@ void require_contour(const ReadImageResult& input, double isovalue, bool allow_e
     for (std::size_t a = 0; a < owned.grid.axes.size(); ++a) {
       if (owned.grid.axes[a].size() > 1) continue;
       throw Error(ErrorCode::EmptyResult,
-                  fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
+                  fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
                               axis_label(owned.grid.axes[a].name, a)));
     }
   };
@@ -184,7 +182,7 @@ std::string remark_without_contour(const AnyImage& image, double isovalue) {
 }
 
 std::string remark_on_missing(double isovalue) {
-  return fmt::format("no contour at {}: every tile that it passes touches a missing sample", number(isovalue));
+  return fmt::format("no contour at {}: every active tile has a missing sample", number(isovalue));
 }
 
 void check_result(ContourResult& result, ProgressBar& bar) {

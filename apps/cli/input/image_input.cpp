@@ -26,9 +26,8 @@ std::vector<std::size_t> parse_sizes(const std::string& text) {
     const std::optional<double> size = parse_number(part);
     constexpr double kMost = 0x1p48;
     if (!size || !(*size >= 1 && *size <= kMost) || *size != static_cast<double>(static_cast<std::size_t>(*size)))
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("--raw is '{}'; expected sizes such as 64x64x64x400, the one that runs fastest first", text));
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--raw is '{}'; expected sizes such as 64x64x64x400, the fastest axis first", text));
     sizes.push_back(static_cast<std::size_t>(*size));
     begin = end + 1;
   }
@@ -46,7 +45,7 @@ std::vector<FixedIndex> parse_fixed(const std::vector<std::string>& texts) {
     if (!index || equals == 0 || !(*index >= 0 && *index <= kMost) || *index != std::floor(*index))
       throw Error(
           ErrorCode::InvalidArgument,
-          fmt::format("--fix is '{}'; expected the name of a dimension and an index from 0 on, as in member=3", text));
+          fmt::format("--fix is '{}'; expected the name of a dimension and an index, 0 or more, as in member=3", text));
     fixed.push_back({text.substr(0, equals), static_cast<std::size_t>(*index)});
   }
   return fixed;
@@ -85,30 +84,29 @@ std::string with_option_names(std::string message) {
 
 void ImageOptions::add_to(CLI::App& app) {
   options_ = {
-      app.add_option("--var", variable_, "netCDF: the variable to read; needed where the file has several")
+      app.add_option("--var", variable_, "netCDF: the variable to read; needed if the file has several")
           ->type_name("NAME"),
       app.add_option("--series", series_,
-                     "DICOM: the series to read, by its UID, its description or its number in the list that "
-                     "'tegl info' shows; needed where a folder has several")
+                     "DICOM: the series to read, by its UID, its description or its number in the list of 'tegl info'; "
+                     "needed if a folder has several")
           ->type_name("SERIES"),
       app.add_option("--times", times_,
-                     "of several FILEs: where each one lies along the new axis, in the order in which they are listed: "
-                     "0,0.5,2; or FIRST:LAST:COUNT; without, as the files say, else 0, 1, 2 ...")
+                     "several FILEs: coordinate of each along the new axis, in the order of the list: 0,0.5,2; or "
+                     "FIRST:LAST:COUNT; default: the times in the files, else 0, 1, 2 ...")
           ->type_name("NUMBERS"),
       app.add_option("--time-step", time_step_,
-                     "of several FILEs: they lie at 0, this, twice this ..., in the order of --sort")
+                     "several FILEs: coordinates 0, this, twice this ..., in the order of --sort")
           ->type_name("NUMBER"),
-      app.add_option(
-             "--time-unit", time_unit_,
-             "of several FILEs: the unit of the new axis; times of headers in another unit of time are converted")
+      app.add_option("--time-unit", time_unit_,
+                     "several FILEs: unit of the new axis; times in headers in another unit of time are converted")
           ->type_name("UNIT"),
       app.add_option("--sort", sort_,
-                     "of several FILEs: by the numbers in their names, by their times (--times, which go with them, "
-                     "or those in their headers), or as given")
+                     "several FILEs: order by the numbers in their names, by their times (--times or the times in "
+                     "their headers), or as given")
           ->check(CLI::IsMember({"given", "name", "time"})),
       app.add_option("--fix", fixed_,
-                     "netCDF: reads one index of this dimension, as in member=3, from 0 on; may be given again. Needed "
-                     "for variables of more than 4 axes")
+                     "netCDF: read one index of this dimension, counted from 0, as in member=3; may be given again. "
+                     "Needed for variables of more than 4 axes")
           ->allow_extra_args(false)
           ->type_name("DIM=INDEX"),
   };
@@ -117,9 +115,9 @@ void ImageOptions::add_to(CLI::App& app) {
 }
 
 void ImageOptions::add_raw_to(CLI::App& app) {
-  raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
+  raw_option_ = app.add_option("--raw", raw_, "FILE contains raw values of these sizes, the fastest axis first")
                     ->type_name("XxYxZ[xT]");
-  CLI::Option* const type = app.add_option("--raw-type", raw_type_, "their type")
+  CLI::Option* const type = app.add_option("--raw-type", raw_type_, "type of the raw values")
                                 ->check(CLI::IsMember({"uint8", "int8", "uint16", "int16", "int32", "float", "double"}))
                                 ->needs(raw_option_);
   raw_option_->needs(type);
@@ -131,22 +129,22 @@ void ImageOptions::add_raw_to(CLI::App& app) {
                          ->type_name("BYTES")
                          ->capture_default_str());
   options_.push_back(
-      app.add_flag("--raw-big-endian", raw_big_endian_, "the values' first byte is the highest")->needs(raw_option_));
+      app.add_flag("--raw-big-endian", raw_big_endian_, "the raw values are big-endian")->needs(raw_option_));
   const auto add_of_axes = [&](const char* name, std::string& text, const char* type_name, const char* help) {
     options_.push_back(app.add_option(name, text, help)->needs(raw_option_)->type_name(type_name));
   };
   add_of_axes("--spacing,--step", spacing_, "NUMBERS",
-              "of --raw: distance of neighbouring samples, a number for each axis or one for all: 0.8,0.8,3");
+              "--raw: distance of neighbouring samples, one number per axis or one for all: 0.8,0.8,3");
   add_of_axes("--origin", origin_, "NUMBERS",
-              "of --raw: coordinates of the first sample, a number for each axis or one for all");
-  add_of_axes("--axis-names", axis_names_, "NAMES", "of --raw: a name for each axis, as lon,lat,depth,month");
-  add_of_axes("--axis-units", axis_units_, "UNITS", "of --raw: a unit for each axis, as mm,mm,mm,s; nothing for none");
+              "--raw: coordinates of the first sample, one number per axis or one for all");
+  add_of_axes("--axis-names", axis_names_, "NAMES", "--raw: one name per axis, as in lon,lat,depth,month");
+  add_of_axes("--axis-units", axis_units_, "UNITS", "--raw: one unit per axis, as in mm,mm,mm,s; empty for none");
 }
 
 void ImageOptions::add_in_process_to(CLI::App& app) {
-  app.add_flag("--in-process", in_process_,
-               "read netCDF-4, VTKHDF and DICOM in this process, not in a child process: a damaged file may end "
-               "the program");
+  app.add_flag(
+      "--in-process", in_process_,
+      "read netCDF-4, VTKHDF and DICOM in this process, not in a child process: a damaged file may crash the program");
 }
 
 std::vector<std::string> ImageOptions::given() const {

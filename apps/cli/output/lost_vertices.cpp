@@ -41,10 +41,10 @@ LostVertices& LostVertices::operator+=(const LostVertices& other) {
 
 std::string LostVertices::text() const {
   if (count() == 0) return "";
-  return fmt::format("{} of {} fall together ({})", grouped(count()), counted(vertices, "vertex", "vertices"),
-                     in_single == 0  ? "without numbers, those at one place"
+  return fmt::format("{} of {} coincide ({})", grouped(count()), counted(vertices, "vertex", "vertices"),
+                     in_single == 0  ? "the file has no vertex numbers"
                      : by_place == 0 ? "single precision"
-                                     : "single precision, and without numbers those at one place");
+                                     : "single precision, and no vertex numbers");
 }
 
 std::string LostVertices::remark(const std::filesystem::path& output) const {
@@ -52,14 +52,14 @@ std::string LostVertices::remark(const std::filesystem::path& output) const {
   std::string text;
   if (in_single > 0)
     text = fmt::format(
-        "{}: in single precision, which {} has, {} of {} vertices fall together; expected a format with double, .ply, "
-        ".obj or .vtkhdf, or an origin nearer to the contour",
+        "{}: {} has single precision, in which {} of {} vertices coincide with others; expected a format with double "
+        "precision (.ply, .obj or .vtkhdf), or an origin nearer to the contour",
         output.string(), extension, in_single, vertices);
   if (by_place > 0)
     text += fmt::format(
-        "{}{} of {} vertices are at the place of others, and {} has no numbers to tell them apart; "
-        "expected .ply, .obj or .vtkhdf or, where samples equal the isovalue, --epsilon",
-        text.empty() ? output.string() + ": " : ". Besides, ", by_place, vertices, extension);
+        "{}{} of {} vertices coincide with others, and {} has no vertex numbers that distinguish them; expected .ply, "
+        ".obj or .vtkhdf, or --epsilon if samples equal the isovalue",
+        text.empty() ? output.string() + ": " : ". Also, ", by_place, vertices, extension);
   return text;
 }
 

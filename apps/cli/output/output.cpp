@@ -49,7 +49,7 @@ void require_input(const fs::path& path, Folders folders) {
 
 void require_text_output(const fs::path& output, const std::vector<std::string>& inputs) {
   std::error_code error;
-  if (output.empty()) fail(output, "is no name of a file");
+  if (output.empty()) fail(output, "is not the name of a file");
   if (output.native().front() == '-')
     fail(output, fmt::format("looks like an option; expected the name of a file, such as ./{}", output.string()));
   if (fs::is_directory(output, error)) fail(output, "is a directory; expected the name of a file");
@@ -57,7 +57,7 @@ void require_text_output(const fs::path& output, const std::vector<std::string>&
     if (fs::equivalent(output, input, error)) fail(output, "is the input itself; expected another file");
   const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
   if (!fs::exists(folder, error)) {
-    fail(output, fmt::format("the folder '{}' does not exist; expected one that does", folder.string()));
+    fail(output, fmt::format("the folder '{}' does not exist; expected an existing folder", folder.string()));
   }
   if (!fs::is_directory(folder, error)) fail(output, fmt::format("'{}' is not a folder", folder.string()));
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
@@ -95,11 +95,10 @@ void require_output_keeps(const fs::path& output, std::string_view normals, bool
   const MeshFileFormat* const format = find_mesh_file_format(output);
   if (format == nullptr || (format->extension != ".stl" && format->extension != ".obj")) return;
   if (attributes)
-    fail(output,
-         fmt::format("'{}' has no place for attributes; expected .vtkhdf, .ply, .gltf or .glb", format->extension));
+    fail(output, fmt::format("'{}' cannot hold attributes; expected .vtkhdf, .ply, .gltf or .glb", format->extension));
   // STL stores normals of triangles anyway; programs compute them for OBJ themselves.
   if (normals.empty() || (normals == "flat") == (format->extension == ".stl")) return;
-  fail(output, fmt::format("'{}' has no place for normals of {}; expected .vtkhdf, .ply{} with --normals {}",
+  fail(output, fmt::format("'{}' cannot hold normals of {}; expected .vtkhdf, .ply{} with --normals {}",
                            format->extension, normals == "flat" ? "triangles" : "vertices",
                            normals == "flat" ? "" : ", .obj, .gltf or .glb", normals));
 }
@@ -118,7 +117,8 @@ void CompressOption::require_known(const fs::path& output, bool facets) const {
 
 void CompressOption::require_file(bool any) const {
   if (compress_ && !any)
-    throw Error(ErrorCode::InvalidArgument, "--compress without a contour's file; expected one, as in -o part.vtkhdf");
+    throw Error(ErrorCode::InvalidArgument,
+                "--compress without a file of a contour; expected one, as in -o part.vtkhdf");
 }
 
 void require_different_outputs(const std::vector<std::string>& outputs) {

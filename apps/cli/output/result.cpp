@@ -48,7 +48,8 @@ std::string fault_text(const MeshReport& report) {
   add(report.nonmanifold_simplices, "face in more than two simplices", "faces in more than two simplices");
   add(report.bad_links, "vertex with a bad link", "vertices with a bad link");
   add(report.orientation_conflicts, "orientation conflict", "orientation conflicts");
-  add(report.nonfinite_vertices, "vertex that is not at a finite place", "vertices that are not at finite places");
+  add(report.nonfinite_vertices, "vertex with an infinite or NaN coordinate",
+      "vertices with infinite or NaN coordinates");
   return text;
 }
 
@@ -144,7 +145,7 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
 }
 
 MeshReport check_mesh(const Mesh& mesh, const Progress& progress) {
-  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, progress);
+  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, {.progress = progress});
 }
 
 void StageSeconds::add(const ExtractStats& stats) {
@@ -207,9 +208,9 @@ std::string to_text(const Console& console, const ContourResult& result) {
   text += input_line(result.input, result.variable);
   if (result.picked) {
     const Picked& picked = *result.picked;
-    text += report_line("picked",
-                        fmt::format("({}): tile ({}), {}", fmt::join(picked.point, ", "), fmt::join(picked.tile, ", "),
-                                    picked.distance == 0 ? "which it is in" : number(picked.distance) + " steps away"));
+    text += report_line(
+        "picked", fmt::format("({}): tile ({}), {}", fmt::join(picked.point, ", "), fmt::join(picked.tile, ", "),
+                              picked.distance == 0 ? "which contains it" : number(picked.distance) + " steps away"));
     text += report_line("", fmt::format("1 of {} in {}", counted(picked.components, "component", "components"),
                                         counted(picked.tiles, "tile", "tiles")));
   }

@@ -66,9 +66,9 @@ bool has_faults(const MeshReport& report);
 
 /// Texts of reports about results that are not plain contours.
 struct Wording {
-  std::string heading;                                                              ///< empty: "Contour in 3D"
-  std::string unchecked = "left out";                                               ///< if there was no check
-  std::string no_size = "where samples equal the isovalue, --epsilon avoids them";  ///< reason for zero sizes
+  std::string heading;                                                        ///< empty: "Contour in 3D"
+  std::string unchecked = "skipped";                                          ///< if there was no check
+  std::string no_size = "samples equal the isovalue; --epsilon avoids them";  ///< reason for zero sizes
   std::string open;  ///< why there may be a boundary; empty: no reason is given
 };
 

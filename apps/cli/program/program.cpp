@@ -9,13 +9,13 @@ namespace tegl::cli {
 
 std::vector<std::unique_ptr<Command>> add_commands(CLI::App& program, const std::string& version) {
   program.description(
-      "Contours of images in 2, 3 and 4 dimensions: closed, manifold, oriented.\n"
+      "Contours (isosurfaces) of images in 2, 3 and 4 dimensions: oriented manifolds.\n"
       "Reads NIfTI, NRRD, MetaImage, netCDF and DICOM; writes PLY, STL, OBJ, glTF and VTKHDF.");
   program.set_version_flag("--version", "tegl " + version);
   program.require_subcommand(1);
   program.footer(
-      "New here? 'tegl demo' shows what it does. 'tegl COMMAND --help' has examples. 'tegl --man' is the manual\n"
-      "page, 'tegl --completion bash' (zsh, fish) what completes commands and options in that shell.\n\n" +
+      "To start, run 'tegl demo'. 'tegl COMMAND --help' prints options and examples, 'tegl --man' the manual page,\n"
+      "'tegl --completion bash' (zsh, fish) a script that completes commands and options in that shell.\n\n" +
       exit_code_help());
   std::vector<std::unique_ptr<Command>> commands;
   commands.push_back(make_info_command(program));

@@ -176,9 +176,9 @@ std::string man_page(const CLI::App& program, const std::string& version, const 
   }
   text += ".SH EXIT STATUS\n" + man_examples(exit_code_help());
   text +=
-      ".SH ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nIf set and not empty, there are no colours; nor where \\fBTERM\\fR is "
-      "dumb, or the output is no terminal.\n.TP\n\\fBCOLUMNS\\fR\nThe width of reports where the output is no "
-      "terminal.\n";
+      ".SH ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nIf set and not empty: no colours. Without it there are none either if "
+      "\\fBTERM\\fR is dumb or the output is not a\nterminal.\n.TP\n\\fBCOLUMNS\\fR\nThe width of reports if the "
+      "output is not a terminal.\n";
   return text + ".SH SEE ALSO\n\\fBparaview\\fR(1), \\fBncdump\\fR(1)\n";
 }
 

@@ -97,7 +97,7 @@ ExitCode run(Command& command, const Streams& streams) {
   } catch (const tegl::Error& error) {
     return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command));
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: memory ran out", command.inputs().text()));
+    return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: out of memory", command.inputs().text()));
   } catch (const std::exception& error) {
     if (tegl::cli::is_of_threads(error)) return fail(ExitCode::Internal, "Threads", tegl::cli::thread_message());
     return fail(ExitCode::Internal, "Internal",
@@ -183,7 +183,7 @@ std::optional<ExitCode> write_reference(const CLI::App& program, int argc, char*
       throw tegl::Error(tegl::ErrorCode::InvalidArgument, "--completion needs a shell; expected bash, zsh or fish");
     if (words.size() > (man ? 1 : 2))
       throw tegl::Error(tegl::ErrorCode::InvalidArgument,
-                        fmt::format("{} with '{}'; expected nothing behind it", words[0], words[man ? 1 : 2]));
+                        fmt::format("{} with '{}'; expected no further argument", words[0], words[man ? 1 : 2]));
     streams.out.write(man ? tegl::cli::man_page(program, release.version, release.date)
                           : tegl::cli::completion_script(program, words[1]));
     return ExitCode::Ok;

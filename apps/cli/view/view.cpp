@@ -33,10 +33,9 @@ constexpr const char* kExamples =
     "  tegl contour heart.nii.gz --iso 400 --normals -o heart.vtkhdf\n"
     "  tegl view heart.vtkhdf --title 'A beating heart' -o heart.html\n"
     "  tegl view skull.ply skin.ply -o head.html\n"
-    "The page is one file without any link to others: open it by a double click, send it by mail. 4D contours are cut\n"
-    "at the time of a slider, continuously; with events to click on where parts are born, merge, split and die. 2D "
-    "and\n"
-    "3D contours can be turned and looked at. In the page, '?' lists the keys.";
+    "The page is one file without links to others: open it in any browser, or send it by mail. 4D contours are cut\n"
+    "at the time of a slider; the births, merges, splits and deaths on its timeline can be clicked. 3D contours\n"
+    "can be rotated. In the page, '?' lists the keys.";
 
 /// The contents of a page from one file.
 struct Shown {
@@ -49,35 +48,34 @@ struct Shown {
 class ViewCommand final : public ContourInputCommand {
  public:
   ViewCommand(CLI::App& program, std::string version)
-      : ContourInputCommand(program, "view", "One page for a browser, with a slider for the time", Files::each),
+      : ContourInputCommand(program, "view", "Write a web page that shows contours, with a slider for the time",
+                            Files::each),
         version_(std::move(version)) {
     app().add_option("-o,--output", output_, "the page: .html")->type_name("FILE")->required();
     app().add_flag("--one-image", one_image_,
-                   "several FILEs are one image with an axis more, as other commands take them, not one contour each");
-    app().add_option("--title", title_, "what stands above; by default the names of the files")->type_name("TEXT");
+                   "several FILEs form one image with one more axis, as for other commands, not one contour each");
+    app().add_option("--title", title_, "title of the page; default: the names of the files")->type_name("TEXT");
     app()
-        .add_option(
-            "--limit", limit_,
-            "most simplices that are shown of a file: of a larger one, the largest components; 0: no limit. Without "
-            "this option the largest component is shown even if it has more")
+        .add_option("--limit", limit_,
+                    "maximum number of simplices per file; a larger contour is reduced to its largest components; 0: "
+                    "no limit. Without this option the largest component is shown even if it has more")
         ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()))
         ->type_name("COUNT")
         ->capture_default_str();
     app()
-        .add_option("--tracks", tracks_, "4D: how many tracks are drawn under the slider, those that live longest")
+        .add_option("--tracks", tracks_, "4D: number of tracks under the slider, those with the longest lifetime")
         ->check(whole_number(0, 10000))
         ->type_name("COUNT")
         ->capture_default_str();
     app()
         .add_option("--down", down_,
-                    "the axis that points down, by its name or letter, or none; by default what a netCDF file says, "
-                    "else those with 'depth' in their name")
+                    "the axis that points down, by its name or letter, or none; default: as in a netCDF file, else an "
+                    "axis with 'depth' in its name")
         ->type_name("AXIS");
     app()
-        .add_option(
-            "--world", world_,
-            "what of a patient x, y and z grow towards, such as RAS (right, anterior, superior) or LPS, or none; "
-            "by default what the image's file says; saved contours say nothing")
+        .add_option("--world", world_,
+                    "the patient's sides towards which x, y and z grow, such as RAS (right, anterior, superior) or "
+                    "LPS, or none; default: as in the image's file; saved contours do not have them")
         ->type_name("LETTERS");
     app().footer(kExamples);
   }
@@ -129,25 +127,23 @@ class ViewCommand final : public ContourInputCommand {
                               extension.empty() ? "the name has no extension"
                                                 : fmt::format("the extension '{}' is not known", extension)));
     if (!has_viewer())
-      throw Error(ErrorCode::WriteFailed,
-                  fmt::format("{}: this build of tegl has no viewer; expected one that was configured with esbuild and "
-                              "three.js at hand (scripts/setup installs both)",
-                              output_));
+      throw Error(ErrorCode::WriteFailed, fmt::format("{}: this build of tegl has no viewer; expected a build with "
+                                                      "esbuild and three.js (scripts/setup installs both)",
+                                                      output_));
   }
 
   /// Throws if planar contours are combined with others.
   void require_one_space(const std::vector<Shown>& shown) const {
     if ((shown.front().dim == 2) == (shown.back().dim == 2)) return;
     throw Error(ErrorCode::UnsupportedData,
-                fmt::format("{}: a contour in {}D, shown with one in {}D; expected all in the plane, or none", file(),
-                            shown.back().dim, shown.front().dim));
+                fmt::format("{}: a contour in {}D on a page with one in {}D; expected only 2D contours, or none",
+                            file(), shown.back().dim, shown.front().dim));
   }
 
   Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
     ContourInput input = read_contour(bar, true);
     if (input.size().simplices == 0)
-      throw Error(ErrorCode::EmptyResult,
-                  "the contour is empty; expected one with simplices, as a page shows something");
+      throw Error(ErrorCode::EmptyResult, "the contour is empty; expected one with simplices");
     std::optional<double> first, last;
     ImageInfo info;
     if (input.image) {
@@ -256,7 +252,7 @@ class ViewCommand final : public ContourInputCommand {
     if (limit_ == 0 || shown.thinned.simplices <= limit_) return;
     remark(
         fmt::format("{}: {} are shown, more than {}: the page may be slow ('tegl simplify --count {}' makes a smaller "
-                    "contour; --limit {} shows all without this remark)",
+                    "contour; --limit {} shows all without this warning)",
                     file(), counted_simplices(shown.dim - 1, shown.thinned.simplices), grouped(limit_), limit_,
                     shown.thinned.simplices));
   }
@@ -264,7 +260,7 @@ class ViewCommand final : public ContourInputCommand {
   void warn(const Console& console, const std::vector<Shown>& shown) const {
     for (std::size_t i = 0; i < shown.size(); ++i)
       if (const std::string text = left_out(shown[i]); !text.empty())
-        console.write(fmt::format("tegl: {}: shown are {}\n", printable(all_files()[i]), text));
+        console.write(fmt::format("tegl: {}: the page shows {}\n", printable(all_files()[i]), text));
   }
 
   [[nodiscard]] Json document(const std::vector<Shown>& shown, std::uint64_t bytes, double seconds) const {

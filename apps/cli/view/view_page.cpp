@@ -253,11 +253,10 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return sizes[a] > sizes[b]; });
   if (sizes[order[0]] > limit.of_largest)
-    throw Error(ErrorCode::TooLarge,
-                fmt::format("the largest component has {}; expected at most {}: --limit {} shows it, 'tegl simplify "
-                            "--count {}' makes a smaller one",
-                            counted_simplices(N - 1, sizes[order[0]]), grouped(limit.of_largest), sizes[order[0]],
-                            limit.of_all));
+    throw Error(ErrorCode::TooLarge, fmt::format("the largest component has {}; expected at most {}: --limit {} shows "
+                                                 "it, 'tegl simplify --count {}' makes it smaller",
+                                                 counted_simplices(N - 1, sizes[order[0]]), grouped(limit.of_largest),
+                                                 sizes[order[0]], limit.of_all));
   // keep the largest ones within the limit
   std::vector<bool> keep(labels.count, false);
   result.components = result.simplices = 0;
@@ -267,7 +266,7 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
     result.simplices += sizes[label];
     ++result.components;
   }
-  contour = select_components(contour, labels, keep, options.progress);
+  contour = select_components(contour, labels, keep, options);
   return result;
 }
 

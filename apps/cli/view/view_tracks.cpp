@@ -122,8 +122,7 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
   wanted.last = last;
   wanted.handles = false;
   wanted.label_simplices = true;
-  wanted.threads = options.threads;
-  wanted.progress = options.progress;
+  wanted.work = options;
   const TrackGraph graph = track(contour, wanted);
   // order tracks by lifetime
   PageTracks result;

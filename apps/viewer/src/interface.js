@@ -14,7 +14,7 @@ const listed = (names) => names.map((name) => `'${name}'`).join(', ');
 
 export function interfaceOf(app) {
   const needsTime = (call) => {
-    if (!app.timeline) throw new Error(`tegl.${call}: nothing here has a time; expected a page with a contour in 4D`);
+    if (!app.timeline) throw new Error(`tegl.${call}: the page has no time; expected a page with a 4D contour`);
   };
   return {
     get time() { return app.t; },
@@ -45,7 +45,7 @@ export function interfaceOf(app) {
       expect(Number.isInteger(axis) && axis >= 0 && axis < axes.length, 'clip', axis,
         `an axis, 0 to ${axes.length - 1} (${axes.map(({ name }) => name).join(', ')})`);
       expect(isShare(from) && isShare(to) && from <= to, 'clip', [from, to],
-        'two shares of the axis from 0 to 1, the lower one first');
+        'two fractions of the axis from 0 to 1, the lower one first');
       app.panel.setClip(axis, from, to);
     },
     theme: (theme) => {

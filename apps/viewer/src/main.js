@@ -16,10 +16,10 @@ const $ = (id) => document.getElementById(id);
 const SECONDS = 12; // from the first time to the last, at speed 1
 const REST = 120; // milliseconds without a change of time, after which the exact count is made
 
-const KEYS = [['space', 'play, pause'], ['← →', 'a little earlier, later (with shift: ten times that)'],
-  ['home, end', 'first, last time'], [', .', 'event before, next event'], ['[ ]', 'slower, faster'], ['l', 'loop'],
-  ['g', 'tracks, where the page is low'], ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'view from the start'],
-  ['tab to the picture, then ← → ↑ ↓', 'turn it (with shift: move it)'], ['+ −', 'nearer, farther'], ['s', 'save a picture'],
+const KEYS = [['space', 'play, pause'], ['← →', 'step back, forward (with shift: ten steps)'],
+  ['home, end', 'first, last time'], [', .', 'previous event, next event'], ['[ ]', 'slower, faster'], ['l', 'loop'],
+  ['g', 'tracks, if the page is low'], ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'reset the view'],
+  ['tab to the picture, then ← → ↑ ↓', 'rotate (with shift: move)'], ['+ −', 'zoom in, zoom out'], ['s', 'save a picture'],
   ['?', 'this list']];
 
 /** Where the panel lies over the picture, as page.css has it. */
@@ -90,8 +90,8 @@ class App {
       `${grouped(layer.of_components)} components, ${grouped(layer.simplices)} of ${grouped(layer.of_simplices)} simplices.`);
     const { worlds } = this.stage;
     if (worlds.length > 1)
-      left.push(`The files are in different worlds, ${worlds.join(' and ')}: they do not lie beside each other as they did ` +
-        'in the patient, and no sides are shown.');
+      left.push(`The files have different world frames, ${worlds.join(' and ')}: their relative positions differ from ` +
+        'those in the patient, and no sides are shown.');
     if (left.length === 0) return;
     $('notice').textContent = left.join(' ');
     const close = document.createElement('button');
@@ -124,7 +124,7 @@ class App {
     this.timeline.show(layer);
     const { graph, tracks_found: found } = layer.description;
     $('graph-note').textContent = !graph || graph.tracks.length === found ? ''
-      : `${grouped(graph.tracks.length)} of ${counted(found, 'track')}, those that live longest, with ` +
+      : `${grouped(graph.tracks.length)} of ${counted(found, 'track')}, those with the longest lifetime, with ` +
         `${grouped(graph.events.length)} of ${counted(layer.description.events_found, 'event')}.`;
     $('before').hidden = $('after').hidden = this.timeline.events().length === 0;
   }

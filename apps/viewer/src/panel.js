@@ -88,7 +88,7 @@ export class Panel {
       swatches.append(element('span', {}, swatch, String(i + 1)));
     }
     if (count > MOST) swatches.append(`… ${grouped(count)}`);
-    swatches.append(element('span', { textContent: id === 'track' ? '1: lives longest' : '1: largest' }));
+    swatches.append(element('span', { textContent: id === 'track' ? '1: longest lifetime' : '1: largest' }));
     legend.append(swatches);
   }
 
@@ -134,9 +134,9 @@ export class Panel {
     const isScan = !stage.isFlat && stage.axes.every(({ unit }) => unit.trim().toLowerCase() === 'mm');
     $('world').textContent = stage.world
       ? `Sides of the patient, as the file says (${stage.world}): R right, L left; A front, P back; S head, I feet.${
-        stage.isMirrored ? ' Shown as in a mirror, as an axis is turned around.' : ''}`
+        stage.isMirrored ? ' The view is a mirror image: an axis is reversed.' : ''}`
       : stage.worlds.length > 1 ? `Sides of the patient: the files differ (${stage.worlds.join(', ')}).`
-      : isScan ? 'Where left and right are is not known: no file says it (saved contours never do; tegl view --world RAS).' : '';
+      : isScan ? 'Left and right are unknown: no file contains them (saved contours never do; tegl view --world RAS).' : '';
   }
 
   fillClips() {

@@ -12,8 +12,8 @@ const STEPS = { ArrowLeft: -1, ArrowRight: 1 };
 const AXIS = 20;
 
 /** What parts do at an event, one and several. */
-const WHAT = { begin: ['is there from the start', 'are there from the start'], birth: ['is born', 'are born'],
-  enter: ['comes in at the border', 'come in at the border'], end: ['is there at the end', 'are there at the end'],
+const WHAT = { begin: ['exists at the start', 'exist at the start'], birth: ['is born', 'are born'],
+  enter: ['enters at the border', 'enter at the border'], end: ['exists at the end', 'exist at the end'],
   death: ['dies', 'die'], leave: ['leaves at the border', 'leave at the border'], merge: ['merges', 'merge'] };
 /** Kinds of events, one and several, the most important first. */
 const KINDS = { merge: ['merge', 'merges'], split: ['split', 'splits'], exchange: ['exchange', 'exchanges'],

@@ -318,7 +318,7 @@ std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& 
       if (sign < 0) std::swap(result.back()[2], result.back()[3]);
       return true;
     });
-    if (tetrahedra.size() == before) throw std::logic_error("a filling that does not hang together");
+    if (tetrahedra.size() == before) throw std::logic_error("a filling that is not connected");
   }
   return result;
 }

@@ -32,7 +32,7 @@ std::uint8_t SignatureRegions::lift(std::uint32_t f, std::uint8_t vertex) const 
   if (vertex < corners + face.tile->edge_count())
     return static_cast<std::uint8_t>(tile_->corner_count() + face.edge[vertex - corners]);
   if (tile_->dim != 3 || vertex != of_faces_->own_base())
-    throw std::logic_error("a square has more than one region that is no triangle");
+    throw std::logic_error("a square has more than one region that is not a triangle");
   return static_cast<std::uint8_t>(own_base() - tile_->faces.size() + f);
 }
 

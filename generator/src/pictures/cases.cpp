@@ -92,15 +92,16 @@ class FlatCatalogue {
     const auto cases = cases_of(lattice_, GroupKind::Full);
     const auto rotations = cases_of(lattice_, GroupKind::Rotations);
     page += fmt::format(
-        "The {} signatures of a {} fall into {} classes under its {} symmetries{}. Of each, the smallest signature is "
-        "shown.\nBlack corners are high, white ones low. {}\n\nWhere a square has two high corners on a diagonal it is "
-        "ambiguous: *low-connected* keeps the two low ones together and cuts\noff each high one, *high-connected* the "
-        "other way round. Both are in the tables. [How to read the pages](README.md)\n\n",
+        "The {} signatures of a {} fall into {} classes under its {} symmetries{}. The smallest signature of each "
+        "class is shown.\nBlack corners are high, white ones low. {}\n\nA square with two high corners on a diagonal "
+        "is ambiguous: *low-connected* joins the two low corners and separates the high ones,\n*high-connected* joins "
+        "the two high corners and separates the low ones. Both are in the tables. [How to read the "
+        "pages](README.md)\n\n",
         1u << lattice_.tile(dim_).corner_count(), dim_ == 2 ? "square" : "cube", cases.size(),
         cases.front().orbit * cases.front().stabiliser,
-        rotations.size() == cases.size() ? "" : fmt::format(", {} under rotations alone", rotations.size()),
+        rotations.size() == cases.size() ? "" : fmt::format(", {} under rotations only", rotations.size()),
         dim_ == 2 ? "The contour is blue, with a short orange stroke towards its high side."
-                  : "One sees the contour's high side in orange, its low side in blue.");
+                  : "The contour's high side is orange, its low side blue.");
     page += "| class | low-connected | high-connected |\n|---|---|---|\n";
     for (const Case& c : cases) page += row(c, "");
     for (const Case& c : rotations)  // classes that only a reflection maps to a class above
@@ -185,18 +186,16 @@ class Catalogue4d {
     std::string page = page_opening(4, "The cases of a tesseract");
     page += fmt::format(
         "A tile of a four-dimensional image has 16 corners: 65 536 signatures in {} classes under {} symmetries. Its "
-        "contour is made\nof tetrahedra, and has one *facet* for each component of the surface that it leaves on the "
-        "tile's boundary. In all but {} classes\nthese surfaces are spheres, which balls fill. The {} others have a "
-        "torus: [what fills it](#the-classes-with-a-torus).\n\nAll numbers are those of the low-connected alternative. "
+        "contour consists\nof tetrahedra. It has one *facet* for each component of its intersection with the tile's "
+        "boundary. In all classes except {} these\ncomponents are spheres, and balls fill them. The other {} classes "
+        "have [a torus](#the-classes-with-a-torus).\n\nAll numbers are for the low-connected alternative. "
         "[How to read the pages](README.md)\n\n",
         cases.size(), cases.front().orbit * cases.front().stabiliser, torus_count, torus_count);
     page += kTorusText + tori;
     page +=
-        "## All classes\n\n*Ambiguous*: how many of the tile's squares, cubes and whether the tile itself are "
-        "ambiguous. "
-        "*Facets*: the numbers of edge\npoints of each; **T** marks one around a torus. *Tetrahedra*: in the compact "
-        "and "
-        "in the barycentric triangulation.\n\n"
+        "## All classes\n\n*Ambiguous*: the numbers of ambiguous squares and cubes, and 1 if the tile itself is "
+        "ambiguous. *Facets*: the number of edge\npoints of each facet; **T** marks a facet around a torus. "
+        "*Tetrahedra*: in the compact and in the barycentric triangulation.\n\n"
         "| class | high corners | signatures | ambiguous | facets | tetrahedra |\n|---:|---|---:|---|---|---:|\n" +
         table;
     files_.insert(files_.begin(), {"4d.md", std::move(page)});
@@ -234,7 +233,7 @@ class Catalogue4d {
         c.signature, high_corners(c.signature), c.orbit, torus.points.size(), small->simplices.size(),
         torus.simplices.size(), barycentric.side_masks.size(),
         other == 0 ? ""
-                   : fmt::format(" Beside it there {} {} facet{} around {}.", other == 1 ? "is" : "are", other,
+                   : fmt::format(" There {} also {} facet{} around {}.", other == 1 ? "is" : "are", other,
                                  other == 1 ? "" : "s", other == 1 ? "a sphere" : "spheres"),
         title, name);
   }
@@ -262,19 +261,18 @@ class Catalogue4d {
 const std::string Catalogue4d::kTorusText =
     R"(## The classes with a torus
 
-The boundary of a tesseract is made of eight cubes, and is a three-dimensional sphere. The contours of the cubes close up there
-to surfaces that part high from low. If such a surface is a torus, a cone over it would have a singular point at its apex: a ball
-cannot fill a torus, but a **solid torus** can, having a torus as its boundary.
+The boundary of a tesseract consists of eight cubes and is a three-dimensional sphere. In it, the contours of the cubes form closed
+surfaces that separate the high corners from the low ones. If such a surface is a torus, a cone over it would have a singular point
+at its apex, and no ball can fill it. A **solid torus** can, because its boundary is a torus.
 
-The tile's centre counts as low, so the contour in the tile is a copy of the *high side* of the boundary, pushed inwards: of the
-part of the boundary sphere where the corners are high. In these classes that is a solid torus, a ring. Every filling here
-has been shown to be one: it is a manifold (its certificate) and collapses to a circle. In the barycentric triangulation the
-copy is made of the side's own triangulation, its inner vertices half way to the tile's centre (*side vertices*); the compact one
-fills the same torus with fewer tetrahedra.
+The tile's centre counts as low. Therefore the contour in the tile is a copy of the *high side* of the boundary, moved inwards: the
+part of the boundary sphere that contains the high corners. In these classes the high side is a solid torus. Every filling here is
+proved to be one: it is a manifold (its certificate) and collapses to a circle. The barycentric triangulation copies the
+triangulation of the side, with the inner vertices half way to the tile's centre (*side vertices*). The compact one fills the same
+torus with fewer tetrahedra.
 
-The pictures are films: the fourth axis is the time t, from the cube at t = 0 to the cube at t = 1, and each frame is what one
-sees at one time. Corners change at t = 0.5; the compact triangulation is drawn. One sees the contour's high side in orange, its
-low side in blue.
+Each picture shows five cuts. The fourth axis is the time t, from the cube at t = 0 to the cube at t = 1. Each cut shows
+the corners at the nearer end of the time axis, and the compact triangulation. The contour's high side is orange, its low side blue.
 
 )";
 

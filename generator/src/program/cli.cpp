@@ -115,8 +115,8 @@ void set_languages(Options& options, std::string_view given) {
       for (const Language l : kLanguages) {
         names.push_back(language_name(l));
       }
-      refuse(fmt::format("--language {}: '{}' is none: expected one or several, separated by commas, of {}", given,
-                         name, fmt::join(names, ", ")));
+      refuse(fmt::format("--language {}: unknown language '{}': expected one or several, separated by commas, of {}",
+                         given, name, fmt::join(names, ", ")));
     }
     if (std::find(options.languages.begin(), options.languages.end(), *found) != options.languages.end()) {
       refuse(fmt::format("--language {}: {} twice: expected each once", given, name));
@@ -357,7 +357,7 @@ std::string version_text() {
 }
 
 std::string help_text() {
-  return R"(gen: counts, proves and writes the tables that contours of n-dimensional images are built from.
+  return R"(gen: counts, proves and writes the tables for contours of n-dimensional images.
 
 usage: gen --dim N COMMAND [OPTIONS]
 
@@ -365,7 +365,7 @@ commands (one of)
   --count          orbits of the 2^(2^N) signatures under the cube's symmetries, by Burnside's lemma (N = 1 ... 8)
                    and, for N up to 4, by enumeration too: the two must agree
   --transversal    the smallest signature of every class and its orbit's length (N = 2 ... 5), checked by Burnside's
-                   lemma and by the sum of the lengths; prints how many classes have orbits of which length
+                   lemma and by the sum of the lengths; prints the number of classes for each length
   --classes        every class of signatures under all 2^N N! symmetries (N = 2 ... 4): its smallest signature,
                    orbit length, stabiliser order, facets, components, Euler characteristics, ambiguous faces
   --certify        proves every signature of both alternatives (N = 2 ... 4): closed, manifold, oriented, matching
@@ -377,51 +377,51 @@ commands (one of)
   --version        version of the program and of the tables' layout
 
 options of --count, --classes, --certify, --out
-  --tile cube|simplex|octahedron    what the tile is (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
+  --tile cube|simplex|octahedron    shape of the tile (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
                                     4, the octahedron has N = 3; their tables are written as C++ and JSON
 
 options of --count
   --group full|rotations            all symmetries (default) or those of determinant +1
-  --inversion                       the exchange of high and low is a symmetry too
+  --inversion                       also the exchange of high and low
   --json                            one object: dim, group, inversion, order, orbits. All numbers are plain JSON
                                     integers; from N = 7 on orbits exceeds 2^53, so read it as a big integer
 
 options of --transversal
-  --group full|rotations            as above
+  --group full|rotations            all symmetries (default) or those of determinant +1
   --list                            prints the signatures instead, ascending, each with its orbit's length
-  --json                            for machines
+  --json                            the same as JSON
 
 options of --classes
-  --alternative low|high            which corners stay connected in an ambiguous face (default low)
-  --json                            for machines
+  --alternative low|high            corners that are connected in an ambiguous face (default low)
+  --json                            the same as JSON
 
 options of --certify
-  --table-by-class                  builds the table that a group of symmetries suggests (N = 2, 3): every signature
-                                    takes its class's contour. --group and --inversion choose the group; with inversion
-                                    it is the table of the original marching cubes, and has holes (exit status 4)
+  --table-by-class                  tests a table with one entry per class of a group of symmetries (N = 2, 3). --group
+                                    and --inversion select the group; with inversion it is the table of the original
+                                    marching cubes, and has holes (exit status 4)
   --all                             every resolution of the ambiguous squares of every class (N = 2 ... 4), one tile for
-                                    all that are the same up to symmetry: in 4D 134 683 for 48 453 090, half a minute;
+                                    all that are equal up to symmetry: in 4D 134 683 for 48 453 090, half a minute;
                                     prints the histogram of Euler characteristics
-  --sample COUNT                    so many tiles, N = 2 ... 6, signatures and choices in all faces at random
-  --seed S                          which sample (default 1)
-  --threads T                       with --all and --sample (default: one per processor)
-  --json                            for machines
+  --sample COUNT                    this many tiles with random signatures and choices in all faces (N = 2 ... 6)
+  --seed S                          seed of the sample (default 1)
+  --threads T                       number of threads, with --all and --sample (default: one per processor)
+  --json                            the same as JSON
 
 options of --out
-  --layout class|flat|auto          one list of simplices per class or per signature; auto (default): the one that
-                                    measured faster for this dimension
+  --layout class|flat|auto          one list of simplices per class or per signature; auto (default): the faster one for
+                                    this dimension, by measurement
   --triangulation barycentric|compact|all
-                                    which triangulations to write (default all)
+                                    triangulations to write (default all)
   --language cpp|json|glsl|wgsl|cuda
-                                    what to write them in (default cpp); several with commas: json,glsl
+                                    language of the tables (default cpp); several with commas: json,glsl
 
 Facets are cycles of edges, each written as a ternary number, axis N-1 first, with e for the axis along the edge: in 3D
-1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, where the
-right-hand normal points in 3D.
+1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, on the
+side of the right-hand normal in 3D.
 
 examples
   gen --dim 3 --count                                the 22 classes of marching cubes
-  gen --dim 3 --count --group rotations --inversion  its famous 15
+  gen --dim 3 --count --group rotations --inversion  its 15 classes
   gen --dim 8 --count --json
   gen --dim 3 --classes
   gen --dim 3 --tile octahedron --classes
@@ -432,8 +432,8 @@ examples
   gen --dim 3 --certify --group rotations --inversion --table-by-class
 
 exit status
-  0  done
-  1  a fault in the generator itself, or memory exhausted
+  0  success
+  1  a fault in the generator itself, or out of memory
   2  the command line: unknown, repeated, missing or contradictory options or values
   3  the two counts disagree
   4  a certificate failed; nothing was written

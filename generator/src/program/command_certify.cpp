@@ -73,13 +73,13 @@ void print_resolutions(const Options& options, const ResolutionFigures& f, doubl
     fmt::print("{}-{}, every resolution of its ambiguous faces of dimension 2\n", options.dim, tile);
     fmt::print("  pairs          {} of a signature and a resolution, in {} classes of signatures\n", f.pairs,
                f.classes);
-    fmt::print("  up to symmetry {} of one signature of each class, {} if its own symmetries count too\n",
+    fmt::print("  up to symmetry {} of one signature of each class, {} also up to the signature's own symmetries\n",
                f.pairs_by_class, f.orbits);
   } else {
     fmt::print("{}-{}, a sample: signatures and choices in all faces at random, seed {}\n", options.dim, tile,
                options.seed);
   }
-  fmt::print("  certified      {} tiles in {:.1f} s, each with what it has in its faces; no failure\n", f.tiles,
+  fmt::print("  certified      {} tiles in {:.1f} s, each with the contours in its faces; no failure\n", f.tiles,
              seconds);
   fmt::print("  facets         {} filled by a simplex, {} by a cone, {} from the side\n", f.by_filling[0],
              f.by_filling[1], f.by_filling[2]);

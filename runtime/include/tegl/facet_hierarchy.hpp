@@ -147,7 +147,8 @@ requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus. For a polyhedron it
 /// is half the Euler characteristic of its boundary: each handle subtracts 1, each boundary component after the first
 /// adds 1.
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f);
 
 /// Counts and faults of a facet hierarchy.
@@ -166,7 +167,7 @@ struct FacetReport {
 };
 
 /// Checks all facets. O(size).
-template <int N, class Real>
-FacetReport check(const FacetHierarchy<N, Real>& facets);
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Real>& facets);
 
 }  // namespace tegl

@@ -37,8 +37,8 @@ struct Measures {
 /// surface {f = 0} the errors of size and content decrease with the square of the grid step (docs/measures.md). Errors:
 /// InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S log s) time for s
 /// simplices around a vertex, 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
-template <int N, class Real>
-Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options = {});
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work = {});
 
 /// Measures of one cut "last coordinate = at".
 struct CutMeasures {
@@ -62,9 +62,9 @@ struct CutMeasures {
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range); Cancelled. O(#S
 /// log s + h) time for h pairs of a simplex and its cut; memory as `measure`, plus up to 64 MiB, or 64 bytes for each
 /// value. Thread-safe.
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
                                                                          std::span<const double> at,
-                                                                         const WorkOptions& options = {});
+                                                                         const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -39,7 +39,7 @@ struct ProjectedContour {
 /// contour with these names are replaced. Throws InvalidArgument if the direction is 0 or not finite, the distance is
 /// negative or not finite, a coordinate is not finite, a vertex number is out of range, or attributes or normals are of
 /// another number. O(#V + #S).
-template <class Real>
+template <Coordinate Real>
 ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {});
 
 /// The outline (silhouette) of the projection: where the line of sight is tangent to the contour. For the contour of a
@@ -55,8 +55,8 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
 ///
 /// Vertices get the contour's attributes and the height, as in `project`; triangles get the attributes of their
 /// tetrahedron. Errors: those of `project`; Cancelled. O(#V + #S) time and memory. One thread.
-template <class Real>
+template <Coordinate Real>
 Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection = {},
-                         const WorkOptions& options = {});
+                         const WorkOptions& work = {});
 
 }  // namespace tegl

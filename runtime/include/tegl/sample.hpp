@@ -24,8 +24,9 @@ namespace tegl {
 /// one sample has values only at its coordinate.
 ///
 /// Errors: Cancelled. Time: O(#V 2^N), plus a search along rectilinear axes. Memory: #V doubles. Thread-safe.
-template <Value T, int N, class Real>
-Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour, std::string name, std::string unit = {},
-                 const WorkOptions& options = {});
+template <Value T, int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour,
+                                                    std::string name, std::string unit = {},
+                                                    const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -68,22 +68,14 @@ struct SimplifyOptions {
   std::vector<Hyperplane<N>> planes = {};
   /// Coordinates are multiplied by these factors before distances and curvatures are computed, to make axes of
   /// different units comparable (a month and a degree).
-  std::array<double, N> scale = all_one();
+  std::array<double, N> scale = detail::all_one<N>();
   /// Whether to compute error bounds, as vertex attribute "simplification_error". Always done if max_error is given.
   /// With count or ratio only, the smallest maximum error that reaches the count is searched for, usually in 5 to 35
   /// rounds, at most 171 (except with `fast`). Without bounds there is one round, with up to 40 times the error.
   bool measure = true;
   /// fast: accept non-manifold results.
   bool allow_nonmanifold = false;
-  unsigned threads = 0;    ///< for the bounds; 0: all of the machine. The result is the same, byte by byte.
-  Progress progress = {};  ///< see Progress
-
- private:
-  static constexpr std::array<double, N> all_one() {
-    std::array<double, N> result{};
-    result.fill(1.0);
-    return result;
-  }
+  WorkOptions work = {};  ///< threads (for the bounds only) and progress
 };
 
 /// Why a simplification ended.
@@ -116,9 +108,17 @@ struct SimplifyStats {
   }
 };
 
+/// The result of `simplify`.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+struct Simplification {
+  Contour<N, Real> contour = {};  ///< the contour with fewer simplices
+  SimplifyStats stats = {};       ///< how it was reached, and its error
+};
+
 /// Reduces the number of simplices and preserves the topology: components, Euler characteristic, orientation and
 /// boundary. An edge is contracted only if the link condition holds (Dey, Edelsbrunner, Guha, Nekhayev 1999), no normal
-/// turns by 78 degrees or more, and no simplex becomes flat or worse than the worst one around the edge. Sheets closer
+/// turns by 78 degrees or more, and no simplex becomes flat or worse than the worst one around the edge. Parts closer
 /// to each other than the error may intersect afterwards. N = 2, 3, 4; Real: float or double.
 ///
 /// Normals and vertex attributes are interpolated where vertices move; remaining simplices keep their attributes. The
@@ -143,15 +143,14 @@ struct SimplifyStats {
 /// one of the result. This is per round: up to 12 rounds with `max_error`, usually 5 to 35 with a count (a third of
 /// those without bounds), with both as many as for each. If no round keeps max_error, the result is the original
 /// contour and SimplifyStats::end reports it. Memory: about 200 bytes per simplex.
-template <int N, class Real>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> simplify(const Contour<N, Real>& contour,
-                                                             const SimplifyOptions<N>& options,
-                                                             SimplifyStats* stats = nullptr);
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contour<N, Real>& contour,
+                                                                    const SimplifyOptions<N>& options);
 
 /// A `scale` for a contour whose axes have different units: for an axis whose unit differs from the first axis's, the
 /// mean extents of simplices along the two axes become equal. All other axes, and axes without extent, keep the factor
 /// 1. N = 2, 3, 4; Real: float or double. O(S).
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour);
 
 /// Whether SimplifyMethod::fast is available.

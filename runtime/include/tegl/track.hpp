@@ -123,9 +123,8 @@ struct TrackOptions {
   bool handles = true;
   /// Whether to fill TrackGraph::simplex_segments.
   bool label_simplices = false;
-  /// Number of threads of the parallel phases; 0: all of the machine. The result is the same, byte by byte.
-  unsigned threads = 0;
-  Progress progress = {};  ///< see Progress
+  /// Threads of the parallel phases, and progress.
+  WorkOptions work = {};
 };
 
 /// The midpoints of `count` equal intervals of [first, last].
@@ -162,7 +161,7 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 /// Based on: G. Reeb, Sur les points singuliers d'une forme de Pfaff complètement intégrable, 1946; S. Parsa, A
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (a sweep that maintains the components of the cut);
 /// M. Liversage, thesis, 1994, §10.2.9 to §10.2.11 (uses of cuts at any time).
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
 
 /// The graph of the tracks with `keep[track]` only, in the same order; `Track::number` keeps their original numbers.

@@ -104,7 +104,7 @@ std::uint64_t checked_bytes(std::span<const std::uint64_t> sizes, std::uint64_t 
   std::uint64_t product = item;
   for (const std::uint64_t size : sizes)
     if (__builtin_mul_overflow(product, size, &product) || product > (std::uint64_t{1} << 62))
-      fail(ErrorCode::TooLarge, path, "{} samples of {} bytes are more than any memory holds", shape_text(sizes), item);
+      fail(ErrorCode::TooLarge, path, "{} samples of {} bytes exceed any memory", shape_text(sizes), item);
   return product;
 }
 

@@ -205,7 +205,8 @@ class LinkChecker {
   static void require_no_device(const fs::path& file, const fs::path& target) {
     std::error_code error;
     if (fs::exists(target, error) && !fs::is_regular_file(target, error))
-      fail(ErrorCode::UnsupportedData, file, "names '{}', which is no regular file; expected one", target.string());
+      fail(ErrorCode::UnsupportedData, file, "refers to '{}', which is not a regular file; expected one",
+           target.string());
   }
 
   /// Checks a file whose datasets or groups HDF5 opens.

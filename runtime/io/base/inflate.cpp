@@ -156,7 +156,7 @@ std::vector<unsigned char> inflate_to_memory(const fs::path& path, const BytesNe
     bytes.resize(static_cast<std::size_t>(wanted));
     stream.check_end();
   } catch (const std::bad_alloc&) {
-    fail(ErrorCode::TooLarge, path, "decompresses to more than {} bytes, more than memory holds", bytes.size());
+    fail(ErrorCode::TooLarge, path, "decompresses to more than {} bytes, which exceeds the memory", bytes.size());
   }
   return bytes;
 }

@@ -86,7 +86,7 @@ void leave_out_unsupported(Found& found) {
   if (std::all_of(found.series.begin(), found.series.end(), is_unsupported)) return;
   for (const auto& files : found.series)
     if (is_unsupported(files))
-      found.remarks.push_back(fmt::format("left out{}: {}",
+      found.remarks.push_back(fmt::format("skipped{}: {}",
                                           files.size() == 1 ? "" : fmt::format(", a series of {} files", files.size()),
                                           files.front().fault->what()));
   std::erase_if(found.series, is_unsupported);
@@ -129,10 +129,10 @@ Found read_all_series(std::span<const fs::path> paths, const Progress& progress)
   for (auto& [uid, files] : by_uid) found.series.push_back(std::move(files));
   if (found.series.empty() && !found.damaged.empty()) throw found.damaged.front();
   if (found.series.empty())
-    fail(ErrorCode::UnsupportedData, paths.front(), "holds no image in DICOM; expected at least one file with pixels");
+    fail(ErrorCode::UnsupportedData, paths.front(), "contains no DICOM image; expected at least one file with pixels");
   if (!strangers.empty())
     found.remarks.push_back(
-        fmt::format("left out: {}{}: no DICOM, whatever the name", strangers.front().string(),
+        fmt::format("skipped: {}{}: not DICOM, despite the name", strangers.front().string(),
                     strangers.size() == 1 ? "" : fmt::format(" and {} more", strangers.size() - 1)));
   leave_out_unsupported(found);
   std::stable_sort(found.series.begin(), found.series.end(),
@@ -190,13 +190,13 @@ void require_alike(const Volume& volume) {
       const bool one_file = volume.files.size() == 1 && file.frames.size() == 1;
       if (!one_file && file.frames.size() == 1 && (!frame.position || !frame.directions))
         fail(ErrorCode::UnsupportedData, file.path,
-             "does not say where it lies; expected Image Position and Image Orientation (0020,0032), (0020,0037)");
+             "has no position in space; expected Image Position and Image Orientation (0020,0032), (0020,0037)");
       if (frame.directions.has_value() != like.directions.has_value() ||
           frame.position.has_value() != like.position.has_value() ||
           frame.spacing.has_value() != like.spacing.has_value() ||
           (frame.directions && (*frame.directions - *like.directions).norm() > kTolerance))
-        fail(ErrorCode::UnsupportedData, file.path, "is turned against {} of the same series; expected parallel planes",
-             first.path.string());
+        fail(ErrorCode::UnsupportedData, file.path,
+             "is not parallel to {} of the same series; expected parallel planes", first.path.string());
       if (frame.spacing && (*frame.spacing - *like.spacing).norm() > 10 * kTolerance * like.spacing->norm())
         fail(ErrorCode::UnsupportedData, file.path, "has samples {} x {} mm apart; expected {} x {}, as {}",
              (*frame.spacing)[0], (*frame.spacing)[1], (*like.spacing)[0], (*like.spacing)[1], first.path.string());
@@ -283,18 +283,18 @@ void sort_planes(Volume& volume) {
   for (std::size_t p = 0, first = 0; p < counts.size(); first += counts[p++])
     if (counts[p] != volume.times)
       fail(ErrorCode::UnsupportedData, volume.path(volume.planes[first + counts[p] - 1]),
-           "is one of {} at its place, {} mm along the normal; expected {} there, as at most others{} (some are {})",
+           "is one of {} slices at {} mm along the normal; expected {}, as at most other positions{} (some slices are "
+           "{})",
            counts[p], volume.planes[first].along, volume.times,
            counts[p] == 1 ? "" : fmt::format(": see also {}", volume.path(volume.planes[first]).string()),
-           counts[p] > volume.times ? "twice there" : "missing");
+           counts[p] > volume.times ? "duplicates" : "missing");
   // sort by time
   if (volume.times == 1) return;
   for (const TimeKey& key : kTimeKeys)
     if (sort_by_time(volume, key)) return;
   fail(ErrorCode::UnsupportedData, volume.path(volume.planes[1]),
-       "lies where {} does, and nothing tells {} slices at one place apart; expected a Trigger Time (0018,1060), "
-       "Temporal "
-       "Position (0020,0100) or Acquisition Time (0008,0032) that does",
+       "has the same position as {}, and no time distinguishes {} slices at one position; expected a Trigger Time "
+       "(0018,1060), Temporal Position (0020,0100) or Acquisition Time (0008,0032) that does",
        volume.path(volume.planes[0]).string(), volume.times);
 }
 
@@ -337,11 +337,11 @@ void require_none_missing(const Volume& volume, const Stack& stack) {
     if (gaps[g] > kLarger * least_around(gaps, g) && !is_meant(gaps, g) && (!worst || gaps[g] > gaps[*worst]))
       worst = g;
   if (!worst) return;
-  fail(
-      ErrorCode::UnsupportedData, volume.path(volume.planes[*worst + 1]),
-      "lies {:.6g} mm from {}, and the next ones {:.6g} mm apart (slices seem to be missing); expected distances of at "
-      "most {} times their neighbours', or {} alike in a row; the files of either side can be named by themselves",
-      gaps[*worst], volume.path(volume.planes[*worst]).string(), least_around(gaps, *worst), kLarger, kMeant);
+  fail(ErrorCode::UnsupportedData, volume.path(volume.planes[*worst + 1]),
+       "lies {:.6g} mm from {}, and the next ones {:.6g} mm apart (slices seem to be missing); expected distances of "
+       "at most {} times the neighbouring ones, or {} equal ones in a row; the files on either side of the gap can be "
+       "read separately",
+       gaps[*worst], volume.path(volume.planes[*worst]).string(), least_around(gaps, *worst), kLarger, kMeant);
 }
 
 /// Fits the line through the positions. Throws unless all planes lie on it, at all times, and no slice seems to be
@@ -362,8 +362,8 @@ Stack stack_of(const Volume& volume) {
     const Eigen::Vector3d beside = at(i) - at(0) - stack.steps[i % n] * stack.step;
     if (beside.norm() > 10 * kTolerance * stack.step.norm())
       fail(ErrorCode::UnsupportedData, volume.path(volume.planes[i]),
-           "lies {:.6g} mm beside the line through the other slices; expected slices stacked along a straight line, at "
-           "distances of any kind: other grids have no place in an image here",
+           "lies {:.6g} mm away from the line through the other slices; expected slices along a straight line, at any "
+           "distances: other grids are not supported",
            beside.norm());
   }
   return stack;
@@ -377,7 +377,7 @@ std::string uneven_text(const Stack& stack) {
     least = std::min(least, stack.steps[p] - stack.steps[p - 1]);
     most = std::max(most, stack.steps[p] - stack.steps[p - 1]);
   }
-  return fmt::format("the slices lie at uneven distances, {:.6g} to {:.6g} mm, and are taken where they lie",
+  return fmt::format("the slices lie at uneven distances, {:.6g} to {:.6g} mm; their positions are kept",
                      least * stack.step.norm(), most * stack.step.norm());
 }
 
@@ -441,7 +441,7 @@ Volume arrange(std::vector<DicomFile> files) {
     arrange_unplaced(volume);
   else
     fail(ErrorCode::UnsupportedData, volume.files[1].path,
-         "has frames without a place in space, and is one of {} files; expected one such file", volume.files.size());
+         "has frames without positions in space, and is one of {} files; expected one such file", volume.files.size());
   return volume;
 }
 
@@ -549,7 +549,7 @@ RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series,
   Found found = read_all_series(paths, progress);
   if (series.empty() && found.series.size() == 1 && !found.damaged.empty()) throw found.damaged.front();
   for (const Error& error : found.damaged)  // they may belong to this series; a missing slice would be detected
-    found.remarks.push_back(fmt::format("left out: {}; it does not say of which series it is", error.what()));
+    found.remarks.push_back(fmt::format("skipped: {}; the file's series is unknown", error.what()));
   Volume volume = arrange(choose(std::move(found.series), series, paths.front()));
   RawImage spatial = spatial_grid(volume);
   // metadata

@@ -274,8 +274,8 @@ std::optional<Error> try_to_load(DcmFileFormat& file, const fs::path& path, Uint
   prepare_dcmtk();
   const OFCondition status = file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, largest, ERM_autoDetect);
   if (status.good() && file.getDataset() != nullptr && file.getDataset()->card() > 0) return {};
-  return Error(ErrorCode::MalformedFile, fmt::format("{}: no DICOM file that can be read ({})", path.string(),
-                                                     status.bad() ? status.text() : "it holds nothing"));
+  return Error(ErrorCode::MalformedFile, fmt::format("{}: not a readable DICOM file ({})", path.string(),
+                                                     status.bad() ? status.text() : "it is empty"));
 }
 
 void load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
@@ -310,10 +310,11 @@ void require_decodable(DcmFileFormat& format, const fs::path& path) {
                          DcmCodecList::canChangeCoding(stored_as, EXS_LittleEndianExplicit) ||
                          (is_jpeg2000(stored_as) && has_jpeg2000());
   if (known && !elsewhere && decodable) return;
-  fail(ErrorCode::UnsupportedFormat, path,
-       "pixels stored as {} ({}), which is not read; expected uncompressed ones, JPEG, JPEG-LS, RLE or JPEG 2000{}",
-       known ? syntax.getXferName() : name_of_later_syntax(told), known ? syntax.getXferID() : told,
-       has_jpeg2000() ? "" : " (that in builds with OpenJPEG, libopenjp2-7-dev)");
+  fail(
+      ErrorCode::UnsupportedFormat, path,
+      "pixels stored as {} ({}), which is not supported; expected uncompressed ones, JPEG, JPEG-LS, RLE or JPEG 2000{}",
+      known ? syntax.getXferName() : name_of_later_syntax(told), known ? syntax.getXferID() : told,
+      has_jpeg2000() ? "" : " (that in builds with OpenJPEG, libopenjp2-7-dev)");
 }
 
 /// Throws if a file is too short for the values in its header, before memory is allocated. (The size of compressed
@@ -428,7 +429,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
   const DcmXfer syntax(data.getOriginalXfer());
   if (data.chooseRepresentation(EXS_LittleEndianExplicit, nullptr).bad() ||
       !data.canWriteXfer(EXS_LittleEndianExplicit, data.getOriginalXfer()))
-    fail(ErrorCode::MalformedFile, file.path, "pixels that cannot be decompressed; expected sound ones as {}",
+    fail(ErrorCode::MalformedFile, file.path, "pixels that cannot be decompressed; expected undamaged ones as {}",
          syntax.getXferName());
   // copy the values
   ValueArray values = array_of_type(file.type);

@@ -13,8 +13,7 @@ namespace {
     fail(ErrorCode::FileNotFound, path,
          "is a directory; expected a file (folders of DICOM files are read by builds with DCMTK: libdcmtk-dev)");
   fail(ErrorCode::UnsupportedFormat, path,
-       "a DICOM file, which this build cannot read; expected one with DCMTK "
-       "(libdcmtk-dev) at hand when it was configured");
+       "a DICOM file, which this build cannot read; expected a build with DCMTK (libdcmtk-dev)");
 }
 
 }  // namespace

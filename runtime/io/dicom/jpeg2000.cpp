@@ -111,7 +111,7 @@ class Decoder {
     require_grey(*image, columns, rows);
     if (opj_decode(codec_.get(), stream_.get(), image.get()) != OPJ_TRUE ||
         opj_end_decompress(codec_.get(), stream_.get()) != OPJ_TRUE)
-      fail_by_complaint("that is damaged or cut short");
+      fail_by_complaint("that is damaged or truncated");
     require_grey(*image, columns, rows);  // again: a palette in JP2 changes the components
     const opj_image_comp_t& grey = image->comps[0];
     if (grey.data == nullptr) fail_by_complaint("without samples");
@@ -165,9 +165,9 @@ bool begins_jpeg2000(std::span<const unsigned char> bytes) noexcept {
 Jpeg2000Image decode_jpeg2000(std::span<const unsigned char> bytes, std::size_t columns, std::size_t rows,
                               const std::string& label) {
   if (!begins_jpeg2000(bytes))
-    throw Error(
-        ErrorCode::MalformedFile,
-        fmt::format("{}: {} bytes that begin no JPEG 2000 code stream; expected ff 4f ff 51", label, bytes.size()));
+    throw Error(ErrorCode::MalformedFile,
+                fmt::format("{}: {} bytes that do not begin a JPEG 2000 code stream; expected ff 4f ff 51", label,
+                            bytes.size()));
   return Decoder(bytes, label).decode(columns, rows);
 }
 

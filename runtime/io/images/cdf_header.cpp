@@ -34,7 +34,7 @@ class HeaderWalk {
     records_ = count_field();
     if (records_ == largest_count())
       fail(ErrorCode::UnsupportedData, path_,
-           "netCDF file whose number of records is left open, as while it is written; expected a number");
+           "netCDF file without a number of records, as if it is still being written; expected a number");
     dimensions();
     attributes();
     variables();
@@ -111,7 +111,7 @@ class HeaderWalk {
       if (size > most)
         fail(ErrorCode::MalformedFile, path_, "dimension '{}' has size {}; expected at most {}", label, size, most);
       if (size == 0 && std::ranges::find(sizes_, 0U) != sizes_.end())
-        fail(ErrorCode::MalformedFile, path_, "dimension '{}' is a second one of records (size 0); expected one",
+        fail(ErrorCode::MalformedFile, path_, "dimension '{}' is a second record dimension (size 0); expected one",
              label);
       sizes_.push_back(size);
     }
@@ -147,7 +147,7 @@ class HeaderWalk {
         const std::uint64_t size = sizes_[static_cast<std::size_t>(id)];
         if (d > 0 && size == 0)
           fail(ErrorCode::MalformedFile, path_,
-               "variable '{}' has the dimension of records at place {}; expected it first", variable.name, d);
+               "variable '{}' has the record dimension at position {}; expected it first", variable.name, d);
         if (size == 0)
           variable.record = true;
         else
@@ -186,9 +186,8 @@ class HeaderWalk {
       }
       if (end == 0) continue;
       if (variable.begin < at_)
-        fail(ErrorCode::MalformedFile, path_,
-             "variable '{}' begins at byte {}; expected at least {}, behind the header", variable.name, variable.begin,
-             at_);
+        fail(ErrorCode::MalformedFile, path_, "variable '{}' begins at byte {}; expected at least {}, after the header",
+             variable.name, variable.begin, at_);
       if (__builtin_add_overflow(end, variable.begin, &end) || end > file_bytes_)
         fail(ErrorCode::MalformedFile, path_, "variable '{}' ends at byte {}; expected at most {}, the file's size",
              variable.name, end, file_bytes_);

@@ -184,7 +184,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   RawLayers source;
   source.grid.axes = raw_axes(layout, path);
   if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
-    fail(ErrorCode::InvalidArgument, path, "{} sizes; expected those of 2, 3 or 4 axes", layout.sizes.size());
+    fail(ErrorCode::InvalidArgument, path, "{} sizes; expected 2, 3 or 4", layout.sizes.size());
   const auto n = static_cast<Eigen::Index>(layout.sizes.size());
   source.grid.linear = Eigen::MatrixXd::Identity(n, n);
   source.grid.offset = Eigen::VectorXd::Zero(n);

@@ -213,8 +213,7 @@ void locate_data(const Fields& fields, std::uint64_t header_end, bool allow_outs
   const auto compressed = fields.number<std::int64_t>("CompressedDataSize", 0);
   if (compressed < 0)
     fail(ErrorCode::MalformedFile, path,
-         "CompressedDataSize is {}; expected the bytes of the compressed samples, or 0 where it is not known",
-         compressed);
+         "CompressedDataSize is {}; expected the bytes of the compressed samples, or 0 if it is not known", compressed);
   if (samples.encoding == Encoding::deflate) samples.compressed_bytes = static_cast<std::uint64_t>(compressed);
 }
 

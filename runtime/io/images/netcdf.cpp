@@ -373,15 +373,14 @@ void require_image(const NcFile& file, const NcVariable& variable, const NcSlab&
   if (axes < 2)
     fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}{}; expected 2 to 4 axes longer than 1",
          variable.name, variable.sizes.empty() ? "a single value" : image_shape(variable),
-         is_fixed ? fmt::format(", which leaves {} beside the fixed indices", axes) : "");
+         is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "");
   const ImageVariable described = describe(file, variable);
   fail(ErrorCode::UnsupportedData, file.path(),
        "variable '{}' is {} ({}){}; expected 2 to 4 axes longer than 1 ({}), or a fixed index of another dimension, "
        "such "
        "as {}=0",
        variable.name, shape_text(described.sizes), fmt::join(described.axes, ", "),
-       is_fixed ? fmt::format(", which leaves {} beside the fixed indices", axes) : "", kMoreAxes,
-       described.axes.back());
+       is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "", kMoreAxes, described.axes.back());
 }
 
 /// Finds the requested variable, and checks that it can be an image.
@@ -433,7 +432,7 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
   const auto file = std::make_shared<const NcFile>(path, options.progress, options.allow_outside_paths);
   if (file->is_compressed())
     fail(ErrorCode::UnsupportedData, path,
-         "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");
+         "is compressed as a whole and cannot be read layer by layer; expected an uncompressed file");
   Found found = find_variable(*file, options);
   file->require_stored(found.variable, found.slab);
   const VariableGrid grid = read_grid(*file, found.variable, found.slab);

@@ -98,7 +98,7 @@ void check_magic(HeaderBytes& bytes, const fs::path& path) {
   const bool known = std::memcmp(magic.data(), "n+1", 4) == 0 || std::memcmp(magic.data(), "ni1", 4) == 0;
   if (bytes.get<std::int32_t>(0) != static_cast<std::int32_t>(kHeaderBytes) || !known)
     fail(ErrorCode::MalformedFile, path,
-         "no NIfTI-1 file: header size {} and magic {}; expected 348 and 'n+1' or 'ni1'", declared, shown(magic));
+         "not a NIfTI-1 file: header size {} and magic {}; expected 348 and 'n+1' or 'ni1'", declared, shown(magic));
 }
 
 std::vector<std::uint64_t> read_sizes(const HeaderBytes& bytes, const fs::path& path) {
@@ -269,7 +269,7 @@ fs::path partner(const fs::path& path, const std::string& wanted) {
     if (gz) candidate += ".gz";
     if (fs::exists(candidate)) return candidate;
   }
-  fail(ErrorCode::FileNotFound, fs::path(stem).replace_extension(wanted), "no such file, which belongs to {}",
+  fail(ErrorCode::FileNotFound, fs::path(stem).replace_extension(wanted), "no such file; {} requires it",
        path.filename().string());
 }
 

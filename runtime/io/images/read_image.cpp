@@ -57,14 +57,14 @@ Format format_of(const fs::path& path) {
   if (start.starts_with("CDF") || start.starts_with("\x89HDF")) return Format::NetCdf;
   if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;
   fail(ErrorCode::UnsupportedFormat, path,
-       "no image format known by its name or first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
+       "unknown image format, by its name and first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
        ".nhdr), MetaImage (.mha, .mhd), netCDF (.nc, .cdf, .nc4, also gzipped) or DICOM (.dcm, a folder)",
        shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
 }
 
 StoredImage open_stored(const fs::path& path, Format format, const ReadImageOptions& options) {
   if (!options.variable.empty())
-    fail(ErrorCode::InvalidArgument, path, "variable '{}' asked of a file that holds one image without a name",
+    fail(ErrorCode::InvalidArgument, path, "variable '{}' for a file with one image and no variables; expected none",
          options.variable);
   if (!options.fixed.empty())
     fail(ErrorCode::InvalidArgument, path,

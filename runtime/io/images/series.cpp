@@ -130,10 +130,9 @@ std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAx
       // Files may each have their own reference time, with coordinate 0.
       const std::optional<double> at = convert_time(axis[0], axis.unit, unit);
       if (!at)
-        fail(
-            ErrorCode::UnsupportedData, member.path,
-            "lies along '{}' in '{}'; expected '{}', as {}, what can be converted to it, or coordinates that are given",
-            axis.name, axis.unit, unit, members.front().path.string());
+        fail(ErrorCode::UnsupportedData, member.path,
+             "lies along '{}' in '{}'; expected '{}', as {}, a unit that converts to it, or explicit coordinates",
+             axis.name, axis.unit, unit, members.front().path.string());
       coordinates.push_back(*at);
     }
     if (std::all_of(coordinates.begin(), coordinates.end(), [&](double c) { return c == coordinates[0]; })) continue;
@@ -158,11 +157,11 @@ void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder
     if (i == 0 || (descending ? member.at < members[i - 1].at : member.at > members[i - 1].at)) continue;
     if (order == SeriesOrder::by_name && says == Says::caller)
       fail(ErrorCode::InvalidArgument, member.path,
-           "lies at {} by the coordinates that are given, behind {} at {} by the order of their names; expected "
-           "coordinates that rise or fall strictly in that order",
+           "lies at {} by the given coordinates, after {} at {} by the order of their names; expected coordinates that "
+           "strictly ascend or descend in that order",
            member.at, members[i - 1].path.string(), members[i - 1].at);
     fail(says == Says::header ? ErrorCode::UnsupportedData : ErrorCode::InvalidArgument, member.path,
-         "lies at {} along the new axis{}, behind {} at {}; expected strictly {} coordinates{}", member.at,
+         "lies at {} along the new axis{}, after {} at {}; expected strictly {} coordinates{}", member.at,
          says == Says::header ? " by its header" : "", members[i - 1].path.string(), members[i - 1].at,
          descending ? "descending" : "ascending", says == Says::header ? ", or files in their order" : "");
   }
@@ -177,8 +176,8 @@ std::string converted(std::vector<Member>& members, const std::string& own, cons
   const std::string unit = wanted.since.empty() && !since.empty() ? asked + " since " + since : asked;
   if ((!wanted.since.empty() && wanted.since != since) || !convert_time(0, own, unit))
     fail(ErrorCode::InvalidArgument, members.front().path,
-         "lies along the new axis in '{}' by its header; expected no other unit than that, or one of ms, s, min, h, d "
-         "and weeks that it can be converted to, not '{}'",
+         "has coordinates in '{}' by its header, which do not convert to '{}'; expected the header's unit or, for "
+         "times, one of ms, s, min, h, d and weeks",
          own, asked);
   for (Member& member : members) member.at = *convert_time(member.at, own, unit);
   return unit;
@@ -193,8 +192,8 @@ SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options)
     const auto own = options.step ? std::vector<double>() : own_coordinates(members, found);
     if (own.empty() && by_coordinate)
       fail(ErrorCode::UnsupportedData, members.front().path,
-           "does not say where it lies along a further axis, or all say the same; expected files that do, to be "
-           "ordered by that");
+           "has no coordinate along a further axis, or all files have the same; expected different coordinates, to "
+           "order the files by them");
     if (!own.empty()) says = Says::header;
     for (std::size_t i = 0; i < members.size(); ++i)
       members[i].at = own.empty() ? static_cast<double>(i) * options.step.value_or(1.0) : own[i];
@@ -241,8 +240,8 @@ std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOp
                        options.coordinates.empty() ? 0.0 : options.coordinates[i]});
     const std::size_t axes = members.back().grid.axes.size();
     if (axes != 2 && axes != 3)
-      fail(ErrorCode::UnsupportedData, path,
-           "has {} axes, one of several files; expected 2 or 3, which become one more", axes);
+      fail(ErrorCode::UnsupportedData, path, "has {} axes and is one of several files; expected 2 or 3 axes per file",
+           axes);
     require_same(members.back(), members.front());
   }
   return members;
@@ -297,7 +296,7 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
 RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
   if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
     fail(ErrorCode::InvalidArgument, files[0],
-         "is a DICOM file, which says itself where it lies; expected neither coordinates, nor a step, unit or order");
+         "is a DICOM file, which contains its position; expected no coordinates, step, unit or order");
   if (!options.fixed.empty())
     fail(ErrorCode::InvalidArgument, files[0], "is a DICOM file, which has no dimension '{}'; expected no fixed index",
          options.fixed[0].dimension);

@@ -15,8 +15,8 @@ void check_attributes(std::span<const Attribute> attributes, std::size_t rows, s
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
     if (attribute.name.empty() || !names.insert(attribute.name).second)
-      fail(ErrorCode::InvalidArgument, path, "attribute of {} by the name '{}'; expected names, each once", what,
-           attribute.name);
+      fail(ErrorCode::InvalidArgument, path, "attribute of {} with the name '{}'; expected different names, not empty",
+           what, attribute.name);
     if (attribute.width < 1 || attribute.values.size() != rows * static_cast<std::size_t>(attribute.width))
       fail(ErrorCode::InvalidArgument, path, "attribute '{}' of {} numbers, {} for each of {} {}; expected {}",
            attribute.name, attribute.values.size(), attribute.width, rows, what,

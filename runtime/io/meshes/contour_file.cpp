@@ -21,7 +21,8 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<
                        Compression compression) {
   const MeshFileFormat* const format = find_mesh_file_format(path);
   if (format == nullptr || format->extension != ".vtkhdf")
-    fail(ErrorCode::UnsupportedFormat, path, "'{}' cannot grow; expected .vtkhdf", path.extension().string());
+    fail(ErrorCode::UnsupportedFormat, path, "'{}' cannot be written in parts; expected .vtkhdf",
+         path.extension().string());
   VtkhdfLayout layout;
   layout.dim = N - 1;
   layout.space_dim = N;

@@ -147,7 +147,7 @@ class GltfReader {
     const std::span<const unsigned char> all = file_;
     std::span<const unsigned char> text = all;
     if (all.size() >= 4 && std::memcmp(all.data(), "glTF", 4) == 0) {
-      if (all.size() < 20 || word_at(all, 4) != 2) malformed("no glTF 2.0: expected version 2 after 'glTF'");
+      if (all.size() < 20 || word_at(all, 4) != 2) malformed("not glTF 2.0: expected version 2 after 'glTF'");
       const std::size_t json_bytes = word_at(all, 12);
       if (json_bytes > all.size() - 20) malformed("JSON of {} bytes in a file of {}", json_bytes, all.size());
       text = text.subspan(20, json_bytes);
@@ -161,21 +161,21 @@ class GltfReader {
     }
     if (is_nested_too_deeply(text)) malformed("JSON nested more than {} deep; expected at most {}", kNested, kNested);
     json_ = Json::parse(text.begin(), text.end(), nullptr, false);
-    if (json_.is_discarded() || !json_.is_object()) malformed("no glTF: expected a JSON object");
+    if (json_.is_discarded() || !json_.is_object()) malformed("not glTF: expected a JSON object");
     if (text_at(member(json_, "asset"), "version").substr(0, 2) != "2.")
-      malformed("no glTF 2.0: asset.version missing or other");
+      malformed("not glTF 2.0: asset.version is missing or different");
     require_no_extensions();
   }
 
   void require_no_extensions() const {
     const Json& extensions = member(json_, "extensionsRequired");
     if (extensions.is_null() || (extensions.is_array() && extensions.empty())) return;
-    if (!extensions.is_array()) malformed("'extensionsRequired' is no list; expected names");
+    if (!extensions.is_array()) malformed("'extensionsRequired' is not a list; expected names");
     constexpr std::size_t kShown = 8;
     std::string names;
     for (std::size_t i = 0; i < std::min(kShown, extensions.size()); ++i) {
       constexpr std::size_t kLongest = 64;
-      if (!extensions[i].is_string()) malformed("'extensionsRequired' has an item that is no text; expected names");
+      if (!extensions[i].is_string()) malformed("'extensionsRequired' has an item that is not text; expected names");
       names += (i == 0 ? "'" : ", '") + extensions[i].get_ref<const std::string&>().substr(0, kLongest) + "'";
     }
     fail(ErrorCode::UnsupportedData, path_, "needs {} extensions ({}{}); expected none", extensions.size(), names,
@@ -197,7 +197,7 @@ class GltfReader {
   [[nodiscard]] std::size_t number_at(const Json& object, const char* name, std::optional<std::size_t> absent) const {
     const Json& value = member(object, name);
     if (value.is_null() && absent) return *absent;
-    if (!value.is_number_unsigned()) malformed("'{}' missing or no whole number", name);
+    if (!value.is_number_unsigned()) malformed("'{}' is missing or not a whole number", name);
     return value.get<std::size_t>();
   }
   [[nodiscard]] const Json& element(const char* array, std::size_t index) const {
@@ -239,7 +239,7 @@ class GltfReader {
     const std::size_t mark = uri.find(kMark);
     auto bytes =
         mark == std::string::npos ? std::nullopt : decoded_base64(std::string_view(uri).substr(mark + kMark.size()));
-    if (!bytes) malformed("data URI that is no base64");
+    if (!bytes) malformed("data URI that is not base64");
     return decoded_.emplace_back(std::move(*bytes));
   }
 
@@ -344,7 +344,7 @@ class GltfReader {
   }
 
   [[nodiscard]] std::size_t index_in(const Json& list, std::size_t i) const {
-    if (!list[i].is_number_unsigned()) malformed("list of nodes with something else");
+    if (!list[i].is_number_unsigned()) malformed("list of nodes with other items; expected whole numbers");
     return list[i].get<std::size_t>();
   }
 
@@ -378,7 +378,7 @@ class GltfReader {
   void visit_node(std::size_t index, const Eigen::Affine3d& parent, int depth, const Use& use) {
     // The specification requires a forest. A cycle would never end, and shared nodes would multiply.
     const std::size_t nodes = member(json_, "nodes").size();
-    if (depth > kDeepest || ++visited_ > nodes) malformed("nodes that are no tree, or deeper than {}", kDeepest);
+    if (depth > kDeepest || ++visited_ > nodes) malformed("nodes that do not form a tree, or deeper than {}", kDeepest);
     const Json& node = element("nodes", index);
     const Eigen::Affine3d here = parent * placement(node);
     if (node.contains("mesh")) use(number_at(node, "mesh", std::nullopt), here);

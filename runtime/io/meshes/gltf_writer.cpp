@@ -93,7 +93,7 @@ std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesyst
     added.values.reserve(attribute.values.size());
     for (const double value : attribute.values) {
       if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
-        fail(ErrorCode::UnsupportedData, path, "vertex {} has {} as '{}'; expected what float holds",
+        fail(ErrorCode::UnsupportedData, path, "vertex {} has {} as '{}'; expected a value in the range of float",
              added.values.size() / static_cast<std::size_t>(attribute.width), value, attribute.name);
       added.values.push_back(static_cast<float>(value));
     }

@@ -27,8 +27,7 @@ constexpr std::array<MeshFileFormat, 6> kFormats = {
 const MeshFileFormat& format_of(const fs::path& path) {
   if (const MeshFileFormat* const format = find_mesh_file_format(path)) return *format;
   fail(ErrorCode::UnsupportedFormat, path,
-       "no mesh format known by the extension '{}'; expected .ply, .gltf, .glb, .vtkhdf, .stl or .obj",
-       path.extension().string());
+       "unknown mesh format '{}'; expected .ply, .gltf, .glb, .vtkhdf, .stl or .obj", path.extension().string());
 }
 
 bool is_gltf(const MeshFileFormat& format) { return format.extension == ".gltf" || format.extension == ".glb"; }
@@ -105,8 +104,8 @@ std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const 
   const auto point = position(mesh, vertex);
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(std::abs(point[a]) <= static_cast<double>(std::numeric_limits<float>::max())))
-      fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected what float holds", vertex,
-           point[a]);
+      fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected a value in the range of float",
+           vertex, point[a]);
     result[a] = static_cast<float>(point[a]);
   }
   return result;
@@ -115,7 +114,7 @@ std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const 
 void flatten(Mesh& mesh, const fs::path& path) {
   for (std::size_t v = 0; v < mesh.coordinates.size() / 3; ++v)
     if (mesh.coordinates[3 * v + 2] != 0.0)
-      fail(ErrorCode::MalformedFile, path, "vertex {} has z = {}; expected 0, as the file says that it is planar", v,
+      fail(ErrorCode::MalformedFile, path, "vertex {} has z = {}; expected 0, as the file is marked as planar", v,
            mesh.coordinates[3 * v + 2]);
   for (Buffer<double>* const rows : {&mesh.coordinates, &mesh.normals}) {
     const std::size_t count = rows->size() / 3;

@@ -114,7 +114,7 @@ class ObjReader {
     const std::string_view digits = without_plus(word);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const bool is_number = error == std::errc::result_out_of_range && end == digits.data() + digits.size();
-    bad("{}; expected a number{}", shown(word), is_number ? " that double holds" : "");
+    bad("{}; expected a number{}", shown(word), is_number ? " in the range of double" : "");
   }
 
   void read_row(std::string_view key, std::string_view line, Buffer<double>& numbers) {
@@ -151,7 +151,7 @@ class ObjReader {
 
   void require_present(const Reference& reference, std::size_t present) const {
     if (reference.greatest > present)
-      fail(ErrorCode::MalformedFile, path_, "line {}: {} number {}; expected at most {}, as many as there are",
+      fail(ErrorCode::MalformedFile, path_, "line {}: {} number {}; expected at most {}, the number of definitions",
            reference.line, reference.what, reference.greatest, present);
   }
 

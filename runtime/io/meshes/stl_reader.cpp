@@ -119,7 +119,7 @@ class StlReader {
         corners = 0;
         progress_.add(kTextBytes);
       } else if (key != "outer" && key != "loop" && key != "endloop") {
-        fail(ErrorCode::MalformedFile, path_, "{} behind facet {}; expected a word of STL, such as 'vertex'",
+        fail(ErrorCode::MalformedFile, path_, "{} after facet {}; expected a keyword of STL, such as 'vertex'",
              shown(word), mesh_.simplices.size() / 3);
       }
     }
@@ -135,7 +135,7 @@ class StlReader {
   /// Throws if a facet has begun; `corners`: its number of corners so far.
   void require_closed(std::size_t corners) const {
     if (corners > 0)
-      fail(ErrorCode::MalformedFile, path_, "facet {} without 'endfacet'; expected it behind 3 vertices",
+      fail(ErrorCode::MalformedFile, path_, "facet {} without 'endfacet'; expected it after 3 vertices",
            (mesh_.simplices.size() - corners) / 3);
   }
 
@@ -146,8 +146,8 @@ class StlReader {
       double value = 0;
       if (!parse_number(word, value) ||
           (std::isfinite(value) && std::abs(value) > double{std::numeric_limits<float>::max()}))
-        fail(ErrorCode::MalformedFile, path_, "{} in facet {}; expected a coordinate that float holds", shown(word),
-             mesh_.simplices.size() / 3);
+        fail(ErrorCode::MalformedFile, path_, "{} in facet {}; expected a coordinate in the range of float",
+             shown(word), mesh_.simplices.size() / 3);
       coordinate = static_cast<float>(value);
     }
     return point;

@@ -270,7 +270,8 @@ void ChildProcess::take_message(Message& message, Waiting& waiting, const Progre
 Package ChildProcess::wait(const Progress& progress, bool shared) {
   constexpr int kMilliseconds = 50;
   if (getpid() != owner_ || pid_ <= 0)
-    fail(ErrorCode::FileNotFound, path_, "cannot be read on: it was opened by another process, or its reading failed");
+    fail(ErrorCode::FileNotFound, path_,
+         "cannot be read further: it was opened by another process, or reading failed before");
   Waiting waiting{shared, {}};
   note_progress();
   tick(progress, waiting.fraction, path_);
@@ -309,7 +310,7 @@ Package ChildProcess::receive(const Progress& progress, Blocks blocks) {
   }
 }
 
-void ChildProcess::fail_contradiction() { fail_damaged("gave a result that contradicts itself"); }
+void ChildProcess::fail_contradiction() { fail_damaged("gave an inconsistent result"); }
 
 void ChildProcess::request(const LayerRequest& request) {
   if (getpid() != owner_ || pid_ <= 0) return;  // receive() throws in this case

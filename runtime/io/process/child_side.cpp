@@ -142,12 +142,11 @@ class FileCopy {
   FileCopy(const void* bytes, std::size_t count, std::size_t size)
       : size_(size), descriptor_(create_memory_file(size, begin_)) {
     if (descriptor_ < 0 && errno == EFBIG)
-      fail(
-          ErrorCode::TooLarge, child_side->file,
-          "{} bytes cannot be handed over by the process that reads it: the system's limit for files (ulimit -f) holds "
-          "for shared memory, too; expected a larger limit, or the file read in the same process (separate_process, "
-          "--in-process)",
-          size);
+      fail(ErrorCode::TooLarge, child_side->file,
+           "{} bytes cannot be passed on by the child process that reads it: the system's limit of file sizes (ulimit "
+           "-f) includes shared memory; expected a larger limit, or reading in the same process (separate_process = "
+           "false, --in-process)",
+           size);
     if (descriptor_ < 0) throw std::bad_alloc();
     std::memcpy(begin_, bytes, count);
   }

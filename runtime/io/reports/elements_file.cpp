@@ -212,7 +212,7 @@ void write_elements(const Elements<N>& elements, const fs::path& path, const Ele
   const std::string extension = lower(path.extension().string());
   if (extension == ".dat" || extension == ".txt") return write_lines(elements, path, options);
   if (extension == ".h5" || extension == ".hdf5") return write_hdf5(elements, path, options);
-  fail(ErrorCode::UnsupportedFormat, path, "'{}' is no format of elements; expected .dat, .txt, .h5 or .hdf5",
+  fail(ErrorCode::UnsupportedFormat, path, "'{}' is not a format of elements; expected .dat, .txt, .h5 or .hdf5",
        extension);
 }
 

@@ -221,8 +221,8 @@ void FaceEstimator<N>::report_change(const Index& row) const noexcept {
     for (int a = 0; a < N; ++a)
       place += fmt::format("{}{}", a == 0 ? "" : ", ", static_cast<std::ptrdiff_t>(row[a]) + around_.origin[a]);
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the estimator answered differently for the same face, in the row of tiles from sample "
-                            "({}) on; expected answers that depend on the face alone",
+                fmt::format("the estimator gave different results for the same face, in the row of tiles from sample "
+                            "({}) on; expected results that depend only on the face",
                             place));
   } catch (...) {
     keep_error(std::current_exception());

@@ -193,7 +193,7 @@ std::vector<double> along_sight(const Contour<4, Real>& contour, const Projectio
 
 }  // namespace
 
-template <class Real>
+template <Coordinate Real>
 ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection) {
   const View<Real> view = view_of(contour, projection);
   ProjectedContour<Real> result;
@@ -211,13 +211,13 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
   return result;
 }
 
-template <class Real>
-Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& options) {
-  report(options.progress, 0.0);
+template <Coordinate Real>
+Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
+  report(work.progress, 0.0);
   const View<Real> view = view_of(contour, projection);
-  report(options.progress, 0.3);
+  report(work.progress, 0.3);
   const std::vector<double> sides = along_sight(contour, projection, view);
-  report(options.progress, 0.6);
+  report(work.progress, 0.6);
   // The projected contour with the side function as last coordinate; the outline is its cut at 0.
   Contour<4, double> raised;
   raised.vertices.resize(view.points.size());
@@ -229,7 +229,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   replace(raised.vertex_attributes, height_attribute(contour, projection, view));
   raised.simplex_attributes = contour.simplex_attributes;
   Contour<3, double> cut = slice(raised, 0.0);
-  report(options.progress, 0.9);
+  report(work.progress, 0.9);
   Contour<3, Real> result;
   result.direction = contour.direction;
   name_axes(contour, projection, result.axis_names, result.axis_units);
@@ -242,7 +242,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   // The cut has the orientation of the contour in the raised space, where the far side is up.
   if (!view.is_right_handed)
     for (auto& simplex : result.simplices) std::swap(simplex[1], simplex[2]);
-  report(options.progress, 1.0);
+  report(work.progress, 1.0);
   return result;
 }
 

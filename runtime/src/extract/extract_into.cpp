@@ -34,7 +34,8 @@ constexpr const char* kSimplices = "simplices";
 void check_room(std::uint64_t room, std::uint64_t needed, const char* items) {
   if (needed > room)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("room for {} {}; the contour has {} or more (tegl::count tells)", room, items, needed));
+                fmt::format("room for {} {}; the contour has {} or more (tegl::count returns the number)", room, items,
+                            needed));
 }
 
 /// Counts only. It counts neither caps nor vertices doubled at missing values.

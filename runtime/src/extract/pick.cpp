@@ -164,10 +164,9 @@ std::vector<bool> components_in(const Contour<N, double>& inside, const Componen
                                 const Progress& progress) {
   // Differs only if the caller's estimator is not deterministic.
   if (inside.simplices.size() != labels.simplices.size())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the same contour has {} simplices, and then {}; expected an estimator whose answers do "
-                            "not change",
-                            labels.simplices.size(), inside.simplices.size()));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("the same contour has {} simplices in one pass and {} in the "
+                                                        "next; expected an estimator whose results do not change",
+                                                        labels.simplices.size(), inside.simplices.size()));
   std::vector<bool> result(labels.count);
   const auto look_at = [&](std::size_t s) {
     if (result[labels.simplices[s]]) return;

@@ -60,7 +60,8 @@ const {
   return result;
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f) {
   if (k < 3) return 1;
   // Half of the Euler characteristic of the boundary, as for any compact 3-manifold. Each segment of the boundary is in
@@ -120,8 +121,8 @@ void check_ridges(const FacetHierarchy<N, Real>& facets, FacetReport& report) {
 
 }  // namespace
 
-template <int N, class Real>
-FacetReport check(const FacetHierarchy<N, Real>& facets) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Real>& facets) {
   FacetReport report;
   std::vector<std::pair<Index, int>> sum;
   detail::DisjointSets components;

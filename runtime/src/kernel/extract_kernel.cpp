@@ -301,11 +301,9 @@ class Extraction final : public SteppedExtraction<N, Real> {
     }
     check_vertex_count(part_.end_vertex, max_vertices_);
     if (part_.end_vertex - before > max_vertices_at_once_)
-      throw Error(
-          ErrorCode::TooLarge,
-          fmt::format("{} vertices between layers {} and {} and in what comes before them; expected at most {}: "
-                      "contour parts of the image instead",
-                      part_.end_vertex - before, first, end, max_vertices_at_once_));
+      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices between layers {} and {} and in unfinished layers "
+                                                   "before; expected at most {}: contour parts of the image instead",
+                                                   part_.end_vertex - before, first, end, max_vertices_at_once_));
     return active;
   }
 

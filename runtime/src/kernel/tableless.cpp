@@ -155,8 +155,8 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     });
     if (any_missing)
       throw Error(ErrorCode::UnsupportedData,
-                  fmt::format("a {}D image with missing values, the first in layer {} of its last axis; expected "
-                              "numbers only: contours next to missing values are made up to 4D",
+                  fmt::format("a {}D image with missing values, the first in layer {} of its last axis; expected no "
+                              "missing values, which are supported up to 4D",
                               N, k));
   }
 

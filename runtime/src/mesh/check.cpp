@@ -378,11 +378,11 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
   if (simplices.size() % width != 0)
     throw Error(
         ErrorCode::InvalidArgument,
-        fmt::format("{} vertex numbers; expected a multiple of {}, so many to a simplex", simplices.size(), width));
+        fmt::format("{} vertex numbers; expected a multiple of {}, the number per simplex", simplices.size(), width));
   if (coordinates.size() % static_cast<std::size_t>(space_dim) != 0)
     throw Error(
         ErrorCode::InvalidArgument,
-        fmt::format("{} coordinates; expected a multiple of {}, so many to a vertex", coordinates.size(), space_dim));
+        fmt::format("{} coordinates; expected a multiple of {}, the number per vertex", coordinates.size(), space_dim));
   constexpr std::size_t kLimit = std::numeric_limits<Index>::max();
   if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
     throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",
@@ -396,26 +396,26 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
 }  // namespace
 
 MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
-                 const Progress& progress) {
-  return check_any<double>(d, simplices, space_dim, coordinates, progress);
+                 const WorkOptions& work) {
+  return check_any<double>(d, simplices, space_dim, coordinates, work.progress);
 }
 
-template <int N, class Real>
-MeshReport check(const Contour<N, Real>& contour, const Progress& progress) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& contour, const WorkOptions& work) {
   const std::span<const Index> rows(contour.simplices.empty() ? nullptr : contour.simplices.data()->data(),
                                     contour.simplices.size() * N);
   const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
                                           contour.vertices.size() * N);
-  return check_any<Real>(N - 1, rows, N, coordinates, progress);
+  return check_any<Real>(N - 1, rows, N, coordinates, work.progress);
 }
 
-template MeshReport check(const Contour<2, float>&, const Progress&);
-template MeshReport check(const Contour<2, double>&, const Progress&);
-template MeshReport check(const Contour<3, float>&, const Progress&);
-template MeshReport check(const Contour<3, double>&, const Progress&);
-template MeshReport check(const Contour<4, float>&, const Progress&);
-template MeshReport check(const Contour<4, double>&, const Progress&);
-template MeshReport check(const Contour<5, float>&, const Progress&);
-template MeshReport check(const Contour<5, double>&, const Progress&);
+template MeshReport check(const Contour<2, float>&, const WorkOptions&);
+template MeshReport check(const Contour<2, double>&, const WorkOptions&);
+template MeshReport check(const Contour<3, float>&, const WorkOptions&);
+template MeshReport check(const Contour<3, double>&, const WorkOptions&);
+template MeshReport check(const Contour<4, float>&, const WorkOptions&);
+template MeshReport check(const Contour<4, double>&, const WorkOptions&);
+template MeshReport check(const Contour<5, float>&, const WorkOptions&);
+template MeshReport check(const Contour<5, double>&, const WorkOptions&);
 
 }  // namespace tegl

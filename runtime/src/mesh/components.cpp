@@ -125,8 +125,9 @@ Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& 
 
 }  // namespace
 
-template <int N, class Real>
-ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOptions& options) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> ComponentLabels label_components(const Contour<N, Real>& contour,
+                                                                    const WorkOptions& work) {
   detail::require_vertices(contour);
   const std::size_t vertices = contour.vertices.size();
   const std::size_t simplices = contour.simplices.size();
@@ -134,7 +135,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
   detail::SharedDisjointSets sets(vertices);
   Buffer<std::uint8_t> used(vertices);
   std::fill(used.begin(), used.end(), std::uint8_t{0});
-  detail::for_each_block(simplices, kBlock, options.threads, detail::part_of(options.progress, 0.0, 0.7),
+  detail::for_each_block(simplices, kBlock, work.threads, detail::part_of(work.progress, 0.0, 0.7),
                          [&](std::size_t, std::size_t from, std::size_t to) {
                            for (std::size_t s = from; s < to; ++s)
                              for (const Index v : contour.simplices[s]) {
@@ -144,9 +145,9 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
                          });
   // number the sets, then label the simplices
   ComponentLabels labels;
-  labels.count = number_sets(sets, used, options.threads, detail::part_of(options.progress, 0.7, 0.9), labels.vertices);
+  labels.count = number_sets(sets, used, work.threads, detail::part_of(work.progress, 0.7, 0.9), labels.vertices);
   labels.simplices.resize(simplices);
-  detail::for_each_block(simplices, kBlock, options.threads, detail::part_of(options.progress, 0.9, 1.0),
+  detail::for_each_block(simplices, kBlock, work.threads, detail::part_of(work.progress, 0.9, 1.0),
                          [&](std::size_t, std::size_t from, std::size_t to) {
                            for (std::size_t s = from; s < to; ++s)
                              labels.simplices[s] = labels.vertices[contour.simplices[s][0]];
@@ -154,26 +155,27 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
   return labels;
 }
 
-template <int N, class Real>
-std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                     const WorkOptions& options) {
-  require_labels(contour, labels, detail::part_of(options.progress, 0.0, 0.05));
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Contour<N, Real>& contour,
+                                                                        const ComponentLabels& labels,
+                                                                        const WorkOptions& work) {
+  require_labels(contour, labels, detail::part_of(work.progress, 0.0, 0.05));
   detail::require_finite(contour);
   // count faces by label
   const std::span<const Index> rows = detail::rows_of(contour);
   std::vector<detail::FaceCounts> faces;
   {
     const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(options.progress, 0.05, 0.1));
-    faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, options.threads,
-                                   detail::part_of(options.progress, 0.1, 0.8),
+        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(work.progress, 0.05, 0.1));
+    faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, work.threads,
+                                   detail::part_of(work.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });
   }
   // sums over simplices by label
   const detail::Groups groups =
-      detail::group_by(labels.simplices, labels.count, detail::part_of(options.progress, 0.8, 0.82));
+      detail::group_by(labels.simplices, labels.count, detail::part_of(work.progress, 0.8, 0.82));
   const std::vector<detail::PieceSums<N>> sums =
-      detail::sum_groups(contour, groups, options.threads, detail::part_of(options.progress, 0.82, 1.0));
+      detail::sum_groups(contour, groups, work.threads, detail::part_of(work.progress, 0.82, 1.0));
   std::vector<Component<N>> result(labels.count);
   for (const Index label : labels.vertices)
     if (label != kNoComponent) ++result[label].vertices;
@@ -192,10 +194,12 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
   return result;
 }
 
-template <int N, class Real>
-std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                               const Progress& progress) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour,
+                                                                                  const ComponentLabels& labels,
+                                                                                  const WorkOptions& work) {
   using detail::part_of;
+  const Progress& progress = work.progress;
   require_labels(contour, labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
   const detail::Groups vertices = detail::group_by(labels.vertices, labels.count, part_of(progress, 0.2, 0.3));
@@ -213,16 +217,18 @@ std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, 
   return parts;
 }
 
-template <int N, class Real>
-Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                   const std::vector<bool>& keep, const Progress& progress) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Contour<N, Real>& contour,
+                                                                      const ComponentLabels& labels,
+                                                                      const std::vector<bool>& keep,
+                                                                      const WorkOptions& work) {
   using detail::part_of;
+  const Progress& progress = work.progress;
   require_labels(contour, labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
   if (keep.size() != labels.count)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} components are to be kept or not; expected {}, as many as there are", keep.size(),
-                            labels.count));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} choices of components; expected {}, one for each component",
+                                                        keep.size(), labels.count));
   const auto kept = [&](const Buffer<Index>& of, const Progress& part) {
     Buffer<Index> items;
     detail::in_parts(of.size(), part, [&](std::size_t from, std::size_t to) {
@@ -244,8 +250,9 @@ Contour<N, Real> select_components(const Contour<N, Real>& contour, const Compon
   return part;
 }
 
-template <int N, class Real>
-void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& labels) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Contour<N, Real> add_component_attribute(Contour<N, Real> contour,
+                                                                            const ComponentLabels& labels) {
   require_labels(contour, labels);
   detail::require_attributes(contour);
   const auto add = [](const Buffer<Index>& of, std::vector<Attribute>& attributes) {
@@ -257,16 +264,17 @@ void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& l
   };
   add(labels.vertices, contour.vertex_attributes);
   add(labels.simplices, contour.simplex_attributes);
+  return contour;
 }
 
 #define TEGL_INSTANTIATE(N, Real)                                                                                     \
   template ComponentLabels label_components(const Contour<N, Real>&, const WorkOptions&);                             \
   template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const WorkOptions&); \
   template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&,            \
-                                                          const Progress&);                                           \
+                                                          const WorkOptions&);                                        \
   template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \
-                                              const std::vector<bool>&, const Progress&);                             \
-  template void add_component_attribute(Contour<N, Real>&, const ComponentLabels&)
+                                              const std::vector<bool>&, const WorkOptions&);                          \
+  template Contour<N, Real> add_component_attribute(Contour<N, Real>, const ComponentLabels&)
 TEGL_INSTANTIATE(2, float);
 TEGL_INSTANTIATE(2, double);
 TEGL_INSTANTIATE(3, float);

@@ -75,14 +75,14 @@ struct Placed {
 
 /// The place of each simplex, sorted. A tile is convex, so it contains the centroids of all its simplices.
 template <int N, class Real>
-std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>& grid, const WorkOptions& options) {
+std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>& grid, const WorkOptions& work) {
   constexpr double kInBorder =
       std::is_same_v<Real, float> ? 1e-5 : 1e-9;  // in grid steps: bound of the rounding of vertices
   constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
   const detail::GridLocator<N> locator(grid);
   const std::array<std::size_t, N> sizes = grid.sizes();
   std::vector<Placed> placed(simplices.centroids.size());
-  detail::for_each_item(placed.size(), options.threads, options.progress, [&](std::size_t s) {
+  detail::for_each_item(placed.size(), work.threads, work.progress, [&](std::size_t s) {
     placed[s] = {kNowhere, static_cast<Index>(s)};
     detail::CellPlace<N> at;
     if (!locator.find(simplices.centroids[s], at)) return;
@@ -173,11 +173,11 @@ void merge(const Elements<N>& simplices, std::span<const Placed> piece, std::siz
 
 }  // namespace
 
-template <int N, class Real>
-Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& work) {
   detail::require_sound(contour);
   Elements<N> result = make_elements(contour, contour.simplices.size());
-  detail::for_each_item(contour.simplices.size(), options.threads, options.progress, [&](std::size_t s) {
+  detail::for_each_item(contour.simplices.size(), work.threads, work.progress, [&](std::size_t s) {
     const auto corners = detail::corners_of(contour, s);
     result.centroids[s] = detail::centroid_of<N>(corners);
     result.normals[s] = detail::normal_vector_of<N>(corners);
@@ -188,12 +188,13 @@ Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options
   return result;
 }
 
-template <int N, class Real>
-Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid, const WorkOptions& options) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid,
+                                                                const WorkOptions& work) {
   // Progress: two passes over all simplices and two over the sorted ones; only the last of these reports.
-  const Elements<N> simplices = elements(contour, {options.threads, detail::part_of(options.progress, 0.0, 0.4)});
+  const Elements<N> simplices = elements(contour, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
   std::vector<Placed> placed =
-      place_simplices<N, Real>(simplices, grid, {options.threads, detail::part_of(options.progress, 0.4, 0.6)});
+      place_simplices<N, Real>(simplices, grid, {work.threads, detail::part_of(work.progress, 0.4, 0.6)});
   std::vector<std::size_t> ends;  // of components in `placed`
   PieceFinder<N, Real> finder(contour);
   for (std::size_t first = 0, end; first < placed.size(); first = end) {
@@ -204,7 +205,7 @@ Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& gri
   }
   // merge each component into an element
   Elements<N> result = make_elements(contour, ends.size());
-  detail::for_each_item(ends.size(), options.threads, detail::part_of(options.progress, 0.8, 1.0), [&](std::size_t e) {
+  detail::for_each_item(ends.size(), work.threads, detail::part_of(work.progress, 0.8, 1.0), [&](std::size_t e) {
     const std::size_t first = e == 0 ? 0 : ends[e - 1];
     merge(simplices, std::span<const Placed>(placed).subspan(first, ends[e] - first), e, result);
   });
@@ -221,7 +222,7 @@ double ElementSum<N>::closure_error() const noexcept {
 }
 
 template <int N>
-ElementSum<N> sum_of(const Elements<N>& elements) {
+requires DimensionBetween<N, 2, 5> ElementSum<N> sum_of(const Elements<N>& elements) {
   std::array<detail::CompensatedSum, N> normal, absolute;
   detail::CompensatedSum measure;
   for (const auto& element : elements.normals)

@@ -107,12 +107,12 @@ void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin
 
 /// By value, whether the cut is open: an (N-2)-face whose orientations do not cancel is cut there.
 template <int N, class Real>
-std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& options) {
+std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& work) {
   std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertices.size(), kBlock));
   const detail::Stars stars = detail::make_stars<N>(detail::rows_of(contour), contour.vertices.size(),
-                                                    detail::part_of(options.progress, 0.0, 0.1));
-  detail::count_faces<N>(detail::rows_of(contour), stars, {}, 1, false, options.threads,
-                         detail::part_of(options.progress, 0.1, 0.6), [&](std::size_t block, const auto& ridge) {
+                                                    detail::part_of(work.progress, 0.0, 0.1));
+  detail::count_faces<N>(detail::rows_of(contour), stars, {}, 1, false, work.threads,
+                         detail::part_of(work.progress, 0.1, 0.6), [&](std::size_t block, const auto& ridge) {
                            const auto time = [&](Index v) { return static_cast<double>(contour.vertices[v][N - 1]); };
                            std::pair<double, double> span(time(ridge[0]), time(ridge[0]));
                            for (const Index v : ridge) {
@@ -152,8 +152,8 @@ std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) 
 
 }  // namespace
 
-template <int N, class Real>
-Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options) {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work) {
   detail::require_vertices(contour);
   detail::require_finite(contour);
   Measures<N> result;
@@ -166,15 +166,14 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
   detail::FaceCounts faces;
   {
     const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(options.progress, 0.0, 0.1));
-    faces =
-        detail::count_faces<N>(rows, stars, {}, 1, false, options.threads, detail::part_of(options.progress, 0.1, 0.7),
-                               [](std::size_t, const auto&) { /* counted */ })
-            .front();
+        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(work.progress, 0.0, 0.1));
+    faces = detail::count_faces<N>(rows, stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.7),
+                                   [](std::size_t, const auto&) { /* counted */ })
+                .front();
   }
   // sums over simplices
   const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices.size()),
-                                                       options.threads, detail::part_of(options.progress, 0.7, 1.0))
+                                                       work.threads, detail::part_of(work.progress, 0.7, 1.0))
                                         .front();
   result.size = sums.size.value();
   result.content = detail::content_of(sums, faces, contour.direction);
@@ -186,10 +185,10 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
   return result;
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
                                                                          std::span<const double> at,
-                                                                         const WorkOptions& options) {
+                                                                         const WorkOptions& work) {
   detail::require_vertices(contour);
   detail::require_finite(contour);
   for (const double t : at)
@@ -199,7 +198,7 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
   std::vector<double> levels;  // the values rounded as by `slice`
   for (const double t : at) levels.push_back(static_cast<double>(detail::rounded_at<Real>(t)));
   const CutValues values(levels, low[N - 1]);
-  const std::vector<bool> open = find_open_cuts(contour, values, options);
+  const std::vector<bool> open = find_open_cuts(contour, values, work);
   PointOf<N> origin;  // near the contour, so that the terms of the contents are small
   for (int a = 0; a < N; ++a) origin[a] = low[a] + 0.5 * (high[a] - low[a]);
 
@@ -209,7 +208,7 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
       std::clamp<std::size_t>((std::size_t{1} << 20) / std::max<std::size_t>(1, values.size()), 1, 64);
   const std::size_t size = std::max(kBlock, detail::block_count(simplices, parts));
   std::vector<std::vector<CutSums>> sums(detail::block_count(simplices, size));
-  detail::for_each_block(simplices, size, options.threads, detail::part_of(options.progress, 0.6, 1.0),
+  detail::for_each_block(simplices, size, work.threads, detail::part_of(work.progress, 0.6, 1.0),
                          [&](std::size_t block, std::size_t from, std::size_t to) {
                            sums[block].resize(values.size());
                            for (std::size_t s = from; s < to; ++s)

@@ -74,20 +74,20 @@ double weight_of(const std::array<PointOf<N>, N>& corners, int j, double measure
 
 }  // namespace
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> flat_normals(
-    const Contour<N, Real>& contour, const WorkOptions& options) {
+    const Contour<N, Real>& contour, const WorkOptions& work) {
   detail::require_vertices(contour);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.simplices.size());
-  detail::for_each_item(result.size(), options.threads, options.progress, [&](std::size_t s) {
+  detail::for_each_item(result.size(), work.threads, work.progress, [&](std::size_t s) {
     result[s] = rounded<N, Real>(unit<N>(detail::normal_vector_of<N>(detail::corners_of(contour, s))));
   });
   return result;
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
-    const Contour<N, Real>& contour, NormalWeights weights, const WorkOptions& options) {
+    const Contour<N, Real>& contour, NormalWeights weights, const WorkOptions& work) {
   detail::require_vertices(contour);
   // By simplex: its unit normal and its weights at the corners.
   struct Share {
@@ -102,9 +102,9 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
     const std::size_t batch = std::min(kBatch, count - first);
     const auto progress = [&](double fraction) {
       const double done = static_cast<double>(first) + fraction * static_cast<double>(batch);
-      return !options.progress || options.progress(done / static_cast<double>(count));
+      return !work.progress || work.progress(done / static_cast<double>(count));
     };
-    detail::for_each_item(batch, options.threads, progress, [&](std::size_t i) {
+    detail::for_each_item(batch, work.threads, progress, [&](std::size_t i) {
       const auto corners = detail::corners_of(contour, first + i);
       const PointOf<N> normal = detail::normal_vector_of<N>(corners);
       shares[i].normal = unit<N>(normal);
@@ -118,19 +118,19 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
           sums[contour.simplices[first + i][j]][a] += shares[i].weights[j] * shares[i].normal[a];
   }
   Buffer<typename Contour<N, Real>::Vertex> result(sums.size());
-  detail::for_each_item(sums.size(), options.threads, {},
+  detail::for_each_item(sums.size(), work.threads, {},
                         [&](std::size_t v) { result[v] = rounded<N, Real>(unit<N>(sums[v])); });
   return result;
 }
 
-template <Value T, int N, class Real>
+template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
-    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind, const WorkOptions& options) {
+    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind, const WorkOptions& work) {
   const detail::GridLocator<N> locator(image.grid());
   const detail::ImageSource<T, N> source(image, 0.0, 0.0);
   const detail::NormalWriter<N, Real> writer(source, image.grid(), contour.direction, kind);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.vertices.size());
-  detail::for_each_item(result.size(), options.threads, options.progress, [&](std::size_t v) {
+  detail::for_each_item(result.size(), work.threads, work.progress, [&](std::size_t v) {
     std::array<double, N> point;
     for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
     detail::CellPlace<N> place;

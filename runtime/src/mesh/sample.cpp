@@ -41,13 +41,13 @@ double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noe
 
 }  // namespace
 
-template <Value T, int N, class Real>
-Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour, std::string name, std::string unit,
-                 const WorkOptions& options) {
+template <Value T, int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour,
+                                                    std::string name, std::string unit, const WorkOptions& work) {
   Attribute attribute{std::move(name), std::move(unit), 1, {}};
   attribute.values.resize(contour.vertices.size());
   const detail::GridLocator<N> locator(image.grid());
-  detail::for_each_item(contour.vertices.size(), options.threads, options.progress, [&](std::size_t v) {
+  detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
     std::array<double, N> point;
     for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
     detail::CellPlace<N> place;

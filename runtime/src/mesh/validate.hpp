@@ -55,8 +55,9 @@ void require_attributes(const Contour<N, Real>& contour) {
   require(contour.vertex_attributes, contour.vertices.size(), "vertices");
   require(contour.simplex_attributes, contour.simplices.size(), "simplices");
   if (!contour.normals.empty() && contour.normals.size() != contour.vertices.size())
-    throw Error(ErrorCode::InvalidArgument, fmt::format("{} normals for {} vertices; expected as many, or none",
-                                                        contour.normals.size(), contour.vertices.size()));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} normals for {} vertices; expected one for each vertex, or none", contour.normals.size(),
+                            contour.vertices.size()));
 }
 
 /// All of the checks above.

@@ -165,15 +165,15 @@ void write_magic(IndexWriter& to, ActiveMethod method, int dim) {
 
 ActiveTilesHead read_head(IndexReader& from) {
   if (from.value<std::array<char, 8>>("name of the format") != kIndexMagic)
-    throw Error(ErrorCode::MalformedFile, "not an index of active tiles; expected a file that 'tegl index' wrote");
+    throw Error(ErrorCode::MalformedFile, "not an index of active tiles; expected a file written by 'tegl index'");
   if (from.value<std::uint32_t>("byte order") != kIndexByteOrder)
     throw Error(ErrorCode::UnsupportedFormat,
-                "the index was written on a machine of another byte order; build it anew");
+                "the index was written on a machine with another byte order; build it again");
   ActiveTilesHead head;
   head.version = from.value<std::uint32_t>("version");
   if (head.version != kIndexVersion)
     throw Error(ErrorCode::UnsupportedFormat,
-                fmt::format("the index has version {}; expected {}: build it anew", head.version, kIndexVersion));
+                fmt::format("the index has version {}; expected {}: build it again", head.version, kIndexVersion));
   constexpr std::size_t kLongName = 64;
   const std::string method = from.text(kLongName, "name of the method");
   const auto* const name = std::find(kMethodNames.begin(), kMethodNames.end(), method);
@@ -229,7 +229,7 @@ ActiveTilesHead check_active_tiles(ByteSource& from) {
     case ActiveMethod::min_max_tree:
       reader.value<std::uint32_t>("length of bricks");
       reader.value<std::uint32_t>("width of bricks");
-      while (reader.pass_array(value, "least values") > 1) pass({value});  // the maxima
+      while (reader.pass_array(value, "minimum values") > 1) pass({value});  // the maxima
       pass({value});
       break;
     case ActiveMethod::seed_set:

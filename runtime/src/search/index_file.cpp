@@ -80,7 +80,7 @@ void IndexReader::bytes(void* data, std::size_t bytes, const char* what) {
   if (bytes == 0) return;
   const std::size_t count = from_.read(data, bytes);
   if (count != bytes)
-    damaged(fmt::format("{} bytes where the {} should have {}: the file is cut short", count, what, bytes));
+    damaged(fmt::format("{} bytes for the {}; expected {}: the file is truncated", count, what, bytes));
   sum_ = hash_bytes(data, bytes, sum_);
 }
 
@@ -104,10 +104,10 @@ std::string IndexReader::text(std::size_t most, const char* what) {
 
 void IndexReader::finish() {
   std::uint64_t sum = 0;
-  if (from_.read(&sum, sizeof(sum)) != sizeof(sum)) damaged("no checksum at the end: the file is cut short");
+  if (from_.read(&sum, sizeof(sum)) != sizeof(sum)) damaged("no checksum at the end: the file is truncated");
   if (sum != sum_) damaged(fmt::format("its checksum is {:016x}; expected {:016x}", sum_, sum));
   char more = 0;
-  if (from_.read(&more, 1) != 0) damaged("bytes behind its end");
+  if (from_.read(&more, 1) != 0) damaged("bytes after its end");
 }
 
 void IndexReader::damaged(const std::string& what) {
@@ -121,7 +121,7 @@ void IndexReader::too_many(const char* what, std::uint64_t count, std::uint64_t 
 void require_offsets(const std::vector<std::uint64_t>& offsets, std::uint64_t end, const char* what) {
   if (offsets.empty() || offsets.front() != 0 || offsets.back() != end ||
       !std::is_sorted(offsets.begin(), offsets.end()))
-    IndexReader::damaged(fmt::format("the places of the {} do not ascend from 0 to {}", what, end));
+    IndexReader::damaged(fmt::format("the positions of the {} do not ascend from 0 to {}", what, end));
 }
 
 }  // namespace tegl::detail

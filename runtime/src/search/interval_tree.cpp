@@ -176,18 +176,18 @@ ActiveTilesPtr<N> read_interval_tree(IndexReader& from, const IndexTask<T, N>& t
   IntervalLists<T> lists;
   lists.values = from.array<T>(2 * (tiles / kLeafTiles + 1), "values of the nodes");
   const std::size_t nodes = lists.nodes();
-  lists.first = from.array<std::uint64_t>(2 * nodes + 2, "places of the nodes");
-  lists.by_least = from.array<TileId>(tiles, "tiles by least value");
+  lists.first = from.array<std::uint64_t>(2 * nodes + 2, "positions of the nodes");
+  lists.by_least = from.array<TileId>(tiles, "tiles by minimum");
   const std::size_t count = lists.by_least.size();
-  lists.least = from.array<T>(count, "least values");
+  lists.least = from.array<T>(count, "minimum values");
   if (lists.first.size() != 2 * nodes + 2 || lists.least.size() != count)
-    IndexReader::damaged(fmt::format("{} places and {} least values; expected {} and {}", lists.first.size(),
+    IndexReader::damaged(fmt::format("{} positions and {} minimum values; expected {} and {}", lists.first.size(),
                                      lists.least.size(), 2 * nodes + 2, count));
   require_offsets(lists.first, count, "nodes");
-  lists.by_greatest = from.array<TileId>(count, "tiles by greatest value");
-  lists.greatest = from.array<T>(count, "greatest values");
+  lists.by_greatest = from.array<TileId>(count, "tiles by maximum");
+  lists.greatest = from.array<T>(count, "maximum values");
   if (lists.by_greatest.size() != lists.in_nodes() || lists.greatest.size() != count)
-    IndexReader::damaged(fmt::format("{} tiles by greatest value and {} greatest values; expected {} and {}",
+    IndexReader::damaged(fmt::format("{} tiles by maximum and {} maximum values; expected {} and {}",
                                      lists.by_greatest.size(), lists.greatest.size(), lists.in_nodes(), count));
   require_tiles(lists.by_least, tiles);
   require_tiles(lists.by_greatest, tiles);

@@ -282,14 +282,14 @@ ActiveTilesPtr<N> read_min_max_tree(IndexReader& from, const IndexTask<T, N>& ta
   const auto length = from.value<std::uint32_t>("length of bricks");
   const auto width = from.value<std::uint32_t>("width of bricks");
   if (length != kBrickLength || width != brick_width(N))
-    throw Error(ErrorCode::UnsupportedFormat, fmt::format("bricks of {} by {} tiles; expected {} by {}: build it anew",
+    throw Error(ErrorCode::UnsupportedFormat, fmt::format("bricks of {} by {} tiles; expected {} by {}: build it again",
                                                           length, width, kBrickLength, brick_width(N)));
   auto levels = plan_levels<T>(TileGrid<N>(task.identity.sizes));
   for (auto& level : levels) {
-    level.least = from.array<T>(level.count(), "least values");
-    level.greatest = from.array<T>(level.count(), "greatest values");
+    level.least = from.array<T>(level.count(), "minimum values");
+    level.greatest = from.array<T>(level.count(), "maximum values");
     if (level.least.size() != level.count() || level.greatest.size() != level.count())
-      IndexReader::damaged(fmt::format("{} least and {} greatest values of a level; expected {} each",
+      IndexReader::damaged(fmt::format("{} minimum and {} maximum values of a level; expected {} each",
                                        level.least.size(), level.greatest.size(), level.count()));
   }
   return std::make_unique<MinMaxTree<T, N>>(task, std::move(levels));

@@ -124,16 +124,16 @@ ActiveTilesPtr<N> read_span_space(IndexReader& from, const IndexTask<T, N>& task
   const TileNumber tiles = TileGrid<N>(task.identity.sizes).count();
   SpanBuckets<T> buckets;
   buckets.bounds = from.array<T>(kMostBuckets + 1, "bounds of the buckets");
-  buckets.first = from.array<std::uint64_t>(buckets.bounds.size() + 1, "places of the buckets");
-  buckets.tiles = from.array<TileId>(tiles, "tiles by least value");
+  buckets.first = from.array<std::uint64_t>(buckets.bounds.size() + 1, "positions of the buckets");
+  buckets.tiles = from.array<TileId>(tiles, "tiles by minimum");
   const std::size_t count = buckets.tiles.size();
-  buckets.least = from.array<T>(count, "least values");
-  buckets.greatest = from.array<T>(count, "greatest values");
+  buckets.least = from.array<T>(count, "minimum values");
+  buckets.greatest = from.array<T>(count, "maximum values");
   if (buckets.first.size() != buckets.bounds.size() + 1 || buckets.least.size() != count ||
       (!buckets.greatest.empty() && buckets.greatest.size() != count))
-    IndexReader::damaged(fmt::format("{} places, {} least and {} greatest values; expected {}, {} and as many or none",
-                                     buckets.first.size(), buckets.least.size(), buckets.greatest.size(),
-                                     buckets.bounds.size() + 1, count));
+    IndexReader::damaged(fmt::format(
+        "{} positions, {} minimum and {} maximum values; expected {}, {} and the same number or none",
+        buckets.first.size(), buckets.least.size(), buckets.greatest.size(), buckets.bounds.size() + 1, count));
   require_offsets(buckets.first, count, "buckets");
   require_tiles(buckets.tiles, tiles);
   return std::make_unique<SpanSpace<T, N>>(task.identity, std::move(buckets));

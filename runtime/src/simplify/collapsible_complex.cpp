@@ -14,7 +14,7 @@
 namespace tegl::detail {
 namespace {
 
-constexpr std::size_t kTellEvery = std::size_t{1} << 14;  ///< simplices between two progress reports
+constexpr std::size_t kReportEvery = std::size_t{1} << 14;  ///< simplices between two progress reports
 
 constexpr std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -31,8 +31,8 @@ bool contains(const std::array<Index, N>& simplex, Index v) {
 }  // namespace
 
 template <int N>
-ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count,
-                                      const Progress& progress)
+CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count,
+                                          const Progress& progress)
     : simplices_(simplices.begin(), simplices.end()),
       border_faces_(simplices.size(), 0),
       border_vertex_(vertex_count, false),
@@ -46,7 +46,7 @@ ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::s
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
   for (std::size_t s = simplices_.size(); s-- > 0;) {
-    if (s % kTellEvery == 0)
+    if (s % kReportEvery == 0)
       tell(progress, 0.3 * (1.0 - static_cast<double>(s) / static_cast<double>(simplices_.size())));
     for (int i = 0; i < N; ++i) {
       const Index v = simplices_[s][i];
@@ -64,9 +64,9 @@ ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::s
 }
 
 template <int N>
-void ShrinkingComplex<N>::find_border(const Progress& progress) {
+void CollapsibleComplex<N>::find_border(const Progress& progress) {
   for (Index s = 0; s < simplices_.size(); ++s) {
-    if (s % kTellEvery == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
+    if (s % kReportEvery == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
     for (int omitted = 0; omitted < N; ++omitted) {
       // Every simplex with this face is in the star of each of its vertices; any one of them will do.
       const Index at = simplices_[s][omitted == 0 ? 1 : 0];
@@ -79,9 +79,9 @@ void ShrinkingComplex<N>::find_border(const Progress& progress) {
         others += shares;
       }
       if (others > 1)
-        throw Error(ErrorCode::UnsupportedData,
-                    fmt::format("a face of simplex {} is in {} simplices; expected a manifold, where it is in 1 or 2",
-                                s, others + 1));
+        throw Error(
+            ErrorCode::UnsupportedData,
+            fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold", s, others + 1));
       if (others == 1) continue;
       border_faces_[s] |= static_cast<std::uint8_t>(1u << omitted);
       for (int i = 0; i < N; ++i)
@@ -91,7 +91,7 @@ void ShrinkingComplex<N>::find_border(const Progress& progress) {
 }
 
 template <int N>
-void ShrinkingComplex<N>::star(Index v, std::vector<Index>& result) {
+void CollapsibleComplex<N>::star(Index v, std::vector<Index>& result) {
   result.clear();
   // Removed simplices are unlinked during the traversal.
   Index* link = &first_[v];
@@ -107,7 +107,7 @@ void ShrinkingComplex<N>::star(Index v, std::vector<Index>& result) {
 }
 
 template <int N>
-void ShrinkingComplex<N>::neighbours(Index v, std::vector<Index>& result) {
+void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
   result.clear();
   ++round_;
   in_u_[v] = round_;
@@ -122,7 +122,7 @@ void ShrinkingComplex<N>::neighbours(Index v, std::vector<Index>& result) {
 }
 
 template <int N>
-void ShrinkingComplex<N>::load(Index u, Index v, Edge& edge) {
+void CollapsibleComplex<N>::load(Index u, Index v, Edge& edge) {
   edge.u = u;
   edge.v = v;
   star(u, edge.only_u);
@@ -137,7 +137,7 @@ void ShrinkingComplex<N>::load(Index u, Index v, Edge& edge) {
 }
 
 template <int N>
-void ShrinkingComplex<N>::gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces) {
+void CollapsibleComplex<N>::gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces) {
   const auto cone = static_cast<Index>(first_.size());
   for (const Index s : star) {
     const Simplex& simplex = simplices_[s];
@@ -158,7 +158,7 @@ void ShrinkingComplex<N>::gather_link(std::span<const Index> star, Index v, std:
 }
 
 template <int N>
-void ShrinkingComplex<N>::gather_edge_link(const Edge& edge) {
+void CollapsibleComplex<N>::gather_edge_link(const Edge& edge) {
   link_edge_.clear();
   const auto cone = static_cast<Index>(first_.size());
   for (const Index s : edge.both) {
@@ -189,13 +189,13 @@ void ShrinkingComplex<N>::gather_edge_link(const Edge& edge) {
 }
 
 template <int N>
-void ShrinkingComplex<N>::mark(std::span<const Face> faces, std::vector<std::uint32_t>& marks, int vertices) {
+void CollapsibleComplex<N>::mark(std::span<const Face> faces, std::vector<std::uint32_t>& marks, int vertices) {
   for (const Face& face : faces)
     for (int i = 0; i < vertices; ++i) marks[face[i]] = round_;
 }
 
 template <int N>
-bool ShrinkingComplex<N>::is_contractible(const Edge& edge) {
+bool CollapsibleComplex<N>::is_contractible(const Edge& edge) {
   if (edge.only_u.empty() && edge.only_v.empty()) return false;
   link_u_.clear();
   link_v_.clear();
@@ -210,7 +210,7 @@ bool ShrinkingComplex<N>::is_contractible(const Edge& edge) {
 }
 
 template <int N>
-bool ShrinkingComplex<N>::share_only_the_edges_link() {
+bool CollapsibleComplex<N>::share_only_the_edges_link() {
   for (const Face& face : link_u_)
     for (const Index a : face)
       if (in_v_[a] == round_ && in_edge_[a] != round_) return false;
@@ -221,7 +221,7 @@ bool ShrinkingComplex<N>::share_only_the_edges_link() {
 
 /// Whether both links share an edge that is not in the link of uv. The link of uv has edges if N = 4.
 template <int N>
-bool ShrinkingComplex<N>::share_a_link_edge(bool beside_edges_link) {
+bool CollapsibleComplex<N>::share_a_link_edge(bool beside_edges_link) {
   const auto gather = [&](std::span<const Face> faces, const std::vector<std::uint32_t>& in_other,
                           std::vector<std::uint64_t>& keys) {
     keys.clear();
@@ -244,7 +244,7 @@ bool ShrinkingComplex<N>::share_a_link_edge(bool beside_edges_link) {
 
 /// Whether both links share a triangle. The link of uv has no triangles, so a shared one violates the link condition.
 template <int N>
-bool ShrinkingComplex<N>::share_a_link_triangle() const {
+bool CollapsibleComplex<N>::share_a_link_triangle() const {
   for (const Face& face : link_u_) {
     if (!std::all_of(face.begin(), face.end(), [&](Index a) { return in_v_[a] == round_; })) continue;
     if (std::find(link_v_.begin(), link_v_.end(), face) != link_v_.end()) return true;
@@ -253,7 +253,7 @@ bool ShrinkingComplex<N>::share_a_link_triangle() const {
 }
 
 template <int N>
-void ShrinkingComplex<N>::open_face(std::span<const Index> star, Index s, Index without) {
+void CollapsibleComplex<N>::open_face(std::span<const Index> star, Index s, Index without) {
   const Simplex& gone = simplices_[s];
   for (const Index other : star) {
     const Simplex& simplex = simplices_[other];
@@ -270,7 +270,7 @@ void ShrinkingComplex<N>::open_face(std::span<const Index> star, Index s, Index 
 }
 
 template <int N>
-void ShrinkingComplex<N>::contract(const Edge& edge) {
+void CollapsibleComplex<N>::contract(const Edge& edge) {
   for (const Index s : edge.both) {
     const unsigned i = static_cast<unsigned>(position(simplices_[s], edge.u));
     const unsigned j = static_cast<unsigned>(position(simplices_[s], edge.v));
@@ -294,8 +294,8 @@ void ShrinkingComplex<N>::contract(const Edge& edge) {
   if (border_vertex_[edge.v]) border_vertex_[edge.u] = true;
 }
 
-template class ShrinkingComplex<2>;
-template class ShrinkingComplex<3>;
-template class ShrinkingComplex<4>;
+template class CollapsibleComplex<2>;
+template class CollapsibleComplex<3>;
+template class CollapsibleComplex<4>;
 
 }  // namespace tegl::detail

@@ -21,7 +21,7 @@
 namespace tegl::detail {
 
 template <int N>
-class ShrinkingComplex {
+class CollapsibleComplex {
  public:
   using Simplex = std::array<Index, N>;
   static constexpr Index kNone = std::numeric_limits<Index>::max();
@@ -37,7 +37,7 @@ class ShrinkingComplex {
 
   /// Errors: InvalidArgument for a vertex number beyond `vertex_count`; UnsupportedData for a simplex that repeats a
   /// vertex, and for a face of more than two simplices; Cancelled.
-  ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count, const Progress& progress = {});
+  CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count, const Progress& progress = {});
 
   [[nodiscard]] std::size_t alive() const noexcept { return alive_; }
   [[nodiscard]] std::size_t simplex_count() const noexcept { return simplices_.size(); }
@@ -88,8 +88,8 @@ class ShrinkingComplex {
   std::vector<std::uint64_t> edges_u_, edges_v_, edges_both_;
 };
 
-extern template class ShrinkingComplex<2>;
-extern template class ShrinkingComplex<3>;
-extern template class ShrinkingComplex<4>;
+extern template class CollapsibleComplex<2>;
+extern template class CollapsibleComplex<3>;
+extern template class CollapsibleComplex<4>;
 
 }  // namespace tegl::detail

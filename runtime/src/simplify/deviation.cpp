@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bound of the distance of every point of one contour from another contour, simplex by simplex: from the sheets of the
-// other contour that cover the simplex, or from the distances of its corners to one simplex. Simplices are subdivided
-// if the bound is too loose.
+// Bound of the distance of every point of one contour from another contour, simplex by simplex: from the heights
+// of the simplices of the other contour that cover the simplex, or from the distances of its corners to one simplex.
+// Simplices are subdivided if the bound is too loose.
 #include "tegl/deviation.hpp"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ constexpr double kRefinedLooseness = 1.05;
 /// A bound below these fractions, of the longest edge and of the largest known distance, is accepted.
 constexpr double kEdgeShare = 0.02;
 constexpr double kLeastShare = 0.5;
-/// Sheets are searched within kSlack times the distance of the corners plus kReachShare times the longest edge, then
-/// within kWider times that.
+/// Near simplices are searched within kSlack times the distance of the corners plus kReachShare times the longest
+/// edge, then within kWider times that.
 constexpr double kSlack = 1.5;
 constexpr double kReachShare = 0.05;
 constexpr double kWider = 4.0;
@@ -74,13 +74,13 @@ PointN<N> middle_of(const CornersN<N>& corners) {
 
 /// The scaled simplices of a contour.
 template <int N>
-struct Pieces {
+struct ScaledSimplices {
   std::span<const std::array<Index, N>> simplices;
   std::vector<PointN<N>> points;
   std::vector<CornersN<N>> corners;
 
   template <class Real>
-  Pieces(const Contour<N, Real>& contour, const std::array<double, N>& scale) : simplices(contour.simplices) {
+  ScaledSimplices(const Contour<N, Real>& contour, const std::array<double, N>& scale) : simplices(contour.simplices) {
     points.reserve(contour.vertices.size());
     for (const auto& vertex : contour.vertices) {
       PointN<N> point;
@@ -98,13 +98,13 @@ struct Pieces {
 /// Boundary of the chain of a contour's simplices. By simplex, bit i: the orientations at the face opposite to corner i
 /// do not cancel.
 template <int N>
-class OpenFaces {
+class BoundaryFaces {
  public:
-  OpenFaces(const Pieces<N>& pieces, unsigned threads, const Progress& progress)
-      : rows_(pieces.simplices.begin(), pieces.simplices.end()), faces_(rows_.size(), 0) {
-    find(pieces.points.size(), threads, part_of(progress, 0.0, 0.5));
+  BoundaryFaces(const ScaledSimplices<N>& contour, unsigned threads, const Progress& progress)
+      : rows_(contour.simplices.begin(), contour.simplices.end()), faces_(rows_.size(), 0) {
+    find(contour.points.size(), threads, part_of(progress, 0.0, 0.5));
     // Vertices at equal places are identified: files may store each simplex with its own vertices.
-    if (!ridges_.empty() && unite(pieces.points)) find(pieces.points.size(), threads, part_of(progress, 0.5, 1.0));
+    if (!ridges_.empty() && unite(contour.points)) find(contour.points.size(), threads, part_of(progress, 0.5, 1.0));
     rows_ = {};
   }
   [[nodiscard]] unsigned of(Index simplex) const { return faces_[simplex]; }
@@ -162,11 +162,11 @@ class OpenFaces {
 
 /// Shared input of all measurements.
 template <int N>
-struct Measure {
-  const Pieces<N>& from;
-  const Pieces<N>& to;
+struct DeviationInput {
+  const ScaledSimplices<N>& from;
+  const ScaledSimplices<N>& to;
   const BoxTree<N>& tree;
-  const OpenFaces<N>& open;
+  const BoundaryFaces<N>& open;
   const std::vector<double>& of_vertices;  ///< distance of each vertex of `from` from the nearest point of `to`
   double enough;                           ///< bounds below it are not refined
   std::vector<double>& of_to;
@@ -174,11 +174,11 @@ struct Measure {
 
 /// Measures simplices one by one. Use one per thread.
 template <int N>
-class Matcher {
+class SimplexDeviation {
  public:
   static constexpr int D = N - 1;
 
-  explicit Matcher(const Measure<N>& measure) : m_(measure) {}
+  explicit SimplexDeviation(const DeviationInput<N>& measure) : m_(measure) {}
 
   /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
@@ -201,13 +201,13 @@ class Matcher {
 
  private:
   /// A simplex of `to` in the frame.
-  struct Near {
+  struct NearSimplex {
     Index simplex;
     CornersN<N> at;
     double low, high;  ///< range of the last coordinate
   };
   /// The part of a near simplex inside a prism, as a range of heights.
-  struct Sheet {
+  struct HeightRange {
     double low, high;
     Index near;
     bool open;
@@ -314,7 +314,7 @@ class Matcher {
     // box test in the frame
     const double rounding = 10.0 * prism.rounding();
     m_.tree.visit_near(box, rounding, [&](Index t) {
-      Near near;
+      NearSimplex near;
       near.simplex = t;
       Box<N> of_near;
       for (int i = 0; i < N; ++i) {
@@ -327,16 +327,16 @@ class Matcher {
     });
   }
 
-  /// Bounds a part by the nearest group of sheets that covers it, or by distances. Simplices that are not near the part
-  /// are removed from its list.
+  /// Bounds a part by the nearest group of height ranges that covers it, or by distances. Simplices that are not near
+  /// the part are removed from its list.
   void measure(Part& part, double enough) {
     const Prism<N> prism(part.corners, edge_);
     // First without cutting: enough if each whole simplex is near enough.
-    gather_sheets(prism, part, false);
-    take_best_sheet(prism, part, 0.0);
+    gather_ranges(prism, part, false);
+    take_best_cover(prism, part, 0.0);
     if (is_enough(part, m_.enough)) return;
-    // If sheets did not bound the whole simplex, they will hardly bound its parts. Distances are cheaper, and smaller
-    // for parts.
+    // If height ranges did not bound the whole simplex, they will hardly bound its parts. Distances are cheaper, and
+    // smaller for parts.
     if (!parts_.empty()) measure_by_distances(part);
     if (!parts_.empty() && is_enough(part, enough)) return;
     // The part without a rim; every point of the rim is within kRim * edge_ of the rest. So borders and walls that
@@ -345,20 +345,20 @@ class Matcher {
     const PointN<N> middle = middle_of<N>(part.corners);
     for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
     const Prism<N> inner_prism(inner, edge_);
-    gather_sheets(inner_prism, part, true);
-    const bool found = take_best_sheet(inner_prism, part, kRim * edge_);
+    gather_ranges(inner_prism, part, true);
+    const bool found = take_best_cover(inner_prism, part, kRim * edge_);
     if (part.bound <= 2.0 * kRim * edge_) {  // identical contours: without the rim the bound is exact up to rounding
-      gather_sheets(prism, part, true);
-      take_best_sheet(prism, part, 0.0);
+      gather_ranges(prism, part, true);
+      take_best_cover(prism, part, 0.0);
     }
     if (found && !is_enough(part, enough) && !prism.thin()) probe(inner_prism, part);
     if (parts_.empty() && !is_enough(part, enough)) measure_by_distances(part);
   }
 
-  /// Collects the height ranges of the near simplices over the part: with `cut`, of their remnants in the prism; else
+  /// Collects the height ranges of the near simplices over the part: with `cut`, of their parts inside the prism; else
   /// estimated from their corners and hyperplanes.
-  void gather_sheets(const Prism<N>& prism, Part& part, bool cut) {
-    sheets_.clear();
+  void gather_ranges(const Prism<N>& prism, Part& part, bool cut) {
+    ranges_.clear();
     // Simplices farther away than the known bound, by more than rounding, cannot improve it.
     double lowest = kInfinity, highest = -kInfinity;
     for (const PointN<N>& corner : part.corners) {
@@ -371,12 +371,12 @@ class Matcher {
     // height range of each near simplex
     std::size_t kept = 0;
     for (const std::uint32_t number : part.near) {
-      const Near& near = near_[number];
+      const NearSimplex& near = near_[number];
       if (near.low > highest || near.high < lowest) continue;
-      if (!remnant_.load(near.at, prism)) continue;
+      if (!clipped_.load(near.at, prism)) continue;
       const unsigned open = m_.open.of(near.simplex);
-      if ((cut || open != 0) && !remnant_.cut(prism)) continue;
-      auto [low, high] = remnant_.heights(prism);
+      if ((cut || open != 0) && !clipped_.clip(prism)) continue;
+      auto [low, high] = clipped_.heights(prism);
       part.near[kept++] = number;
       if (!cut) {
         const auto [least, largest] = heights_of_plane<N>(near.at, part.corners, prism);
@@ -384,52 +384,53 @@ class Matcher {
         high = std::min(high, largest);
         if (low > high) continue;
       }
-      sheets_.push_back({low, high, number, open != 0 && (remnant_.facets() & open) != 0});
+      ranges_.push_back({low, high, number, open != 0 && (clipped_.facets() & open) != 0});
     }
     part.near.resize(kept);
-    std::sort(sheets_.begin(), sheets_.end(),
-              [](const Sheet& a, const Sheet& b) { return a.low != b.low ? a.low < b.low : a.near < b.near; });
+    std::sort(ranges_.begin(), ranges_.end(), [](const HeightRange& a, const HeightRange& b) {
+      return a.low != b.low ? a.low < b.low : a.near < b.near;
+    });
   }
 
-  /// Groups sheets by separate ranges of heights and takes the nearest group that certainly covers the part. Returns
+  /// Groups overlapping ranges and takes the nearest group that certainly covers the part. Returns
   /// false if none improves the bound.
-  bool take_best_sheet(const Prism<N>& prism, Part& part, double rim) {
+  bool take_best_cover(const Prism<N>& prism, Part& part, double rim) {
     const double apart = prism.rounding() + 1e-15 * reach_;
     const double reach = reach_ - std::max(-prism.low(), prism.high());
     bool found = false;
-    for (std::size_t i = 0, j = 0; i < sheets_.size(); i = j) {
-      double high = sheets_[i].high;
+    for (std::size_t i = 0, j = 0; i < ranges_.size(); i = j) {
+      double high = ranges_[i].high;
       bool open = false;
-      for (; j < sheets_.size() && sheets_[j].low <= high + apart; ++j) {
-        high = std::max(high, sheets_[j].high);
-        open = open || sheets_[j].open;
+      for (; j < ranges_.size() && ranges_[j].low <= high + apart; ++j) {
+        high = std::max(high, ranges_[j].high);
+        open = open || ranges_[j].open;
       }
-      const double low = sheets_[i].low;
+      const double low = ranges_[i].low;
       if (!(low > -reach && high < reach)) continue;
       const double bound = std::max(high - prism.low(), prism.high() - low) + rim;
       if (!(bound < part.bound)) continue;
-      if (open || !covered(std::span(sheets_).subspan(i, j - i), part.corners)) continue;
+      if (open || !covered(std::span(ranges_).subspan(i, j - i), part.corners)) continue;
       found = true;
       part.bound = bound;
       part.matches.clear();
       for (std::size_t k = i; k < j; ++k) {
-        const double far = std::max(sheets_[k].high - prism.low(), prism.high() - sheets_[k].low) + rim;
-        part.matches.emplace_back(near_[sheets_[k].near].simplex, far);
-        if (far == bound) part.farthest = sheets_[k].near;
+        const double far = std::max(ranges_[k].high - prism.low(), prism.high() - ranges_[k].low) + rim;
+        part.matches.emplace_back(near_[ranges_[k].near].simplex, far);
+        if (far == bound) part.farthest = ranges_[k].near;
       }
     }
     return found;
   }
 
-  /// Raises nearest_ to the distance of the point of the part below or above the farthest corner of its sheets.
+  /// Raises nearest_ to the distance of the point of the part below or above the farthest corner of its ranges.
   void probe(const Prism<N>& prism, Part& part) {
-    if (!remnant_.load(near_[part.farthest].at, prism) || !remnant_.cut(prism)) return;
-    const PointN<N> below = prism.at_level(remnant_.farthest(prism));
+    if (!clipped_.load(near_[part.farthest].at, prism) || !clipped_.clip(prism)) return;
+    const PointN<N> below = prism.at_level(clipped_.farthest(prism));
     nearest_ = std::max(nearest_, m_.tree.nearest(frame_.to_space(below), near_[part.farthest].simplex).distance);
   }
 
-  /// Whether the sheets cover a point of the part with a nonzero degree (orientations counted with signs).
-  [[nodiscard]] bool covered(std::span<const Sheet> sheets, const CornersN<N>& part) const {
+  /// Whether the ranges cover a point of the part with a nonzero degree (orientations counted with signs).
+  [[nodiscard]] bool covered(std::span<const HeightRange> ranges, const CornersN<N>& part) const {
     for (int attempt = 0; attempt < 4; ++attempt) {
       // Asymmetric weights avoid points on outlines.
       PointN<N> x{};
@@ -442,8 +443,8 @@ class Matcher {
       for (double& coordinate : x) coordinate /= sum;
       int times = 0;
       bool sure = true;
-      for (const Sheet& sheet : sheets) {
-        const std::optional<int> side = covers<N>(near_[sheet.near].at, flat<N>(x));
+      for (const HeightRange& range : ranges) {
+        const std::optional<int> side = covers<N>(near_[range.near].at, flat<N>(x));
         sure = sure && side.has_value();
         if (!sure) break;
         times += *side;
@@ -491,7 +492,7 @@ class Matcher {
     return result;
   }
 
-  const Measure<N>& m_;
+  const DeviationInput<N>& m_;
   // Current simplex.
   double edge_ = 0.0;
   double looseness_ = kLooseness;
@@ -499,11 +500,11 @@ class Matcher {
   Frame<N> frame_ = Frame<N>({1.0}, {});
   CornersN<N> whole_;
   double reach_ = 0.0;
-  std::vector<Near> near_;
+  std::vector<NearSimplex> near_;
   std::vector<Part> parts_;
   // Current part.
-  std::vector<Sheet> sheets_;
-  Remnant<N> remnant_;
+  std::vector<HeightRange> ranges_;
+  ClippedSimplex<N> clipped_;
 };
 
 template <int N>
@@ -515,7 +516,7 @@ void require_scale(const std::array<double, N>& scale) {
 
 /// Refines the simplices with the largest bounds: a few of them determine the bound of the whole contour.
 template <int N>
-void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
+void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
   std::vector<std::size_t> order(result.of_from.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t most = std::min(order.size() - 1, kMostRefined + order.size() / kRefinedShare);
@@ -526,11 +527,11 @@ void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threa
   // A bound needs no refinement below the largest bound of the other simplices.
   const double enough = std::max(result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
   for_each_block(
-      std::max<std::size_t>(most, 1), 1, threads, progress, [&] { return Matcher<N>(measure); },
-      [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
+      std::max<std::size_t>(most, 1), 1, threads, progress, [&] { return SimplexDeviation<N>(measure); },
+      [&](std::size_t, std::size_t first, std::size_t end, SimplexDeviation<N>& one) {
         for (std::size_t i = first; i < end; ++i) {
           double& bound = result.of_from[order[i]];
-          if (bound > enough) bound = std::min(bound, matcher.refined_bound(static_cast<Index>(order[i]), enough));
+          if (bound > enough) bound = std::min(bound, one.refined_bound(static_cast<Index>(order[i]), enough));
         }
       });
   result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
@@ -538,9 +539,9 @@ void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threa
 }
 
 template <int N>
-void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsigned threads, const Progress& progress,
-                 Deviation& result) {
-  const OpenFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
+void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, double enough, unsigned threads,
+                 const Progress& progress, Deviation& result) {
+  const BoundaryFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
   const BoxTree<N> tree(to.corners);
   // distances of vertices
   std::vector<double> of_vertices(from.points.size());
@@ -563,13 +564,14 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
                    raise(result.least, farthest);
                  });
   // bounds of simplices
-  const Measure<N> measure{from,        to, tree, open, of_vertices, std::max(enough, kLeastShare * result.least),
-                           result.of_to};
+  const DeviationInput<N> measure{
+      from, to, tree, open, of_vertices, std::max(enough, kLeastShare * result.least), result.of_to};
   for_each_block(
-      from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9), [&] { return Matcher<N>(measure); },
-      [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
+      from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9),
+      [&] { return SimplexDeviation<N>(measure); },
+      [&](std::size_t, std::size_t first, std::size_t end, SimplexDeviation<N>& one) {
         double reached = 0.0;
-        for (std::size_t s = first; s < end; ++s) result.of_from[s] = matcher.bound(static_cast<Index>(s), reached);
+        for (std::size_t s = first; s < end; ++s) result.of_from[s] = one.bound(static_cast<Index>(s), reached);
         raise(result.least, reached);
       });
   refine_largest(measure, result, threads, part_of(progress, 0.9, 1.0));
@@ -578,7 +580,7 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
 }  // namespace
 }  // namespace detail
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
                                                        const DeviationOptions<N>& options) {
   using namespace detail;
@@ -598,8 +600,8 @@ requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& f
     result.of_from.assign(from.simplices.size(), kInfinity);
     return result;
   }
-  const Pieces<N> from_pieces(from, options.scale), to_pieces(to, options.scale);
-  measure_all(from_pieces, to_pieces, options.enough, options.threads, options.progress, result);
+  const ScaledSimplices<N> scaled_from(from, options.scale), scaled_to(to, options.scale);
+  measure_all(scaled_from, scaled_to, options.enough, options.work.threads, options.work.progress, result);
   return result;
 }
 

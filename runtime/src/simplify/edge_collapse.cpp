@@ -39,20 +39,20 @@ PointN<N> unit(const PointN<N>& vector, double length) {
 }  // namespace
 
 template <int N>
-Shrinker<N>::Shrinker(ShrinkStart<N> start)
-    : complex_(start.simplices, start.points.size(), part_of(start.progress, 0.0, 0.6)),
-      points_(std::move(start.points)),
+EdgeCollapse<N>::EdgeCollapse(CollapseInput<N> input)
+    : complex_(input.simplices, input.points.size(), part_of(input.progress, 0.0, 0.6)),
+      points_(std::move(input.points)),
       scaled_(points_.size()),
-      scale_(start.scale),
+      scale_(input.scale),
       quadrics_(points_.size()),
       bound_(points_.size(), 0),
-      tolerance_(std::move(start.tolerance)),
+      tolerance_(std::move(input.tolerance)),
       version_(points_.size(), 0),
       merged_into_(points_.size()),
-      carried_width_(start.carried_width),
-      carried_(std::move(start.carried)),
-      border_fixed_(start.border_fixed),
-      single_precision_(start.single_precision) {
+      carried_width_(input.carried_width),
+      carried_(std::move(input.carried)),
+      border_fixed_(input.border_fixed),
+      single_precision_(input.single_precision) {
   std::iota(merged_into_.begin(), merged_into_.end(), Index{0});
   if (!points_.empty()) {
     PointN<N> low = points_[0], high = points_[0];
@@ -67,39 +67,39 @@ Shrinker<N>::Shrinker(ShrinkStart<N> start)
     scaled_[v] = to_scaled(points_[v]);
     if (complex_.on_border(static_cast<Index>(v))) bound_[v] |= kBorderBit;
   }
-  add_quadrics(part_of(start.progress, 0.6, 1.0));
+  add_quadrics(part_of(input.progress, 0.6, 1.0));
 }
 
 template <int N>
-PointN<N> Shrinker<N>::to_scaled(const PointN<N>& point) const {
+PointN<N> EdgeCollapse<N>::to_scaled(const PointN<N>& point) const {
   PointN<N> result;
   for (int a = 0; a < N; ++a) result[a] = (point[a] - centre_[a]) * scale_[a];
   return result;
 }
 
 template <int N>
-PointN<N> Shrinker<N>::from_scaled(const PointN<N>& point) const {
+PointN<N> EdgeCollapse<N>::from_scaled(const PointN<N>& point) const {
   PointN<N> result;
   for (int a = 0; a < N; ++a) result[a] = point[a] / scale_[a] + centre_[a];
   return result;
 }
 
 template <int N>
-PointN<N> Shrinker<N>::rounded(PointN<N> point) const {
+PointN<N> EdgeCollapse<N>::rounded(PointN<N> point) const {
   if (single_precision_)
     for (double& x : point) x = static_cast<double>(static_cast<float>(x));
   return point;
 }
 
 template <int N>
-CornersN<N> Shrinker<N>::corners(Index s) const {
+CornersN<N> EdgeCollapse<N>::corners(Index s) const {
   CornersN<N> result;
   for (int i = 0; i < N; ++i) result[i] = scaled_[complex_.simplex(s)[i]];
   return result;
 }
 
 template <int N>
-void Shrinker<N>::add_quadrics(const Progress& progress) {
+void EdgeCollapse<N>::add_quadrics(const Progress& progress) {
   const auto add = [&](Index s) {
     const CornersN<N> at = corners(s);
     const PointN<N> normal = normal_of<N>(at);
@@ -118,7 +118,7 @@ void Shrinker<N>::add_quadrics(const Progress& progress) {
 /// Adds the hyperplane through each border face at right angles to its simplex. These preserve the shape of borders
 /// that may move.
 template <int N>
-void Shrinker<N>::add_border_quadrics(Index s, const CornersN<N>& at, double weight) {
+void EdgeCollapse<N>::add_border_quadrics(Index s, const CornersN<N>& at, double weight) {
   for (int omitted = 0; omitted < N; ++omitted) {
     if ((complex_.border_faces(s) >> omitted & 1u) == 0) continue;
     // The component of a vector from the base corner orthogonal to the directions of the face (Gram-Schmidt).
@@ -146,32 +146,32 @@ void Shrinker<N>::add_border_quadrics(Index s, const CornersN<N>& at, double wei
 }
 
 template <int N>
-Index Shrinker<N>::survivor(Index v) {
+Index EdgeCollapse<N>::survivor(Index v) {
   while (merged_into_[v] != v) v = merged_into_[v] = merged_into_[merged_into_[v]];
   return v;
 }
 
 template <int N>
-bool Shrinker<N>::may_move_to(Index v, Index u) const {
+bool EdgeCollapse<N>::may_move_to(Index v, Index u) const {
   if ((bound_[v] & ~bound_[u]) != 0) return false;
   return !border_fixed_ || (bound_[v] & kBorderBit) == 0;
 }
 
 template <int N>
-std::optional<MeetingPlace<N>> Shrinker<N>::meeting_place(Index u, Index v) const {
+std::optional<CollapseTarget<N>> EdgeCollapse<N>::best_target(Index u, Index v) const {
   Quadric<N> sum = quadrics_[u];
   sum += quadrics_[v];
-  MeetingPlace<N> place;
+  CollapseTarget<N> target;
   const std::uint32_t of_u = bound_[u], of_v = bound_[v];
   if (border_fixed_ && (of_u & of_v & kBorderBit) != 0) return std::nullopt;
   // equal constraints: along the edge; different ones: at an end; none: at the minimum of the quadric
   if (of_u == of_v && of_u != 0) {
-    place.share = sum.least_between(scaled_[u], scaled_[v]);
-    place.at = rounded(between(points_[u], points_[v], place.share));
+    target.share = sum.least_between(scaled_[u], scaled_[v]);
+    target.at = rounded(between(points_[u], points_[v], target.share));
   } else if (of_u != of_v) {
     if (!may_move_to(v, u) && !may_move_to(u, v)) return std::nullopt;
-    place.share = may_move_to(v, u) ? 0.0 : 1.0;
-    place.at = place.share == 0.0 ? points_[u] : points_[v];
+    target.share = may_move_to(v, u) ? 0.0 : 1.0;
+    target.at = target.share == 0.0 ? points_[u] : points_[v];
   } else {
     const PointN<N> middle = between(scaled_[u], scaled_[v], 0.5);
     const PointN<N> edge = minus(scaled_[v], scaled_[u]);
@@ -180,21 +180,21 @@ std::optional<MeetingPlace<N>> Shrinker<N>::meeting_place(Index u, Index v) cons
     const PointN<N> away = minus(best, middle);
     if (!(dot(away, away) <= kFarthestPlace * kFarthestPlace * square))
       best = between(scaled_[u], scaled_[v], sum.least_between(scaled_[u], scaled_[v]));
-    if (square > 0.0) place.share = std::clamp(dot(minus(best, scaled_[u]), edge) / square, 0.0, 1.0);
-    place.at = square > 0.0 ? rounded(from_scaled(best)) : points_[u];
+    if (square > 0.0) target.share = std::clamp(dot(minus(best, scaled_[u]), edge) / square, 0.0, 1.0);
+    target.at = square > 0.0 ? rounded(from_scaled(best)) : points_[u];
   }
-  place.cost = sum(to_scaled(place.at));
-  return place;
+  target.cost = sum(to_scaled(target.at));
+  return target;
 }
 
 template <int N>
-MeetingPlace<N> Shrinker<N>::place_at(Index u, Index v, const PointN<N>& at, double share) const {
+CollapseTarget<N> EdgeCollapse<N>::target_at(Index u, Index v, const PointN<N>& at, double share) const {
   const PointN<N> scaled_at = to_scaled(at);
   return {at, share, quadrics_[u](scaled_at) + quadrics_[v](scaled_at)};
 }
 
 template <int N>
-auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::optional<CommonPlace> {
+auto EdgeCollapse<N>::common_target(std::span<const Index> vertices) const -> std::optional<CommonTarget> {
   std::uint32_t all = 0;
   int of_border = 0;
   bool equal = true;
@@ -207,7 +207,7 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
   // different constraints: the place of a vertex that has all of them
   if (!equal) {
     for (const Index v : vertices)
-      if (bound_[v] == all) return CommonPlace{points_[v], v};
+      if (bound_[v] == all) return CommonTarget{points_[v], v};
     return std::nullopt;
   }
   // Relative to the first vertex, so that a coordinate equal in all of them is exact.
@@ -215,7 +215,7 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
   for (const Index v : vertices)
     for (int a = 0; a < N; ++a)
       middle[a] += (points_[v][a] - points_[vertices[0]][a]) / static_cast<double>(vertices.size());
-  if (all != 0) return CommonPlace{rounded(middle), std::nullopt};
+  if (all != 0) return CommonTarget{rounded(middle), std::nullopt};
   // no constraints: the minimum of the quadric, if it is near
   Quadric<N> sum;
   double size = 0.0;
@@ -226,23 +226,23 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
   }
   const PointN<N> best = sum.least_near(from);
   const bool near = norm(minus(best, from)) <= kFarthestPlace * size;
-  return CommonPlace{rounded(near ? from_scaled(best) : middle), std::nullopt};
+  return CommonTarget{rounded(near ? from_scaled(best) : middle), std::nullopt};
 }
 
 /// Whether the root mean square distance from all hyperplanes of the two vertices is within the tolerance. A tolerance
 /// of 0 forbids every contraction: simplices of zero measure contribute no hyperplane, so every place would have cost
 /// 0.
 template <int N>
-bool Shrinker<N>::within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const {
+bool EdgeCollapse<N>::within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const {
   const double tolerance = std::min(tolerance_[u], tolerance_[v]);
   if (!(tolerance > 0.0)) return false;
   if (tolerance == std::numeric_limits<double>::infinity()) return true;
   const double weight = quadrics_[u].weight() + quadrics_[v].weight();
-  return place.cost <= tolerance * tolerance * weight;
+  return target.cost <= tolerance * tolerance * weight;
 }
 
 template <int N>
-double Shrinker<N>::worst_shape(const Edge& edge) const {
+double EdgeCollapse<N>::worst_shape(const Edge& edge) const {
   double worst = std::numeric_limits<double>::infinity();
   for (const auto* part : {&edge.only_u, &edge.only_v, &edge.both})
     for (const Index s : *part) {
@@ -253,7 +253,7 @@ double Shrinker<N>::worst_shape(const Edge& edge) const {
 }
 
 template <int N>
-PointN<N> Shrinker<N>::normal_around(const Edge& edge) const {
+PointN<N> EdgeCollapse<N>::normal_around(const Edge& edge) const {
   PointN<N> sum{};
   for (const auto* part : {&edge.only_u, &edge.only_v, &edge.both})
     for (const Index s : *part) {
@@ -266,8 +266,8 @@ PointN<N> Shrinker<N>::normal_around(const Edge& edge) const {
 /// Whether simplex s is neither flipped nor degraded when its vertex `moving` moves to `place`. `worst` caches
 /// worst_shape(edge).
 template <int N>
-bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edge& edge,
-                        std::optional<double>& worst) const {
+bool EdgeCollapse<N>::keeps_shape(Index s, Index moving, const PointN<N>& place, const Edge& edge,
+                                  std::optional<double>& worst) const {
   const CornersN<N> before = corners(s);
   CornersN<N> after = before;
   for (int i = 0; i < N; ++i)
@@ -292,19 +292,19 @@ bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edg
 }
 
 template <int N>
-bool Shrinker<N>::keeps_shapes(const Edge& edge, const PointN<N>& place) const {
+bool EdgeCollapse<N>::keeps_shapes(const Edge& edge, const PointN<N>& place) const {
   std::optional<double> worst;
   if (place != scaled_[edge.u])
     for (const Index s : edge.only_u)
-      if (!bears(s, edge.u, place, edge, worst)) return false;
+      if (!keeps_shape(s, edge.u, place, edge, worst)) return false;
   if (place != scaled_[edge.v])
     for (const Index s : edge.only_v)
-      if (!bears(s, edge.v, place, edge, worst)) return false;
+      if (!keeps_shape(s, edge.v, place, edge, worst)) return false;
   return true;
 }
 
 template <int N>
-void Shrinker<N>::blend_carried(Index u, Index v, double share) {
+void EdgeCollapse<N>::blend_carried(Index u, Index v, double share) {
   if (share == 0.0) return;
   for (std::size_t i = 0; i < carried_width_; ++i) {
     double& of_u = carried_[u * carried_width_ + i];
@@ -314,22 +314,22 @@ void Shrinker<N>::blend_carried(Index u, Index v, double share) {
 }
 
 template <int N>
-bool Shrinker<N>::try_contract(Index u, Index v, const MeetingPlace<N>& place) {
-  if (!within_tolerance(u, v, place)) {
-    note_limit(u, v, place);
+bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& target) {
+  if (!within_tolerance(u, v, target)) {
+    note_limit(u, v, target);
     return false;
   }
   complex_.load(u, v, edge_);
   if (edge_.both.empty()) return false;
-  const PointN<N> scaled_place = to_scaled(place.at);
+  const PointN<N> scaled_place = to_scaled(target.at);
   if (!keeps_shapes(edge_, scaled_place) || !complex_.is_contractible(edge_)) return false;
   complex_.contract(edge_);
-  points_[u] = place.at;
+  points_[u] = target.at;
   scaled_[u] = scaled_place;
   quadrics_[u] += quadrics_[v];
   bound_[u] |= bound_[v];
   tolerance_[u] = std::min(tolerance_[u], tolerance_[v]);
-  blend_carried(u, v, place.share);
+  blend_carried(u, v, target.share);
   merged_into_[v] = u;
   ++version_[u];
   ++version_[v];
@@ -337,14 +337,14 @@ bool Shrinker<N>::try_contract(Index u, Index v, const MeetingPlace<N>& place) {
 }
 
 template <int N>
-void Shrinker<N>::note_limit(Index u, Index v, const MeetingPlace<N>& place) {
+void EdgeCollapse<N>::note_limit(Index u, Index v, const CollapseTarget<N>& target) {
   if (limited_) return;
   complex_.load(u, v, edge_);
-  limited_ = !edge_.both.empty() && keeps_shapes(edge_, to_scaled(place.at)) && complex_.is_contractible(edge_);
+  limited_ = !edge_.both.empty() && keeps_shapes(edge_, to_scaled(target.at)) && complex_.is_contractible(edge_);
 }
 
 template <int N>
-PointN<N> Shrinker<N>::mean_normal(Index v, std::vector<Index>& star) {
+PointN<N> EdgeCollapse<N>::mean_normal(Index v, std::vector<Index>& star) {
   complex_.star(v, star);
   PointN<N> sum{};
   for (const Index s : star) {
@@ -354,8 +354,8 @@ PointN<N> Shrinker<N>::mean_normal(Index v, std::vector<Index>& star) {
   return sum;
 }
 
-template class Shrinker<2>;
-template class Shrinker<3>;
-template class Shrinker<4>;
+template class EdgeCollapse<2>;
+template class EdgeCollapse<3>;
+template class EdgeCollapse<4>;
 
 }  // namespace tegl::detail

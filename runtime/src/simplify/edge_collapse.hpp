@@ -17,17 +17,17 @@
 
 namespace tegl::detail {
 
-/// Place of the vertex that replaces the ends of an edge.
+/// Position of the vertex that replaces the ends of an edge.
 template <int N>
-struct MeetingPlace {
+struct CollapseTarget {
   PointN<N> at{};      ///< in the contour's coordinates, rounded to its number type
   double share = 0.5;  ///< weight of the second end's attributes
   double cost = 0;     ///< sum of squared distances from the planes
 };
 
-/// Input of a Shrinker.
+/// Input of an EdgeCollapse.
 template <int N>
-struct ShrinkStart {
+struct CollapseInput {
   std::span<const std::array<Index, N>> simplices;
   std::vector<PointN<N>> points;  ///< #V, in the contour's coordinates
   std::vector<double> tolerance;  ///< #V: largest root mean square distance from the planes; 0: the vertex is fixed
@@ -40,15 +40,15 @@ struct ShrinkStart {
 };
 
 template <int N>
-class Shrinker {
+class EdgeCollapse {
  public:
   static constexpr std::uint32_t kBorderBit = std::uint32_t{1} << 31;
-  using Edge = typename ShrinkingComplex<N>::Edge;
+  using Edge = typename CollapsibleComplex<N>::Edge;
 
-  /// Errors: those of ShrinkingComplex, Cancelled.
-  explicit Shrinker(ShrinkStart<N> start);
+  /// Errors: those of CollapsibleComplex, Cancelled.
+  explicit EdgeCollapse(CollapseInput<N> input);
 
-  [[nodiscard]] ShrinkingComplex<N>& complex() noexcept { return complex_; }
+  [[nodiscard]] CollapsibleComplex<N>& complex() noexcept { return complex_; }
   /// Binds v to the hyperplane of this number, below 31.
   void bind(Index v, unsigned hyperplane) { bound_[v] |= std::uint32_t{1} << hyperplane; }
   [[nodiscard]] const std::vector<PointN<N>>& points() const noexcept { return points_; }
@@ -62,25 +62,24 @@ class Shrinker {
   /// Increases with every contraction at the vertex.
   [[nodiscard]] std::uint32_t version(Index v) const { return version_[v]; }
 
-  /// The best place for contracting the edge u v; empty if borders and hyperplanes forbid it.
-  [[nodiscard]] std::optional<MeetingPlace<N>> meeting_place(Index u, Index v) const;
-  /// A MeetingPlace of u and v at a place chosen by the caller.
-  [[nodiscard]] MeetingPlace<N> place_at(Index u, Index v, const PointN<N>& at, double share) const;
+  /// The best target for contracting the edge u v; empty if borders and hyperplanes forbid it.
+  [[nodiscard]] std::optional<CollapseTarget<N>> best_target(Index u, Index v) const;
+  /// The target of u and v at a position chosen by the caller.
+  [[nodiscard]] CollapseTarget<N> target_at(Index u, Index v, const PointN<N>& at, double share) const;
   /// Whether borders and hyperplanes allow moving v to the place of u.
   [[nodiscard]] bool may_move_to(Index v, Index u) const;
-  /// A place where all vertices of a simplex may be merged, or nothing. If that is the place of a vertex that has to
-  /// stay, `anchor` is that vertex.
-  struct CommonPlace {
+  /// A position at which all vertices of a simplex may be merged. `anchor`: the vertex that has to stay there, if any.
+  struct CommonTarget {
     PointN<N> at{};
     std::optional<Index> anchor;
   };
-  [[nodiscard]] std::optional<CommonPlace> common_place(std::span<const Index> vertices) const;
+  [[nodiscard]] std::optional<CommonTarget> common_target(std::span<const Index> vertices) const;
 
-  /// Contracts u v into u, at `place`, if manifold, shape and tolerance allow it.
-  bool try_contract(Index u, Index v, const MeetingPlace<N>& place);
+  /// Contracts u v into u, at `target`, if manifold, shape and tolerance allow it.
+  bool try_contract(Index u, Index v, const CollapseTarget<N>& target);
   /// Call it for a contraction that a limit forbids, such as the tolerance. If everything else allows the contraction,
   /// is_limited() is true from then on.
-  void note_limit(Index u, Index v, const MeetingPlace<N>& place);
+  void note_limit(Index u, Index v, const CollapseTarget<N>& target);
   [[nodiscard]] bool is_limited() const noexcept { return limited_; }
 
   /// Scaled corners of a simplex.
@@ -91,10 +90,10 @@ class Shrinker {
  private:
   void add_quadrics(const Progress& progress);
   void add_border_quadrics(Index s, const CornersN<N>& corners, double weight);
-  [[nodiscard]] bool within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const;
+  [[nodiscard]] bool within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const;
   [[nodiscard]] bool keeps_shapes(const Edge& edge, const PointN<N>& scaled_place) const;
-  [[nodiscard]] bool bears(Index s, Index moving, const PointN<N>& place, const Edge& edge,
-                           std::optional<double>& worst) const;
+  [[nodiscard]] bool keeps_shape(Index s, Index moving, const PointN<N>& place, const Edge& edge,
+                                 std::optional<double>& worst) const;
   [[nodiscard]] double worst_shape(const Edge& edge) const;
   [[nodiscard]] PointN<N> normal_around(const Edge& edge) const;
   [[nodiscard]] PointN<N> to_scaled(const PointN<N>& point) const;
@@ -102,7 +101,7 @@ class Shrinker {
   [[nodiscard]] PointN<N> rounded(PointN<N> point) const;
   void blend_carried(Index u, Index v, double share);
 
-  ShrinkingComplex<N> complex_;
+  CollapsibleComplex<N> complex_;
   std::vector<PointN<N>> points_;
   std::vector<PointN<N>> scaled_;  ///< relative to the centre, in units of the scale
   PointN<N> centre_{};
@@ -120,8 +119,8 @@ class Shrinker {
   Edge edge_;
 };
 
-extern template class Shrinker<2>;
-extern template class Shrinker<3>;
-extern template class Shrinker<4>;
+extern template class EdgeCollapse<2>;
+extern template class EdgeCollapse<3>;
+extern template class EdgeCollapse<4>;
 
 }  // namespace tegl::detail

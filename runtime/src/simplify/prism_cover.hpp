@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tests whether one contour covers a whole simplex of another, and bounds its distance: the sheets of a contour in the
-// prism over the simplex, separated by their heights.
+// Tests whether one contour covers a whole simplex of another, and bounds its distance: the simplices of a
+// contour in the prism over the simplex, grouped by their heights.
 //
 // Principle. Let a chain of oriented simplices cross a prism (a convex base times a range of heights) without reaching
 // its two ends, and let the boundary of the chain lie outside the prism. Then the chain covers every point of the base
@@ -175,7 +175,7 @@ class Prism {
 /// so), because each corner that a cut creates lies on one edge. So two corners share an edge if they share D - 1
 /// facets. Facet bits: bit i is the facet of the simplex opposite to corner i; bit N + k is side k of the prism.
 template <int N>
-class Remnant {
+class ClippedSimplex {
  public:
   static constexpr int D = N - 1;
 
@@ -194,13 +194,13 @@ class Remnant {
   }
 
   /// Cuts the loaded simplex by the prism. Returns false if nothing is left.
-  bool cut(const Prism<N>& prism) {
+  bool clip(const Prism<N>& prism) {
     for (unsigned rest = cutting_; rest != 0; rest &= rest - 1)
-      if (!cut_off(prism, std::countr_zero(rest))) return false;
+      if (!clip_by_side(prism, std::countr_zero(rest))) return false;
     return true;
   }
 
-  /// Bit i: facet i of the simplex meets the remnant.
+  /// Bit i: facet i of the simplex meets the clipped simplex.
   [[nodiscard]] unsigned facets() const {
     unsigned all = 0;
     for (int i = 0; i < count_; ++i) all |= corners_[i].facets;
@@ -243,7 +243,7 @@ class Remnant {
     return (common & (common - 1)) != 0;
   }
 
-  bool cut_off(const Prism<N>& prism, int side) {
+  bool clip_by_side(const Prism<N>& prism, int side) {
     std::array<double, kMostCorners> inside;
     const int before = count_;
     for (int i = 0; i < before; ++i) inside[i] = prism.inside(side, corners_[i].at);
@@ -254,7 +254,8 @@ class Remnant {
         if (inside[j] >= 0.0) continue;
         const std::uint32_t common = corners_[i].facets & corners_[j].facets;
         if (!share_an_edge(common)) continue;
-        if (end == kMostCorners) return true;  // only by rounding; without the cut the remnant is still a superset
+        if (end == kMostCorners)
+          return true;  // only by rounding; without the cut the clipped simplex is still a superset
         corners_[end++] = {between(corners_[i].at, corners_[j].at, inside[i] / (inside[i] - inside[j])),
                            common | 1u << (N + side)};
       }

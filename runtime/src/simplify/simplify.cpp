@@ -8,20 +8,16 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <locale>
 #include <span>
-#include <sstream>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/progress.hpp"
 #include "mesh/validate.hpp"
 #include "simplify/collapsible_complex.hpp"
 #include "simplify/edge_collapse.hpp"
+#include "simplify/error_attribute.hpp"
 #include "simplify/simplify_fast.hpp"
 #include "simplify/simplify_options.hpp"
 #include "simplify/simplify_orders.hpp"
@@ -33,10 +29,8 @@ namespace detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr const char* kErrorName = "simplification_error";
-constexpr std::string_view kScaleUnit = "scale ";
 /// Rounds that reduce the tolerance of parts with too large an error; later rounds set it to 0.
-constexpr unsigned kGentleRounds = 6;
+constexpr unsigned kScalingRounds = 6;
 constexpr unsigned kMostRounds = 12;
 /// Maximum number of further rounds that stop at a count.
 constexpr unsigned kMostRoundsOfStop = 4;
@@ -45,17 +39,17 @@ constexpr unsigned kMostRoundsOfStop = 4;
 constexpr unsigned kMostTries = 10;
 constexpr double kErrorOfTolerance = 3.0;
 constexpr double kNextError = 1.5;
-constexpr double kNarrow = 1.25;
+constexpr double kPrecision = 1.25;
 /// Number of steps down by a factor of 4 before a tolerance of almost 0 is tried.
 constexpr unsigned kMostSteps = 2;
 /// Progress of one round after its preparation and after its contractions.
 constexpr double kReady = 0.2;
-constexpr double kShrunk = 0.97;
+constexpr double kCollapsed = 0.97;
 /// Relative to the size of the contour: bound of the rounding errors of an error.
 constexpr double kRounding = 1e-12;
 /// Relative to the size of the contour: an error that counts as 0. Sums of squared distances are accurate only to its
 /// square.
-constexpr double kNothing = 1e-8;
+constexpr double kZeroError = 1e-8;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -63,7 +57,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 /// Remaining simplices, before they become a contour.
 template <int N>
-struct Remains {
+struct RemainingSimplices {
   std::vector<std::array<Index, N>> simplices;  ///< vertex numbers of the original
   std::vector<std::size_t> sources;             ///< #S: simplex of the original; empty if unknown
 };
@@ -87,69 +81,29 @@ class Simplifier {
     const auto before = static_cast<double>(contour.simplices.size());
     if (options.ratio) count_ = static_cast<std::size_t>(std::llround(*options.ratio * before));
     if (options.count) count_ = std::max<std::size_t>(count_, *options.count);
-    gather_carried();
+    earlier_error_ = earlier_error<N>(contour, options.scale);
+    gather_vertex_data();
   }
 
-  Contour<N, Real> run() {
+  Simplification<N, Real> run() {
     stats_.simplices_before = contour_.simplices.size();
     stats_.vertices_before = contour_.vertices.size();
     Contour<N, Real> result = contour_.simplices.empty() ? contour_ : run_rounds();
     stats_.simplices_after = result.simplices.size();
     stats_.vertices_after = result.vertices.size();
-    tell(options_.progress, 1.0, "simplification cancelled at its end");
-    return result;
+    tell(options_.work.progress, 1.0, "simplification cancelled at its end");
+    return {std::move(result), stats_};
   }
-  [[nodiscard]] const SimplifyStats& stats() const noexcept { return stats_; }
 
  private:
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-  /// Maximum growth of distances since an earlier error was computed, from the scale in its unit.
-  [[nodiscard]] double factor_of_earlier(const Attribute& attribute) const {
-    const bool scaled = attribute.unit.starts_with(kScaleUnit);
-    std::istringstream numbers(scaled ? attribute.unit.substr(kScaleUnit.size()) : "");
-    numbers.imbue(std::locale::classic());
-    double factor = 0.0;
-    for (int a = 0; a < N; ++a) {
-      double earlier = 1.0;
-      const bool read =
-          !scaled || ((a == 0 || numbers.get() == ',') && numbers >> earlier && (a + 1 < N || numbers.eof()));
-      if (!read || !(earlier > 0.0))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the attribute {} has the unit '{}'; expected {} positive numbers after '{}'",
-                                attribute.name, attribute.unit, N, kScaleUnit));
-      factor = std::max(factor, options_.scale[a] / earlier);
-    }
-    return factor;
-  }
-
-  /// Unit of errors: the common unit of the axes, or the scale.
-  [[nodiscard]] std::string error_unit() const {
-    const auto& units = contour_.axis_units;
-    const auto is_one = [](double scale) { return scale == 1.0; };
-    if (!std::all_of(options_.scale.begin(), options_.scale.end(), is_one))
-      return fmt::format("{}{}", kScaleUnit, fmt::join(options_.scale, ","));
-    const bool same =
-        std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units[0]; });
-    return same ? units[0] : std::string();
-  }
-
   /// Collects normals and attributes by vertex. The error attribute of an earlier simplification is not carried along:
   /// it is added to the new error.
-  void gather_carried() {
+  void gather_vertex_data() {
     if (!contour_.normals.empty()) carried_width_ = N;
     for (const Attribute& attribute : contour_.vertex_attributes) {
-      if (attribute.name == kErrorName) {
-        const double factor = factor_of_earlier(attribute);
-        for (const double error : attribute.values) {
-          if (!(error >= 0.0 && std::isfinite(error)))
-            throw Error(ErrorCode::InvalidArgument,
-                        fmt::format("the attribute {} has the value {}; expected finite numbers, 0 or more",
-                                    attribute.name, error));
-          earlier_error_ = std::max(earlier_error_, factor * error);
-        }
-        continue;
-      }
+      if (attribute.name == kErrorName) continue;
       carried_attributes_.push_back(&attribute);
       carried_width_ += static_cast<std::size_t>(attribute.width);
     }
@@ -167,12 +121,14 @@ class Simplifier {
 
   /// The result of a round, and its errors.
   struct Round {
-    Contour<N, Real> result;
-    std::vector<double> errors;  ///< #S; empty if not measured
-    std::optional<double> error_of_original, error_of_result;
+    Contour<N, Real> result = {};
+    std::vector<double> errors = {};  ///< #S; empty if not measured
+    std::optional<double> error_of_original = {};
+    std::optional<double> error_of_result = {};
     SimplifyEnd end = SimplifyEnd::count;
-    std::vector<Index> survivors;  ///< #V: the vertex that each vertex was merged into; empty if unknown
-    std::vector<Index> kept;       ///< the original numbers of the result's vertices
+    bool is_limited = false;            ///< only the maximum error or curvature prevented more contractions
+    std::vector<Index> survivors = {};  ///< #V: the vertex that each vertex was merged into; empty if unknown
+    std::vector<Index> kept = {};       ///< the original numbers of the result's vertices
   };
 
   Contour<N, Real> run_rounds() {
@@ -185,10 +141,10 @@ class Simplifier {
               *options_.max_error, kErrorName, earlier_error_));
     // Rounding alone moves points, so only the unchanged contour has an error of 0.
     if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
-      return hand_out(untouched(may_anything_go() ? SimplifyEnd::error : end_without_limits(contour_)));
-    if (options_.max_error) return hand_out(until_error_holds());
-    if (!options_.measure) return hand_out(one_round(uniform_tolerance(kInfinity), 1.0, count_));
-    return hand_out(as_near_as_can_be(kInfinity));
+      return finish(unchanged(is_reducible() ? SimplifyEnd::error : end_without_limits(contour_)));
+    if (options_.max_error) return finish(run_within_max_error());
+    if (!options_.measure) return finish(one_round(uniform_tolerance(kInfinity), 1.0, count_));
+    return finish(minimize_error(kInfinity));
   }
 
   [[nodiscard]] std::vector<double> uniform_tolerance(double error) const {
@@ -198,32 +154,32 @@ class Simplifier {
 
   /// Simplifies within the maximum error less the earlier one. With a count, the result for the count is taken if it is
   /// within the error. If no round keeps the error, the result is the contour itself.
-  Round until_error_holds() {
+  Round run_within_max_error() {
     const double allowed = *options_.max_error - earlier_error_ + kRounding * size_;
     if (by_count() && count_ > 0) {
-      Round by_count = as_near_as_can_be(allowed);
+      Round by_count = minimize_error(allowed);
       if (by_count.end == SimplifyEnd::count && own_error(by_count) <= allowed) return by_count;
     }
     Round best;
-    if (!comes_within(allowed, best, false)) return untouched(SimplifyEnd::rounds);
-    if (own_error(best) <= 0.5 * allowed) measure_closer(best);
+    if (!reach_within_error(allowed, best, false)) return unchanged(SimplifyEnd::rounds);
+    if (own_error(best) <= 0.5 * allowed) measure_exactly(best);
     return best;
   }
 
   /// Whether some round keeps this error (and reaches the count if `to_count`). `best` becomes that round; or, with
   /// `to_count`, a round that reaches the count with a smaller error than `best`.
-  bool comes_within(double allowed, Round& best, bool to_count) {
+  bool reach_within_error(double allowed, Round& best, bool to_count) {
     std::vector<double> tolerance = uniform_tolerance(allowed);
-    std::optional<Round> all = all_that_goes(allowed, tolerance, to_count);
+    std::optional<Round> all = reduce_within_error(allowed, tolerance, to_count);
     if (!all) return false;
     if (all->result.simplices.size() >= count_ || !by_count()) {
       best = std::move(*all);
       return true;
     }
     for (unsigned tried = 1; tried <= kMostRoundsOfStop; ++tried) {
-      Round round = one_round(tolerance, part_of_rest(0.25), count_);
+      Round round = one_round(tolerance, progress_after(0.25), count_);
       if (round.end != SimplifyEnd::count) break;
-      measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      measure(round, progress_after(1.0 / 3.0), 0.5 * allowed);
       const bool near = own_error(round) <= allowed;
       if (!near) tighten(tolerance, round, allowed, tried);
       if (near || (to_count && error(round) < error(best))) best = std::move(round);
@@ -236,12 +192,12 @@ class Simplifier {
   /// Simplifies as far as this error allows, without a count. Parts with too large an error are simplified again with
   /// less tolerance. (With a count, other parts would be contracted in their place, and exceed the error in turn.)
   /// Empty if `to_count` and the count is not reached, or after kMostRounds rounds.
-  std::optional<Round> all_that_goes(double allowed, std::vector<double>& tolerance, bool to_count) {
+  std::optional<Round> reduce_within_error(double allowed, std::vector<double>& tolerance, bool to_count) {
     for (unsigned tried = 1; tried <= kMostRounds; ++tried) {
-      Round round = one_round(tolerance, part_of_rest(0.25), 0);
+      Round round = one_round(tolerance, progress_after(0.25), 0);
       if (to_count && round.end != SimplifyEnd::count) break;
       // Bounds below half of the allowed error need no refinement.
-      measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      measure(round, progress_after(1.0 / 3.0), 0.5 * allowed);
       if (own_error(round) <= allowed) return round;
       tighten(tolerance, round, allowed, tried);
     }
@@ -250,21 +206,21 @@ class Simplifier {
 
   /// Reaches a count with a small error. Most of the error comes from a few contractions in thin parts. So this
   /// searches for the smallest maximum error with which the count is still reached, up to `most`.
-  Round as_near_as_can_be(double most) {
+  Round minimize_error(double most) {
     const bool fast = options_.method == SimplifyMethod::fast;
-    Round best = one_round(uniform_tolerance(fast ? most : kInfinity), part_of_rest(0.25), count_);
-    measure(best, part_of_rest(1.0 / 3.0));
+    Round best = one_round(uniform_tolerance(fast ? most : kInfinity), progress_after(0.25), count_);
+    measure(best, progress_after(1.0 / 3.0));
     if (best.end != SimplifyEnd::count || fast) return best;
-    double low = least_tolerance(best);
+    double low = smallest_tolerance(best);
     double factor = kErrorOfTolerance;
     bool found = false, failed = false;
-    for (unsigned tried = 0; tried < kMostTries && low < most && own_error(best) > kNarrow * low; ++tried) {
+    for (unsigned tried = 0; tried < kMostTries && low < most && own_error(best) > kPrecision * low; ++tried) {
       const double middle = std::sqrt(low * own_error(best));
       double allowed = middle;
       if (!found) allowed = std::min(factor * low, middle);
-      if (found && !failed) allowed = own_error(best) / kNarrow;
+      if (found && !failed) allowed = own_error(best) / kPrecision;
       allowed = std::min(allowed, most);
-      if (comes_within(allowed, best, true)) {
+      if (reach_within_error(allowed, best, true)) {
         found = true;
         continue;
       }
@@ -279,20 +235,20 @@ class Simplifier {
   /// The smallest uniform tolerance that reaches the count, or a slightly smaller one, below the error of `best`. It is
   /// positive, because flat regions alone may reach the count with almost none. `best` becomes the result for it if its
   /// error is smaller.
-  double least_tolerance(Round& best) {
-    const double least = kNothing * size_;
+  double smallest_tolerance(Round& best) {
+    const double least = kZeroError * size_;
     double low = 0.0, high = own_error(best);
     std::optional<Round> reached;
     for (unsigned tried = 0; tried < kMostTries && high > kNextError * std::max(low, least); ++tried) {
       double middle = low > 0.0 ? std::sqrt(low * high) : 0.25 * high;
       if (low == 0.0 && (tried >= kMostSteps || middle < least)) middle = least;
-      Round round = one_round(uniform_tolerance(middle), part_of_rest(0.05), count_);
+      Round round = one_round(uniform_tolerance(middle), progress_after(0.05), count_);
       const bool is_enough = round.end == SimplifyEnd::count;
       (is_enough ? high : low) = middle;
       if (is_enough) reached = std::move(round);
     }
     if (reached) {
-      measure(*reached, part_of_rest(0.05));
+      measure(*reached, progress_after(0.05));
       if (error(*reached) < error(best)) best = std::move(*reached);
     }
     return std::max(low, least);
@@ -303,24 +259,23 @@ class Simplifier {
   [[nodiscard]] double own_error(const Round& round) const { return error(round) - earlier_error_; }
 
   /// Progress after this fraction of the remaining range: the number of rounds is unknown.
-  [[nodiscard]] double part_of_rest(double share) const { return progress_ + share * (1.0 - progress_); }
+  [[nodiscard]] double progress_after(double share) const { return progress_ + share * (1.0 - progress_); }
 
-  /// Simplifies once, and advances the progress to `to`; without measurement.
-  Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop) {
-    stop_ = stop;
+  /// Simplifies once until at most `stop` simplices are left, and advances the progress to `to`; without measurement.
+  /// `is_trial`: the result is discarded, so it may be non-manifold.
+  Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop, bool is_trial = false) {
     ++stats_.rounds;
-    survivors_.clear();
-    const Progress shrinking = detail::part_of(options_.progress, progress_, to);
+    const Progress progress = detail::part_of(options_.work.progress, progress_, to);
     progress_ = to;
-    Round round;
-    round.result =
-        options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
+    const bool is_fast = options_.method == SimplifyMethod::fast;
+    Round round =
+        is_fast ? run_meshoptimizer(tolerance, stop, is_trial, progress) : collapse_edges(tolerance, stop, progress);
     round.end = end_without_limits(round.result);
-    if (round.end == SimplifyEnd::shape && limited_) round.end = SimplifyEnd::error;
-    if (round.result.simplices.size() == contour_.simplices.size()) return untouched(round.end);
-    round.survivors = std::move(survivors_);
-    round.kept = std::move(kept_);
-    return round;
+    if (round.end == SimplifyEnd::shape && round.is_limited) round.end = SimplifyEnd::error;
+    if (round.result.simplices.size() != contour_.simplices.size()) return round;
+    Round same = unchanged(round.end);
+    same.is_limited = round.is_limited;
+    return same;
   }
 
   /// Reason of the end if no maximum error or curvature was the limit.
@@ -330,17 +285,16 @@ class Simplifier {
 
   /// Whether the contour has more simplices than requested and any could be removed without an error limit. Errors:
   /// also those for a contour that is no manifold.
-  bool may_anything_go() {
+  bool is_reducible() {
     const std::size_t before = contour_.simplices.size();
-    is_trial_ = true;
-    const Round round = one_round(uniform_tolerance(kInfinity), part_of_rest(0.5), before - 1);
+    const Round round = one_round(uniform_tolerance(kInfinity), progress_after(0.5), before - 1, true);
     stats_.rounds = 0;
     if (end_without_limits(contour_) == SimplifyEnd::count) return false;
-    return limited_ || round.result.simplices.size() < before;
+    return round.is_limited || round.result.simplices.size() < before;
   }
 
   /// The unchanged contour as a round.
-  Round untouched(SimplifyEnd end) const {
+  Round unchanged(SimplifyEnd end) const {
     Round round;
     round.result = contour_;
     std::erase_if(round.result.vertex_attributes, [](const Attribute& other) { return other.name == kErrorName; });
@@ -350,7 +304,7 @@ class Simplifier {
     return round;
   }
 
-  Contour<N, Real> hand_out(Round round) {
+  Contour<N, Real> finish(Round round) {
     if (round.result.simplices.empty())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("meshoptimizer left none of {} triangles; expected some: a larger count, or another "
@@ -365,50 +319,59 @@ class Simplifier {
   }
 
   /// One round of a method that contracts edges.
-  Contour<N, Real> shrink(const std::vector<double>& tolerance, const Progress& progress) {
+  Round collapse_edges(const std::vector<double>& tolerance, std::size_t stop, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    ShrinkStart<N> what;
-    what.simplices = contour_.simplices;
-    what.points.reserve(contour_.vertices.size());
+    EdgeCollapse<N> collapse = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
+    // contract
+    CollapseGoal goal{stop, options_.max_curvature, &progress, kReady, kCollapsed};
+    if (options_.method == SimplifyMethod::quadric) collapse_by_quadrics(collapse, goal);
+    if (options_.method == SimplifyMethod::facets) collapse_by_curvature(collapse, goal);
+    if (options_.method == SimplifyMethod::vertices) collapse_by_distance(collapse, goal);
+    // collect the remaining simplices
+    Round round;
+    round.is_limited = collapse.is_limited();
+    round.survivors.resize(contour_.vertices.size());
+    for (std::size_t v = 0; v < round.survivors.size(); ++v)
+      round.survivors[v] = collapse.survivor(static_cast<Index>(v));
+    RemainingSimplices<N> remains;
+    for (Index s = 0; s < collapse.complex().simplex_count(); ++s) {
+      if (!collapse.complex().is_alive(s)) continue;
+      remains.simplices.push_back(collapse.complex().simplex(s));
+      remains.sources.push_back(s);
+    }
+    set_result(round, remains, &collapse);
+    stats_.simplify_seconds += seconds_since(start);
+    detail::tell(progress, 1.0);
+    return round;
+  }
+
+  /// The contour before its first contraction, bound to its hyperplanes.
+  EdgeCollapse<N> prepared_collapse(const std::vector<double>& tolerance, const Progress& progress) const {
+    CollapseInput<N> input;
+    input.simplices = contour_.simplices;
+    input.points.reserve(contour_.vertices.size());
     for (const auto& vertex : contour_.vertices) {
       PointN<N> point;
       for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]);
-      what.points.push_back(point);
+      input.points.push_back(point);
     }
-    what.tolerance = tolerance;
-    what.scale = options_.scale;
-    what.carried_width = carried_width_;
-    what.carried = carried_;
-    what.border_fixed = options_.border == SimplifyBorder::fixed;
-    what.single_precision = std::is_same_v<Real, float>;
-    what.progress = detail::part_of(progress, 0.0, kReady);
-    Shrinker<N> shrinker(std::move(what));
-    bind_to_planes(shrinker);
-
-    // contract
-    ShrinkGoal goal{stop_, options_.max_curvature, &progress, kReady, kShrunk};
-    if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
-    if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
-    if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
-
-    // collect the remaining simplices
-    limited_ = shrinker.is_limited();
-    survivors_.resize(contour_.vertices.size());
-    for (std::size_t v = 0; v < survivors_.size(); ++v) survivors_[v] = shrinker.survivor(static_cast<Index>(v));
-    Remains<N> remains;
-    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
-      if (!shrinker.complex().is_alive(s)) continue;
-      remains.simplices.push_back(shrinker.complex().simplex(s));
-      remains.sources.push_back(s);
-    }
-    Contour<N, Real> result = to_contour(remains, &shrinker);
-    stats_.simplify_seconds += seconds_since(start);
-    detail::tell(progress, 1.0);
-    return result;
+    input.tolerance = tolerance;
+    input.scale = options_.scale;
+    input.carried_width = carried_width_;
+    input.carried = carried_;
+    input.border_fixed = options_.border == SimplifyBorder::fixed;
+    input.single_precision = std::is_same_v<Real, float>;
+    input.progress = progress;
+    EdgeCollapse<N> collapse(std::move(input));
+    bind_to_planes(collapse);
+    return collapse;
   }
 
-  Contour<N, Real> shrink_fast(const std::vector<double>& tolerance, const Progress& progress) {
-    Remains<N> remains;
+  /// One round of the method `fast`.
+  Round run_meshoptimizer(const std::vector<double>& tolerance, std::size_t stop, bool is_trial,
+                          const Progress& progress) {
+    Round round;
+    RemainingSimplices<N> remains;
     if constexpr (N == 3) {
       const auto start = std::chrono::steady_clock::now();
       if (progress && !progress(0.0)) throw Error(ErrorCode::Cancelled, "simplification cancelled before it began");
@@ -421,22 +384,22 @@ class Simplifier {
         points.push_back(point);
       }
       const auto within = [&](double error) {
-        return simplify_fast(contour_.simplices, points, stop_, error, options_.border == SimplifyBorder::fixed);
+        return simplify_fast(contour_.simplices, points, stop, error, options_.border == SimplifyBorder::fixed);
       };
       if (!options_.allow_nonmanifold) {
-        const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // for the same errors as other methods
+        const CollapsibleComplex<3> complex(contour_.simplices, points.size());  // for the same errors as other methods
         require_manifold(contour_, "the contour");
       }
       // simplify with the smallest tolerance; test whether it is the limit
       const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
       remains.simplices = within(tightest);
-      limited_ = remains.simplices.size() > count_ && tightest < kInfinity &&
-                 within(kInfinity).size() < remains.simplices.size();
+      round.is_limited = remains.simplices.size() > count_ && tightest < kInfinity &&
+                         within(kInfinity).size() < remains.simplices.size();
       stats_.simplify_seconds += seconds_since(start);
     }
-    Contour<N, Real> result = to_contour(remains, nullptr);
-    if (!options_.allow_nonmanifold && !is_trial_) require_manifold(result, "meshoptimizer's result");
-    return result;
+    set_result(round, remains, nullptr);
+    if (!options_.allow_nonmanifold && !is_trial) require_manifold(round.result, "meshoptimizer's result");
+    return round;
   }
 
   static void require_manifold(const Contour<N, Real>& contour, const char* what) {
@@ -448,48 +411,48 @@ class Simplifier {
     if (report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts == 0 && !twice) return;
     throw Error(
         ErrorCode::UnsupportedData,
-        fmt::format("{} is no oriented manifold ({} faces in more than two triangles, {} bad links, {} orientation "
-                    "conflicts{}); expected one: allow nonmanifold results, or take another method",
+        fmt::format("{} is not an oriented manifold ({} faces in more than two triangles, {} bad links, {} orientation "
+                    "conflicts{}); expected one: allow nonmanifold results, or use another method",
                     what, report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts,
                     twice ? ", triangles with the same corners" : ""));
   }
 
   // ---- hyperplanes ----
 
-  void bind_to_planes(Shrinker<N>& shrinker) const {
+  void bind_to_planes(EdgeCollapse<N>& collapse) const {
     unsigned number = 0;
     for (int a = 0; a < N; ++a)
       for (const double side : {box_[a].first, box_[a].second}) {
-        if (has_part_in_side(shrinker, a, side))
-          for (Index v = 0; v < shrinker.points().size(); ++v)
-            if (shrinker.points()[v][a] == side) shrinker.bind(v, number);
+        if (has_part_in_side(collapse, a, side))
+          for (Index v = 0; v < collapse.points().size(); ++v)
+            if (collapse.points()[v][a] == side) collapse.bind(v, number);
         ++number;
       }
     const double precision = std::is_same_v<Real, float> ? 1e-6 : 1e-12;
     for (const Hyperplane<N>& plane : options_.planes) {
-      for (Index v = 0; v < shrinker.points().size(); ++v) {
+      for (Index v = 0; v < collapse.points().size(); ++v) {
         double sum = -plane.offset, size = std::abs(plane.offset);
         for (int a = 0; a < N; ++a) {
-          sum += plane.normal[a] * shrinker.points()[v][a];
-          size += std::abs(plane.normal[a] * shrinker.points()[v][a]);
+          sum += plane.normal[a] * collapse.points()[v][a];
+          size += std::abs(plane.normal[a] * collapse.points()[v][a]);
         }
-        if (std::abs(sum) <= precision * size) shrinker.bind(v, number);
+        if (std::abs(sum) <= precision * size) collapse.bind(v, number);
       }
       ++number;
     }
   }
 
   /// Whether a whole simplex or a whole border face lies in a side of the bounding box.
-  static bool has_part_in_side(Shrinker<N>& shrinker, int axis, double side) {
-    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
+  static bool has_part_in_side(EdgeCollapse<N>& collapse, int axis, double side) {
+    for (Index s = 0; s < collapse.complex().simplex_count(); ++s) {
       int outside = 0, last_outside = 0;
       for (int i = 0; i < N; ++i)
-        if (shrinker.points()[shrinker.complex().simplex(s)[i]][axis] != side) {
+        if (collapse.points()[collapse.complex().simplex(s)[i]][axis] != side) {
           ++outside;
           last_outside = i;
         }
       if (outside == 0) return true;
-      if (outside == 1 && (shrinker.complex().border_faces(s) >> last_outside & 1u) != 0) return true;
+      if (outside == 1 && (collapse.complex().border_faces(s) >> last_outside & 1u) != 0) return true;
     }
     return false;
   }
@@ -503,11 +466,10 @@ class Simplifier {
     const auto start = std::chrono::steady_clock::now();
     DeviationOptions<N> options;
     options.scale = options_.scale;
-    options.threads = options_.threads;
-    options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
+    options.work = {options_.work.threads, detail::part_of(options_.work.progress, from, 0.5 * (from + to))};
     options.enough = enough;
     Deviation of_original = deviation(contour_, round.result, options);
-    options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
+    options.work.progress = detail::part_of(options_.work.progress, 0.5 * (from + to), to);
     options.enough = enough > 0.0 ? enough : 0.5 * of_original.least;
     const Deviation of_result = deviation(round.result, contour_, options);
     round.errors = std::move(of_original.of_to);
@@ -519,11 +481,12 @@ class Simplifier {
   }
 
   /// Measures without a threshold a result whose bounds were accepted early.
-  void measure_closer(Round& round) {
+  void measure_exactly(Round& round) {
     if (round.survivors.empty()) return;  // the contour itself
-    const Round before{{}, round.errors, round.error_of_original, round.error_of_result, round.end, {}, {}};
+    const Round before{
+        .errors = round.errors, .error_of_original = round.error_of_original, .error_of_result = round.error_of_result};
     round.error_of_original.reset();
-    measure(round, part_of_rest(0.5));
+    measure(round, progress_after(0.5));
     if (error(round) <= error(before)) return;
     round.errors = before.errors;  // both sets of bounds hold; keep the smaller maximum
     round.error_of_original = before.error_of_original;
@@ -532,7 +495,7 @@ class Simplifier {
 
   /// Reduces the tolerance of all vertices that were merged into a simplex with too large an error.
   void tighten(std::vector<double>& tolerance, const Round& round, double allowed, unsigned tried) const {
-    const bool gently = tried <= kGentleRounds;
+    const bool gently = tried <= kScalingRounds;
     const auto factor_for = [&](double error) { return std::clamp(0.8 * allowed / error, 0.1, 0.8); };
     if (round.survivors.empty()) {
       const double factor = factor_for(own_error(round));
@@ -547,12 +510,12 @@ class Simplifier {
       for (const Index v : round.result.simplices[s]) factors[round.kept[v]] = std::min(factors[round.kept[v]], factor);
     }
     // The cause may lie around it: unchanged surroundings would give the same result again.
-    if (!gently) widen(factors, round, std::size_t{1} << (tried - kGentleRounds - 1));
+    if (!gently) spread(factors, round, std::size_t{1} << (tried - kScalingRounds - 1));
     for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[round.survivors[v]];
   }
 
   /// Spreads the minimum factors by `rings` rings of simplices.
-  void widen(std::vector<double>& factors, const Round& round, std::size_t rings) const {
+  void spread(std::vector<double>& factors, const Round& round, std::size_t rings) const {
     for (std::size_t ring = 0; ring < rings; ++ring) {
       const std::vector<double> before = factors;
       for (const auto& simplex : round.result.simplices) {
@@ -567,7 +530,7 @@ class Simplifier {
   void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
     Attribute attribute;
     attribute.name = kErrorName;
-    attribute.unit = error_unit();
+    attribute.unit = error_unit<N>(contour_, options_.scale);
     attribute.values.assign(result.vertices.size(), earlier_error_);
     for (std::size_t s = 0; s < errors.size(); ++s)
       for (const Index v : result.simplices[s])
@@ -577,10 +540,10 @@ class Simplifier {
 
   // ---- the result ----
 
-  /// Builds a contour of the used vertices, in their order, with attributes. `shrinker`: gives the new places of
+  /// Sets the round's contour: the used vertices, in their order, with attributes. `collapse`: gives the new places of
   /// vertices; null: the places are unchanged.
-  Contour<N, Real> to_contour(const Remains<N>& remains, const Shrinker<N>* shrinker) {
-    Contour<N, Real> result;
+  void set_result(Round& round, const RemainingSimplices<N>& remains, const EdgeCollapse<N>* collapse) const {
+    Contour<N, Real>& result = round.result;
     result.axis_names = contour_.axis_names;
     result.axis_units = contour_.axis_units;
     result.direction = contour_.direction;
@@ -588,11 +551,10 @@ class Simplifier {
     for (const auto& simplex : remains.simplices)
       for (const Index v : simplex) number[v] = 1;
     // number the used vertices
-    kept_.clear();
     for (std::size_t v = 0; v < number.size(); ++v) {
       if (number[v] == 0) continue;
-      number[v] = static_cast<Index>(kept_.size());
-      kept_.push_back(static_cast<Index>(v));
+      number[v] = static_cast<Index>(round.kept.size());
+      round.kept.push_back(static_cast<Index>(v));
     }
     // simplices and vertices
     result.simplices.reserve(remains.simplices.size());
@@ -600,28 +562,29 @@ class Simplifier {
       for (Index& v : simplex) v = number[v];
       result.simplices.push_back(simplex);
     }
-    result.vertices.reserve(kept_.size());
-    for (const Index v : kept_) {
+    result.vertices.reserve(round.kept.size());
+    for (const Index v : round.kept) {
       auto vertex = contour_.vertices[v];
-      if (shrinker != nullptr)
-        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(shrinker->points()[v][a]);
+      if (collapse != nullptr)
+        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(collapse->points()[v][a]);
       result.vertices.push_back(vertex);
     }
-    carry_along(result, shrinker);
-    if (!remains.sources.empty()) carry_simplex_attributes(result, remains.sources);
-    return result;
+    append_vertex_data(result, round.kept, collapse);
+    if (!remains.sources.empty()) append_simplex_attributes(result, remains.sources);
   }
 
-  void carry_along(Contour<N, Real>& result, const Shrinker<N>* shrinker) const {
+  /// Appends normals and attributes of the vertices with these original numbers.
+  void append_vertex_data(Contour<N, Real>& result, const std::vector<Index>& kept,
+                          const EdgeCollapse<N>* collapse) const {
     for (const Attribute* attribute : carried_attributes_) {
       result.vertex_attributes.push_back({attribute->name, attribute->unit, attribute->width, {}});
-      result.vertex_attributes.back().values.reserve(kept_.size() * static_cast<std::size_t>(attribute->width));
+      result.vertex_attributes.back().values.reserve(kept.size() * static_cast<std::size_t>(attribute->width));
     }
-    for (const Index v : kept_) {
+    for (const Index v : kept) {
       std::span<const double> values =
-          shrinker != nullptr ? shrinker->carried(v) : std::span(carried_).subspan(v * carried_width_, carried_width_);
+          collapse != nullptr ? collapse->carried(v) : std::span(carried_).subspan(v * carried_width_, carried_width_);
       if (!contour_.normals.empty()) {
-        const bool same = shrinker == nullptr || shrinker->version(v) == 0;
+        const bool same = collapse == nullptr || collapse->version(v) == 0;
         result.normals.push_back(same ? contour_.normals[v] : unit_normal(values.first(N)));
         values = values.subspan(N);
       }
@@ -644,7 +607,7 @@ class Simplifier {
     return result;
   }
 
-  void carry_simplex_attributes(Contour<N, Real>& result, const std::vector<std::size_t>& sources) const {
+  void append_simplex_attributes(Contour<N, Real>& result, const std::vector<std::size_t>& sources) const {
     for (const Attribute& attribute : contour_.simplex_attributes) {
       Attribute& left = result.simplex_attributes.emplace_back();
       left.name = attribute.name;
@@ -664,36 +627,28 @@ class Simplifier {
   std::array<std::pair<double, double>, N> box_;
   double size_ = 0.0;
   std::size_t count_ = 0;
-  std::size_t stop_ = 0;
   std::size_t carried_width_ = 0;
   std::vector<double> carried_;
   std::vector<const Attribute*> carried_attributes_;
   double earlier_error_ = 0.0;
-  bool limited_ = false;          ///< of the round: only the maximum error or curvature prevented more contractions
-  bool is_trial_ = false;         ///< the result of the round is discarded
-  double progress_ = 0.0;         ///< reported so far
-  std::vector<Index> survivors_;  ///< of the round: the vertex that each vertex was merged into; empty if unknown
-  std::vector<Index> kept_;       ///< of the round: original numbers of the result's vertices
+  double progress_ = 0.0;  ///< reported so far
   SimplifyStats stats_;
 };
 
 }  // namespace
 }  // namespace detail
 
-template <int N, class Real>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> simplify(const Contour<N, Real>& contour,
-                                                             const SimplifyOptions<N>& options, SimplifyStats* stats) {
-  detail::Simplifier<N, Real> simplifier(contour, options);
-  Contour<N, Real> result = simplifier.run();
-  if (stats != nullptr) *stats = simplifier.stats();
-  return result;
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contour<N, Real>& contour,
+                                                                    const SimplifyOptions<N>& options) {
+  return detail::Simplifier<N, Real>(contour, options).run();
 }
 
-template Contour<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&, SimplifyStats*);
-template Contour<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&, SimplifyStats*);
-template Contour<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&, SimplifyStats*);
-template Contour<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&, SimplifyStats*);
-template Contour<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&, SimplifyStats*);
-template Contour<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&, SimplifyStats*);
+template Simplification<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&);
+template Simplification<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&);
+template Simplification<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&);
+template Simplification<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&);
+template Simplification<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&);
+template Simplification<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&);
 
 }  // namespace tegl

@@ -54,9 +54,8 @@ std::vector<std::array<Index, 3>> simplify_fast(std::span<const std::array<Index
 std::vector<std::array<Index, 3>> simplify_fast(std::span<const std::array<Index, 3>> /*triangles*/,
                                                 std::span<const PointN<3>> /*points*/, std::size_t /*count*/,
                                                 double /*max_error*/, bool /*border_fixed*/) {
-  throw Error(
-      ErrorCode::InvalidArgument,
-      "this build has no meshoptimizer, so there is no fast simplification; expected quadric, facets or vertices");
+  throw Error(ErrorCode::InvalidArgument,
+              "this build has no meshoptimizer, which the method fast needs; expected quadric, facets or vertices");
 }
 
 #endif

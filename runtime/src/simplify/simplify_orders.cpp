@@ -26,24 +26,24 @@ namespace {
 /// Weight of the squared edge length in the key of an edge, so that flat regions begin with short edges: a thousandth
 /// of the length counts as error.
 constexpr double kLengthShare = 1e-6;
-constexpr std::size_t kTellEvery = 1024;
+constexpr std::size_t kReportEvery = 1024;
 constexpr int kMostPasses = 20;
 constexpr double kLeastGain = 0.02;
 
 /// Reports progress from time to time.
-class Teller {
+class ProgressReporter {
  public:
-  Teller(const ShrinkGoal& goal, std::size_t before) : goal_(goal), before_(before) {}
+  ProgressReporter(const CollapseGoal& goal, std::size_t before) : goal_(goal), before_(before) {}
 
   /// Whether `alive` simplices are more than the goal. Throws Cancelled.
-  bool goes_on(std::size_t alive) {
+  bool continues(std::size_t alive) {
     if (alive <= goal_.count) return false;
-    wait(alive);
+    count_step(alive);
     return true;
   }
   /// Counts a step that removes no simplex. Throws Cancelled.
-  void wait(std::size_t alive) {
-    if (calls_++ % kTellEvery == 0) tell(alive);
+  void count_step(std::size_t alive) {
+    if (calls_++ % kReportEvery == 0) tell(alive);
   }
 
  private:
@@ -57,7 +57,7 @@ class Teller {
       throw Error(ErrorCode::Cancelled, fmt::format("simplification cancelled at {} of {} simplices", alive, before_));
   }
 
-  const ShrinkGoal& goal_;
+  const CollapseGoal& goal_;
   std::size_t before_;
   std::size_t calls_ = 0;
   double last_ = 0.0;
@@ -78,54 +78,54 @@ struct EdgeCandidate {
 template <int N>
 class QuadricOrder {
  public:
-  QuadricOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
-      : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()) {}
+  QuadricOrder(EdgeCollapse<N>& collapse, const CollapseGoal& goal)
+      : collapse_(collapse), reporter_(goal, collapse.complex().alive()) {}
 
   void fill() {
-    for (Index v = 0; v < shrinker_.points().size(); ++v) {
-      teller_.wait(shrinker_.complex().alive());
-      shrinker_.complex().neighbours(v, around_);
+    for (Index v = 0; v < collapse_.points().size(); ++v) {
+      reporter_.count_step(collapse_.complex().alive());
+      collapse_.complex().neighbours(v, around_);
       for (const Index a : around_)
         if (a > v) push(v, a);
     }
   }
   void empty() {
-    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+    while (reporter_.continues(collapse_.complex().alive()) && !queue_.empty()) {
       const EdgeCandidate next = queue_.top();
       queue_.pop();
       if (next.stamp != stamp(next.a, next.b) || !contract(next.a, next.b)) continue;
-      shrinker_.complex().neighbours(next.a, around_);
+      collapse_.complex().neighbours(next.a, around_);
       for (const Index a : around_) push(std::min(next.a, a), std::max(next.a, a));
     }
   }
 
  private:
-  /// Contracts at the best place, or else at one of the ends.
+  /// Contracts at the best target, or else at one of the ends.
   bool contract(Index a, Index b) {
-    const auto place = shrinker_.meeting_place(a, b);
-    if (!place) return false;
-    if (shrinker_.try_contract(a, b, *place)) return true;
-    auto at_a = shrinker_.place_at(a, b, shrinker_.points()[a], 0.0);
-    auto at_b = shrinker_.place_at(a, b, shrinker_.points()[b], 1.0);
+    const auto target = collapse_.best_target(a, b);
+    if (!target) return false;
+    if (collapse_.try_contract(a, b, *target)) return true;
+    auto at_a = collapse_.target_at(a, b, collapse_.points()[a], 0.0);
+    auto at_b = collapse_.target_at(a, b, collapse_.points()[b], 1.0);
     if (at_b.cost < at_a.cost) std::swap(at_a, at_b);
     for (const auto& end : {at_a, at_b})
-      if (end.share == 0.0 ? shrinker_.may_move_to(b, a) : shrinker_.may_move_to(a, b))
-        if (shrinker_.try_contract(a, b, end)) return true;
+      if (end.share == 0.0 ? collapse_.may_move_to(b, a) : collapse_.may_move_to(a, b))
+        if (collapse_.try_contract(a, b, end)) return true;
     return false;
   }
   [[nodiscard]] std::uint64_t stamp(Index a, Index b) const {
-    return std::uint64_t{shrinker_.version(a)} + shrinker_.version(b);
+    return std::uint64_t{collapse_.version(a)} + collapse_.version(b);
   }
   void push(Index a, Index b) {
-    const auto place = shrinker_.meeting_place(a, b);
-    if (!place) return;
-    const PointN<N> edge = minus(shrinker_.scaled()[a], shrinker_.scaled()[b]);
-    const double weight = shrinker_.quadric(a).weight() + shrinker_.quadric(b).weight();
-    queue_.push({place->cost + kLengthShare * weight * dot(edge, edge), a, b, stamp(a, b)});
+    const auto target = collapse_.best_target(a, b);
+    if (!target) return;
+    const PointN<N> edge = minus(collapse_.scaled()[a], collapse_.scaled()[b]);
+    const double weight = collapse_.quadric(a).weight() + collapse_.quadric(b).weight();
+    queue_.push({target->cost + kLengthShare * weight * dot(edge, edge), a, b, stamp(a, b)});
   }
 
-  Shrinker<N>& shrinker_;
-  Teller teller_;
+  EdgeCollapse<N>& collapse_;
+  ProgressReporter reporter_;
   std::priority_queue<EdgeCandidate> queue_;
   std::vector<Index> around_;
 };
@@ -135,33 +135,33 @@ class QuadricOrder {
 template <int N>
 class CurvatureOrder {
  public:
-  CurvatureOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
-      : shrinker_(shrinker),
+  CurvatureOrder(EdgeCollapse<N>& collapse, const CollapseGoal& goal)
+      : collapse_(collapse),
         max_curvature_(goal.max_curvature),
-        teller_(goal, shrinker.complex().alive()),
-        queue_(shrinker.complex().simplex_count()),
-        curvature_(shrinker.points().size()) {}
+        reporter_(goal, collapse.complex().alive()),
+        queue_(collapse.complex().simplex_count()),
+        curvature_(collapse.points().size()) {}
 
   void fill() {
     for (Index v = 0; v < curvature_.size(); ++v) {
-      teller_.wait(shrinker_.complex().alive());
+      reporter_.count_step(collapse_.complex().alive());
       curvature_[v] = curvature(v);
     }
-    for (Index s = 0; s < shrinker_.complex().simplex_count(); ++s) {
-      teller_.wait(shrinker_.complex().alive());
-      if (shrinker_.complex().is_alive(s)) push(s);
+    for (Index s = 0; s < collapse_.complex().simplex_count(); ++s) {
+      reporter_.count_step(collapse_.complex().alive());
+      if (collapse_.complex().is_alive(s)) push(s);
     }
   }
   void empty() {
-    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+    while (reporter_.continues(collapse_.complex().alive()) && !queue_.empty()) {
       const Index next = queue_.pop();
-      if (!shrinker_.complex().is_alive(next)) continue;
+      if (!collapse_.complex().is_alive(next)) continue;
       if (curvature_of(next) > max_curvature_) {
-        note_limit(shrinker_.complex().simplex(next));
+        note_limit(collapse_.complex().simplex(next));
         continue;
       }
-      const Index left = remove(shrinker_.complex().simplex(next));
-      if (left != ShrinkingComplex<N>::kNone) update(left);
+      const Index left = remove(collapse_.complex().simplex(next));
+      if (left != CollapsibleComplex<N>::kNone) update(left);
     }
   }
 
@@ -169,14 +169,14 @@ class CurvatureOrder {
   /// Maximum, over the edges at v, of the curvature of the circle that touches the edge and its mirror image about the
   /// normal in their middles (thesis, 8.3.12): 2 cot(angle) / length.
   double curvature(Index v) {
-    const PointN<N> normal = shrinker_.mean_normal(v, star_);
+    const PointN<N> normal = collapse_.mean_normal(v, star_);
     const double length = norm(normal);
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
     double largest = 0.0;  // of the curvature: a quarter of the square
     for (const Index s : star_)
-      for (const Index a : shrinker_.complex().simplex(s)) {
+      for (const Index a : collapse_.complex().simplex(s)) {
         if (a == v) continue;
-        const PointN<N> edge = minus(shrinker_.scaled()[a], shrinker_.scaled()[v]);
+        const PointN<N> edge = minus(collapse_.scaled()[a], collapse_.scaled()[v]);
         const double square = dot(edge, edge);
         if (!(square > 0.0)) continue;
         const double way = dot(edge, normal) / length, along = way * way;
@@ -188,7 +188,7 @@ class CurvatureOrder {
   /// Mean curvature of the vertices of a facet.
   [[nodiscard]] double curvature_of(Index s) const {
     double sum = 0.0;
-    for (const Index v : shrinker_.complex().simplex(s)) sum += curvature_[v];
+    for (const Index v : collapse_.complex().simplex(s)) sum += curvature_[v];
     return sum / N;
   }
 
@@ -196,20 +196,20 @@ class CurvatureOrder {
   /// curvature over the facet. For facets of similar size, as extraction generates them, this is the order of the
   /// thesis. With the curvature only, large facets in flat regions would grow at any cost.
   void push(Index s) {
-    const double edge = longest_edge<N>(shrinker_.corners(s));
+    const double edge = longest_edge<N>(collapse_.corners(s));
     queue_.set(s, curvature_of(s) * edge * edge);
   }
 
   /// Contracts the facet to one point, edge by edge. Returns the remaining vertex; kNone if no edge could be
   /// contracted.
   Index remove(std::array<Index, N> facet) {
-    const auto place = shrinker_.common_place(facet);
-    if (!place) return ShrinkingComplex<N>::kNone;
-    if (place->anchor) std::iter_swap(facet.begin(), std::find(facet.begin(), facet.end(), *place->anchor));
+    const auto target = collapse_.common_target(facet);
+    if (!target) return CollapsibleComplex<N>::kNone;
+    if (target->anchor) std::iter_swap(facet.begin(), std::find(facet.begin(), facet.end(), *target->anchor));
     const auto try_pair = [&](Index u, Index v, double share) {
-      return shrinker_.try_contract(u, v, shrinker_.place_at(u, v, place->at, place->anchor ? 0.0 : share));
+      return collapse_.try_contract(u, v, collapse_.target_at(u, v, target->at, target->anchor ? 0.0 : share));
     };
-    for (int i = 0; i < (place->anchor ? 1 : N - 1); ++i)
+    for (int i = 0; i < (target->anchor ? 1 : N - 1); ++i)
       for (int j = i + 1; j < N; ++j) {
         if (!try_pair(facet[i], facet[j], 0.5)) continue;
         double met = 2.0;
@@ -217,30 +217,30 @@ class CurvatureOrder {
           if (k != i && k != j && try_pair(facet[i], facet[k], 1.0 / (met + 1.0))) met += 1.0;
         return facet[i];
       }
-    return ShrinkingComplex<N>::kNone;
+    return CollapsibleComplex<N>::kNone;
   }
 
   /// Notes a limit if only the maximum curvature keeps the facet.
   void note_limit(const std::array<Index, N>& facet) {
-    if (shrinker_.is_limited()) return;
-    const auto place = shrinker_.common_place(facet);
-    if (!place) return;
-    const Index u = place->anchor.value_or(facet[0]);
+    if (collapse_.is_limited()) return;
+    const auto target = collapse_.common_target(facet);
+    if (!target) return;
+    const Index u = target->anchor.value_or(facet[0]);
     for (const Index v : facet)
-      if (v != u) shrinker_.note_limit(u, v, shrinker_.place_at(u, v, place->at, place->anchor ? 0.0 : 0.5));
+      if (v != u) collapse_.note_limit(u, v, collapse_.target_at(u, v, target->at, target->anchor ? 0.0 : 0.5));
   }
 
   /// Updates the curvatures of the vertices around `left` and the keys of the facets at `left`.
   void update(Index left) {
-    shrinker_.complex().neighbours(left, around_);
+    collapse_.complex().neighbours(left, around_);
     for (const Index v : around_) curvature_[v] = curvature(v);
     curvature_[left] = curvature(left);  // stores the star in star_
     for (const Index s : star_) push(s);
   }
 
-  Shrinker<N>& shrinker_;
+  EdgeCollapse<N>& collapse_;
   double max_curvature_;
-  Teller teller_;
+  ProgressReporter reporter_;
   KeyedQueue queue_;
   std::vector<double> curvature_;
   std::vector<Index> star_, around_;
@@ -251,20 +251,20 @@ class CurvatureOrder {
 template <int N>
 class DistanceOrder {
  public:
-  DistanceOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
-      : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()), queue_(shrinker.points().size()) {}
+  DistanceOrder(EdgeCollapse<N>& collapse, const CollapseGoal& goal)
+      : collapse_(collapse), reporter_(goal, collapse.complex().alive()), queue_(collapse.points().size()) {}
 
   void fill() {
-    for (Index v = 0; v < shrinker_.points().size(); ++v) {
-      teller_.wait(shrinker_.complex().alive());
+    for (Index v = 0; v < collapse_.points().size(); ++v) {
+      reporter_.count_step(collapse_.complex().alive());
       push(v);
     }
   }
   void empty() {
-    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+    while (reporter_.continues(collapse_.complex().alive()) && !queue_.empty()) {
       const Index left = remove(queue_.pop());
-      if (left == ShrinkingComplex<N>::kNone) continue;
-      shrinker_.complex().neighbours(left, around_);
+      if (left == CollapsibleComplex<N>::kNone) continue;
+      collapse_.complex().neighbours(left, around_);
       around_.push_back(left);
       for (const Index v : around_) push(v);
     }
@@ -274,17 +274,17 @@ class DistanceOrder {
   /// Distance of v from the hyperplane that is orthogonal to the mean normal and passes through the weighted mean of
   /// the centroids of the faces opposite to v; weights are the measures.
   double distance(Index v) {
-    shrinker_.complex().star(v, star_);
+    collapse_.complex().star(v, star_);
     PointN<N> normal{}, middle{};
     double weight = 0.0;
     for (const Index s : star_) {
-      const CornersN<N> corners = shrinker_.corners(s);
+      const CornersN<N> corners = collapse_.corners(s);
       const PointN<N> of_simplex = normal_of<N>(corners);
       const double measure = norm(of_simplex);
       weight += measure;
       for (int a = 0; a < N; ++a) {
         normal[a] += of_simplex[a];
-        double sum = -N * shrinker_.scaled()[v][a];  // v is one of the corners
+        double sum = -N * collapse_.scaled()[v][a];  // v is one of the corners
         for (const PointN<N>& corner : corners) sum += corner[a];
         middle[a] += measure * sum / (N - 1);
       }
@@ -302,19 +302,19 @@ class DistanceOrder {
   /// Removes v by contracting it to a neighbour: the one with the lowest quadric cost that is possible. Returns that
   /// neighbour, or kNone.
   Index remove(Index v) {
-    shrinker_.complex().neighbours(v, around_);
+    collapse_.complex().neighbours(v, around_);
     targets_.clear();
     for (const Index u : around_)
-      if (shrinker_.may_move_to(v, u))
-        targets_.emplace_back(shrinker_.place_at(u, v, shrinker_.points()[u], 0.0).cost, u);
+      if (collapse_.may_move_to(v, u))
+        targets_.emplace_back(collapse_.target_at(u, v, collapse_.points()[u], 0.0).cost, u);
     std::sort(targets_.begin(), targets_.end());
     for (const auto& [cost, u] : targets_)
-      if (shrinker_.try_contract(u, v, {shrinker_.points()[u], 0.0, cost})) return u;
-    return ShrinkingComplex<N>::kNone;
+      if (collapse_.try_contract(u, v, {collapse_.points()[u], 0.0, cost})) return u;
+    return CollapsibleComplex<N>::kNone;
   }
 
-  Shrinker<N>& shrinker_;
-  Teller teller_;
+  EdgeCollapse<N>& collapse_;
+  ProgressReporter reporter_;
   KeyedQueue queue_;
   std::vector<Index> star_, around_;
   std::vector<std::pair<double, Index>> targets_;
@@ -323,13 +323,13 @@ class DistanceOrder {
 /// Repeats passes while they remove at least kLeastGain of the simplices: a contraction that was impossible may become
 /// possible after its surroundings have changed.
 template <class Order, int N>
-void shrink(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
-  Order order(shrinker, goal);
+void collapse_in_passes(EdgeCollapse<N>& collapse, const CollapseGoal& goal) {
+  Order order(collapse, goal);
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const std::size_t before = shrinker.complex().alive();
+    const std::size_t before = collapse.complex().alive();
     order.fill();
     order.empty();
-    const std::size_t after = shrinker.complex().alive();
+    const std::size_t after = collapse.complex().alive();
     if (after <= goal.count || static_cast<double>(before - after) < kLeastGain * static_cast<double>(before)) return;
   }
 }
@@ -337,26 +337,26 @@ void shrink(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
 }  // namespace
 
 template <int N>
-void shrink_by_quadrics(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
-  shrink<QuadricOrder<N>>(shrinker, goal);
+void collapse_by_quadrics(EdgeCollapse<N>& collapse, const CollapseGoal& goal) {
+  collapse_in_passes<QuadricOrder<N>>(collapse, goal);
 }
 template <int N>
-void shrink_by_curvature(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
-  shrink<CurvatureOrder<N>>(shrinker, goal);
+void collapse_by_curvature(EdgeCollapse<N>& collapse, const CollapseGoal& goal) {
+  collapse_in_passes<CurvatureOrder<N>>(collapse, goal);
 }
 template <int N>
-void shrink_by_distance(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
-  shrink<DistanceOrder<N>>(shrinker, goal);
+void collapse_by_distance(EdgeCollapse<N>& collapse, const CollapseGoal& goal) {
+  collapse_in_passes<DistanceOrder<N>>(collapse, goal);
 }
 
-template void shrink_by_quadrics(Shrinker<2>&, const ShrinkGoal&);
-template void shrink_by_quadrics(Shrinker<3>&, const ShrinkGoal&);
-template void shrink_by_quadrics(Shrinker<4>&, const ShrinkGoal&);
-template void shrink_by_curvature(Shrinker<2>&, const ShrinkGoal&);
-template void shrink_by_curvature(Shrinker<3>&, const ShrinkGoal&);
-template void shrink_by_curvature(Shrinker<4>&, const ShrinkGoal&);
-template void shrink_by_distance(Shrinker<2>&, const ShrinkGoal&);
-template void shrink_by_distance(Shrinker<3>&, const ShrinkGoal&);
-template void shrink_by_distance(Shrinker<4>&, const ShrinkGoal&);
+template void collapse_by_quadrics(EdgeCollapse<2>&, const CollapseGoal&);
+template void collapse_by_quadrics(EdgeCollapse<3>&, const CollapseGoal&);
+template void collapse_by_quadrics(EdgeCollapse<4>&, const CollapseGoal&);
+template void collapse_by_curvature(EdgeCollapse<2>&, const CollapseGoal&);
+template void collapse_by_curvature(EdgeCollapse<3>&, const CollapseGoal&);
+template void collapse_by_curvature(EdgeCollapse<4>&, const CollapseGoal&);
+template void collapse_by_distance(EdgeCollapse<2>&, const CollapseGoal&);
+template void collapse_by_distance(EdgeCollapse<3>&, const CollapseGoal&);
+template void collapse_by_distance(EdgeCollapse<4>&, const CollapseGoal&);
 
 }  // namespace tegl::detail

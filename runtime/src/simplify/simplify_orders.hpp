@@ -11,19 +11,19 @@
 
 namespace tegl::detail {
 
-struct ShrinkGoal {
+struct CollapseGoal {
   std::size_t count = 0;     ///< stop at this number of simplices
-  double max_curvature = 0;  ///< only for `shrink_by_curvature`
+  double max_curvature = 0;  ///< only for `collapse_by_curvature`
   const Progress* progress = nullptr;
   double from = 0, to = 1;  ///< range of `progress` that this work covers
 };
 
 /// Contracts until the goal is reached or no contraction is possible. Throws Cancelled.
 template <int N>
-void shrink_by_quadrics(Shrinker<N>& shrinker, const ShrinkGoal& goal);
+void collapse_by_quadrics(EdgeCollapse<N>& collapse, const CollapseGoal& goal);
 template <int N>
-void shrink_by_curvature(Shrinker<N>& shrinker, const ShrinkGoal& goal);
+void collapse_by_curvature(EdgeCollapse<N>& collapse, const CollapseGoal& goal);
 template <int N>
-void shrink_by_distance(Shrinker<N>& shrinker, const ShrinkGoal& goal);
+void collapse_by_distance(EdgeCollapse<N>& collapse, const CollapseGoal& goal);
 
 }  // namespace tegl::detail

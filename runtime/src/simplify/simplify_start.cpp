@@ -29,7 +29,7 @@ requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(cons
   return result;
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
   // sum of the extents of all simplices
   std::array<double, N> extent{};

@@ -78,7 +78,7 @@ class Builder {
  private:
   /// Reports this fraction of the progress that remains after the sweep.
   void tell(double share) const {
-    detail::tell(options_.progress, share < 1.0 ? detail::kSwept + (1.0 - detail::kSwept) * share : 1.0,
+    detail::tell(options_.work.progress, share < 1.0 ? detail::kSwept + (1.0 - detail::kSwept) * share : 1.0,
                  "tracking was cancelled");
   }
 
@@ -266,7 +266,7 @@ std::vector<double> even_times(double first, double last, std::size_t count) {
   return times;
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
   require_sound(options);
   require_sound(contour);
@@ -275,7 +275,7 @@ requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& cont
 
 TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep) {
   if (keep.size() != graph.tracks.size())
-    refuse(fmt::format("{} tracks are to be kept or not; expected {}", keep.size(), graph.tracks.size()));
+    refuse(fmt::format("{} choices of tracks; expected {}, one for each track", keep.size(), graph.tracks.size()));
   TrackGraph result = graph;
   std::vector<bool> keep_segment(graph.segments.size());
   std::vector<bool> keep_event(graph.events.size(), false);

@@ -51,7 +51,9 @@ template <int N, class Real>
 class Sweeper {
  public:
   Sweeper(const Contour<N, Real>& contour, const TrackOptions& options)
-      : options_(options), complex_(contour, options.threads, part_of(options.progress, 0.0, kReady)), star_(complex_) {
+      : options_(options),
+        complex_(contour, options.work.threads, part_of(options.work.progress, 0.0, kReady)),
+        star_(complex_) {
     const std::size_t count = contour.simplices.size();
     labels_.assign(count, kNone);
     seen_.assign(count, 0);
@@ -90,7 +92,7 @@ class Sweeper {
     seen_since_ += seen;
     if (seen_since_ < kTellEvery) return;
     seen_since_ = 0;
-    detail::tell(options_.progress, kReady + (kSwept - kReady) * fraction_, "tracking was cancelled");
+    detail::tell(options_.work.progress, kReady + (kSwept - kReady) * fraction_, "tracking was cancelled");
   }
 
   // ---- the sweep ----

@@ -219,10 +219,11 @@ TEST(HostileImages, NetCdfClassic) {
     add("rank", {.version = version, .rank = 0x7fffffff}, {"'v' has 2147483647 dimensions; expected at most 1024"});
     add("number", {.version = version, .first_dimension = 7}, {"dimension number 7; expected less than 2"});
     add("size", {.version = version, .size = 0x70000000}, {"'v' ends at byte", "the file's size"});
-    add("begin", {.version = version, .begin = 8}, {"'v' begins at byte 8", "behind the header"});
+    add("begin", {.version = version, .begin = 8}, {"'v' begins at byte 8", "after the header"});
     add("end", {.version = version, .begin = 0x7ffffff0}, {"'v' ends at byte", "the file's size"});
     add("records", {.version = version, .records = 0x7fffffff, .size = 0}, {"'v' ends at byte", "the file's size"});
-    add("open", {.version = version, .records = version == 5 ? kAll : 0xffffffffU, .size = 0}, {"left open"});
+    add("open", {.version = version, .records = version == 5 ? kAll : 0xffffffffU, .size = 0},
+        {"without a number of records"});
   }
   files.push_back({"name-1.nc", Classic{.version = 5, .name_bytes = kAll}.bytes(), {"netCDF name of -1 bytes"}});
   files.push_back({"size-1.nc", Classic{.version = 5, .size = kAll}.bytes(), {"'y' has size 18446744073709551615"}});

@@ -107,7 +107,7 @@ TEST(HostileMeshes, NestedJsonIsRefusedBeforeItIsParsed) {
   write_file(dir / "extreq.gltf", start + std::string(100000, '[') + std::string(100000, ']') + "}");
   expect_refused(dir / "extreq.gltf", ErrorCode::MalformedFile, {"more than 256 deep"}, as_mesh);
   write_file(dir / "list.gltf", start + R"(["KHR_draco_mesh_compression",[[]]]})");
-  expect_refused(dir / "list.gltf", ErrorCode::MalformedFile, {"'extensionsRequired'", "no text"}, as_mesh);
+  expect_refused(dir / "list.gltf", ErrorCode::MalformedFile, {"'extensionsRequired'", "not text"}, as_mesh);
   write_file(dir / "many.gltf", start + list(R"("KHR_draco_mesh_compression")", 10000) + "}");
   expect_refused(dir / "many.gltf", ErrorCode::UnsupportedData,
                  {"10000 extensions", "'KHR_draco_mesh_compression'", "expected none"}, as_mesh);
@@ -286,7 +286,7 @@ TEST(HostileMeshes, TextOfStlIsReadByItsWords) {
   expect("solid\nendfacet", "facet 0 of 0 vertices; expected 3");
   expect("solid\nfacet vertex 0 0 1e39", "'1e39' in facet 0");
   expect("solid\nfacet vertex 0 0", "'' in facet 0");
-  expect("solid\nfacet vertez 0 0", "'vertez' behind facet 0");
+  expect("solid\nfacet vertez 0 0", "'vertez' after facet 0");
   expect("triangles", "9 bytes that do not begin with 'solid'");
 }
 

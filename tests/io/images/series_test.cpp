@@ -156,7 +156,7 @@ TEST_F(Series, CoordinatesStayWithTheirFilesInEveryOrder) {
   options.coordinates = {0.5, 1.5, 0};  // frame_10 before frame_2
   expect_refused(
       ErrorCode::InvalidArgument,
-      {"frame_10.nrrd", "lies at 0.5", "coordinates that are given", "frame_2.nrrd at 1.5", "order of their names"},
+      {"frame_10.nrrd", "lies at 0.5", "the given coordinates", "frame_2.nrrd at 1.5", "order of their names"},
       options);
 }
 
@@ -239,7 +239,7 @@ TEST_F(Series, OfFilesThatCountFromDaysOfTheirOwnLiesOnOneAxis) {
       file.values(value, std::vector<double>(12, 1.0));
     }
     if (one.expected.empty()) {
-      expect_refused(ErrorCode::UnsupportedData, {one.times[1].first, "coordinates that are given"}, {});
+      expect_refused(ErrorCode::UnsupportedData, {one.times[1].first, "explicit coordinates"}, {});
       continue;
     }
     const ReadImageResult read = read_series(files_);
@@ -403,7 +403,7 @@ TEST_F(Series, OptionsThatDoNotFitAreRefused) {
   expect_refused(ErrorCode::InvalidArgument, {"step of 1e-320", "2.2e-308"}, options);
   options = {};
   options.order = SeriesOrder::coordinate;
-  expect_refused(ErrorCode::UnsupportedData, {"does not say where it lies"}, options);
+  expect_refused(ErrorCode::UnsupportedData, {"has no coordinate along a further axis"}, options);
 }
 
 TEST_F(Series, DamagedFilesAreNamed) {

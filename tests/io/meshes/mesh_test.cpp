@@ -211,7 +211,7 @@ TEST(Mesh, AttributesThatContradictTheMeshAreRefused) {
       expect_error(ErrorCode::InvalidArgument, {name, part}, [&] { write_mesh(mesh, dir / name); });
   };
   refused({{"", "", 1, {1, 2, 3}}}, "attribute of vertices by the name ''");
-  refused({{"a", "", 1, {1, 2, 3}}, {"a", "", 1, {1, 2, 3}}}, "by the name 'a'; expected names, each once");
+  refused({{"a", "", 1, {1, 2, 3}}, {"a", "", 1, {1, 2, 3}}}, "with the name 'a'; expected different names");
   refused({{"a", "", 1, {1, 2}}}, "attribute 'a' of 2 numbers, 1 for each of 3 vertices; expected 3");
   refused({{"a", "", 0, {}}}, "expected a width of 1 or more");
   Mesh mesh = random_mesh(2, 3, 3, 1, 7);
@@ -425,7 +425,7 @@ TEST(Mesh, GltfNodesPlaceTheirMeshes) {
   EXPECT_EQ(placed.simplices[3], placed.simplices[0] + 3);
   json["nodes"][1] = {{"children", {0}}};
   write_file(dir / "c.gltf", json.dump());
-  expect_error(ErrorCode::MalformedFile, {"nodes that are no tree"}, [&] { read_mesh(dir / "c.gltf"); });
+  expect_error(ErrorCode::MalformedFile, {"nodes that do not form a tree"}, [&] { read_mesh(dir / "c.gltf"); });
 }
 
 TEST(Mesh, CombinationsThatAFormatCannotHoldAreNamed) {

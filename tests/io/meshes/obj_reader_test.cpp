@@ -163,7 +163,7 @@ TEST(ObjReader, SaysWhatIsBrokenAndWhere) {
     write_file(dir / "a.obj", text);
     expect_error(code, {"a.obj: ", part}, [&] { read_mesh(dir / "a.obj"); });
   };
-  expect(kSquare + "f 1 2 5", "line 5: vertex number 5; expected at most 4, as many as there are");
+  expect(kSquare + "f 1 2 5", "line 5: vertex number 5; expected at most 4, the number of definitions");
   expect(kSquare + "f 1 9 2\nf 1 8 2", "line 5: vertex number 9; expected at most 4");
   expect(kSquare + "\n#\nf 1 \\\n2 -5", "line 7: vertex number -5; expected at least -4, the number so far");
   expect("f -1 -1 -1\n" + kSquare, "line 1: vertex number -1; expected at least 0");
@@ -173,14 +173,14 @@ TEST(ObjReader, SaysWhatIsBrokenAndWhere) {
   expect(kSquare + "f 1 2 -9223372036854775808", "line 5: vertex number -9223372036854775808; expected at least -4");
   expect(kSquare + "f 1 2 2.5", "line 5: '2.5'; expected the number of a vertex");
   expect(kSquare + "f 1 2 /3", "line 5: ''; expected the number of a vertex");
-  expect(kSquare + "f 1//1 2//1 3//1", "line 5: normal number 1; expected at most 0, as many as there are");
+  expect(kSquare + "f 1//1 2//1 3//1", "line 5: normal number 1; expected at most 0, the number of definitions");
   expect(kSquare + "f 1//a 2 3", "line 5: 'a'; expected the number of a normal");
   expect(kSquare + "f 1 2\n", "line 5: face of 2 vertices; expected 3 or more");
   expect(kSquare + "l 1\n", "line 5: line of 1 vertices; expected 2 or more");
   expect("v 0 0\n", "line 1: 'v' with 2 numbers; expected 3 or more");
   expect("\r\nv 0 one 0\n", "line 2: 'one'; expected a number");
   expect("v 0 1,5 0\n", "line 1: '1,5'; expected a number");
-  expect("v 0 1e999 0\n", "line 1: '1e999'; expected a number that double holds");
+  expect("v 0 1e999 0\n", "line 1: '1e999'; expected a number in the range of double");
   expect("v 0 0 0 red\n", "line 1: 'red'; expected a number");
   expect(kSquare + "vn 0 0 z\n", "line 5: 'z'; expected a number");
   expect(kSquare, "no triangles, no lines; expected a surface", ErrorCode::UnsupportedData);

@@ -246,7 +246,7 @@ TEST_F(IndexFile, ThatIsCutOrChangedAnywhereIsNoticedWithoutTheImage) {
         EXPECT_THROW(check_active_tiles(path("changed.tindex")), Error) << active_method_name(method) << " at " << end;
       }
       std::ofstream(path("whole.tindex"), std::ios::binary | std::ios::app) << 'a';
-      expect_error(ErrorCode::MalformedFile, "behind its end", [&] { check_active_tiles(path("whole.tindex")); });
+      expect_error(ErrorCode::MalformedFile, "after its end", [&] { check_active_tiles(path("whole.tindex")); });
     }
   };
   expect_noticed(noise<double, 3>({19, 8, 5}, 4));

@@ -343,9 +343,10 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
                                                         {.progress = progress}};
   [[maybe_unused]] const Estimator estimators[] = {{.choose = {}}, {.reach = 1}};
   [[maybe_unused]] const SimplifyOptions<3> simplification[] = {
-      {.method = SimplifyMethod::facets}, {.count = 5}, {.ratio = 0.1}, {.max_error = 1.0}, {.threads = 1}};
-  [[maybe_unused]] const DeviationOptions<4> deviations[] = {{.scale = {1, 1, 1, 2}}, {.enough = 1.0}, {.threads = 1}};
-  [[maybe_unused]] const TrackOptions tracks[] = {{.min_lifetime = 1}, {.times = {1.0}}, {.handles = false}};
+      {.method = SimplifyMethod::facets}, {.count = 5}, {.ratio = 0.1}, {.max_error = 1.0}, {.work = {.threads = 1}}};
+  [[maybe_unused]] const DeviationOptions<4> deviations[] = {
+      {.scale = {1, 1, 1, 2}}, {.enough = 1.0}, {.work = {.threads = 1}}};
+  [[maybe_unused]] const TrackOptions tracks[] = {{.min_lifetime = 1}, {.times = {1.0}}, {.work = {.threads = 1}}};
   [[maybe_unused]] const TrackPicture picture[] = {{.title = "a"}, {.width = 100}};
   [[maybe_unused]] const SeedSetOptions seeds[] = {{.method = SeedMethod::cover}, {.scan_order = {0}}, {.threads = 1}};
   [[maybe_unused]] const ActiveTilesOptions tiles[] = {{.threads = 1}, {.seed_method = SeedMethod::cover}};

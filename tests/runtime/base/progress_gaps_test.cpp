@@ -59,8 +59,7 @@ class ProgressGaps : public testing::Test {
     options.method = method;
     options.ratio = 0.5;
     options.measure = false;
-    options.threads = threads;
-    options.progress = progress;
+    options.work = {threads, progress};
     simplify(*surface_, options);
   }
 
@@ -69,17 +68,18 @@ class ProgressGaps : public testing::Test {
     const auto follow = [threads](std::vector<double> at, const Progress& progress) {
       TrackOptions options;
       options.times = std::move(at);
-      options.threads = threads;
-      options.progress = progress;
+      options.work = {threads, progress};
       track(*contour_, options);
     };
     return {
-        {"check", [](const Progress& p) { check(*contour_, p); }},
+        {"check", [work](const Progress& p) { check(*contour_, work(p)); }},
         {"label_components", [work](const Progress& p) { label_components(*contour_, work(p)); }, 0.4},
         {"components", [work](const Progress& p) { components(*contour_, *labels_, work(p)); }},
-        {"split_components", [](const Progress& p) { split_components(*contour_, *labels_, p); }, 0.3},
+        {"split_components", [work](const Progress& p) { split_components(*contour_, *labels_, work(p)); }, 0.3},
         {"select_components",
-         [](const Progress& p) { select_components(*contour_, *labels_, std::vector<bool>(labels_->count, true), p); },
+         [work](const Progress& p) {
+           select_components(*contour_, *labels_, std::vector<bool>(labels_->count, true), work(p));
+         },
          0.3},
         {"measure", [work](const Progress& p) { measure(*contour_, work(p)); }, 0.2},
         {"measure_cuts", [work](const Progress& p) { measure_cuts(*contour_, times(), work(p)); }, 0.2},

@@ -378,7 +378,7 @@ TYPED_TEST(Facets, OfEstimatorsThatAnswerDifferentlyOrThrowAreAnError) {
     return static_cast<facets::Choice>((++calls * 2654435761u >> 8) % 3);
   };
   if (N > 2)
-    expect_error(ErrorCode::InvalidArgument, "answered differently for the same face",
+    expect_error(ErrorCode::InvalidArgument, "gave different results for the same face",
                  [&] { extract_facets<float>(image.view(), 0.5, options); });
   options.estimator.choose = [](const AmbiguousFace&) -> facets::Choice { throw std::domain_error("no opinion"); };
   EXPECT_THROW(extract_facets<float>(image.view(), 0.5, options), std::domain_error);

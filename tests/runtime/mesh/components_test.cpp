@@ -261,8 +261,8 @@ TEST(Components, AttributeHasTheLabels) {
   contour.vertices.push_back({0, 0, 0});  // in no simplex
   const ComponentLabels labels = label_components(contour);
   EXPECT_EQ(labels.vertices.back(), kNoComponent);
-  add_component_attribute(contour, labels);
-  add_component_attribute(contour, labels);  // does not add it twice
+  contour = add_component_attribute(std::move(contour), labels);
+  contour = add_component_attribute(std::move(contour), labels);  // does not add it twice
   ASSERT_EQ(contour.vertex_attributes.size(), 1u);
   ASSERT_EQ(contour.simplex_attributes.size(), 1u);
   EXPECT_EQ(contour.vertex_attributes[0].name, "component");

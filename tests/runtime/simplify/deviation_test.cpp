@@ -68,8 +68,8 @@ TYPED_TEST(DeviationOf, IsTheSameForAnyNumberOfThreads) {
   constexpr int N = TypeParam::value;
   const auto from = sphere<N>(1.1, N == 4 ? 7 : 40), to = sphere<N>(1.0, N == 4 ? 6 : 31);
   DeviationOptions<N> one, four;
-  one.threads = 1;
-  four.threads = 4;
+  one.work.threads = 1;
+  four.work.threads = 4;
   const Deviation a = deviation(from, to, one), b = deviation(from, to, four);
   EXPECT_EQ(a.bound, b.bound);
   EXPECT_EQ(a.least, b.least);
@@ -237,8 +237,8 @@ TEST(Deviation, TellsProgressAndStopsAnywhere) {
   const auto from = sphere<4>(1.1, 8), to = sphere<4>(1.0, 7);
   std::vector<double> told;
   DeviationOptions<4> options;
-  options.threads = 2;
-  options.progress = [&](double fraction) {
+  options.work.threads = 2;
+  options.work.progress = [&](double fraction) {
     told.push_back(fraction);
     return true;
   };
@@ -247,7 +247,7 @@ TEST(Deviation, TellsProgressAndStopsAnywhere) {
   EXPECT_EQ(told.back(), 1.0);
   EXPECT_GT(told.size(), 6u);
   for (const double stop : told) {
-    options.progress = [&](double fraction) { return fraction < stop; };
+    options.work.progress = [&](double fraction) { return fraction < stop; };
     expect_error(ErrorCode::Cancelled, "cancelled", [&] { deviation(from, to, options); });
   }
 }
@@ -255,8 +255,8 @@ TEST(Deviation, TellsProgressAndStopsAnywhere) {
 TEST(Deviation, StopsWhenAskedTo) {
   const auto contour = sphere<3>(1.0, 20);
   DeviationOptions<3> options;
-  options.threads = 1;
-  options.progress = [](double) { return false; };
+  options.work.threads = 1;
+  options.work.progress = [](double) { return false; };
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { deviation(contour, contour, options); });
 }
 

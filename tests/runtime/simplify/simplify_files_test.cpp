@@ -105,8 +105,7 @@ TEST_P(SimplifiedFile, KeepsManifoldAndBorderWithinItsBound) {
       SimplifyOptions<N> options;
       options.method = method;
       options.ratio = 0.3;
-      SimplifyStats stats;
-      const auto result = simplify(contour, options, &stats);
+      const auto [result, stats] = simplify(contour, options);
       expect_same_topology(before, check(result));
       EXPECT_LT(result.simplices.size(), contour.simplices.size() * 3 / 4);
       EXPECT_EQ(border_points(result), border_points(contour));
@@ -173,8 +172,7 @@ TEST_P(CutOfAFile, HasFewerSimplicesTheLargerTheErrorIsAndHardlyMoreErrorByCount
     SCOPED_TRACE(most);
     SimplifyOptions<3> options = scaled_options();
     options.max_error = most;
-    SimplifyStats stats;
-    const auto result = simplify(contour(), options, &stats);
+    const auto [result, stats] = simplify(contour(), options);
     expect_same_topology(before, check(result));
     EXPECT_LE(*stats.error(), most * (1 + 1e-9));
     EXPECT_GT(*stats.error(), 0.3 * most);
@@ -185,15 +183,14 @@ TEST_P(CutOfAFile, HasFewerSimplicesTheLargerTheErrorIsAndHardlyMoreErrorByCount
 
     options.max_error.reset();
     options.count = stats.simplices_after;
-    const double by_error = *stats.error();
-    const auto by_count = simplify(contour(), options, &stats);
+    const auto [by_count, found] = simplify(contour(), options);
     expect_same_topology(before, check(by_count));
-    EXPECT_EQ(stats.end, SimplifyEnd::count);
+    EXPECT_EQ(found.end, SimplifyEnd::count);
     EXPECT_LE(by_count.simplices.size(), *options.count);
     EXPECT_GT(by_count.simplices.size() + 3, *options.count);
-    EXPECT_LT(*stats.error(), 1.5 * by_error);
-    EXPECT_GT(*stats.error(), 0.9 * last_by_count);
-    last_by_count = *stats.error();
+    EXPECT_LT(*found.error(), 1.5 * *stats.error());
+    EXPECT_GT(*found.error(), 0.9 * last_by_count);
+    last_by_count = *found.error();
   }
   EXPECT_LT(last, 0.5);
 }
@@ -202,17 +199,17 @@ TEST_P(CutOfAFile, HasFewerSimplicesTheLargerTheErrorIsAndHardlyMoreErrorByCount
 TEST_P(CutOfAFile, EndsAtTheFirstOfTwoGoals) {
   SimplifyOptions<3> options = scaled_options();
   options.max_error = GetParam().errors.back();
-  SimplifyStats alone, stats;
-  const auto by_error = simplify(contour(), options, &alone);
+  const auto [by_error, alone] = simplify(contour(), options);
   options.count = alone.simplices_after + alone.simplices_after / 10;
-  simplify(contour(), options, &stats);
+  const SimplifyStats stats = simplify(contour(), options).stats;
   EXPECT_EQ(stats.end, SimplifyEnd::count);
   EXPECT_LE(*stats.error(), *options.max_error * (1 + 1e-9));
   EXPECT_LE(stats.simplices_after, *options.count);
   EXPECT_GE(stats.simplices_after, alone.simplices_after);
   options.count = alone.simplices_after / 2;
-  EXPECT_EQ(simplify(contour(), options, &stats).simplices, by_error.simplices);
-  EXPECT_EQ(stats.end, SimplifyEnd::error);
+  const auto by_both = simplify(contour(), options);
+  EXPECT_EQ(by_both.contour.simplices, by_error.simplices);
+  EXPECT_EQ(by_both.stats.end, SimplifyEnd::error);
 }
 
 TEST_P(CutOfAFile, StaysAsItIsWhereNothingIsToGo) {
@@ -224,8 +221,7 @@ TEST_P(CutOfAFile, StaysAsItIsWhereNothingIsToGo) {
     for (const SimplifyMethod method : kMethods) {
       SimplifyOptions<3> with_method = options;
       with_method.method = method;
-      SimplifyStats stats;
-      const auto result = simplify(contour(), with_method, &stats);
+      const auto [result, stats] = simplify(contour(), with_method);
       EXPECT_EQ(result.vertices, contour().vertices);
       EXPECT_EQ(result.simplices, contour().simplices);
       EXPECT_EQ(stats.error(), 0.0);
@@ -249,7 +245,7 @@ TEST_P(SimplifiedFile, HasABoundNearToADistanceThatIsReached) {
     SimplifyOptions<N> options;
     options.ratio = 0.3;
     options.measure = false;
-    const auto result = simplify(contour, options);
+    const auto result = simplify(contour, options).contour;
     for (const Deviation& way : {deviation(contour, result), deviation(result, contour)}) {
       EXPECT_GE(way.bound, way.least);
       EXPECT_LE(way.bound, 2.0 * way.least);

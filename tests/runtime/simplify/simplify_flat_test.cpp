@@ -70,8 +70,7 @@ Contour<3, double> warm_water() {
 
 template <int N>
 SimplifyStats simplified(const Contour<N, double>& contour, const SimplifyOptions<N>& options) {
-  SimplifyStats stats;
-  const auto result = simplify(contour, options, &stats);
+  const auto [result, stats] = simplify(contour, options);
   expect_same_topology(check(contour), check(result));
   EXPECT_EQ(stats.end, options.max_error ? SimplifyEnd::error : SimplifyEnd::count);
   EXPECT_LE(stats.rounds, 40u);
@@ -128,15 +127,15 @@ TEST(SimplifyFlat, PlaneWithABumpKeepsTheBumpByTwoGoals) {
   const auto contour = plane_with_a_bump();
   SimplifyOptions<3> options;
   options.count = 1000;
-  SimplifyStats alone, both;
-  const auto by_count = simplify(contour, options, &alone);
+  const auto by_count = simplify(contour, options);
   options.max_error = 0.1;
-  EXPECT_EQ(simplify(contour, options, &both).vertices, by_count.vertices);
-  EXPECT_EQ(both.error(), alone.error());
+  const auto by_both = simplify(contour, options);
+  EXPECT_EQ(by_both.contour.vertices, by_count.contour.vertices);
+  EXPECT_EQ(by_both.stats.error(), by_count.stats.error());
   options.max_error = 1e-5;
-  simplify(contour, options, &both);
-  EXPECT_EQ(both.simplices_after, 1000u);
-  EXPECT_LE(*both.error(), 1e-5);
+  const SimplifyStats near = simplify(contour, options).stats;
+  EXPECT_EQ(near.simplices_after, 1000u);
+  EXPECT_LE(*near.error(), 1e-5);
 }
 
 TEST(SimplifyFlat, CapsGoFirstIn2D) { expect_hardly_more_error_by_count(waves_with_caps<2>(40), {1e-3, 0.02}); }

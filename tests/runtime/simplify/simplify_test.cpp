@@ -65,7 +65,7 @@ TYPED_TEST(Simplify, KeepsTheManifoldAndItsBorderInNoise) {
         const auto contour = extract<double>(image.view(), 0.55, extraction);
         auto options = with_ratio<N>(method, 0.05);
         options.measure = false;
-        const auto result = simplify(contour, options);
+        const auto result = simplify(contour, options).contour;
         expect_same_topology(check(contour), check(result));
         EXPECT_LT(result.simplices.size(), contour.simplices.size() * 9 / 10);
         EXPECT_EQ(border_points(result), border_points(contour));
@@ -82,7 +82,7 @@ TYPED_TEST(Simplify, MovesTheBorderWithinTheImagesBorderIfItMay) {
     auto options = with_ratio<N>(method, 0.05);
     options.border = SimplifyBorder::within;
     options.measure = false;
-    const auto result = simplify(contour, options);
+    const auto result = simplify(contour, options).contour;
     expect_same_topology(check(contour), check(result));
     if constexpr (N > 2) {
       EXPECT_LT(boundary_faces(result).size(), boundary_faces(contour).size());
@@ -118,7 +118,7 @@ TYPED_TEST(Simplify, KeepsCapsInTheBorderAndTheContourClosed) {
     SCOPED_TRACE(name(method));
     auto options = with_ratio<N>(method, 0.2);
     options.measure = false;
-    const auto result = simplify(contour, options);
+    const auto result = simplify(contour, options).contour;
     expect_same_topology(check(contour), check(result));
     EXPECT_GT(count_caps(result), 0u);
     for (const auto& vertex : result.vertices)
@@ -138,8 +138,7 @@ TYPED_TEST(Simplify, LeavesABoxWithItsCornersAlone) {
   const auto contour = extract<double>(image.view(), 0.0, extraction);
   for (const SimplifyMethod method : kMethods) {
     SCOPED_TRACE(name(method));
-    SimplifyStats stats;
-    const auto result = simplify(contour, with_ratio<N>(method, 0.0), &stats);
+    const auto [result, stats] = simplify(contour, with_ratio<N>(method, 0.0));
     expect_closed_manifold(result);
     // Facets with two fixed corners cannot be contracted, so that method leaves more vertices.
     const std::size_t corners = std::size_t{1} << N;
@@ -158,8 +157,7 @@ TYPED_TEST(Simplify, ErrorsAreBoundedAsSamplesShow) {
   const auto contour = ball<N>(ball_samples<N>());
   for (const SimplifyMethod method : kMethods) {
     SCOPED_TRACE(name(method));
-    SimplifyStats stats;
-    const auto result = simplify(contour, with_ratio<N>(method, 0.1), &stats);
+    const auto [result, stats] = simplify(contour, with_ratio<N>(method, 0.1));
     expect_same_topology(check(contour), check(result));
     EXPECT_LE(result.simplices.size(), contour.simplices.size() / 10 + 1);
     EXPECT_EQ(stats.simplices_after, result.simplices.size());
@@ -186,8 +184,7 @@ TYPED_TEST(Simplify, KeepsTheLargestError) {
       SimplifyOptions<N> options;
       options.method = method;
       options.max_error = largest;
-      SimplifyStats stats;
-      const auto result = simplify(contour, options, &stats);
+      const auto [result, stats] = simplify(contour, options);
       expect_same_topology(check(contour), check(result));
       EXPECT_LE(*stats.error(), largest + 1e-9);
       EXPECT_LE(deviation(contour, result).bound, largest + 1e-9);
@@ -199,9 +196,8 @@ TYPED_TEST(Simplify, KeepsTheLargestError) {
 TYPED_TEST(Simplify, FurtherErrorsAreAddedToEarlierOnes) {
   constexpr int N = TypeParam::value;
   const auto contour = ball<N>(ball_samples<N>());
-  SimplifyStats first, second;
-  const auto once = simplify(contour, with_ratio<N>(SimplifyMethod::quadric, 0.3), &first);
-  const auto twice = simplify(once, with_ratio<N>(SimplifyMethod::quadric, 0.3), &second);
+  const auto [once, first] = simplify(contour, with_ratio<N>(SimplifyMethod::quadric, 0.3));
+  const auto [twice, second] = simplify(once, with_ratio<N>(SimplifyMethod::quadric, 0.3));
   EXPECT_GE(*second.error(), *first.error());
   EXPECT_GE(*second.error_of_original, deviation(contour, twice).least);
   ASSERT_EQ(twice.vertex_attributes.size(), 1u);
@@ -220,7 +216,7 @@ TYPED_TEST(Simplify, CarriesNormalsAndAttributesAlong) {
     SCOPED_TRACE(name(method));
     auto options = with_ratio<N>(method, 0.3);
     options.measure = N < 4;
-    const auto result = simplify(contour, options);
+    const auto result = simplify(contour, options).contour;
     ASSERT_EQ(result.normals.size(), result.vertices.size());
     ASSERT_EQ(result.vertex_attributes.size(), N < 4 ? 2u : 1u);
     EXPECT_EQ(result.vertex_attributes[0].name, "place");
@@ -248,7 +244,7 @@ TYPED_TEST(Simplify, VerticesMethodKeepsVerticesOfTheOriginal) {
   const std::set<std::array<double, N>> original(contour.vertices.begin(), contour.vertices.end());
   auto options = with_ratio<N>(SimplifyMethod::vertices, 0.2);
   options.measure = false;
-  const auto result = simplify(contour, options);
+  const auto result = simplify(contour, options).contour;
   for (const auto& vertex : result.vertices) EXPECT_TRUE(original.contains(vertex));
 }
 
@@ -258,9 +254,9 @@ TYPED_TEST(Simplify, FacetsMethodStopsAtTheLargestCurvature) {
   auto options = with_ratio<N>(SimplifyMethod::facets, 0.0);
   options.measure = false;
   options.max_curvature = 0.01;  // a sphere of radius 1 has curvature 1 everywhere
-  EXPECT_EQ(simplify(contour, options).simplices.size(), contour.simplices.size());
+  EXPECT_EQ(simplify(contour, options).contour.simplices.size(), contour.simplices.size());
   options.max_curvature = 100.0;
-  EXPECT_LT(simplify(contour, options).simplices.size(), contour.simplices.size() / 4);
+  EXPECT_LT(simplify(contour, options).contour.simplices.size(), contour.simplices.size() / 4);
 }
 
 TYPED_TEST(Simplify, IsTheSameForAnyNumberOfThreadsAndInFloat) {
@@ -271,9 +267,9 @@ TYPED_TEST(Simplify, IsTheSameForAnyNumberOfThreadsAndInFloat) {
     SCOPED_TRACE(name(method));
     if (N == 4 && method != SimplifyMethod::quadric) continue;  // takes too long
     auto one = with_ratio<N>(method, 0.2), four = one;
-    one.threads = 1;
-    four.threads = 4;
-    const auto a = simplify(contour, one), b = simplify(contour, four);
+    one.work.threads = 1;
+    four.work.threads = 4;
+    const auto a = simplify(contour, one).contour, b = simplify(contour, four).contour;
     EXPECT_EQ(a.vertices, b.vertices);
     EXPECT_EQ(a.simplices, b.simplices);
     EXPECT_EQ(a.vertex_attributes[0].values, b.vertex_attributes[0].values);
@@ -286,9 +282,9 @@ TYPED_TEST(Simplify, ScaleDecidesWhatIsFar) {
   const auto contour = ball<N>(ball_samples<N>());
   SimplifyOptions<N> options;
   options.max_error = 0.02;
-  const auto fine = simplify(contour, options);
+  const auto fine = simplify(contour, options).contour;
   options.scale.fill(0.1);  // in centimetres: 0.02 of them is ten times the length
-  EXPECT_LT(simplify(contour, options).simplices.size(), fine.simplices.size());
+  EXPECT_LT(simplify(contour, options).contour.simplices.size(), fine.simplices.size());
 }
 
 TYPED_TEST(Simplify, EarlierErrorsCountByTheScaleTheyWereTakenAt) {
@@ -296,17 +292,16 @@ TYPED_TEST(Simplify, EarlierErrorsCountByTheScaleTheyWereTakenAt) {
   const auto contour = ball<N>(ball_samples<N>());
   auto options = with_ratio<N>(SimplifyMethod::quadric, 0.5);
   options.scale[0] = 0.5;
-  SimplifyStats first, second;
-  auto once = simplify(contour, options, &first);
+  const auto first = simplify(contour, options);
+  auto once = first.contour;
   ASSERT_EQ(once.vertex_attributes.size(), 1u);
   EXPECT_EQ(once.vertex_attributes[0].unit, N == 2 ? "scale 0.5,1" : (N == 3 ? "scale 0.5,1,1" : "scale 0.5,1,1,1"));
   options = with_ratio<N>(SimplifyMethod::quadric, 1.0);  // nothing is removed: its error is that of the input
-  auto twice = simplify(once, options, &second);
-  EXPECT_NEAR(*second.error(), 2.0 * *first.error(), 1e-9);  // lengths along the first axis have doubled
-  EXPECT_EQ(twice.vertex_attributes[0].unit, contour.axis_units[0]);
+  const auto twice = simplify(once, options);
+  EXPECT_NEAR(*twice.stats.error(), 2.0 * *first.stats.error(), 1e-9);  // lengths along the first axis have doubled
+  EXPECT_EQ(twice.contour.vertex_attributes[0].unit, contour.axis_units[0]);
   options.scale.fill(3.0);
-  simplify(twice, options, &second);
-  EXPECT_NEAR(*second.error(), 6.0 * *first.error(), 1e-9);
+  EXPECT_NEAR(*simplify(twice.contour, options).stats.error(), 6.0 * *first.stats.error(), 1e-9);
   for (const char* unit : {"scale 1", "scale 1,1,1,1,1", "scale 0,1,1,1", "scale 1,x,1,1"}) {
     once.vertex_attributes[0].unit = unit;
     expect_error(ErrorCode::InvalidArgument, unit, [&] { simplify(once, options); });
@@ -338,7 +333,7 @@ TYPED_TEST(Simplify, RemovesSimplicesOfZeroSize) {
   ASSERT_GT(check(contour).degenerate_simplices, 0u);
   auto options = with_ratio<N>(SimplifyMethod::quadric, 0.5);
   options.measure = false;
-  const auto result = simplify(contour, options);
+  const auto result = simplify(contour, options).contour;
   expect_same_topology(check(contour), check(result));
   EXPECT_LT(check(result).degenerate_simplices, check(contour).degenerate_simplices);
 }
@@ -356,8 +351,7 @@ TYPED_TEST(Simplify, KeepsTheLargestErrorWhereSimplicesHaveNoSize) {
     SCOPED_TRACE(largest);
     SimplifyOptions<N> options;
     options.max_error = largest;
-    SimplifyStats stats;
-    const auto result = simplify(contour, options, &stats);
+    const auto [result, stats] = simplify(contour, options);
     expect_same_topology(before, check(result));
     EXPECT_LE(*stats.error(), largest + 1e-9);
     EXPECT_LE(deviation(contour, result).least, largest + 1e-9);
@@ -375,10 +369,9 @@ TYPED_TEST(Simplify, IsNearerByACountThanOneRoundIs) {
     const auto image = noise<float, N>(N == 3 ? 8 : 40, seed);
     const auto contour = extract<double>(image.view(), 0.55);
     auto options = with_ratio<N>(SimplifyMethod::quadric, 0.8);
-    SimplifyStats stats;
-    simplify(contour, options, &stats);
+    const SimplifyStats stats = simplify(contour, options).stats;
     options.measure = false;
-    const auto once = simplify(contour, options);
+    const auto once = simplify(contour, options).contour;
     const double reached = std::max(deviation(contour, once).least, deviation(once, contour).least);
     EXPECT_LT(*stats.error(), 0.8 * reached);
   }
@@ -392,16 +385,15 @@ TYPED_TEST(Simplify, IsAsNearByTwoGoalsAsByTheCountWhereTheErrorLetsIt) {
     if (N > 2 && method != SimplifyMethod::quadric) continue;  // takes too long
     SCOPED_TRACE(name(method));
     auto options = with_ratio<N>(method, 0.5);
-    SimplifyStats alone, both;
-    const auto by_count = simplify(contour, options, &alone);
+    const auto [by_count, alone] = simplify(contour, options);
     options.max_error = 50.0;
-    const auto by_both = simplify(contour, options, &both);
+    auto [by_both, both] = simplify(contour, options);
     EXPECT_EQ(by_both.vertices, by_count.vertices);
     EXPECT_EQ(by_both.simplices, by_count.simplices);
     EXPECT_EQ(both.error(), alone.error());
     EXPECT_EQ(both.end, SimplifyEnd::count);
     options.max_error = 0.5 * *alone.error();
-    simplify(contour, options, &both);
+    both = simplify(contour, options).stats;
     EXPECT_LE(*both.error(), *options.max_error + 1e-9);
     EXPECT_GE(both.simplices_after, alone.simplices_after);
   }
@@ -419,7 +411,7 @@ TEST(Simplify2, CapsOfASlantedGridStayInItsBorder) {
   auto options = with_ratio<3>(SimplifyMethod::quadric, 0.2);
   options.planes = border_planes(grid);
   ASSERT_EQ(options.planes.size(), 6u);
-  const auto result = simplify(contour, options);
+  const auto result = simplify(contour, options).contour;
   expect_same_topology(check(contour), check(result));
   // Each plane has at least the vertices of a cap, and no vertex is beyond it.
   for (const auto& plane : options.planes) {
@@ -443,23 +435,21 @@ TEST(SimplifyFast, TakesASmoothSurfaceAndRefusesWhatIsNoManifold) {
     expect_error(ErrorCode::InvalidArgument, "meshoptimizer", [&] { simplify(contour, options); });
     return;
   }
-  SimplifyStats stats;
-  const auto result = simplify(contour, options, &stats);
+  const auto [result, stats] = simplify(contour, options);
   expect_same_topology(check(contour), check(result));
   EXPECT_GE(*stats.error_of_original, sampled_deviation(contour, result, kSamples<3>, 1));
   options = {};
   options.method = SimplifyMethod::fast;
   options.max_error = 0.01;
-  simplify(contour, options, &stats);
-  EXPECT_LE(*stats.error(), 0.01 + 1e-9);
+  EXPECT_LE(*simplify(contour, options).stats.error(), 0.01 + 1e-9);
 
   const auto image = noise<float, 3>(12, 7);
   const auto rough = extract<double>(image.view(), 0.6);
   options = with_ratio<3>(SimplifyMethod::fast, 0.1);
   options.measure = false;
-  expect_error(ErrorCode::UnsupportedData, "no oriented manifold", [&] { simplify(rough, options); });
+  expect_error(ErrorCode::UnsupportedData, "not an oriented manifold", [&] { simplify(rough, options); });
   options.allow_nonmanifold = true;
-  const MeshReport report = check(simplify(rough, options));
+  const MeshReport report = check(simplify(rough, options).contour);
   EXPECT_GT(report.nonmanifold_simplices + report.bad_links, 0u);
 }
 
@@ -497,7 +487,7 @@ TEST(SimplifyErrors, NameWhatIsWrong) {
   flat.ratio = 0.5;
   flat.method = SimplifyMethod::fast;
   expect_error(ErrorCode::InvalidArgument, "triangles", [&] { simplify(ball<2>(8), flat); });
-  options.progress = [](double) { return false; };
+  options.work.progress = [](double) { return false; };
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { simplify(contour, options); });
 }
 
@@ -517,9 +507,9 @@ TEST(SimplifyErrors, AnEarlierErrorIsANumberAndNotNegative) {
 TEST(SimplifyErrors, AnEarlierErrorIsAtMostTheLargest) {
   SimplifyOptions<3> options;
   options.max_error = 0.1;
-  SimplifyStats stats;
-  const auto once = simplify(ball<3>(16), options, &stats);
-  const double earlier = *stats.error();
+  const auto first = simplify(ball<3>(16), options);
+  const auto& once = first.contour;
+  const double earlier = *first.stats.error();
   options.max_error = 0.5 * earlier;
   expect_error(ErrorCode::InvalidArgument, "from before", [&] { simplify(once, options); });
   expect_error(ErrorCode::InvalidArgument, fmt::format("{}", earlier), [&] { simplify(once, options); });
@@ -527,31 +517,25 @@ TEST(SimplifyErrors, AnEarlierErrorIsAtMostTheLargest) {
   expect_error(ErrorCode::InvalidArgument, "from before", [&] { simplify(once, options); });
   for (const double enough : {earlier, 0.1}) {
     options.max_error = enough;
-    simplify(once, options, &stats);
-    EXPECT_LE(*stats.error(), enough + 1e-9);
+    EXPECT_LE(*simplify(once, options).stats.error(), enough + 1e-9);
   }
 }
 
 /// The reported end of a simplification: `error` only if it could have continued without the error limit.
 TEST(SimplifyEnds, AreWhatKeepsTheRest) {
   const auto contour = ball<3>(16);
-  SimplifyStats stats;
   SimplifyOptions<3> options;
   options.ratio = 0.5;
-  simplify(contour, options, &stats);
-  EXPECT_EQ(stats.end, SimplifyEnd::count);
+  EXPECT_EQ(simplify(contour, options).stats.end, SimplifyEnd::count);
   options.max_error = 0.0;
   options.ratio = 1.0;
-  simplify(contour, options, &stats);
-  EXPECT_EQ(stats.end, SimplifyEnd::count);
+  EXPECT_EQ(simplify(contour, options).stats.end, SimplifyEnd::count);
   options.ratio = 0.0;
-  simplify(contour, options, &stats);
-  EXPECT_EQ(stats.end, SimplifyEnd::error);
+  EXPECT_EQ(simplify(contour, options).stats.end, SimplifyEnd::error);
   options.max_error = 0.01;
-  simplify(contour, options, &stats);
-  EXPECT_EQ(stats.end, SimplifyEnd::error);
+  EXPECT_EQ(simplify(contour, options).stats.end, SimplifyEnd::error);
   options.max_error = 1000.0;
-  const auto least = simplify(contour, options, &stats);
+  const auto [least, stats] = simplify(contour, options);
   EXPECT_EQ(stats.end, SimplifyEnd::shape);
   EXPECT_GT(least.simplices.size(), 0u);
   Contour<3, double> tetrahedron;
@@ -559,8 +543,9 @@ TEST(SimplifyEnds, AreWhatKeepsTheRest) {
   tetrahedron.simplices = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   for (const double error : {0.0, 100.0}) {
     options.max_error = error;
-    EXPECT_EQ(simplify(tetrahedron, options, &stats).simplices.size(), 4u);
-    EXPECT_EQ(stats.end, SimplifyEnd::shape);
+    const auto kept = simplify(tetrahedron, options);
+    EXPECT_EQ(kept.contour.simplices.size(), 4u);
+    EXPECT_EQ(kept.stats.end, SimplifyEnd::shape);
   }
 }
 
@@ -569,11 +554,10 @@ TEST(SimplifyEnds, AreWhatKeepsTheRest) {
 TEST(SimplifyEnds, AreRoundsWhereNoneIsNearEnough) {
   if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
   const auto contour = ball<3>(16);
-  SimplifyStats stats;
   SimplifyOptions<3> options;
   options.method = SimplifyMethod::fast;
   options.max_error = 1e-4;
-  const auto result = simplify(contour, options, &stats);
+  const auto [result, stats] = simplify(contour, options);
   EXPECT_EQ(stats.end, SimplifyEnd::rounds);
   EXPECT_EQ(stats.rounds, 12u);
   EXPECT_EQ(stats.error(), 0.0);
@@ -589,7 +573,7 @@ TEST(SimplifyProgress, GrowsUpToOne) {
     if (goal == 1) options.max_error = 0.01;
     options.measure = goal != 2;
     double last = 0.0;
-    options.progress = [&](double fraction) {
+    options.work.progress = [&](double fraction) {
       EXPECT_GE(fraction, last);
       last = fraction;
       return true;
@@ -603,12 +587,10 @@ TEST(SimplifyProgress, GrowsUpToOne) {
 TEST(SimplifyTwice, UsesWhatIsLeftOfTheError) {
   const auto contour = ball<3>(24);
   SimplifyOptions<3> options;
-  SimplifyStats stats;
   options.max_error = 0.01;
-  const auto once = simplify(contour, options, &stats);
-  const double earlier = *stats.error();
-  options.max_error = earlier + 0.01;
-  const auto again = simplify(once, options, &stats);
+  const auto [once, first] = simplify(contour, options);
+  options.max_error = *first.error() + 0.01;
+  const auto [again, stats] = simplify(once, options);
   EXPECT_EQ(stats.end, SimplifyEnd::error);
   EXPECT_LT(again.simplices.size(), once.simplices.size());
   EXPECT_LE(*stats.error(), *options.max_error + 1e-9);
@@ -620,8 +602,7 @@ TEST(SimplifyErrors, AreNotLooseWhereTheLargestIsLarge) {
   const auto contour = ball<3>(16);
   SimplifyOptions<3> options;
   options.max_error = 1e9;
-  SimplifyStats stats;
-  const auto result = simplify(contour, options, &stats);
+  const auto [result, stats] = simplify(contour, options);
   const double reached = std::max(deviation(contour, result).least, deviation(result, contour).least);
   EXPECT_LE(*stats.error(), 2.0 * reached);
 }
@@ -638,8 +619,8 @@ TEST(SimplifyFast, LeavesSomethingOrSaysSo) {
   options.method = SimplifyMethod::fast;
   options.max_error = 0.0;
   const auto contour = ball<3>(4);
-  SimplifyStats stats;
-  EXPECT_EQ(simplify(contour, options, &stats).simplices, contour.simplices);
+  const auto [result, stats] = simplify(contour, options);
+  EXPECT_EQ(result.simplices, contour.simplices);
   EXPECT_EQ(stats.error(), 0.0);
 }
 
@@ -657,7 +638,7 @@ TEST(SimplifyFast, RefusesWhatIsNoManifoldToBeginWith) {
 TEST(SimplifyErrors, NothingStaysNothing) {
   SimplifyOptions<3> options;
   options.ratio = 0.5;
-  EXPECT_TRUE(simplify(Contour<3, double>(), options).simplices.empty());
+  EXPECT_TRUE(simplify(Contour<3, double>(), options).contour.simplices.empty());
 }
 
 }  // namespace

@@ -377,7 +377,7 @@ TEST(Track, DoesNotDependOnThreadsOrOnTheOrderOfSimplices) {
   TrackOptions options;
   options.times = even_times(0, 5, 7);
   const auto summary = [&](unsigned threads) {
-    options.threads = threads;
+    options.work.threads = threads;
     const TrackGraph graph = track(contour, options);
     std::vector<double> numbers;
     for (const TrackEvent& event : graph.events) {
@@ -450,7 +450,7 @@ TEST(Track, RefusesWhatIsUnsound) {
 
 TEST(Track, StopsWhenAsked) {
   TrackOptions options;
-  options.progress = [](double) { return false; };
+  options.work.progress = [](double) { return false; };
   try {
     track(contour_of(space_time<3>(5, 1.0, 5, 0.0, 1.0), [](const Point<3>& p) { return 0.5 - std::abs(p[0]); }),
           options);
