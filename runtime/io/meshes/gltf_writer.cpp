@@ -116,14 +116,14 @@ Json asset(const Mesh& mesh) {
   return {{"version", "2.0"}, {"generator", "tegl"}, {"extras", {{"tegl", extras}}}};
 }
 
-constexpr int kFloat = 5126;
-constexpr int kUint32 = 5125;
-constexpr int kVertexBuffer = 34962;
-constexpr int kIndexBuffer = 34963;
-
 /// Arrays of numbers in the buffer, one after the other: each is a view of the buffer and an accessor.
 class BufferArrays {
  public:
+  static constexpr int kFloat = 5126;
+  static constexpr int kUint32 = 5125;
+  static constexpr int kVertexBuffer = 34962;
+  static constexpr int kIndexBuffer = 34963;
+
   /// Appends an array of `count` items. Returns the number of its accessor. `limits`: "min" and "max", or empty.
   std::size_t add(int component, std::size_t count, const char* type, std::size_t bytes, int target,
                   const Json& limits = Json::object()) {
@@ -151,16 +151,17 @@ void add_geometry(const Content& content, BufferArrays& arrays, Json& primitive)
   constexpr int kLines = 1;
   constexpr int kTriangles = 4;
   const std::size_t bytes = points.values.size() * sizeof(points.values[0]);
-  const std::size_t positions = arrays.add(kFloat, points.values.size(), "VEC3", bytes, kVertexBuffer,
-                                           {{"min", points.low}, {"max", points.high}});
-  const std::size_t indices =
-      arrays.add(kUint32, mesh.simplices.size(), "SCALAR", mesh.simplices.size() * sizeof(Index), kIndexBuffer);
+  const std::size_t positions = arrays.add(BufferArrays::kFloat, points.values.size(), "VEC3", bytes,
+                                           BufferArrays::kVertexBuffer, {{"min", points.low}, {"max", points.high}});
+  const std::size_t indices = arrays.add(BufferArrays::kUint32, mesh.simplices.size(), "SCALAR",
+                                         mesh.simplices.size() * sizeof(Index), BufferArrays::kIndexBuffer);
   primitive = {{"attributes", {{"POSITION", positions}}},
                {"indices", indices},
                {"material", 0},
                {"mode", mesh.dim == 1 ? kLines : kTriangles}};
   if (!points.normals.empty())
-    primitive["attributes"]["NORMAL"] = arrays.add(kFloat, points.normals.size(), "VEC3", bytes, kVertexBuffer);
+    primitive["attributes"]["NORMAL"] =
+        arrays.add(BufferArrays::kFloat, points.normals.size(), "VEC3", bytes, BufferArrays::kVertexBuffer);
 }
 
 /// Adds the vertex attributes. Returns their names and units.
@@ -169,8 +170,9 @@ Json add_attributes(const Content& content, BufferArrays& arrays, Json& primitiv
   for (const GltfAttribute& added : content.attributes) {
     constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     primitive["attributes"][added.semantic] =
-        arrays.add(kFloat, content.points.values.size(), kTypes[static_cast<std::size_t>(added.attribute->width) - 1],
-                   added.values.size() * sizeof(float), kVertexBuffer);
+        arrays.add(BufferArrays::kFloat, content.points.values.size(),
+                   kTypes[static_cast<std::size_t>(added.attribute->width) - 1], added.values.size() * sizeof(float),
+                   BufferArrays::kVertexBuffer);
     if (!added.semantic.starts_with('_')) continue;  // COLOR_0 repeats an attribute that has its own name too
     texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
   }
