@@ -3,8 +3,6 @@
 // Indexes of active tiles for Python: built once for an image, which they keep, and queried for many isovalues.
 #include <fmt/format.h>
 
-#include <functional>
-
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/active_tiles.hpp"

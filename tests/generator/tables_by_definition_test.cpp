@@ -57,12 +57,6 @@ struct Parts {
 const BoundaryPart::HasCentre kAllLow = [](unsigned, unsigned) { return false; };
 const BoundaryPart::HasCentre kAllHigh = [](unsigned, unsigned) { return true; };
 
-/// The curves or surfaces in which an entry meets the boundary, by the components that each of them separates.
-struct Separators {
-  std::vector<long> high_eulers, low_eulers;     ///< by component: what the entry says
-  std::vector<std::size_t> high_part, low_part;  ///< by separator
-};
-
 /// What is wrong; empty: nothing.
 std::string fault_of_boundary(const Parts& parts, const std::vector<Piece>& separators) {
   const unsigned edges = tables::edge_count(static_cast<std::uint32_t>(parts.n));

@@ -102,7 +102,6 @@ class MemoryFile final : public ByteSink, public ByteSource {
     at_ += count;
     return count;
   }
-  void rewind() { at_ = 0; }
 
   std::vector<unsigned char> content;
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "shelling.hpp"
+#include "tegl/tile/disjoint_sets.hpp"
 
 namespace tegl::facets {
 
@@ -131,23 +132,18 @@ Ridges ridges_of(const Simplices& simplices) {
   for (std::size_t j = 0; j < simplices.size(); ++j)
     for (int i = 0; i < size(simplices[j]); ++i) ridges.emplace_back(without(simplices[j], i), j);
   std::sort(ridges.begin(), ridges.end());
-  // union-find over simplices that share a ridge; a ridge in one simplex belongs to the boundary
-  std::vector<std::size_t> parent(simplices.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&](std::size_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  // sets of simplices that share ridges; a ridge in one simplex belongs to the boundary
+  detail::BasicDisjointSets<std::size_t> sets(simplices.size());
   for (std::size_t i = 0; i < ridges.size();) {
     std::size_t j = i + 1;
     while (j < ridges.size() && ridges[j].first == ridges[i].first) ++j;
     if (j - i > 2) result.branching = true;
-    if (j - i == 2) parent[root(ridges[i].second)] = root(ridges[i + 1].second);
+    if (j - i == 2) sets.join(ridges[i].second, ridges[i + 1].second);
     if (j - i == 1)
       for (int v = 0; v < size(ridges[i].first); ++v) result.boundary_vertices.push_back(ridges[i].first[v]);
     i = j;
   }
-  for (std::size_t j = 1; j < simplices.size(); ++j) result.connected &= root(j) == root(0);
+  for (std::size_t j = 1; j < simplices.size(); ++j) result.connected &= sets.find(j) == sets.find(0);
   auto& b = result.boundary_vertices;
   std::sort(b.begin(), b.end());
   b.erase(std::unique(b.begin(), b.end()), b.end());

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
-#include <string>
 
 namespace tegl::facets {
 
@@ -26,6 +25,12 @@ Simplex with_last(const Simplex& simplex, VertexId last) {
   return result;
 }
 
+/// Joins the vertices of each simplex.
+void join_vertices(const Simplices& simplices, VertexSets& sets) {
+  for (const Simplex& s : simplices)
+    for (int i = 1; i < kMaxVertices && s[i] != kNoVertex; ++i) sets.join(s[0], s[i]);
+}
+
 /// Sorts simplices by components. start[c] is the first position of component c; the last entry is the total.
 template <class Visit>
 void group(const Simplices& simplices, VertexSets& sets, std::vector<std::uint32_t>& number_of,
@@ -34,7 +39,7 @@ void group(const Simplices& simplices, VertexSets& sets, std::vector<std::uint32
   start.assign(1, 0);
   // count per component, in order of first appearance
   for (const Simplex& s : simplices) {
-    std::uint32_t& number = number_of[sets.root(s[0])];
+    std::uint32_t& number = number_of[sets.find(s[0])];
     if (number == kNew) {
       number = static_cast<std::uint32_t>(start.size() - 1);
       start.push_back(0);
@@ -44,7 +49,7 @@ void group(const Simplices& simplices, VertexSets& sets, std::vector<std::uint32
   // prefix sum, then write
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<std::uint32_t> next(start.begin(), start.end());
-  for (std::size_t j = 0; j < simplices.size(); ++j) visit(j, next[number_of[sets.root(simplices[j][0])]]++);
+  for (std::size_t j = 0; j < simplices.size(); ++j) visit(j, next[number_of[sets.find(simplices[j][0])]]++);
 }
 
 /// Euler characteristic of a closed manifold. Constant time for points, curves, surfaces and 3-manifolds.
@@ -71,21 +76,6 @@ void Piece::clear() {
 std::size_t Piece::bytes() const {
   return sizeof(Piece) + own.capacity() * sizeof(OwnVertex) + facets.capacity() * sizeof(PieceFacet) + sign.capacity() +
          (of.capacity() + contour.capacity() + high.capacity() + low.capacity()) * sizeof(Simplex);
-}
-
-void VertexSets::reset(std::size_t vertices) {
-  parent_.resize(vertices);
-  std::iota(parent_.begin(), parent_.end(), VertexId{0});
-}
-
-VertexId VertexSets::root(VertexId v) {
-  while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-  return v;
-}
-
-void VertexSets::join(const Simplices& simplices) {
-  for (const Simplex& s : simplices)
-    for (int i = 1; i < kMaxVertices && s[i] != kNoVertex; ++i) parent_[root(s[i])] = root(s[0]);
 }
 
 void PieceBuilder::number(std::uint32_t face, std::vector<VertexId>& map) const {
@@ -172,7 +162,7 @@ void PieceBuilder::collect_sigma() {
   }
   // components
   sets_.reset(owner_.size());
-  sets_.join(unsorted_);
+  join_vertices(unsorted_, sets_);
   group_.assign(owner_.size(), ~std::uint32_t{0});
   sigma_.resize(unsorted_.size()), sigma_sign_.resize(unsorted_.size());
   group(unsorted_, sets_, group_, start_, [&](std::size_t from, std::size_t to) {
@@ -194,7 +184,7 @@ void PieceBuilder::collect_regions() {
       for (const Simplex& s : part) unsorted_.push_back(mapped(s, map_));
     }
     sets_.reset(owner_.size());
-    sets_.join(unsorted_);
+    join_vertices(unsorted_, sets_);
     group_.assign(owner_.size(), ~std::uint32_t{0});
     Simplices& sorted = sides_[high ? 1 : 0];
     sorted.resize(unsorted_.size());
@@ -203,7 +193,7 @@ void PieceBuilder::collect_regions() {
     for (std::size_t r = 0; r + 1 < start_.size(); ++r)
       regions_.push_back({high, start_[r], start_[r + 1], {}, static_cast<std::uint32_t>(regions_.size())});
     for (std::uint32_t c = 0; c < components_.size(); ++c) {
-      const std::uint32_t r = first + group_[sets_.root(sigma_[components_[c].begin][0])];
+      const std::uint32_t r = first + group_[sets_.find(sigma_[components_[c].begin][0])];
       components_[c].region[high ? 1 : 0] = r;
       regions_[r].around.push_back(c);
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shelling.hpp"
+#include "tegl/tile/disjoint_sets.hpp"
 #include "tegl/tile/facets.hpp"
 
 namespace tegl::facets {
@@ -42,16 +43,8 @@ struct Piece {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Disjoint sets of vertices (union-find).
-class VertexSets {
- public:
-  void reset(std::size_t vertices);
-  void join(const Simplices& simplices);
-  VertexId root(VertexId v);
-
- private:
-  std::vector<VertexId> parent_;
-};
+/// Disjoint sets of vertices.
+using VertexSets = detail::BasicDisjointSets<VertexId>;
 
 /// Builds the piece of a face from the pieces of its own faces. Reuses its memory.
 class PieceBuilder {
@@ -96,7 +89,6 @@ class PieceBuilder {
     return std::span(sigma_).subspan(c.begin, c.end - c.begin);
   }
   VertexId new_vertex(VertexKind kind, VertexId copied = kNoVertex, std::span<const Simplex> of = {});
-  void build_corner(bool high);
   void build_edge();
   void number_vertices();
   void collect_sigma();

@@ -3,7 +3,6 @@
 // tegl check: checks whether a mesh is a manifold.
 #include <fmt/format.h>
 
-#include <optional>
 #include <vector>
 
 #include "base/progress.hpp"

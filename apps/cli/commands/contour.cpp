@@ -122,6 +122,24 @@ class ContourCommand final : public Command {
         one_file_ ? std::vector(isovalues.size(), output_) : isovalue_outputs(output_, isovalues);
     if (!one_file_) require_different_outputs(outputs);
     if (facets_) return run_facets(streams, isovalues, outputs, options);
+    require_files(outputs);
+
+    // extract and write
+    ProgressBar bar(streams.err, wants_progress());
+    std::vector<ContourResult> results = planned_results(isovalues, outputs, point);
+    if (is_streamed())
+      stream(options, bar, results);
+    else
+      contour(options, bar, results);
+    // report
+    bar.clear();
+    for (const ContourResult& result : results) remark(result.lost.remark(result.output));
+    return tell(streams, results);
+  }
+
+ private:
+  /// Checks the names of outputs and the other inputs.
+  void require_files(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
       require_output(output, files());
       require_output_keeps(output, options_.normals(), attributes_.wanted() || one_file_);
@@ -136,9 +154,11 @@ class ContourCommand final : public Command {
     }
     also_read(attributes_.files());
     attributes_.require_inputs();
+  }
 
-    // extract and write
-    ProgressBar bar(streams.err, wants_progress());
+  [[nodiscard]] std::vector<ContourResult> planned_results(const std::vector<SpelledNumber>& isovalues,
+                                                           const std::vector<std::string>& outputs,
+                                                           const std::vector<double>& point) const {
     std::vector<ContourResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
       if (!point.empty()) results[i].picked = Picked{point, {}, 0, 0, 0};
@@ -146,17 +166,9 @@ class ContourCommand final : public Command {
       results[i].isovalue = isovalues[i].value;
       results[i].compression = compress_.compression();
     }
-    if (is_streamed())
-      stream(options, bar, results);
-    else
-      contour(options, bar, results);
-    // report
-    bar.clear();
-    for (const ContourResult& result : results) remark(result.lost.remark(result.output));
-    return tell(streams, results);
+    return results;
   }
 
- private:
   void require_one_file_of_several(std::size_t isovalues) const {
     if (!one_file_) return;
     if (isovalues < 2)
@@ -353,9 +365,7 @@ class ContourCommand final : public Command {
     for (ContourResult& result : results) finished(result);
   }
 
-  ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
-                      const std::vector<std::string>& outputs, const ExtractOptions& options) {
-    // validate options and files
+  void require_facets_options(const std::vector<std::string>& outputs) const {
     const auto given = options_.given();
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(
@@ -372,6 +382,11 @@ class ContourCommand final : public Command {
       require_facets_output(output, files());
       compress_.require_known(output, true);
     }
+  }
+
+  ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
+                      const std::vector<std::string>& outputs, const ExtractOptions& options) {
+    require_facets_options(outputs);
     // read
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <type_traits>
 #include <utility>
 
 #include "base/numbers.hpp"

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "base/numbers.hpp"

@@ -202,12 +202,18 @@ std::string brief(const std::string& description) {
   return text;
 }
 
-std::string bash_script(const CLI::App& program) {
+/// The words that bash completes, as shell code.
+struct BashWords {
+  std::string commands;  ///< separated by blanks
+  std::string values;    ///< branches of a `case` by command and option: the allowed values
+  std::string options;   ///< branches of a `case` by command: its options
+};
+
+BashWords bash_words(const CLI::App& program) {
   std::vector<std::string> names;
   for (const CLI::App* command : commands_of(program)) names.push_back(command->get_name());
-  const std::string all = fmt::format("{}", fmt::join(names, " "));
-  std::string values;
-  std::string options;
+  BashWords result;
+  result.commands = fmt::format("{}", fmt::join(names, " "));
   for (const CLI::App* command : commands_of(program)) {
     std::vector<std::string> words;
     for (const CLI::Option* option : options_of(*command)) {
@@ -215,10 +221,16 @@ std::string bash_script(const CLI::App& program) {
       words.insert(words.end(), own.begin(), own.end());
       if (const auto allowed = words_of(*option); !allowed.empty())
         for (const std::string& name : own)
-          values += fmt::format("    {}:{}) words='{}' ;;\n", command->get_name(), name, fmt::join(allowed, " "));
+          result.values +=
+              fmt::format("    {}:{}) words='{}' ;;\n", command->get_name(), name, fmt::join(allowed, " "));
     }
-    options += fmt::format("      {}) words='{}' ;;\n", command->get_name(), fmt::join(words, " "));
+    result.options += fmt::format("      {}) words='{}' ;;\n", command->get_name(), fmt::join(words, " "));
   }
+  return result;
+}
+
+std::string bash_script(const CLI::App& program) {
+  const BashWords words = bash_words(program);
   // bash splits "--name=value" into three words at '=' by default.
   return fmt::format(
       "# bash completion of tegl, made by 'tegl --completion bash'\n"
@@ -254,7 +266,7 @@ std::string bash_script(const CLI::App& program) {
       "  if [[ -n $before ]]; then COMPREPLY=(\"${{COMPREPLY[@]/#/$before}}\"); fi\n"
       "}}\n"
       "complete -F _tegl tegl\n",
-      all, values, options);
+      words.commands, words.values, words.options);
 }
 
 std::string zsh_script(const CLI::App& program) {

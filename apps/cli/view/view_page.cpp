@@ -270,14 +270,10 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
   return result;
 }
 
+/// The source of a contour, its axes and its size.
 template <int N>
-Json describe_layer(const Contour<N, double>& contour, const ContourInput& input, const Thinned& thinned,
-                    const std::optional<PageTracks>& tracks, PageNumbers& numbers, const WorkOptions& options) {
-  constexpr std::size_t kSpace = N == 2 ? 2 : 3;
-  // description
-  const Box<N> box = box_of(contour);
-  std::vector<double> center;
-  for (std::size_t a = 0; a < kSpace; ++a) center.push_back((box.lower[a] + box.upper[a]) / 2);
+Json describe_contour(const Contour<N, double>& contour, const ContourInput& input, const Box<N>& box,
+                      const std::vector<double>& center, const Thinned& thinned) {
   Json json;
   json["file"] = input.file.text();
   json["variable"] = input.variable;
@@ -295,9 +291,16 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   json["components"] = thinned.components;
   json["of_components"] = thinned.of_components;
   json["of_simplices"] = thinned.of_simplices;
+  return json;
+}
+
+/// Adds the numbers of a contour to the page. Returns their places.
+template <int N>
+Json add_arrays(const Contour<N, double>& contour, const std::vector<double>& center,
+                const std::optional<PageTracks>& tracks, PageNumbers& numbers, const WorkOptions& options) {
+  Json arrays;
   // vertices
-  Json& arrays = json["arrays"];
-  arrays["places"] = numbers.add(std::span<const float>(places(contour, center)), kSpace);
+  arrays["places"] = numbers.add(std::span<const float>(places(contour, center)), center.size());
   if constexpr (N == 4) {
     const auto [times, ranks] = ranked_times(contour);
     arrays["times"] = numbers.add(std::span<const double>(times), 1);
@@ -318,6 +321,18 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
     arrays["segment_next"] = numbers.add(std::span<const std::uint32_t>(tracks->next), 1);
     arrays["segment_tracks"] = numbers.add(std::span<const std::uint32_t>(tracks->tracks), 1);
   }
+  return arrays;
+}
+
+template <int N>
+Json describe_layer(const Contour<N, double>& contour, const ContourInput& input, const Thinned& thinned,
+                    const std::optional<PageTracks>& tracks, PageNumbers& numbers, const WorkOptions& options) {
+  constexpr std::size_t kSpace = N == 2 ? 2 : 3;
+  const Box<N> box = box_of(contour);
+  std::vector<double> center;
+  for (std::size_t a = 0; a < kSpace; ++a) center.push_back((box.lower[a] + box.upper[a]) / 2);
+  Json json = describe_contour(contour, input, box, center, thinned);
+  json["arrays"] = add_arrays(contour, center, tracks, numbers, options);
   // attributes and tracks
   json["vertex_attributes"] = describe_attributes(contour.vertex_attributes, numbers);
   json["simplex_attributes"] = describe_attributes(contour.simplex_attributes, numbers);

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "tegl/tile/disjoint_sets.hpp"
 #include "view/view_page.hpp"
 
 namespace tegl::cli {
@@ -80,25 +81,19 @@ class Splits {
     std::sort(crossed.begin(), crossed.end(), [&](const Crossed& a, const Crossed& b) {
       return std::tuple(time(a.high), a.high, a.low, a.simplex) < std::tuple(time(b.high), b.high, b.low, b.simplex);
     });
-    parents_.resize(simplices.size());
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    sets_.reset(simplices.size());
     for (std::size_t i = 1; i < crossed.size(); ++i)
       if (crossed[i].low == crossed[i - 1].low && crossed[i].high == crossed[i - 1].high)
-        parents_[root(crossed[i].simplex)] = root(crossed[i - 1].simplex);
+        sets_.join(crossed[i].simplex, crossed[i - 1].simplex);
     // The next simplex that appears at an edge's upper vertex is in the same part as that vertex; the earliest one with
     // a known segment decides.
     std::vector<Index> parts(simplices.size(), kNone);
     for (const Crossed& edge : crossed) {
-      Index& part = parts[root(edge.simplex)];
+      Index& part = parts[sets_.find(edge.simplex)];
       if (part == kNone && first_at_[edge.high] != kNone)
         part = out_of(event, graph_.simplex_segments[first_at_[edge.high]]);
     }
-    for (std::size_t i = 0; i < simplices.size(); ++i) result[simplices[i]] = parts[root(i)];
-  }
-
-  std::size_t root(std::size_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
+    for (std::size_t i = 0; i < simplices.size(); ++i) result[simplices[i]] = parts[sets_.find(i)];
   }
 
   /// The segment starting at the event that leads to this segment without merges; kNone if it is not unique.
@@ -114,7 +109,7 @@ class Splits {
   const Contour<4, double>& contour_;
   const TrackGraph& graph_;
   std::vector<Index> first_at_;  ///< #V: a simplex whose lowest vertex this is
-  std::vector<std::size_t> parents_;
+  detail::BasicDisjointSets<std::size_t> sets_;
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include "filling/certificate.hpp"
 
 #include <map>
-#include <utility>
 
 #include "filling/resolutions.hpp"
 

@@ -11,13 +11,13 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 
 #include "filling/ball_dissection.hpp"
 #include "filling/side_filling.hpp"
 #include "filling/sigma_complex.hpp"
+#include "tegl/tile/disjoint_sets.hpp"
 
 namespace tegl::gen {
 
@@ -29,20 +29,6 @@ struct Component {
   int euler = 0;
 };
 
-/// Disjoint sets of local vertices (union-find).
-class VertexSets {
- public:
-  VertexSets() { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(int a, int b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-
- private:
-  std::array<int, 256> parent_{};
-};
-
 int euler_of(int vertices_per_simplex, const Component& c) {
   const int v = static_cast<int>(c.vertices.size());
   const int f = static_cast<int>(c.boundary.size());
@@ -51,8 +37,7 @@ int euler_of(int vertices_per_simplex, const Component& c) {
 
 /// Components of Sigma, ordered by smallest vertex; spheres first, so that cone vertices precede side vertices.
 std::vector<Component> components_of(int n, const std::vector<LocalSimplex>& boundary) {
-  // union-find over the vertices of each simplex
-  VertexSets sets;
+  detail::BasicDisjointSets<std::size_t> sets(256);
   for (const LocalSimplex& s : boundary)
     for (int i = 1; i < n - 1; ++i) sets.join(s[0], s[i]);
   std::array<int, 256> number;

@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <optional>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/fnv.hpp"
 #include "base/lattice.hpp"
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
@@ -452,10 +452,8 @@ ResolvedCube make_resolved_cube() {
 }
 
 std::uint64_t digest(const ResolvedCube& table) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  const auto take = [&hash](std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (value >> (8 * byte) & 0xffu)) * 0x100000001b3u;
-  };
+  Fnv hash;
+  const auto take = [&hash](std::uint64_t value) { hash.add(value); };
   for (const auto value : table.first_entry) take(value);
   for (const auto value : table.ambiguous) take(value);
   for (const tables::ResolvedEntry& e : table.entries) {
@@ -465,7 +463,7 @@ std::uint64_t digest(const ResolvedCube& table) {
   }
   for (const auto value : table.triangles) take(value);
   for (const auto value : table.masks) take(value);
-  return hash;
+  return hash.value();
 }
 
 }  // namespace tegl::gen

@@ -4,9 +4,6 @@
 #include "pictures/cases.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>

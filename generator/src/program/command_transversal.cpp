@@ -4,7 +4,6 @@
 // of the orbit lengths.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <map>
 
 #include "base/error.hpp"

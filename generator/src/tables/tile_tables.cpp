@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <tuple>
 
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/fnv.hpp"
 #include "base/parallel.hpp"
 #include "filling/certificate.hpp"
 
@@ -205,26 +205,6 @@ void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>
   in_parallel(
       contours.size(), kChunk, 0, [] { return 0; }, carry, [](int) {});
 }
-
-class Fnv {
- public:
-  template <class T>
-  void add(T value) {
-    for (std::size_t i = 0; i < sizeof(T); ++i) {
-      hash_ ^= static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
-      hash_ *= 0x100000001b3u;
-    }
-  }
-  template <class T>
-  void add(const std::vector<T>& values) {
-    add(static_cast<std::uint64_t>(values.size()));
-    for (const T v : values) add(v);
-  }
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
 
 }  // namespace
 

@@ -6,57 +6,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tegl/dimensions.hpp"
+#include "tegl/memory.hpp"
 
 namespace tegl {
 
-namespace detail {
-/// Blocks of at least this many bytes (2 MiB) are allocated as huge pages, if the system has them.
-inline constexpr std::size_t kLargeBlock = std::size_t{1} << 21;
-/// Allocates memory without touching it: pages that are never written cost address space only. Throws std::bad_alloc.
-void* allocate_large_block(std::size_t bytes);
-void free_large_block(void* block, std::size_t bytes) noexcept;
-
-/// Leaves trivial elements uninitialised on resize, so outputs are written once and not twice.
-template <class T>
-struct DefaultInitAllocator {
-  using value_type = T;
-  DefaultInitAllocator() = default;
-  template <class U>
-  DefaultInitAllocator(const DefaultInitAllocator<U>&) noexcept {}  // NOLINT(google-explicit-constructor)
-
-  T* allocate(std::size_t n) {
-    if (n > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
-    const std::size_t bytes = n * sizeof(T);
-    return static_cast<T*>(bytes < kLargeBlock ? ::operator new(bytes, std::align_val_t(alignof(T)))
-                                               : allocate_large_block(bytes));
-  }
-  void deallocate(T* block, std::size_t n) noexcept {
-    const std::size_t bytes = n * sizeof(T);
-    if (bytes < kLargeBlock)
-      ::operator delete(block, std::align_val_t(alignof(T)));
-    else
-      free_large_block(block, bytes);
-  }
-  template <class U, class... Args>
-  void construct(U* p, Args&&... args) {
-    if constexpr (sizeof...(Args) == 0)
-      ::new (static_cast<void*>(p)) U;
-    else
-      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
-  }
-  friend bool operator==(const DefaultInitAllocator&, const DefaultInitAllocator&) noexcept { return true; }
-};
-}  // namespace detail
-
 /// A std::vector whose new elements are uninitialised after `resize`.
 template <class T>
-using Buffer = std::vector<T, detail::DefaultInitAllocator<T>>;
+using Buffer = std::vector<T, detail::UninitialisedAllocator<T, detail::BufferMemory>>;
 
 /// The number of a vertex.
 using Index = std::uint32_t;

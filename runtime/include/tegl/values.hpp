@@ -6,44 +6,18 @@
 #include <cstddef>
 #include <initializer_list>
 #include <iterator>
-#include <new>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "tegl/memory.hpp"
+
 namespace tegl {
 
 namespace detail {
-/// Allocates memory for samples; blocks of 2 MiB or more are aligned to 64 bytes. Throws std::bad_alloc.
-void* allocate_values(std::size_t bytes);
-void free_values(void* block, std::size_t bytes) noexcept;
-
-/// Leaves new samples uninitialised and allocates with `allocate_values`.
-template <class T>
-struct ValueAllocator {
-  using value_type = T;
-  ValueAllocator() = default;
-  template <class U>
-  ValueAllocator(const ValueAllocator<U>&) noexcept {}  // NOLINT(google-explicit-constructor)
-
-  T* allocate(std::size_t n) {
-    if (n > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
-    return static_cast<T*>(allocate_values(n * sizeof(T)));
-  }
-  void deallocate(T* block, std::size_t n) noexcept { free_values(block, n * sizeof(T)); }
-  template <class U, class... Args>
-  void construct(U* p, Args&&... args) {
-    if constexpr (sizeof...(Args) == 0)
-      ::new (static_cast<void*>(p)) U;
-    else
-      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
-  }
-  friend bool operator==(const ValueAllocator&, const ValueAllocator&) noexcept { return true; }
-};
-
 /// A std::vector whose new samples are uninitialised.
 template <class T>
-using ValueVector = std::vector<T, ValueAllocator<T>>;
+using ValueVector = std::vector<T, UninitialisedAllocator<T, ValueMemory>>;
 }  // namespace detail
 
 /// Samples in one contiguous block of memory, with the functions of a std::vector. Converts from a std::vector without

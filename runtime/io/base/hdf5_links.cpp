@@ -4,7 +4,6 @@
 // of its hard links, each once by address.
 #include "base/hdf5_links.hpp"
 
-#include <algorithm>
 #include <array>
 #include <set>
 #include <string>

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 
 #include "base/common.hpp"
 #include "base/raw_image.hpp"

@@ -163,6 +163,28 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& pat
   io_detail::write_vtu(grid, path, progress, compression);
 }
 
+/// Appends the cells from ... to - 1. `end`: number of their points so far.
+template <int N, class Real>
+void append_cells(const FacetCells<N, Real>& cells, std::size_t from, std::size_t to, std::int64_t& end,
+                  io_detail::VtkhdfWriter& writer) {
+  std::vector<Index> ids;
+  std::vector<std::int64_t> ends;
+  for (std::size_t f = from; f < to; ++f) {
+    const std::vector<Index> points = cells.points(f);
+    ids.insert(ids.end(), points.begin(), points.end());
+    ends.push_back(end += static_cast<std::int64_t>(points.size()));
+  }
+  writer.append_cells(kFacetTypes[N - 1], ids, ends);
+}
+
+template <class Places, class Value>
+Attribute attribute_of_places(const char* name, const Places& places, const Value& value) {
+  Attribute attribute{name, "", 1, {}};
+  attribute.values.resize(places.size());
+  std::transform(places.begin(), places.end(), attribute.values.begin(), value);
+  return attribute;
+}
+
 template <int N, class Real>
 void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
                          Compression compression) {
@@ -200,23 +222,12 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& 
   });
   // cells
   std::int64_t end = 0;
-  in_blocks(cells.count(), [&](std::size_t from, std::size_t to) {
-    std::vector<Index> ids;
-    std::vector<std::int64_t> ends;
-    for (std::size_t f = from; f < to; ++f) {
-      const std::vector<Index> points = cells.points(f);
-      ids.insert(ids.end(), points.begin(), points.end());
-      ends.push_back(end += static_cast<std::int64_t>(points.size()));
-    }
-    writer.append_cells(kFacetTypes[N - 1], ids, ends);
-  });
+  in_blocks(cells.count(), [&](std::size_t from, std::size_t to) { append_cells(cells, from, to, end, writer); });
   // cell arrays
   const auto& places = facets.levels[N - 1].places;
   std::size_t order = 0;
   const auto add_cell_array = [&](const char* name, const auto& value) {
-    Attribute attribute{name, "", 1, {}};
-    attribute.values.resize(places.size());
-    std::transform(places.begin(), places.end(), attribute.values.begin(), value);
+    const Attribute attribute = attribute_of_places(name, places, value);
     io_detail::H5Table table = writer.attribute_table("CellData", attribute, order++);
     in_blocks(places.size(), [&](std::size_t from, std::size_t to) {
       table.append(H5T_NATIVE_DOUBLE, attribute.values.data() + from, to - from);

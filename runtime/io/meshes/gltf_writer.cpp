@@ -116,70 +116,88 @@ Json asset(const Mesh& mesh) {
   return {{"version", "2.0"}, {"generator", "tegl"}, {"extras", {{"tegl", extras}}}};
 }
 
+/// Arrays of numbers in the buffer, one after the other: each is a view of the buffer and an accessor.
+class BufferArrays {
+ public:
+  static constexpr int kFloat = 5126;
+  static constexpr int kUint32 = 5125;
+  static constexpr int kVertexBuffer = 34962;
+  static constexpr int kIndexBuffer = 34963;
+
+  /// Appends an array of `count` items. Returns the number of its accessor. `limits`: "min" and "max", or empty.
+  std::size_t add(int component, std::size_t count, const char* type, std::size_t bytes, int target,
+                  const Json& limits = Json::object()) {
+    Json accessor = {{"bufferView", views_.size()}, {"componentType", component}, {"count", count}, {"type", type}};
+    accessor.update(limits);
+    accessors_.push_back(std::move(accessor));
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}, {"target", target}});
+    bytes_ += bytes;
+    return accessors_.size() - 1;
+  }
+  void write(Json& json) const {
+    json["accessors"] = accessors_;
+    json["bufferViews"] = views_;
+  }
+
+ private:
+  Json accessors_ = Json::array();
+  Json views_ = Json::array();
+  std::size_t bytes_ = 0;
+};
+
+/// Adds vertices, simplices and normals; `primitive` refers to their accessors.
+void add_geometry(const Content& content, BufferArrays& arrays, Json& primitive) {
+  const auto& [mesh, points, attributes] = content;
+  constexpr int kLines = 1;
+  constexpr int kTriangles = 4;
+  const std::size_t bytes = points.values.size() * sizeof(points.values[0]);
+  const std::size_t positions = arrays.add(BufferArrays::kFloat, points.values.size(), "VEC3", bytes,
+                                           BufferArrays::kVertexBuffer, {{"min", points.low}, {"max", points.high}});
+  const std::size_t indices = arrays.add(BufferArrays::kUint32, mesh.simplices.size(), "SCALAR",
+                                         mesh.simplices.size() * sizeof(Index), BufferArrays::kIndexBuffer);
+  primitive = {{"attributes", {{"POSITION", positions}}},
+               {"indices", indices},
+               {"material", 0},
+               {"mode", mesh.dim == 1 ? kLines : kTriangles}};
+  if (!points.normals.empty())
+    primitive["attributes"]["NORMAL"] =
+        arrays.add(BufferArrays::kFloat, points.normals.size(), "VEC3", bytes, BufferArrays::kVertexBuffer);
+}
+
+/// Adds the vertex attributes. Returns their names and units.
+Json add_attributes(const Content& content, BufferArrays& arrays, Json& primitive) {
+  Json texts;
+  for (const GltfAttribute& added : content.attributes) {
+    constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    primitive["attributes"][added.semantic] =
+        arrays.add(BufferArrays::kFloat, content.points.values.size(),
+                   kTypes[static_cast<std::size_t>(added.attribute->width) - 1], added.values.size() * sizeof(float),
+                   BufferArrays::kVertexBuffer);
+    if (!added.semantic.starts_with('_')) continue;  // COLOR_0 repeats an attribute that has its own name too
+    texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
+  }
+  return texts;
+}
+
 /// The JSON document. glTF allows no empty accessor, so an empty mesh is a scene without nodes.
 Json document(const Content& content, std::size_t buffer_bytes) {
-  const auto& [mesh, points, attributes] = content;
-  Json json = {{"asset", asset(mesh)}, {"scene", 0}};
-  if (points.values.empty() || mesh.simplices.empty()) {
+  Json json = {{"asset", asset(content.mesh)}, {"scene", 0}};
+  if (content.points.values.empty() || content.mesh.simplices.empty()) {
     json["scenes"] = Json::array({Json{{"name", "empty contour"}}});
     return json;
   }
-  constexpr int kLines = 1;
-  constexpr int kTriangles = 4;
-  constexpr int kFloat = 5126;
-  constexpr int kUint32 = 5125;
-  constexpr int kVertexBuffer = 34962;
-  constexpr int kIndexBuffer = 34963;
-  const std::size_t position_bytes = points.values.size() * sizeof(points.values[0]);
-  const std::size_t index_bytes = mesh.simplices.size() * sizeof(Index);
-  Json primitive = {{"attributes", {{"POSITION", 0}}},
-                    {"indices", 1},
-                    {"material", 0},
-                    {"mode", mesh.dim == 1 ? kLines : kTriangles}};
-  if (!points.normals.empty()) primitive["attributes"]["NORMAL"] = 2;
-  // scene, node, mesh, material
+  BufferArrays arrays;
+  Json primitive;
+  add_geometry(content, arrays, primitive);
+  const Json attributes = add_attributes(content, arrays, primitive);
+  Json mesh = {{"name", "contour"}, {"primitives", Json::array({primitive})}};
+  if (!attributes.empty()) mesh["extras"]["tegl"]["attributes"] = attributes;
+  // scene, node, mesh, material, buffer
   json["scenes"] = Json::array({Json{{"nodes", {0}}}});
   json["nodes"] = Json::array({Json{{"mesh", 0}, {"name", "contour"}}});
-  json["meshes"] = Json::array({Json{{"name", "contour"}, {"primitives", Json::array({primitive})}}});
+  json["meshes"] = Json::array({mesh});
   json["materials"] = Json::array({Json{{"name", "contour"}, {"doubleSided", true}}});
-  // positions and indices
-  json["accessors"] = Json::array(
-      {Json{{"bufferView", 0},
-            {"componentType", kFloat},
-            {"count", points.values.size()},
-            {"type", "VEC3"},
-            {"min", points.low},
-            {"max", points.high}},
-       Json{{"bufferView", 1}, {"componentType", kUint32}, {"count", mesh.simplices.size()}, {"type", "SCALAR"}}});
-  json["bufferViews"] = Json::array(
-      {Json{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", kVertexBuffer}},
-       Json{{"buffer", 0}, {"byteOffset", position_bytes}, {"byteLength", index_bytes}, {"target", kIndexBuffer}}});
-  if (!points.normals.empty()) {
-    json["accessors"].push_back(
-        {{"bufferView", 2}, {"componentType", kFloat}, {"count", points.normals.size()}, {"type", "VEC3"}});
-    json["bufferViews"].push_back({{"buffer", 0},
-                                   {"byteOffset", position_bytes + index_bytes},
-                                   {"byteLength", position_bytes},
-                                   {"target", kVertexBuffer}});
-  }
-  // vertex attributes
-  std::size_t offset = position_bytes + index_bytes + (points.normals.empty() ? 0 : position_bytes);
-  for (const GltfAttribute& added : attributes) {
-    constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    const std::size_t view = json["bufferViews"].size();
-    json["meshes"][0]["primitives"][0]["attributes"][added.semantic] = json["accessors"].size();
-    json["accessors"].push_back({{"bufferView", view},
-                                 {"componentType", kFloat},
-                                 {"count", points.values.size()},
-                                 {"type", kTypes[static_cast<std::size_t>(added.attribute->width) - 1]}});
-    const std::size_t bytes = added.values.size() * sizeof(float);
-    json["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", kVertexBuffer}});
-    offset += bytes;
-    if (!added.semantic.starts_with('_')) continue;  // COLOR_0 repeats an attribute that has its own name too
-    Json& texts = json["meshes"][0]["extras"]["tegl"]["attributes"];
-    texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
-  }
+  arrays.write(json);
   json["buffers"] = Json::array({Json{{"byteLength", buffer_bytes}}});
   return json;
 }

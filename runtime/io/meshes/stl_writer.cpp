@@ -8,7 +8,6 @@
 // Based on: 3D Systems, "Stereolithography Interface Specification", 1988.
 #include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <ctime>
@@ -225,65 +224,78 @@ void ChildProcess::require_time(double fraction, const Progress& progress) {
                            kWithoutLimits));
 }
 
+/// State of wait().
+struct ChildProcess::Waiting {
+  bool shared;                  ///< blocks are lent
+  std::vector<Mapping> blocks;  ///< received so far
+  double fraction = 0;          ///< of the child's work
+};
+
+/// A sign of progress: the limits of time start anew.
+void ChildProcess::note_progress() noexcept {
+  used_before_ = used_last_ = seconds_used(pid_);
+  standing_since_ = std::chrono::steady_clock::now();
+  granted_ = 0;
+}
+
+/// Handles a message before the result.
+void ChildProcess::take_message(Message& message, Waiting& waiting, const Progress& progress) {
+  constexpr double kMostSeconds = 3600;
+  const auto unpacked = [&](auto use) {
+    Unpacker unpacker(message.package);
+    use(unpacker);
+    unpacker.require_end();
+  };
+  switch (message.kind) {
+    case MessageKind::progress:
+      note_progress();
+      unpacked([&](Unpacker& u) { waiting.fraction = u.number<double>(); });
+      if (!(waiting.fraction >= 0 && waiting.fraction <= 1)) throw BadPackage();
+      return tick(progress, waiting.fraction, path_);
+    case MessageKind::file:
+      note_progress();
+      return unpacked([&](Unpacker& u) { path_ = u.text(); });
+    case MessageKind::grant:
+      unpacked([&](Unpacker& u) { granted_ += u.number<double>(); });
+      if (!(granted_ >= 0)) throw BadPackage();
+      granted_ = std::min(granted_, kMostSeconds);
+      return;
+    case MessageKind::block:
+      return take_block(std::exchange(message.descriptor, -1), waiting.blocks, waiting.shared);
+    default:
+      fail_died();
+  }
+}
+
 Package ChildProcess::wait(const Progress& progress, bool shared) {
   constexpr int kMilliseconds = 50;
-  constexpr double kMostSeconds = 3600;
   if (getpid() != owner_ || pid_ <= 0)
     fail(ErrorCode::FileNotFound, path_,
          "cannot be read further: it was opened by another process, or reading failed before");
-  std::vector<Mapping> blocks;
-  double fraction = 0;
-  const auto has_progressed = [&] {
-    used_before_ = used_last_ = seconds_used(pid_);
-    standing_since_ = std::chrono::steady_clock::now();
-    granted_ = 0;
-  };
-  has_progressed();
-  tick(progress, fraction, path_);
+  Waiting waiting{shared, {}};
+  note_progress();
+  tick(progress, waiting.fraction, path_);
   // handle messages until the result
   for (;;) {
-    pollfd waiting{socket_, POLLIN, 0};
-    if (poll(&waiting, 1, kMilliseconds) <= 0) {
-      require_time(fraction, progress);
+    pollfd ready{socket_, POLLIN, 0};
+    if (poll(&ready, 1, kMilliseconds) <= 0) {
+      require_time(waiting.fraction, progress);
       continue;
     }
     Message message = next_message();
-    const auto unpacked = [&](auto use) {
-      Unpacker unpacker(message.package);
-      use(unpacker);
-      unpacker.require_end();
-    };
-    switch (message.kind) {
-      case MessageKind::progress:
-        has_progressed();
-        unpacked([&](Unpacker& u) { fraction = u.number<double>(); });
-        if (!(fraction >= 0 && fraction <= 1)) throw BadPackage();
-        tick(progress, fraction, path_);
-        break;
-      case MessageKind::file:
-        has_progressed();
-        unpacked([&](Unpacker& u) { path_ = u.text(); });
-        break;
-      case MessageKind::grant:
-        unpacked([&](Unpacker& u) { granted_ += u.number<double>(); });
-        if (!(granted_ >= 0)) throw BadPackage();
-        granted_ = std::min(granted_, kMostSeconds);
-        break;
-      case MessageKind::block:
-        take_block(std::exchange(message.descriptor, -1), blocks, shared);
-        break;
-      case MessageKind::closed:
-        fail_died();
-      default:
-        if (message.descriptor >= 0) {
-          std::vector<Mapping> file;
-          take_block(std::exchange(message.descriptor, -1), file, false);
-          message.package.large = std::move(file.front());
-        }
-        if (message.kind != MessageKind::result) rethrow(message);
-        message.package.blocks = std::move(blocks);
-        return std::move(message.package);
+    if (message.kind <= MessageKind::block) {
+      take_message(message, waiting, progress);
+      continue;
     }
+    // the result, or an error
+    if (message.descriptor >= 0) {
+      std::vector<Mapping> file;
+      take_block(std::exchange(message.descriptor, -1), file, false);
+      message.package.large = std::move(file.front());
+    }
+    if (message.kind != MessageKind::result) rethrow(message);
+    message.package.blocks = std::move(waiting.blocks);
+    return std::move(message.package);
   }
 }
 

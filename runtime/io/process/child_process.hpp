@@ -56,6 +56,9 @@ class ChildProcess {
 
  private:
   struct Message;
+  struct Waiting;
+  void note_progress() noexcept;
+  void take_message(Message& message, Waiting& waiting, const Progress& progress);
   Package wait(const Progress& progress, bool shared);
   [[nodiscard]] Message next_message();
   void take_block(int descriptor, std::vector<Mapping>& blocks, bool shared);

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -149,7 +148,7 @@ const char* name_of(Ambiguity ambiguity) noexcept {
 }
 
 template <int N>
-FaceEstimator<N>::FaceEstimator(const SampleSource<N>& source, const Index& sizes, const ExtractOptions& options,
+FaceEstimator<N>::FaceEstimator(const CornerValues<N>& source, const Index& sizes, const ExtractOptions& options,
                                 PartOfImage part)
     : source_(source),
       ambiguity_(options.ambiguity),
@@ -160,13 +159,13 @@ FaceEstimator<N>::FaceEstimator(const SampleSource<N>& source, const Index& size
   around_.read = [](const void* image, const std::ptrdiff_t* index) {
     Index at;
     for (int a = 0; a < N; ++a) at[a] = static_cast<std::size_t>(index[a]);
-    return static_cast<const SampleSource<N>*>(image)->value(at);
+    return static_cast<const CornerValues<N>*>(image)->value(at);
   };
   for (int a = 0; a < N; ++a) around_.end[a] = static_cast<std::ptrdiff_t>(sizes[a]);
   if (part.axis >= 0) around_.origin[part.axis] = static_cast<std::ptrdiff_t>(part.first);
   around_.origin[N - 1] += static_cast<std::ptrdiff_t>(source.first_layer());
   around_.first[N - 1] = -static_cast<std::ptrdiff_t>(source.first_layer());
-  around_.end[N - 1] = std::max(around_.end[N - 1], static_cast<std::ptrdiff_t>(source.layers_at_hand()));
+  around_.end[N - 1] = std::max(around_.end[N - 1], static_cast<std::ptrdiff_t>(source.layers_from_first()));
 }
 
 template <int N>

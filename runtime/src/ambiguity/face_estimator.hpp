@@ -12,7 +12,7 @@
 #include <mutex>
 #include <span>
 
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::detail {
@@ -41,11 +41,11 @@ class FaceEstimator {
  public:
   using Index = std::array<std::size_t, N>;
 
-  FaceEstimator(const SampleSource<N>& source, const Index& sizes, const ExtractOptions& options, PartOfImage part);
+  FaceEstimator(const CornerValues<N>& source, const Index& sizes, const ExtractOptions& options, PartOfImage part);
   FaceEstimator(const FaceEstimator&) = delete;
   FaceEstimator& operator=(const FaceEstimator&) = delete;
 
-  [[nodiscard]] const SampleSource<N>& source() const noexcept { return source_; }
+  [[nodiscard]] const CornerValues<N>& source() const noexcept { return source_; }
   /// Triangulation of the contour.
   [[nodiscard]] Triangulation triangulation() const noexcept { return triangulation_; }
 
@@ -72,7 +72,7 @@ class FaceEstimator {
 
   void keep_error(std::exception_ptr error) const noexcept;
 
-  const SampleSource<N>& source_;
+  const CornerValues<N>& source_;
   Ambiguity ambiguity_;
   const Estimator& estimator_;
   Triangulation triangulation_;

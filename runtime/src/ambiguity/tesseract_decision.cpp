@@ -4,7 +4,6 @@
 #include "ambiguity/tesseract_decision.hpp"
 
 #include <bit>
-#include <span>
 #include <utility>
 
 #include "tegl/generated/tables.hpp"

@@ -5,7 +5,8 @@
 // - TEGL_INSTANTIATE_REALS(T, N, Real): 2 to 4 dimensions, float and double. Not for sources whose instances capture
 // something in an unnamed namespace: GCC warns.
 // - TEGL_INSTANTIATE_DIMENSIONS(T, N): 2 to 5 dimensions.
-#ifdef TEGL_INSTANTIATE_REALS
+// - TEGL_INSTANTIATE(T): once.
+#if defined(TEGL_INSTANTIATE_REALS)
 #define TEGL_INSTANTIATE(T)            \
   TEGL_INSTANTIATE_REALS(T, 2, float)  \
   TEGL_INSTANTIATE_REALS(T, 2, double) \
@@ -13,7 +14,7 @@
   TEGL_INSTANTIATE_REALS(T, 3, double) \
   TEGL_INSTANTIATE_REALS(T, 4, float)  \
   TEGL_INSTANTIATE_REALS(T, 4, double)
-#else
+#elif defined(TEGL_INSTANTIATE_DIMENSIONS)
 #define TEGL_INSTANTIATE(T)         \
   TEGL_INSTANTIATE_DIMENSIONS(T, 2) \
   TEGL_INSTANTIATE_DIMENSIONS(T, 3) \

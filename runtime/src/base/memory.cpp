@@ -3,14 +3,12 @@
 // Memory for outputs. Fresh memory costs a page fault per page at the first access. With pages of 2 MiB instead of 4
 // KiB this is seven times faster, and several threads can access different parts concurrently.
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <utility>
 
 #include "base/block_source.hpp"
-#include "tegl/contour.hpp"
-#include "tegl/values.hpp"
+#include "tegl/memory.hpp"
 
 #ifdef __linux__
 #include <sys/mman.h>

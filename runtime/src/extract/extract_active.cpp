@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Extraction with an index of the active tiles.
-#include <string>
 
 #include <fmt/format.h>
 
 #include "base/stopwatch.hpp"
+#include "image/row_source.hpp"
 #include "kernel/tableless.hpp"
 #include "kernel/tile_selection.hpp"
 #include "search/index_file.hpp"

@@ -221,14 +221,7 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>&
   TEGL_INSTANTIATE_DIM(T, 2)                                                                        \
   TEGL_INSTANTIATE_DIM(T, 3)                                                                        \
   TEGL_INSTANTIATE_DIM(T, 4)
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 #undef TEGL_INSTANTIATE_DIM
 #undef TEGL_INSTANTIATE_ONE
 

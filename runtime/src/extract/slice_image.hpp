@@ -19,6 +19,7 @@
 
 #include "ambiguity/moved_estimator.hpp"
 #include "base/slice_at.hpp"
+#include "image/row_source.hpp"
 #include "kernel/tableless.hpp"
 #include "tegl/slice.hpp"
 

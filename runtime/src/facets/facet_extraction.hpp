@@ -3,7 +3,7 @@
 // Extraction of the facet hierarchy, independent of the value type of the image.
 #pragma once
 
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "tegl/facet_hierarchy.hpp"
 
 namespace tegl::detail {

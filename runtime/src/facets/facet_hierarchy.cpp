@@ -10,6 +10,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "facets/facet_extraction.hpp"
+#include "image/row_source.hpp"
 #include "kernel/extract_kernel.hpp"
 
 namespace tegl {
@@ -156,26 +157,20 @@ requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const 
   return detail::extract_facets<N, Real>(source, image.grid(), options);
 }
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real) \
-  template FacetHierarchy<N, Real> extract_facets<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&);
-#define TEGL_INSTANTIATE_TYPES(N, Real)        \
-  TEGL_INSTANTIATE_ONE(std::uint8_t, N, Real)  \
-  TEGL_INSTANTIATE_ONE(std::int8_t, N, Real)   \
-  TEGL_INSTANTIATE_ONE(std::uint16_t, N, Real) \
-  TEGL_INSTANTIATE_ONE(std::int16_t, N, Real)  \
-  TEGL_INSTANTIATE_ONE(std::int32_t, N, Real)  \
-  TEGL_INSTANTIATE_ONE(float, N, Real)         \
-  TEGL_INSTANTIATE_ONE(double, N, Real)
 #define TEGL_INSTANTIATE(N, Real)                                                      \
   template struct FacetHierarchy<N, Real>;                                             \
   template int facet_euler<N, Real>(const FacetHierarchy<N, Real>&, int, std::size_t); \
-  template FacetReport check<N, Real>(const FacetHierarchy<N, Real>&);                 \
-  TEGL_INSTANTIATE_TYPES(N, Real)
+  template FacetReport check<N, Real>(const FacetHierarchy<N, Real>&);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)
 TEGL_INSTANTIATE(3, double)
 TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
+
+#define TEGL_INSTANTIATE_REALS(T, N, Real) \
+  template FacetHierarchy<N, Real> extract_facets<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

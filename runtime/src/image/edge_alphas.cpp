@@ -4,8 +4,9 @@
 // Multiplications and additions are not fused, so that all instruction sets give identical bytes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "image/extract_source.hpp"
+#include "image/edge_alphas.hpp"
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/corners.hpp"
 

@@ -3,8 +3,6 @@
 // Image views: validation, dense strides, parts.
 #include "tegl/image.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <Eigen/LU>
 

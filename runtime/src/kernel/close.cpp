@@ -4,7 +4,6 @@
 // dimension N - 1. Its cap is the high set, built tile by tile from the region tables.
 #include "kernel/close.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "ambiguity/cube_decision.hpp"
@@ -72,7 +71,7 @@ TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask,
 }  // namespace
 
 template <int N, class Real>
-Caps<N, Real>::Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables,
+Caps<N, Real>::Caps(const EdgeCrossings<N>& source, const RowShape<N>& shape, const TableSet<N>& tables,
                     const Counter<N>& counter, const Placement<N, Real>& placement, const FaceEstimator<N>* estimator,
                     bool inverted, bool flip, unsigned closed_axes)
     : source_(source),
@@ -289,7 +288,7 @@ const tables::RegionTable& Caps<N, Real>::table_of(
   if constexpr (std::popcount(Axes) == 2)
     if (estimator_ != nullptr && ambiguous_signatures<2>()[signature]) {
       std::array<double, 4> values;
-      source_.corner_values(index, Axes, values.data());
+      estimator_->source().corner_values(index, Axes, values.data());
       if (estimator_->is_square_high(index, Axes, values)) return *tables_.high_face;
     }
   return low;

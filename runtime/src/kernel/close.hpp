@@ -30,7 +30,7 @@ class Caps {
 
   /// `inverted`: the layers' bits are inverted. `flip`: orientation opposite to "positive side faces high". Bit a of
   /// `closed_axes`: the borders across axis a get caps. `estimator`: as in Counter.
-  Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
+  Caps(const EdgeCrossings<N>& source, const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
        const Placement<N, Real>& placement, const FaceEstimator<N>* estimator, bool inverted, bool flip,
        unsigned closed_axes);
 
@@ -108,7 +108,7 @@ class Caps {
     return inverted_ ? ~signature & ((1u << corners) - 1) : signature;
   }
 
-  const SampleSource<N>& source_;
+  const EdgeCrossings<N>& source_;
   const RowShape<N>& shape_;
   TableSet<N> tables_;
   const Counter<N>& counter_;

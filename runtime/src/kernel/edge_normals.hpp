@@ -17,10 +17,9 @@ namespace tegl::detail {
 template <int N, class Real, class Calc>
 struct NormalRow {
   using Vertex = std::array<Real, N>;
-  /// Values per edge: the samples around it and its vertex's position on it.
-  static constexpr unsigned kValues = kEdgeValues<N> + 1;
-
-  const Calc* values;  ///< kValues x kEdgesAtOnce; undefined from `count` on
+  /// (kEdgeValues + 1) x kEdgesAtOnce: the samples around each edge and its vertex's position on it. Undefined from
+  /// `count` on.
+  const Calc* values;
   std::size_t count;
   int axis;
   /// By axis: weights of the backward and forward difference at the first end, then at the second.

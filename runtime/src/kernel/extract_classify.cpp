@@ -11,8 +11,8 @@
 namespace tegl::detail {
 
 template <int N>
-void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
-                          Word* buffer, const TileSelection* selection) const {
+void Counter<N>::classify(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t chunk,
+                          Layer<N>& layer, Word* buffer, const TileSelection* selection) const {
   const std::size_t first = chunk * kChunkRows;
   bool uniform = true;
   if (selection == nullptr)
@@ -25,7 +25,7 @@ void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool inv
 }
 
 template <int N>
-void Counter<N>::classify_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first,
+void Counter<N>::classify_rows(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t first,
                                std::size_t end, Layer<N>& layer, Word* buffer) const {
   const std::size_t pitch = shape_.pitch();
   for (std::size_t row = first; row < end;) {
@@ -49,7 +49,7 @@ void Counter<N>::classify_rows(const SampleSource<N>& source, std::size_t k, boo
 }
 
 template <int N>
-void Counter<N>::classify_selected(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk,
+void Counter<N>::classify_selected(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t chunk,
                                    Layer<N>& layer, Word* buffer, const TileSelection& selection) const {
   const std::uint32_t selected = selection.rows(k, chunk);
   const std::size_t first = chunk * kChunkRows;
@@ -70,7 +70,7 @@ void Counter<N>::classify_selected(const SampleSource<N>& source, std::size_t k,
 }
 
 template <int N>
-void Counter<N>::guess_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first,
+void Counter<N>::guess_rows(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t first,
                             std::size_t end, Layer<N>& layer) const {
   bool high = false;
   for (std::size_t row = first; row < end; ++row) {

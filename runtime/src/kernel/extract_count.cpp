@@ -245,6 +245,69 @@ static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* pl
   return j - first;
 }
 
+namespace {
+
+/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and the table's counts by those of
+/// the variants. N < 4.
+template <int N>
+class TileResolver {
+ public:
+  /// `base`: of the row; index 0 is ignored.
+  TileResolver(const FaceEstimator<N>& estimator, const RowTable& table, const typename RowShape<N>::Index& base,
+               const TileRoom& room, bool is_listed, TileCount& count)
+      : estimator_(estimator),
+        table_(table),
+        base_(base),
+        room_(room),
+        walk_(room.active),
+        is_listed_(is_listed),
+        count_(count) {}
+
+  /// Resolves tile number i of the row.
+  void resolve(std::uint32_t i) {
+    const unsigned signature = room_.signatures[i];
+    base_[0] = is_listed_ ? room_.at[i] : walk_.place_of(i);
+    const unsigned key = resolved_key<N>(estimator_, base_, signature);
+    count_.simplices += table_.entry(key) & RowTable::kCountMask;
+    count_.simplices -= table_.entry(signature) & RowTable::kCountMask;
+    count_.own_vertices += table_.own_vertices(key) - table_.own_vertices(signature);
+    room_.signatures[i] = static_cast<std::uint16_t>(key);
+  }
+
+  /// Resolves tiles that lie in the same word, together. N = 3.
+  void resolve_word(RowFaces<N>& faces, const std::uint32_t* of_word, std::uint32_t tiles) {
+    TilesOfWord of;
+    of.count = tiles;
+    for (std::uint32_t j = 0; j < tiles; ++j) {
+      of.bits[j] = room_.at[of_word[j]] % kWordBits;
+      of.signatures[j] = static_cast<std::uint8_t>(room_.signatures[of_word[j]]);
+    }
+    detail::resolve(estimator_, table_, faces.look_at(room_.at[of_word[0]] / kWordBits), of);
+    // apply the variants; key 0: not resolved here
+    for (std::uint32_t j = 0; j < tiles; ++j) {
+      const Variant variant = of.variants[j];
+      if (variant.key == 0) {
+        resolve(of_word[j]);
+        continue;
+      }
+      count_.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
+      count_.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
+      room_.signatures[of_word[j]] = variant.key;
+    }
+  }
+
+ private:
+  const FaceEstimator<N>& estimator_;
+  const RowTable& table_;
+  typename RowShape<N>::Index base_;
+  const TileRoom& room_;
+  BitWalk walk_;
+  bool is_listed_;
+  TileCount& count_;
+};
+
+}  // namespace
+
 // Not inlined, so that the caller has a small stack frame if nothing is resolved. So is resolve_tesseracts.
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
@@ -253,59 +316,32 @@ template <int N>
     const bool is_listed = shape_.size(0) <= kMostListed;
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
-    BitWalk walk(room.active);
-    const auto resolve = [&](std::uint32_t i) {
-      const unsigned signature = room.signatures[i];
-      base[0] = is_listed ? room.at[i] : walk.place_of(i);
-      const unsigned key = resolved_key<N>(*estimator_, base, signature);
-      count.simplices += rows_->entry(key) & RowTable::kCountMask;
-      count.simplices -= rows_->entry(signature) & RowTable::kCountMask;
-      count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
-      room.signatures[i] = static_cast<std::uint16_t>(key);
-    };
-    std::array<std::uint32_t, kWordBits> places;
-    if constexpr (N == 2) {
+    TileResolver<N> resolver(*estimator_, *rows_, base, room, is_listed, count);
+    // calls resolve_found with the indices of ambiguous tiles, and their number
+    const auto for_ambiguous = [&](const auto& resolve_found) {
+      std::array<std::uint32_t, kWordBits> places;
       for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
         const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
-        const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
-        for (std::uint32_t j = 0; j < found; ++j) resolve(places.data()[j]);
+        resolve_found(places.data(), list_ambiguous<N>(room, first, end, places));
       }
+    };
+    if constexpr (N == 2) {
+      for_ambiguous([&](const std::uint32_t* places, std::uint32_t found) {
+        for (std::uint32_t j = 0; j < found; ++j) resolver.resolve(places[j]);
+      });
     } else {
       RowFaces<N> faces(*estimator_, base, shape_.size(0));
       const bool at_once = is_listed && RowFaces<N>::can_use(*estimator_);
-      const auto resolve_word = [&](const std::uint32_t* of_word, std::uint32_t tiles) {
-        TilesOfWord of;
-        // the ambiguous tiles of one word
-        of.count = tiles;
-        for (std::uint32_t j = 0; j < tiles; ++j) {
-          of.bits[j] = room.at[of_word[j]] % kWordBits;
-          of.signatures[j] = static_cast<std::uint8_t>(room.signatures[of_word[j]]);
-        }
-        detail::resolve(*estimator_, *rows_, faces.look_at(room.at[of_word[0]] / kWordBits), of);
-        // apply the variants; key 0: not resolved here
-        for (std::uint32_t j = 0; j < tiles; ++j) {
-          const Variant variant = of.variants[j];
-          if (variant.key == 0) {
-            resolve(of_word[j]);
-            continue;
-          }
-          count.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
-          count.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
-          room.signatures[of_word[j]] = variant.key;
-        }
-      };
-      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
-        const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
-        const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
+      for_ambiguous([&](const std::uint32_t* places, std::uint32_t found) {
         for (std::uint32_t j = 0; j < found;) {
-          const std::uint32_t tiles = at_once ? count_at_word(room, places.data(), j, found) : 1;
+          const std::uint32_t tiles = at_once ? count_at_word(room, places, j, found) : 1;
           if (tiles >= 2 * RowFaces<N>::kMany)  // resolving one cube costs less than one tesseract
-            resolve_word(places.data() + j, tiles);
+            resolver.resolve_word(faces, places + j, tiles);
           else
-            for (std::uint32_t k = j; k < j + tiles; ++k) resolve(places.data()[k]);
+            for (std::uint32_t k = j; k < j + tiles; ++k) resolver.resolve(places[k]);
           j += tiles;
         }
-      }
+      });
     }
   }
 }

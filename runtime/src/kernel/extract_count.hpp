@@ -67,7 +67,7 @@ class Counter {
 
   /// Pass 1: classifies the samples of layer `k`. `invert`: for the high-connected alternative. `buffer`: pitch words.
   /// `selection`: rows or tiles to process; null: all.
-  void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
+  void classify(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
                 Word* buffer, const TileSelection* selection) const;
   /// Call after all chunks of a layer are classified. If samples are missing and the layer has no storage for them, it
   /// must be classified again after allocate_missing.
@@ -108,14 +108,14 @@ class Counter {
                             Word* out) const;
 
  private:
-  void classify_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
+  void classify_rows(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
                      Layer<N>& layer, Word* buffer) const;
   /// Classifies the selected rows of a chunk. The other rows are uniform; only their common state is determined.
-  void classify_selected(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
-                         Word* buffer, const TileSelection& selection) const;
+  void classify_selected(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t chunk,
+                         Layer<N>& layer, Word* buffer, const TileSelection& selection) const;
   /// Determines the state of rows first ... end - 1, which no active tile touches. Reads one sample of each row that
   /// may differ from the row before.
-  void guess_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
+  void guess_rows(const SampleClassifier<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
                   Layer<N>& layer) const;
   /// Converts a classified row to its final form (inverted, padded). Returns its common state.
   RowState finish_row(Word* high, bool invert, bool any_missing) const;

@@ -51,7 +51,7 @@ class EdgeWriter {
   using Counts = std::array<std::uint32_t, N>;
   using Firsts = std::array<Index, N>;
 
-  EdgeWriter(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
+  EdgeWriter(const EdgeCrossings<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
       : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
     for (int a = 0; a < N; ++a) lists_[a].allocate(shape.size(0), a > 0 && a + 1 < N);
     segments_.reserve(most_segments(shape.size(0)));  // nothing may throw after construction
@@ -294,7 +294,7 @@ class EdgeWriter {
       std::copy_n(from, segment.count, to);
   }
 
-  const SampleSource<N>& source_;
+  const EdgeCrossings<N>& source_;
   const Placement<N, Real>& placement_;
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;

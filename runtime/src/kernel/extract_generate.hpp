@@ -31,7 +31,7 @@ class TileWriter {
 
   /// `flip`: reverses the tables' orientation. `rows`: flat table for the fast path, or null. `estimator`: as in
   /// Counter.
-  TileWriter(const SampleSource<N>& source, const TableSet<N>& tables, const RowTable* rows,
+  TileWriter(const EdgeCrossings<N>& source, const TableSet<N>& tables, const RowTable* rows,
              const FaceEstimator<N>* estimator, const Placement<N, Real>& placement, bool flip, bool has_cubes)
       : source_(source),
         estimator_(estimator),
@@ -70,65 +70,65 @@ class TileWriter {
  private:
   using Ids = std::array<Index, 256>;  // by local vertex
 
+  /// The tiles of one row that have own vertices; write_tile_row calls `write` for each, in ascending order, so their
+  /// positions are found by iterating over the active bits.
+  struct TilesWithOwnVertices {
+    const TileWriter& writer;
+    const SlabView<N>& view;
+    std::size_t row;
+    CountScratch& scratch;
+    typename RowShape<N>::Index index;  ///< of the current tile
+    VertexRun<Vertex> vertices;
+    BitWalk active;
+    Index next;                   ///< number of the next own vertex
+    RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
+
+    static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
+      auto& own = *static_cast<TilesWithOwnVertices*>(self);
+      own.index[0] = own.active.place_of(ordinal);
+      Ids ids;
+      std::copy_n(edge_ids, tables::edge_count(N), ids.data());
+      if constexpr (N == 4)
+        if (own.writer.is_estimated_tile(key))
+          return own.writer.write_resolved(own.view, own.row, own.index, key,
+                                           own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key), ids,
+                                           own.next, own.vertices, *own.scratch.tesseract, out);
+      const SimplexList<N> list(own.writer.table_, key);
+      SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
+      own.writer.write_own(list, places, own.index, own.next, own.vertices);
+      out = own.writer.write_simplices(list, ids, own.next, out);
+      own.next += list.own_vertices();
+      return out;
+    }
+  };
+
   /// Writes a row whose tiles are all valid. Then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
                      const RowTiles& tiles, VertexRun<Vertex> vertices, Simplex* out,
                      CountScratch& scratch) const noexcept {
     TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
-    // Tiles with own vertices come in ascending order, so their positions are found by iterating over the active bits.
-    struct Own {
-      const TileWriter& writer;
-      const SlabView<N>& view;
-      std::size_t row;
-      CountScratch& scratch;
-      typename RowShape<N>::Index index;
-      VertexRun<Vertex> vertices;
-      BitWalk active;
-      Index next;
-      RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
-
-      static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids,
-                            Simplex* out) noexcept {
-        Own& own = *static_cast<Own*>(self);
-        own.index[0] = own.active.place_of(ordinal);
-        Ids ids;
-        std::copy_n(edge_ids, tables::edge_count(N), ids.data());
-        if constexpr (N == 4)
-          if (own.writer.is_estimated_tile(key))
-            return own.writer.write_resolved(own.view, own.row, own.index, key,
-                                             own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key), ids,
-                                             own.next, own.vertices, *own.scratch.tesseract, out);
-        const SimplexList<N> list(own.writer.table_, key);
-        SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
-        own.writer.write_own(list, places, own.index, own.next, own.vertices);
-        out = own.writer.write_simplices(list, ids, own.next, out);
-        own.next += list.own_vertices();
-        return out;
-      }
-    };
-    Own own{*this,
-            view,
-            row,
-            scratch,
-            start,
-            vertices,
-            BitWalk(view.slab->active.data() + row * view.shape->words()),
-            view.slab->first_own(row),
-            nullptr};
+    TilesWithOwnVertices own{*this,
+                             view,
+                             row,
+                             scratch,
+                             start,
+                             vertices,
+                             BitWalk(view.slab->active.data() + row * view.shape->words()),
+                             view.slab->first_own(row),
+                             nullptr};
     // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
       if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
-    write_tile_row<N>(output, *rows_, {&Own::write, &own});
+    write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }
 
   /// write_tile_row for tiles resolved from the data. Not inlined, because its stack frame is large.
-  template <class Own>
   [[gnu::noinline]] void write_tesseracts(const TileOutput<N>& output, const typename RowShape<N>::Index& start,
-                                          const RowTiles& tiles, Own& own) const noexcept {
+                                          const RowTiles& tiles, TilesWithOwnVertices& own) const noexcept {
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
     own.tesseracts = &tesseracts;
-    write_tile_row<N>(output, *rows_, {&Own::write, &own});
+    write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }
 
   /// Writes a row tile by tile from bits.
@@ -256,8 +256,8 @@ class TileWriter {
                                     : resolved_tile(*estimator_, index, signature);
   }
   /// Resolves tile number `ordinal` of a row's active tiles.
-  template <class Own>
-  [[nodiscard]] ResolvedTile tile_of(Own& own, std::uint32_t ordinal, unsigned signature) const noexcept {
+  [[nodiscard]] ResolvedTile tile_of(TilesWithOwnVertices& own, std::uint32_t ordinal,
+                                     unsigned signature) const noexcept {
     if (own.tesseracts != nullptr) return own.tesseracts->resolve(own.index, ordinal, signature);
     return tile_of(own.scratch.answers, own.index, signature);
   }
@@ -376,7 +376,7 @@ class TileWriter {
     }
   }
 
-  const SampleSource<N>& source_;
+  const EdgeCrossings<N>& source_;
   const FaceEstimator<N>* estimator_;
   const tables::TileTable& table_;
   const tables::TileTable* cube_;

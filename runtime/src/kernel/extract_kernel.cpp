@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -88,7 +87,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
                  [this] {
                    return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
                  }),
-        ahead_(workers_.count() > 1 && source.is_at_hand()),
+        ahead_(workers_.count() > 1 && source.are_in_memory()),
         batch_(plan.batch == 0 ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
                                               EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals), ahead_)
                                : std::min(plan.batch, shape_.layers() - 1)),
@@ -177,7 +176,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   Slab<N>* slab_above(std::size_t k) noexcept { return k + 1 < shape_.layers() ? &slab(k) : nullptr; }
   SlabView<N> view(std::size_t k) noexcept { return {&shape_, {&layer(k), &layer(k + 1)}, &slab(k), k}; }
 
-  static std::unique_ptr<FaceEstimator<N>> make_estimator(const SampleSource<N>& source, const Grid<N>& grid,
+  static std::unique_ptr<FaceEstimator<N>> make_estimator(const CornerValues<N>& source, const Grid<N>& grid,
                                                           const ExtractOptions& options, const ExtractPlan& plan) {
     if (!is_estimated(options.ambiguity)) return nullptr;
     return std::make_unique<FaceEstimator<N>>(source, grid.sizes(), options, plan.part);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "kernel/contour_output.hpp"
 #include "kernel/extract_count.hpp"
 #include "kernel/table_set.hpp"

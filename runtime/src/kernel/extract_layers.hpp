@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "image/bitplanes.hpp"
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/table_contract.hpp"
 

@@ -14,7 +14,7 @@
 
 #include <Eigen/LU>
 
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "kernel/edge_normals.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
@@ -48,7 +48,7 @@ class NormalWriter {
   using Vertex = std::array<Real, N>;
 
   /// `source` must outlive the writer.
-  NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction, GradientKind kind)
+  NormalWriter(const SampleGradients<N>& source, const Grid<N>& grid, GradientDirection direction, GradientKind kind)
       : source_(source),
         kind_(kind),
         steps_(steps_of(source, grid)),
@@ -56,7 +56,8 @@ class NormalWriter {
         mapped_(grid.has_world_map()),
         sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
         // A world map may amplify small differences, for which float is not precise enough.
-        in_float_(std::is_same_v<Real, float> && source.fits_float() && !mapped_) {
+        around_edges_in_float_(std::is_same_v<Real, float> && !mapped_ ? source.around_edges_in_float() : nullptr),
+        around_edges_(source.around_edges()) {
     // Gradients are covectors, so the inverse transpose transforms them.
     const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
     if (mapped_) to_world_ = sign_ * linear.inverse().transpose();
@@ -79,8 +80,9 @@ class NormalWriter {
       return;
     }
     if constexpr (std::is_same_v<Real, float>)
-      if (in_float_) return edges_by(start, axis, edges, alphas, scratch.of<float>(), out, start_of);
-    edges_by(start, axis, edges, alphas, scratch.of<double>(), out, start_of);
+      if (around_edges_in_float_ != nullptr)
+        return edges_by(around_edges_in_float_, start, axis, edges, alphas, scratch.of<float>(), out, start_of);
+    edges_by(around_edges_, start, axis, edges, alphas, scratch.of<double>(), out, start_of);
   }
 
   /// Normal at a position in a cell; parameters as in Placement::in_cell.
@@ -100,16 +102,16 @@ class NormalWriter {
   }
 
  private:
-  static std::array<AxisSteps, N> steps_of(const SampleSource<N>& source, const Grid<N>& grid) {
+  static std::array<AxisSteps, N> steps_of(const SampleGradients<N>& source, const Grid<N>& grid) {
     return [&]<std::size_t... A>(std::index_sequence<A...>) {
-      return std::array<AxisSteps, N>{(A + 1 < N ? AxisSteps(grid.axes[A]) : source.last_steps(grid))...};
+      return std::array<AxisSteps, N>{(A + 1 < N ? AxisSteps(grid.axes[A]) : source.last_steps())...};
     }
     (std::make_index_sequence<N>());
   }
 
   template <class Calc, class StartOf>
-  void edges_by(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, EdgeValues<Calc>& scratch,
-                Vertex* out, const StartOf& start_of) const noexcept {
+  void edges_by(AroundEdges<N, Calc> around_edges, const Index& start, int axis, const EdgesInRows& edges,
+                const double* alphas, EdgeValues<Calc>& scratch, Vertex* out, const StartOf& start_of) const noexcept {
     EdgeSurroundings<N> around{start[N - 1], axis, {}};
     NormalRow<N, Real, Calc> row{scratch.values.data(), 0, axis, {}, nullptr, nullptr, static_cast<Calc>(sign_), out};
     describe(start, around, row);
@@ -120,7 +122,7 @@ class NormalWriter {
       // values, positions and weights
       row.count = std::min(kEdgesAtOnce, edges.count - i);
       const Word at_ends =
-          source_.around_edges(around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
+          around_edges(source_, around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
       Calc* const places = scratch.values.data() + kEdgeValues<N> * kEdgesAtOnce;
       for (std::size_t j = 0; j < row.count; ++j) places[j] = static_cast<Calc>(alphas[i + j]);
       if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
@@ -222,13 +224,14 @@ class NormalWriter {
     }
   }
 
-  const SampleSource<N>& source_;
+  const SampleGradients<N>& source_;
   GradientKind kind_;
   std::array<AxisSteps, N> steps_;
   Index sizes_;
   bool mapped_;
   double sign_;
-  bool in_float_;
+  AroundEdges<N, float> around_edges_in_float_;  ///< null: the arithmetic is in double
+  AroundEdges<N, double> around_edges_;
   Eigen::Matrix<double, N, N, Eigen::RowMajor> to_world_ = Eigen::Matrix<double, N, N>::Identity();
 };
 

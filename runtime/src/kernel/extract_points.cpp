@@ -5,11 +5,8 @@
 // sets give identical bytes.
 #include "kernel/extract_points.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel/extract_points.cpp"

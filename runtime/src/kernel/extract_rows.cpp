@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <utility>
 
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE

@@ -16,7 +16,7 @@ namespace tegl::detail {
 /// Writes the barycentres of a row's cubes along `Axes`, unless tiles write them (TileWriter::writes_cubes). `view`:
 /// the layers that contain the cubes.
 template <unsigned Axes, class Real>
-void generate_cubes(const SampleSource<4>& source, const tables::TileTable& table, const Placement<4, Real>& placement,
+void generate_cubes(const EdgeCrossings<4>& source, const tables::TileTable& table, const Placement<4, Real>& placement,
                     const SlabView<4>& view, const CubePlane& plane, std::size_t row, std::size_t layer,
                     VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
   const RowShape<4>& shape = *view.shape;
@@ -51,7 +51,7 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
 
 /// Writes the vertices of a row's listed cubes. `table`: by key.
 template <unsigned Axes, class Real>
-void generate_listed_cubes(const SampleSource<4>& source, const tables::TileTable& table,
+void generate_listed_cubes(const EdgeCrossings<4>& source, const tables::TileTable& table,
                            const Placement<4, Real>& placement, const SlabView<4>& view, const CubePlane& plane,
                            std::size_t row, std::size_t layer,
                            VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {

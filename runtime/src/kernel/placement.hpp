@@ -45,7 +45,7 @@ class Placement {
 
   /// Null if no normals were requested.
   [[nodiscard]] const NormalWriter<N, Real>* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
-  void want_normals(const SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
+  void want_normals(const SampleGradients<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
     normals_.emplace(source, grid, options.direction, options.gradient);
   }
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "ambiguity/tesseract_decision.hpp"
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
@@ -23,7 +23,7 @@ class EdgePlaces {
  public:
   static constexpr int kDim = std::popcount(Axes);
 
-  EdgePlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
+  EdgePlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
     source.cell_alphas(base, Axes, critical_edges<kDim>(signature), alphas_.data());
   }
   [[nodiscard]] TilePoint<kDim> operator()(unsigned edge) const noexcept {
@@ -39,7 +39,7 @@ class EdgePlaces {
 template <int N>
 class SharedPlaces {
  public:
-  SharedPlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature,
+  SharedPlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature,
                const tables::TileTable* /*cube*/) noexcept
       : edges_(source, base, signature) {}
   [[nodiscard]] TilePoint<N> operator()(unsigned v) noexcept { return edges_(v); }
@@ -52,7 +52,7 @@ class SharedPlaces {
 template <>
 class SharedPlaces<4> {
  public:
-  SharedPlaces(const SampleSource<4>& source, const std::array<std::size_t, 4>& base, unsigned signature,
+  SharedPlaces(const EdgeCrossings<4>& source, const std::array<std::size_t, 4>& base, unsigned signature,
                const tables::TileTable* cube) noexcept
       : edges_(source, base, signature), signature_(signature), cube_(cube) {}
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "image/row_source.hpp"
 #include "kernel/close.hpp"
 #include "kernel/extract_kernel.hpp"
 #include "kernel/split_nonmanifold.hpp"
@@ -58,7 +59,9 @@ template <Value T, int N>
 class LayerSource final : public RowSource<T, N> {
  public:
   LayerSource(LayerRing<T, N>& ring, double isovalue, double epsilon)
-      : RowSource<T, N>(strides_of(ring.grid()), ring.grid().axes[0].size(), isovalue, epsilon), ring_(ring) {}
+      : RowSource<T, N>(strides_of(ring.grid()), ring.grid().axes[0].size(), isovalue, epsilon, ring.grid().axes[N - 1],
+                        0, false),
+        ring_(ring) {}
 
   void keep(std::size_t layers) override { ring_.keep(layers); }
   void prepare(std::size_t k) override { ring_.prepare(k); }

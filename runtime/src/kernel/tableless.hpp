@@ -4,7 +4,7 @@
 // `extract` uses it from 5D on. In 2D to 4D tests compare it with the tables.
 #pragma once
 
-#include "image/extract_source.hpp"
+#include "image/sample_source.hpp"
 #include "kernel/extract_kernel.hpp"
 #include "tegl/extract.hpp"
 

@@ -284,45 +284,69 @@ bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
   return false;
 }
 
+void require_vertex_numbers(std::span<const Index> rows, std::size_t vertices, std::size_t corners,
+                            const Progress& progress) {
+  detail::in_parts(rows.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (rows[i] >= vertices)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
+                                i / corners, rows[i], vertices));
+  });
+}
+
+template <class Real>
+std::uint64_t count_nonfinite(std::span<const Real> coordinates, std::size_t vertices, const Progress& progress) {
+  const std::size_t space_dim = vertices == 0 ? 0 : coordinates.size() / vertices;
+  std::uint64_t count = 0;
+  detail::in_parts(vertices, progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const auto at = coordinates.subspan(v * space_dim, space_dim);
+      if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++count;
+    }
+  });
+  return count;
+}
+
+/// Counts over simplices.
+struct SimplexCounts {
+  std::uint64_t degenerate = 0;
+  std::uint64_t sound = 0;  ///< with different corners
+  std::uint64_t joins = 0;  ///< edges that join two components of the vertices
+};
+
+template <int D, class Real>
+SimplexCounts count_simplices(const Complex<D>& complex, int space_dim, std::span<const Real> coordinates,
+                              const Progress& progress) {
+  SimplexCounts counts;
+  detail::DisjointSets connected(complex.vertex_count);
+  detail::in_parts(complex.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) {
+      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data())) ++counts.degenerate;
+      if (complex.is_collapsed(s)) continue;
+      ++counts.sound;
+      for (int i = 1; i <= D; ++i)
+        if (connected.join(complex[s][0], complex[s][i])) ++counts.joins;
+    }
+  });
+  return counts;
+}
+
 template <int D, class Real>
 MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<const Real> coordinates,
                          const Progress& progress) {
-  using detail::in_parts, detail::part_of;
+  using detail::part_of;
   const Complex<D> complex{rows, coordinates.size() / static_cast<std::size_t>(space_dim)};
-  in_parts(rows.size(), part_of(progress, 0.0, 0.02), [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i)
-      if (rows[i] >= complex.vertex_count)
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
-                                i / (D + 1), rows[i], complex.vertex_count));
-  });
+  require_vertex_numbers(rows, complex.vertex_count, D + 1, part_of(progress, 0.0, 0.02));
   MeshReport report;
   report.dim = D;
   report.simplices = complex.size();
-  in_parts(complex.vertex_count, part_of(progress, 0.02, 0.03), [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) {
-      const auto at = coordinates.subspan(v * static_cast<std::size_t>(space_dim), static_cast<std::size_t>(space_dim));
-      if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++report.nonfinite_vertices;
-    }
-  });
-  // components, collapsed and flat simplices
+  report.nonfinite_vertices = count_nonfinite(coordinates, complex.vertex_count, part_of(progress, 0.02, 0.03));
   const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count, part_of(progress, 0.03, 0.08));
-  LinkChecker<D> links(complex);
-  detail::DisjointSets connected;
-  connected.reset(complex.vertex_count);
-  std::uint64_t sound = 0;
-  std::uint64_t joins = 0;
-  in_parts(complex.size(), part_of(progress, 0.08, 0.15), [&](std::size_t from, std::size_t to) {
-    for (std::size_t s = from; s < to; ++s) {
-      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data()))
-        ++report.degenerate_simplices;
-      if (complex.is_collapsed(s)) continue;
-      ++sound;
-      for (int i = 1; i <= D; ++i)
-        if (connected.join(complex[s][0], complex[s][i])) ++joins;
-    }
-  });
+  const SimplexCounts counts = count_simplices<D>(complex, space_dim, coordinates, part_of(progress, 0.08, 0.15));
+  report.degenerate_simplices = counts.degenerate;
   // links of vertices
+  LinkChecker<D> links(complex);
   const auto visit_links = [&](std::size_t from, std::size_t to) {
     for (std::size_t v = from; v < to; ++v) {
       const std::span<const Index> star = stars.of(v);
@@ -331,13 +355,13 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
       links.visit(static_cast<Index>(v), star, report);
     }
   };
-  in_parts(complex.vertex_count, part_of(progress, 0.15, 1.0), visit_links, kVerticesAtOnce);
+  detail::in_parts(complex.vertex_count, part_of(progress, 0.15, 1.0), visit_links, kVerticesAtOnce);
   report.unused_vertices = complex.vertex_count - report.vertices;
-  report.components = report.vertices - joins;
+  report.components = report.vertices - counts.joins;
   // V - E + F - …, with the simplices last. For D < 2, 3, 4 the counts of edges, triangles and tetrahedra are 0.
   report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges()) +
                  static_cast<std::int64_t>(links.triangles()) - static_cast<std::int64_t>(links.tetrahedra()) +
-                 (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(sound);
+                 (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(counts.sound);
   return report;
 }
 

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <atomic>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

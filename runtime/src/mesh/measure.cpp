@@ -58,7 +58,10 @@ class CutValues {
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return order_[i]; }
   [[nodiscard]] bool from_above(std::size_t i) const noexcept { return at_[i] == first_; }
 
-  /// The indices [from, to) of the values in (low, high]; in [low, high] if low is the first value of the contour.
+  /// The indices [from, to) of the values that cut a simplex from `low` to `high`: those in (low, high], as cuts are
+  /// limits from below. A value at which one simplex ends and the next one begins cuts only the first of them. At the
+  /// minimum of the contour the limit is from above: no simplex ends there, so those that begin there are cut at `low`,
+  /// too.
   [[nodiscard]] std::pair<std::size_t, std::size_t> between(double low, double high) const noexcept {
     if (!(low < high)) return {0, 0};
     const auto begin =

@@ -4,10 +4,10 @@
 #include "tegl/normals.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "base/workers.hpp"
 #include "image/locate.hpp"
+#include "image/row_source.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_normals.hpp"
 #include "mesh/simplex_geometry.hpp"
@@ -141,20 +141,10 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gra
   return result;
 }
 
-#define TEGL_INSTANTIATE_IMAGE(T, N, Real)                                                                            \
-  template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&, \
-                                                                         GradientKind, const WorkOptions&);
 #define TEGL_INSTANTIATE(N, Real)                                                                               \
   template Buffer<Contour<N, Real>::Vertex> flat_normals<N, Real>(const Contour<N, Real>&, const WorkOptions&); \
   template Buffer<Contour<N, Real>::Vertex> geometric_normals<N, Real>(const Contour<N, Real>&, NormalWeights,  \
-                                                                       const WorkOptions&);                     \
-  TEGL_INSTANTIATE_IMAGE(std::uint8_t, N, Real)                                                                 \
-  TEGL_INSTANTIATE_IMAGE(std::int8_t, N, Real)                                                                  \
-  TEGL_INSTANTIATE_IMAGE(std::uint16_t, N, Real)                                                                \
-  TEGL_INSTANTIATE_IMAGE(std::int16_t, N, Real)                                                                 \
-  TEGL_INSTANTIATE_IMAGE(std::int32_t, N, Real)                                                                 \
-  TEGL_INSTANTIATE_IMAGE(float, N, Real)                                                                        \
-  TEGL_INSTANTIATE_IMAGE(double, N, Real)
+                                                                       const WorkOptions&);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)
@@ -162,6 +152,10 @@ TEGL_INSTANTIATE(3, double)
 TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
 #undef TEGL_INSTANTIATE
-#undef TEGL_INSTANTIATE_IMAGE
+
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                            \
+  template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&, \
+                                                                         GradientKind, const WorkOptions&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -57,24 +57,11 @@ requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, co
   return attribute;
 }
 
-#define TEGL_INSTANTIATE(T, N)                                                                       \
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                            \
   template Attribute sample(const Image<T, N>&, const Contour<N, float>&, std::string, std::string,  \
                             const WorkOptions&);                                                     \
   template Attribute sample(const Image<T, N>&, const Contour<N, double>&, std::string, std::string, \
                             const WorkOptions&);
-#define TEGL_INSTANTIATE_ALL(T) \
-  TEGL_INSTANTIATE(T, 2)        \
-  TEGL_INSTANTIATE(T, 3)        \
-  TEGL_INSTANTIATE(T, 4)        \
-  TEGL_INSTANTIATE(T, 5)
-TEGL_INSTANTIATE_ALL(std::uint8_t)
-TEGL_INSTANTIATE_ALL(std::int8_t)
-TEGL_INSTANTIATE_ALL(std::uint16_t)
-TEGL_INSTANTIATE_ALL(std::int16_t)
-TEGL_INSTANTIATE_ALL(std::int32_t)
-TEGL_INSTANTIATE_ALL(float)
-TEGL_INSTANTIATE_ALL(double)
-#undef TEGL_INSTANTIATE_ALL
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -93,21 +93,24 @@ double shape_of_simplex(const CornersN<N>& corners, double normal_length) {
   return normal_length / cube;
 }
 
-/// Distance of a point from the convex hull of `count` points (count <= N).
-///
-/// If the projection onto the affine hull has negative barycentric coordinates, the nearest point lies on a face
-/// opposite to a corner with such a coordinate: these faces are tested recursively, down to points. A flat simplex is
-/// the union of its faces.
+/// Projection of a point onto the affine hull of a simplex.
 template <int N>
-double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count) {
-  if (count == 1) return norm(minus(p, corners[0]));
-  // Gram-Schmidt: coordinates in an orthonormal basis of the edges. Back substitution gives the barycentric
-  // coordinates.
+struct Projected {
+  bool flat = false;                ///< the simplex is flat; the other members are then undefined
+  std::array<double, N> weights{};  ///< barycentric coordinates
+  PointN<N> rest;                   ///< from the projection to the point
+};
+
+/// `count`: number of corners, 2 or more. Gram-Schmidt gives coordinates in an orthonormal basis of the edges, back
+/// substitution the barycentric coordinates.
+template <int N>
+Projected<N> project_onto_hull(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count) {
   std::array<PointN<N>, N> basis;
   std::array<std::array<double, N>, N> upper{};
   std::array<double, N> at{};
-  PointN<N> rest = minus(p, corners[0]);
-  bool flat = false;
+  Projected<N> result;
+  PointN<N>& rest = result.rest;
+  rest = minus(p, corners[0]);
   for (int i = 1; i < count; ++i) {
     PointN<N> edge = minus(corners[i], corners[0]);
     const double length = norm(edge);
@@ -117,27 +120,40 @@ double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& c
     }
     upper[i][i] = norm(edge);
     if (upper[i][i] <= 1e-12 * length || length <= 0.0) {
-      flat = true;
-      break;
+      result.flat = true;
+      return result;
     }
     for (int a = 0; a < N; ++a) basis[i][a] = edge[a] / upper[i][i];
     at[i] = dot(rest, basis[i]);
     for (int a = 0; a < N; ++a) rest[a] -= at[i] * basis[i][a];
   }
-  std::array<double, N> weight{};
-  if (!flat) {
-    weight[0] = 1.0;
-    for (int i = count - 1; i > 0; --i) {
-      double sum = at[i];
-      for (int j = i + 1; j < count; ++j) sum -= upper[i][j] * weight[j];
-      weight[i] = sum / upper[i][i];
-      weight[0] -= weight[i];
-    }
-    if (std::all_of(weight.begin(), weight.begin() + count, [](double w) { return w >= 0.0; })) return norm(rest);
+  std::array<double, N>& weights = result.weights;
+  weights[0] = 1.0;
+  for (int i = count - 1; i > 0; --i) {
+    double sum = at[i];
+    for (int j = i + 1; j < count; ++j) sum -= upper[i][j] * weights[j];
+    weights[i] = sum / upper[i][i];
+    weights[0] -= weights[i];
   }
+  return result;
+}
+
+/// Distance of a point from the convex hull of `count` points (count <= N).
+///
+/// If the projection onto the affine hull has negative barycentric coordinates, the nearest point lies on a face
+/// opposite to a corner with such a coordinate: these faces are tested recursively, down to points. A flat simplex is
+/// the union of its faces.
+template <int N>
+double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count) {
+  if (count == 1) return norm(minus(p, corners[0]));
+  const Projected<N> projected = project_onto_hull<N>(p, corners, count);
+  const auto is_outside = [&](int i) { return projected.flat || !(projected.weights[i] >= 0.0); };
+  bool any_outside = false;
+  for (int i = 0; i < count; ++i) any_outside = any_outside || is_outside(i);
+  if (!any_outside) return norm(projected.rest);
   double best = std::numeric_limits<double>::infinity();
   for (int omitted = 0; omitted < count; ++omitted) {
-    if (!flat && weight[omitted] >= 0.0) continue;
+    if (!is_outside(omitted)) continue;
     std::array<PointN<N>, N> face;
     for (int i = 0, k = 0; i < count; ++i)
       if (i != omitted) face[k++] = corners[i];

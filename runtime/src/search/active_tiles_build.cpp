@@ -2,8 +2,6 @@
 //
 // Builds and loads indexes of active tiles, by any method, and makes indexes of chosen tiles.
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <string>
 #include <type_traits>

@@ -57,13 +57,8 @@ std::string_view value_type_name() noexcept {
   return "double";
 }
 
-template std::string_view value_type_name<std::uint8_t>() noexcept;
-template std::string_view value_type_name<std::int8_t>() noexcept;
-template std::string_view value_type_name<std::uint16_t>() noexcept;
-template std::string_view value_type_name<std::int16_t>() noexcept;
-template std::string_view value_type_name<std::int32_t>() noexcept;
-template std::string_view value_type_name<float>() noexcept;
-template std::string_view value_type_name<double>() noexcept;
+#define TEGL_INSTANTIATE(T) template std::string_view value_type_name<T>() noexcept;
+#include "base/instantiate.hpp"
 
 void IndexWriter::bytes(const void* data, std::size_t bytes) {
   if (bytes == 0) return;

@@ -80,6 +80,7 @@ class LevelSweep {
     events_.erase(std::unique(events_.begin(), events_.end()), events_.end());
   }
 
+  /// Root of a tree's set. Without path compression, so that `undo_` can take joins back.
   [[nodiscard]] std::uint32_t find(std::uint32_t tree) const noexcept {
     while (sets_[tree].parent != tree) tree = sets_[tree].parent;
     return tree;

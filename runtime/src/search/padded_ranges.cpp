@@ -4,9 +4,7 @@
 #include "search/padded_ranges.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 
@@ -177,13 +175,6 @@ RangeMap<KeyOf<T>> map_ranges(const Image<T, N>& image, unsigned threads, const 
   template RangeMap<KeyOf<T>> map_ranges<T, 3>(const Image<T, 3>&, unsigned, const Progress&); \
   template RangeMap<KeyOf<T>> map_ranges<T, 4>(const Image<T, 4>&, unsigned, const Progress&); \
   template RangeMap<KeyOf<T>> map_ranges<T, 5>(const Image<T, 5>&, unsigned, const Progress&);
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -105,7 +105,7 @@ class Whole2 {
       for (const std::uint32_t tree : chosen) {
         const std::uint32_t set = sets_.find(root);
         const std::uint32_t other = sets_.find(tree);
-        if (set != other) sets_.hang(set, other);
+        if (set != other) sets_.join_under(set, other);
       }
     }
     return true;

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
-#include <tuple>
 
 namespace tegl::detail {
 
@@ -74,9 +72,9 @@ class GraphMaker {
         --graph_.groups;
         const bool a_first = by_place ? a < b : met[a] < met[b];
         if (a_first)
-          trees_.hang(b, a);
+          trees_.join_under(b, a);
         else
-          trees_.hang(a, b);
+          trees_.join_under(a, b);
       }
     });
   }
@@ -93,7 +91,7 @@ class GraphMaker {
         const auto other = static_cast<Place>(tile + distance);
         if (map_.inside(tile, other) && map_.width(other) > map_.width(widest)) widest = other;
       }
-      if (widest != tile) trees_.hang(root, trees_.find(widest));
+      if (widest != tile) trees_.join_under(root, trees_.find(widest));
     });
   }
 
@@ -173,7 +171,7 @@ void contract(SeedGraph& graph) {
         if (!covers(link, tree) || sets.find(tree) != tree) continue;
         const std::uint32_t root = sets.find(on);
         if (root == tree) continue;
-        sets.hang(tree, root);
+        sets.join_under(tree, root);
         ++hung;
         break;
       }

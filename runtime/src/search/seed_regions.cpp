@@ -9,7 +9,6 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 

@@ -6,7 +6,6 @@
 // remaining tiles connect all extrema.
 #include <algorithm>
 #include <bitset>
-#include <cmath>
 #include <optional>
 #include <unordered_map>
 
@@ -183,7 +182,7 @@ class Thinning {
       if (value != next) return;
       const auto a = plateaus.find(static_cast<std::uint32_t>(i));
       const auto b = plateaus.find(static_cast<std::uint32_t>(j));
-      if (a != b) plateaus.hang(std::max(a, b), std::min(a, b));
+      if (a != b) plateaus.join_under(std::max(a, b), std::min(a, b));
     });
     // mark plateaus that have higher or lower neighbours
     for_edges([&](std::size_t i, std::size_t j, T value, T next) {

@@ -155,19 +155,12 @@ void require_tiles(const std::vector<TileId>& tiles, TileNumber end) {
   if (bad != tiles.end()) IndexReader::damaged(fmt::format("tile {} of {}", *bad, end));
 }
 
-#define TEGL_INSTANTIATE_TYPE(T)                                                                         \
+#define TEGL_INSTANTIATE(T)                                                                              \
   template Buffer<TileId> ascending_order<T>(const Buffer<T>&);                                          \
   template void add_quantiles<T>(const Buffer<T>&, const Buffer<TileId>&, std::size_t, std::vector<T>&); \
   template void sort_unique<T>(std::vector<T>&);                                                         \
   template Buffer<std::uint32_t> cells_of<T>(const Buffer<T>&, const Buffer<TileId>&, const std::vector<T>&);
-TEGL_INSTANTIATE_TYPE(std::uint8_t)
-TEGL_INSTANTIATE_TYPE(std::int8_t)
-TEGL_INSTANTIATE_TYPE(std::uint16_t)
-TEGL_INSTANTIATE_TYPE(std::int16_t)
-TEGL_INSTANTIATE_TYPE(std::int32_t)
-TEGL_INSTANTIATE_TYPE(float)
-TEGL_INSTANTIATE_TYPE(double)
-#undef TEGL_INSTANTIATE_TYPE
+#include "base/instantiate.hpp"
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N) template TileIntervals<T> gather_intervals<T, N>(const IndexTask<T, N>&);
 #include "base/instantiate.hpp"

@@ -4,7 +4,6 @@
 #include "simplify/collapsible_complex.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <fmt/format.h>
 

@@ -7,7 +7,6 @@
 #include "simplify/edge_collapse.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>

@@ -57,30 +57,6 @@ bool may_be_apex(Triangles triangles, const Neighbours& neighbours, unsigned ver
 
 }  // namespace
 
-std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsigned vertex) {
-  std::array<double, 3> place{};
-  const auto middle_of_edge = [](unsigned e, std::array<double, 3>& to) {
-    const unsigned base = edge_base(3, e);
-    for (unsigned a = 0; a < 3; ++a) to[a] += a == e / 4 ? 0.5 : static_cast<double>(base >> a & 1u);
-  };
-  if (vertex < kCubeEdges) {
-    middle_of_edge(vertex, place);
-    return place;
-  }
-  const std::uint32_t mask = kTile3Resolved.masks[list.first_mask + vertex - kCubeEdges];
-  for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
-    const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-    if (bit >= 8)
-      middle_of_edge(bit - 8, place);
-    else
-      for (unsigned a = 0; a < 3; ++a) place[a] += static_cast<double>(bit >> a & 1u);
-  }
-  for (double& x : place) x /= std::popcount(mask);
-  if ((mask & 0xffu) != 0)
-    for (double& x : place) x = 0.5 * (0.5 + x);
-  return place;
-}
-
 const ResolvedCubes& ResolvedCubes::instance(Triangulation triangulation) {
   if (triangulation == Triangulation::barycentric) {
     static const ResolvedCubes barycentric(Triangulation::barycentric);

@@ -24,9 +24,6 @@ struct CubeList {
   std::uint8_t high_squares;  ///< among the ambiguous squares
 };
 
-/// Position of a vertex in a cube, by local vertex of a list; own vertices by their mask.
-std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsigned vertex);
-
 /// All lists in all cubes of a 4D tile, in the form that ResolvedTesseract reads.
 class ResolvedCubes {
  public:

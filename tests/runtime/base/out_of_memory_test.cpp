@@ -28,6 +28,8 @@
 namespace tegl::test {
 namespace {
 
+constexpr std::uint64_t kNoBytes = 14695981039346656037u;  ///< digest of nothing
+
 /// A number that differs for different results.
 template <class Range>
 std::uint64_t digest(const Range& rows, std::uint64_t sum) {
@@ -37,7 +39,7 @@ std::uint64_t digest(const Range& rows, std::uint64_t sum) {
 }
 template <int N, class Real>
 std::uint64_t digest(const Contour<N, Real>& contour) {
-  return digest(contour.normals, digest(contour.simplices, digest(contour.vertices, 14695981039346656037u)));
+  return digest(contour.normals, digest(contour.simplices, digest(contour.vertices, kNoBytes)));
 }
 
 /// A sink that stores a digest without allocating.
@@ -51,7 +53,7 @@ struct DigestSink final : ContourSink<N, float> {
   void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override {
     sum = digest(std::array{simplex, static_cast<std::uint64_t>(corner), vertex}, sum);
   }
-  std::uint64_t sum = 14695981039346656037u;
+  std::uint64_t sum = kNoBytes;
 };
 
 template <int N>

@@ -14,6 +14,7 @@
 
 #include "fields.hpp"
 #include "image/bitplanes.hpp"
+#include "image/row_source.hpp"
 
 namespace tegl::detail {
 namespace {

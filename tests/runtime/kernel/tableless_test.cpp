@@ -16,6 +16,7 @@
 
 #include "compare.hpp"
 #include "fields.hpp"
+#include "image/row_source.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
 #include "tegl/extract.hpp"

@@ -138,7 +138,6 @@ class AsBuilt {
   }
 
   [[nodiscard]] const FaceLattice& lattice() const { return lattice_; }
-  [[nodiscard]] std::uint32_t face_of_edge(unsigned e) const { return edge_face_[e]; }
 
   facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view,
                                 Triangulation triangulation = Triangulation::compact) const {

@@ -1,31 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Access to rows of samples for the extraction (see extract_source.hpp).
-#include "image/extract_source.hpp"
+// Access to rows of samples for the extraction (see sample_source.hpp).
+#include "image/row_source.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <utility>
 
+<<<<<<< HEAD:runtime/src/image/extract_source.cpp
 #include "image/edge_stencil.hpp"
 #include "image/sobel.hpp"
 #include "tegl/image.hpp"
 #include "tegl/tile/corners.hpp"
+=======
+#include "base/corners.hpp"
+#include "image/edge_alphas.hpp"
+#include "image/edge_stencil.hpp"
+#include "image/sobel.hpp"
+>>>>>>> worst:runtime/src/image/row_source.cpp
 
 namespace tegl::detail {
 
 template <Value T, int N>
 Word RowSource<T, N>::classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept {
-  return classify_rows<T>({row(start), strides_[0], row_size_, N > 2 ? strides_[1] : 0, rows}, threshold_, high,
+  return classify_rows<T>({row(start), strides()[0], row_size_, N > 2 ? strides()[1] : 0, rows}, threshold_, high,
                           missing);
 }
 
 template <Value T, int N>
 void RowSource<T, N>::edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept {
   const T* const samples = layer(k);
-  const T* const others = axis == N - 1 ? layer(k + 1) : samples + strides_[axis];
-  detail::edge_alphas<T>({samples, others, edges.rows, edges.at, edges.count, strides_[0]}, isovalue_, epsilon_, out);
+  const T* const others = axis == N - 1 ? layer(k + 1) : samples + strides()[axis];
+  detail::edge_alphas<T>({samples, others, edges.rows, edges.at, edges.count, strides()[0]}, this->isovalue(), epsilon_,
+                         out);
 }
 
 /// Reads the values at all corners of a tile; `lower` and `upper` point to its first corner in the two layers.
@@ -48,13 +56,13 @@ template <int N, class T, class Out, class Strides>
 template <Value T, int N>
 unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corners& corners) const noexcept {
   std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
-  const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
+  const std::ptrdiff_t along = offset_in_row(base);
   const T* const samples = row(base) + along;
   // A cell within the last layer has no upper layer.
   const T* const above = (axes >> (N - 1) & 1u) != 0 ? next_row(base, N - 1, 1) + along : nullptr;
-  const Strides strides = strides_;
+  const Strides steps = strides();
   if (axes == (1u << N) - 1) {
-    gather_tile<N>(samples, above, strides, corners.data());
+    gather_tile<N>(samples, above, steps, corners.data());
     return N;
   }
   corners[0] = *samples;
@@ -63,7 +71,7 @@ unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corne
     if ((axes >> a & 1u) == 0) continue;
     const T* const from = a == N - 1 ? above : samples;
     for (std::size_t c = 0, up = std::size_t{1} << dim; c < std::size_t{1} << dim; ++c, ++up) {
-      offsets[up] = offsets[c] + (a == N - 1 ? 0 : strides[a]);
+      offsets[up] = offsets[c] + (a == N - 1 ? 0 : steps[a]);
       corners[up] = from[offsets[up]];
     }
     ++dim;
@@ -74,8 +82,8 @@ unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corne
 template <Value T, int N>
 void RowSource<T, N>::corner_values(const Index& base, unsigned axes, double* out) const noexcept {
   if (axes == (1u << N) - 1) {
-    const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
-    return gather_tile<N>(row(base) + along, next_row(base, N - 1, 1) + along, strides_, out);
+    const std::ptrdiff_t along = offset_in_row(base);
+    return gather_tile<N>(row(base) + along, next_row(base, N - 1, 1) + along, strides(), out);
   }
   Corners corners;
   const unsigned dim = gather_corners(base, axes, corners);
@@ -84,17 +92,17 @@ void RowSource<T, N>::corner_values(const Index& base, unsigned axes, double* ou
 
 template <Value T, int N>
 void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept {
-  const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
+  const std::ptrdiff_t along = offset_in_row(base);
   constexpr unsigned kHalf = 1u << (N - 2);
   const std::array<const T*, 2> layers = {row(base) + along, next_row(base, N - 1, 1) + along};
   for (unsigned r = 0; r < 2 * kHalf; ++r, out += pitch) {
     const T* from = layers[r / kHalf];
-    for (unsigned a = 1; a < N - 1; ++a) from += static_cast<std::ptrdiff_t>(r >> (a - 1) & 1u) * strides_[a];
-    if (strides_[0] == 1)
+    for (unsigned a = 1; a < N - 1; ++a) from += static_cast<std::ptrdiff_t>(r >> (a - 1) & 1u) * strides()[a];
+    if (strides()[0] == 1)
       std::copy_n(from, count, out);
     else
       for (std::size_t i = 0; i < count; ++i)
-        out[i] = static_cast<double>(from[static_cast<std::ptrdiff_t>(i) * strides_[0]]);
+        out[i] = static_cast<double>(from[static_cast<std::ptrdiff_t>(i) * strides()[0]]);
   }
 }
 
@@ -104,7 +112,7 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
     // About half of the edges are critical: computing all is faster than gathering these.
     std::array<double, std::size_t{1} << N> values;
     corner_values(base, axes, values.data());
-    return tile_alphas(values.data(), isovalue_, epsilon_, out);
+    return tile_alphas(values.data(), this->isovalue(), epsilon_, out);
   }
   static constexpr auto kInOrder = [] {
     std::array<std::uint32_t, N << (N - 1)> result{};
@@ -125,8 +133,8 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
     first[count] = corners[at];
     second[count] = corners[at | 1u << (e >> (dim - 1))];
   }
-  detail::edge_alphas<T>({first.data(), second.data(), kOneRow.data(), kInOrder.data(), count, 1}, isovalue_, epsilon_,
-                         alphas.data());
+  detail::edge_alphas<T>({first.data(), second.data(), kOneRow.data(), kInOrder.data(), count, 1}, this->isovalue(),
+                         epsilon_, alphas.data());
   // scatter the results
   const double* next = alphas.data();
   for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
@@ -220,14 +228,14 @@ template <bool kAlongRow, class Calc>
 std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
                                       Calc* out) const noexcept {
   const T* const first = layer(around.layer);
-  const T* const second = kAlongRow              ? first + strides_[0]
+  const T* const second = kAlongRow              ? first + strides()[0]
                           : around.axis == N - 1 ? layer(around.layer + 1)
-                                                 : first + strides_[around.axis];
-  Places<T, N> places{first, second, {}, strides_[0], row_size_};
+                                                 : first + strides()[around.axis];
+  Places<T, N> places{first, second, {}, strides()[0], row_size_};
   for (int a = 1; a < N; ++a) {
     const auto neighbour = [&](unsigned j, const T* sample) {
       if (!around.exists[a][j]) return sample;
-      if (a < N - 1) return sample + (j % 2 == 0 ? -strides_[a] : strides_[a]);
+      if (a < N - 1) return sample + (j % 2 == 0 ? -strides()[a] : strides()[a]);
       const std::size_t k = around.layer + (sample == second && !kAlongRow && around.axis == N - 1 ? 1 : 0);
       return layer(j % 2 == 0 ? k - 1 : k + 1) + (sample - layer(k));
     };
@@ -241,25 +249,32 @@ std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const E
 }
 
 template <Value T, int N>
-std::uint64_t RowSource<T, N>::around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
-                                            float* out) const noexcept {
-  if constexpr (std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits)
-    return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
-  else
-    return 0;  // never called
+template <class Calc>
+std::uint64_t RowSource<T, N>::gather_around(const SampleGradients<N>& samples, const EdgeSurroundings<N>& around,
+                                             const EdgesInRows& edges, Calc* out) noexcept {
+  const auto& rows = static_cast<const RowSource&>(samples);
+  return around.axis == 0 ? rows.template gather<true>(around, edges, out)
+                          : rows.template gather<false>(around, edges, out);
 }
 
 template <Value T, int N>
-std::uint64_t RowSource<T, N>::around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
-                                            double* out) const noexcept {
-  return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
+AroundEdges<N, double> RowSource<T, N>::around_edges() const noexcept {
+  return &RowSource::gather_around<double>;
+}
+
+template <Value T, int N>
+AroundEdges<N, float> RowSource<T, N>::around_edges_in_float() const noexcept {
+  if constexpr (std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits)
+    return &RowSource::gather_around<float>;
+  else
+    return nullptr;
 }
 
 template <Value T, int N>
 std::array<double, N> RowSource<T, N>::gradient(const Index& index,
                                                 const std::array<AxisSteps, N>& steps) const noexcept {
   const auto value = [&](const T* samples, std::size_t k) {
-    return static_cast<double>(samples[static_cast<std::ptrdiff_t>(k) * strides_[0]]);
+    return static_cast<double>(samples[static_cast<std::ptrdiff_t>(k) * strides()[0]]);
   };
   const T* const samples = row(index);
   const double here = value(samples, index[0]);
@@ -293,10 +308,10 @@ std::array<double, N> RowSource<T, N>::sobel(const Index& index, const std::arra
       inside = inside && exists[a][rest % 3];
       at[a] += rest % 3 - 1;  // modulo 2^64
     }
-    const T* const samples = inside ? row(at) + static_cast<std::ptrdiff_t>(index[0]) * strides_[0] : nullptr;
+    const T* const samples = inside ? row(at) + offset_in_row(index) : nullptr;
     for (std::size_t i = 0; i < 3; ++i)
       values[3 * row_number + i] =
-          inside && exists[0][i] ? static_cast<double>(samples[(static_cast<std::ptrdiff_t>(i) - 1) * strides_[0]])
+          inside && exists[0][i] ? static_cast<double>(samples[(static_cast<std::ptrdiff_t>(i) - 1) * strides()[0]])
                                  : std::numeric_limits<double>::quiet_NaN();
   }
   return sobel_gradient<N>(values, weights);

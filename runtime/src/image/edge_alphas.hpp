@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Intersections of contours with edges of the grid.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tegl/image.hpp"
+
+namespace tegl::detail {
+
+/// Edges along one axis in rows of one layer. Edge i goes from starts[j] to ends[j], j = rows[i] + at[i] * stride.
+template <Value T>
+struct EdgeSamples {
+  const T* starts;
+  const T* ends;
+  const std::ptrdiff_t* rows;
+  const std::uint32_t* at;
+  std::size_t count;
+  std::ptrdiff_t stride;
+};
+
+/// Interpolation parameters of the isovalue on critical edges: 0 at the first end, 1 at the second (theory, section 1),
+/// clamped to [epsilon, 1 - epsilon]. Infinite samples are treated as limits: the vertex is at the finite end, or at
+/// the middle between two infinities.
+template <Value T>
+void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
+/// Interpolation parameters for all 32 edges of a 4D tile, from the values at its 16 corners. Results for non-critical
+/// edges are undefined.
+void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept;
+
+}  // namespace tegl::detail
