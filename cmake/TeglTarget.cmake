@@ -60,6 +60,10 @@ function(tegl_unity target)
     set_property(SOURCE ${source} PROPERTY UNITY_GROUP ${room}_${batch})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # Every source is an included file there, so GCC warns of anonymous namespaces.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
 endfunction()
 
 # tegl_quick_compile(target): for tests in the development preset. They compile in three quarters of the time at -O1, and

@@ -97,20 +97,21 @@ std::pair<Pairs, int> cut_pairs(int high_count) {
 template <int N, class Real>
 class Cutter {
  public:
-  Cutter(const Contour<N, Real>& contour, const Section<N>& section, double level, const std::vector<Index>& touching)
-      : contour_(contour), section_(section), level_(level), touching_(touching) {}
+  Cutter(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
+         const std::vector<Index>& touching)
+      : contour_(contour), family_(family), level_(level), touching_(touching) {}
 
   Contour<N - 1, Real> cut() {
     classify();
     if (on_.empty())
       set_pieces(cut_pieces({}));
     else
-      draw_together();
+      merge_on_vertices();
     number_points();
     Contour<N - 1, Real> result;
     for (int i = 0, a = 0; i < N - 1; ++i, ++a) {
-      a += a == section_.dropped_axis();
-      if (!section_.keeps_axis(i)) continue;
+      a += a == family_.dropped_axis();
+      if (!family_.keeps_axis(i)) continue;
       result.axis_names[i] = contour_.axis_names[a];
       result.axis_units[i] = contour_.axis_units[a];
     }
@@ -142,7 +143,7 @@ class Cutter {
     std::uint8_t on = 0;
   };
 
-  [[nodiscard]] double height(Index v) const { return section_.height(contour_.vertices[v]); }
+  [[nodiscard]] double height(Index v) const { return family_.height(contour_.vertices[v]); }
   [[nodiscard]] bool is_on(Index v) const { return height(v) == level_; }
 
   /// Classifies all vertices, lists the on vertices, and finds those that count as below.
@@ -238,7 +239,7 @@ class Cutter {
   /// Collapsed pieces are omitted.
   [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
-    const auto is_drawn = [&](Index v) { return !any_apart || !apart[on_(v)]; };
+    const auto is_merged = [&](Index v) { return !any_apart || !apart[on_(v)]; };
     std::vector<Piece> result;
     for (std::size_t i = 0; i < touching_.size(); ++i) {
       const unsigned above = high(i);
@@ -248,17 +249,17 @@ class Cutter {
         result.push_back(piece);
         continue;
       }
-      Piece drawn;
-      drawn.simplex = piece.simplex;
+      Piece merged;
+      merged.simplex = piece.simplex;
       for (int k = 0; k < piece.count; ++k) {
         const std::optional<Index> on = on_end(piece.points[k]);
-        const PointKey key = on && is_drawn(*on) ? vertex_point(*on) : piece.points[k];
+        const PointKey key = on && is_merged(*on) ? vertex_point(*on) : piece.points[k];
         // Merged points are adjacent in the cycle, because they share the on vertex.
-        const bool repeats = drawn.count > 0 &&
-                             (drawn.points[drawn.count - 1] == key || (k == piece.count - 1 && drawn.points[0] == key));
-        if (!repeats) drawn.points[drawn.count++] = key;
+        const bool repeats = merged.count > 0 && (merged.points[merged.count - 1] == key ||
+                                                  (k == piece.count - 1 && merged.points[0] == key));
+        if (!repeats) merged.points[merged.count++] = key;
       }
-      if (drawn.count >= N - 1) result.push_back(drawn);
+      if (merged.count >= N - 1) result.push_back(merged);
     }
     return result;
   }
@@ -273,18 +274,18 @@ class Cutter {
 
   /// Merges the points around on vertices. If the result is pinched at a vertex where the points themselves were not,
   /// that vertex is left apart. Each round leaves more vertices apart; with all apart, nothing is pinched.
-  void draw_together() {
+  void merge_on_vertices() {
     std::vector<Piece> faces = faces_met_from_above();
     std::vector<bool> apart(on_.size(), false);
     std::vector<PointKey> excused;
     for (int round = 0;; ++round) {
-      std::vector<Piece> drawn = cut_pieces(apart);
-      drawn.insert(drawn.end(), faces.begin(), faces.end());
-      set_pieces(std::move(drawn));
-      const std::vector<PointKey> pinched = pinched_points(pieces_, corners_);
+      std::vector<Piece> merged = cut_pieces(apart);
+      merged.insert(merged.end(), faces.begin(), faces.end());
+      set_pieces(std::move(merged));
+      const std::vector<PointKey> pinched = nonmanifold_points(pieces_, corners_);
       if (round == 0 && !pinched.empty()) {
-        const std::vector<Piece> undrawn = cut_pieces(std::vector<bool>(on_.size(), true));
-        excused = pinched_points(undrawn, corners_by_point(undrawn, most_));
+        const std::vector<Piece> unmerged = cut_pieces(std::vector<bool>(on_.size(), true));
+        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, most_));
       }
       if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
     }
@@ -347,7 +348,7 @@ class Cutter {
     for (int a = 0; a < N; ++a) {
       const auto [low, high] = reach[a];
       const bool may_be_side = low < high && (first[a] == low || first[a] == high);
-      if (a == section_.dropped_axis() || (inside[a] == first[a] && !may_be_side)) continue;
+      if (a == family_.dropped_axis() || (inside[a] == first[a] && !may_be_side)) continue;
       if (std::all_of(face.vertices.begin(), face.vertices.end(),
                       [&](Index v) { return contour_.vertices[v][a] == first[a]; }))
         return true;
@@ -358,7 +359,7 @@ class Cutter {
   /// The boundary faces of the contour among on vertices that count as above, with their simplex above; see the top of
   /// this file.
   [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
-    if (!section_.is_across_axis()) return {};
+    if (!family_.is_across_axis()) return {};
     std::vector<OnFace> on_faces;
     for (std::size_t i = 0; i < touching_.size(); ++i)
       if (std::popcount(unsigned{sides_[i].on}) >= N - 1) gather_on_faces(touching_[i], on_high(i), on_faces);
@@ -380,7 +381,7 @@ class Cutter {
       while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
       const auto& simplex = contour_.simplices[on_faces[i].simplex];
       if (j - i != 1 || !(height(simplex[on_faces[i].omitted]) > level_)) continue;
-      if (!section_.is_along_last_axis() && may_lie_in_another_side(on_faces[i], reach)) continue;
+      if (!family_.is_along_last_axis() && may_lie_in_another_side(on_faces[i], reach)) continue;
       Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
       for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
       faces.push_back(face);
@@ -431,8 +432,7 @@ class Cutter {
 
   [[nodiscard]] std::array<Real, N - 1> position(PointKey key) const {
     const auto [low, high, share] = place(key);
-    const std::array<double, N - 1> y =
-        section_.within(between(contour_.vertices[low], contour_.vertices[high], share));
+    const std::array<double, N - 1> y = family_.within(between(contour_.vertices[low], contour_.vertices[high], share));
     std::array<Real, N - 1> result;
     for (int a = 0; a < N - 1; ++a) result[a] = static_cast<Real>(y[a]);
     return result;
@@ -442,7 +442,7 @@ class Cutter {
   /// the field in the hyperplane.
   [[nodiscard]] std::array<Real, N - 1> normal(PointKey key) const {
     const auto [low, high, share] = place(key);
-    const std::array<double, N - 1> v = section_.within(between(contour_.normals[low], contour_.normals[high], share));
+    const std::array<double, N - 1> v = family_.within(between(contour_.normals[low], contour_.normals[high], share));
     double square = 0.0;
     for (const double component : v) square += component * component;
     std::array<Real, N - 1> result;
@@ -467,7 +467,7 @@ class Cutter {
     const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
       std::array<Index, N - 1> simplex;
       for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
-      if (!section_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
+      if (!family_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
       result.simplices.push_back(simplex);
       inherited.push_back(piece.simplex);
     };
@@ -518,7 +518,7 @@ class Cutter {
   static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart, to bound the time
 
   const Contour<N, Real>& contour_;
-  const Section<N>& section_;
+  const HyperplaneFamily<N>& family_;
   const double level_;
   const std::vector<Index>& touching_;  ///< simplices not entirely on one side
   IndexMap on_;                         ///< vertices of these simplices on the hyperplane
@@ -534,18 +534,18 @@ class Cutter {
 }  // namespace
 
 template <int N, class Real>
-Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level,
+Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
                                    const std::vector<Index>& touching) {
-  return Cutter<N, Real>(contour, section, level, touching).cut();
+  return Cutter<N, Real>(contour, family, level, touching).cut();
 }
 
-template Contour<2, float> cut_simplices(const Contour<3, float>&, const Section<3>&, double,
+template Contour<2, float> cut_simplices(const Contour<3, float>&, const HyperplaneFamily<3>&, double,
                                          const std::vector<Index>&);
-template Contour<2, double> cut_simplices(const Contour<3, double>&, const Section<3>&, double,
+template Contour<2, double> cut_simplices(const Contour<3, double>&, const HyperplaneFamily<3>&, double,
                                           const std::vector<Index>&);
-template Contour<3, float> cut_simplices(const Contour<4, float>&, const Section<4>&, double,
+template Contour<3, float> cut_simplices(const Contour<4, float>&, const HyperplaneFamily<4>&, double,
                                          const std::vector<Index>&);
-template Contour<3, double> cut_simplices(const Contour<4, double>&, const Section<4>&, double,
+template Contour<3, double> cut_simplices(const Contour<4, double>&, const HyperplaneFamily<4>&, double,
                                           const std::vector<Index>&);
 
 }  // namespace tegl::detail

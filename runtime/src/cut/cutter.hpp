@@ -13,7 +13,7 @@ namespace tegl::detail {
 /// The cut at `level`. `touching`: ascending, all simplices with vertices at the level or on both sides of it; no other
 /// simplex contributes to the cut. O(c) time for c of them, or O(c log c) if vertices lie at the level; O(c) memory.
 template <int N, class Real>
-Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level,
+Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
                                    const std::vector<Index>& touching);
 
 }  // namespace tegl::detail

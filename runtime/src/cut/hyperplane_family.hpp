@@ -20,10 +20,10 @@ namespace tegl::detail {
 /// neither large nor small normals overflow or underflow, and the scaling adds no rounding error. The combinatorial cut
 /// depends only on the order of heights, so rounding does no harm.
 template <int N>
-class Section {
+class HyperplaneFamily {
  public:
   /// Throws InvalidArgument as `frame_of` does.
-  explicit Section(const Vector<N>& normal) : frame_(frame_of(Hyperplane<N>{normal, 0.0})), normal_(normal) {
+  explicit HyperplaneFamily(const Vector<N>& normal) : frame_(frame_of(Hyperplane<N>{normal, 0.0})), normal_(normal) {
     int others = 0;
     for (int a = 0; a < N; ++a) others += a != frame_.dropped && normal[a] != 0.0;
     is_across_axis_ = others == 0;

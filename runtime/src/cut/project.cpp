@@ -32,7 +32,7 @@
 namespace tegl {
 namespace {
 
-using detail::Section;
+using detail::HyperplaneFamily;
 
 void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "projecting was cancelled"); }
 
@@ -90,7 +90,7 @@ template <class Real>
 View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection) {
   check_projection(projection);
   detail::require_sound(contour);
-  const Section<4> section(projection.direction);
+  const HyperplaneFamily<4> family(projection.direction);
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
   const Eigen::Vector4d up = as_eigen(frame.up);
   View<Real> view;
@@ -98,9 +98,9 @@ View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection
   for (const auto& vertex : contour.vertices) {
     std::array<double, 4> x;
     std::copy(vertex.begin(), vertex.end(), x.begin());
-    const std::array<double, 3> y = section.within(x);
+    const std::array<double, 3> y = family.within(x);
     view.points.emplace_back(y[0], y[1], y[2]);
-    view.heights.push_back(section.is_across_axis() ? section.height(vertex) : up.dot(Eigen::Vector4d(x.data())));
+    view.heights.push_back(family.is_across_axis() ? family.height(vertex) : up.dot(Eigen::Vector4d(x.data())));
   }
   draw_towards_middle(view, projection.eye_distance);
   return view;
@@ -114,11 +114,11 @@ void replace(std::vector<Attribute>& attributes, Attribute attribute) {
 /// Vertex attribute with the heights.
 template <class Real>
 Attribute height_attribute(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
-  const Section<4> section(projection.direction);
+  const HyperplaneFamily<4> family(projection.direction);
   Attribute height{"height", "", 1, {}};
-  if (section.is_across_axis()) {
+  if (family.is_across_axis()) {
     constexpr const char* kLetters = "xyzt";
-    const auto axis = static_cast<std::size_t>(section.dropped_axis());
+    const auto axis = static_cast<std::size_t>(family.dropped_axis());
     height.name = contour.axis_names[axis].empty() ? std::string(1, kLetters[axis]) : contour.axis_names[axis];
     height.unit = contour.axis_units[axis];
   }
@@ -130,10 +130,10 @@ Attribute height_attribute(const Contour<4, Real>& contour, const Projection& pr
 template <class Real>
 void name_axes(const Contour<4, Real>& contour, const Projection& projection, std::array<std::string, 3>& names,
                std::array<std::string, 3>& units) {
-  const Section<4> section(projection.direction);
+  const HyperplaneFamily<4> family(projection.direction);
   for (int i = 0; i < 3; ++i) {
-    if (!section.keeps_axis(i)) continue;
-    const int a = i < section.dropped_axis() ? i : i + 1;
+    if (!family.keeps_axis(i)) continue;
+    const int a = i < family.dropped_axis() ? i : i + 1;
     names[i] = contour.axis_names[a];
     units[i] = contour.axis_units[a];
   }

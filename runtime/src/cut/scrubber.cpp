@@ -57,8 +57,8 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour,
                                                                const Hyperplane<N>& hyperplane, const WorkOptions& work)
     : contour_(&contour), normal_(hyperplane.normal) {
-  const detail::Section<N> section(normal_);
-  (void)section.template level<Real>(hyperplane.offset);  // throws if it is not finite
+  const detail::HyperplaneFamily<N> family(normal_);
+  (void)family.template level<Real>(hyperplane.offset);  // throws if it is not finite
   detail::require_sound(contour);
   report(work.progress, 0.0);
   if (contour.simplices.empty()) {
@@ -69,13 +69,13 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   double highest = -std::numeric_limits<double>::infinity();
   lowest_ = -highest;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
-    const double height = section.height(contour.vertices[v]);
+    const double height = family.height(contour.vertices[v]);
     if (!std::isfinite(height))
       throw Error(ErrorCode::InvalidArgument, fmt::format("vertex {} at height {}; expected a finite one", v, height));
     lowest_ = std::min(lowest_, height);
     highest = std::max(highest, height);
   }
-  range_ = {lowest_ * section.unit(), highest * section.unit()};
+  range_ = {lowest_ * family.unit(), highest * family.unit()};
   struct Nothing {};
   detail::Workers<Nothing> workers(work.threads, [] { return Nothing(); });
   constexpr std::size_t kGrain = std::size_t{1} << 14;
@@ -86,7 +86,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
       std::uint32_t least = ~std::uint32_t{0};
       std::uint32_t most = 0;
       for (const Index v : contour.simplices[s]) {
-        const std::uint32_t here = place(section.height(contour.vertices[v]));
+        const std::uint32_t here = place(family.height(contour.vertices[v]));
         least = std::min(least, here);
         most = std::max(most, here);
       }
@@ -140,8 +140,8 @@ void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vecto
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Index> Scrubber<N, Real>::touching(double offset)
 const {
-  const detail::Section<N> section(normal_);
-  const double level = section.template level<Real>(offset);
+  const detail::HyperplaneFamily<N> family(normal_);
+  const double level = family.template level<Real>(offset);
   std::vector<Index> found;
   if (contour_->simplices.empty() || level < lowest_) return found;
   const std::uint32_t at = place(level);
@@ -154,7 +154,7 @@ const {
     bool reaches_down = false;
     bool reaches_up = false;
     for (const Index v : contour_->simplices[s]) {
-      const double height = section.height(contour_->vertices[v]);
+      const double height = family.height(contour_->vertices[v]);
       reaches_down = reaches_down || height <= level;
       reaches_up = reaches_up || height >= level;
     }
@@ -168,8 +168,8 @@ const {
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> Scrubber<N, Real>::cut(double offset)
 const {
-  const detail::Section<N> section(normal_);
-  return detail::cut_simplices(*contour_, section, section.template level<Real>(offset), touching(offset));
+  const detail::HyperplaneFamily<N> family(normal_);
+  return detail::cut_simplices(*contour_, family, family.template level<Real>(offset), touching(offset));
 }
 
 template <int N, Coordinate Real>

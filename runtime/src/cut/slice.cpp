@@ -14,15 +14,16 @@
 namespace tegl {
 namespace {
 
-using detail::Section;
+using detail::HyperplaneFamily;
 
 /// The simplices that touch the level, ascending.
 template <int N, class Real>
-std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level) {
+std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
+                                      double level) {
   enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on: counts as both
   std::vector<unsigned char> sides(contour.vertices.size());
   for (std::size_t v = 0; v < sides.size(); ++v) {
-    const double height = section.height(contour.vertices[v]);
+    const double height = family.height(contour.vertices[v]);
     sides[v] = height < level ? kBelow : height > level ? kAbove : kOn;
   }
   std::vector<Index> touching;
@@ -36,10 +37,10 @@ std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Sec
 
 /// By level, the simplices that touch it, ascending; levels ascend. Each simplex is read once.
 template <int N, class Real>
-std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour, const Section<N>& section,
+std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
                                                 const std::vector<double>& levels) {
   std::vector<double> heights(contour.vertices.size());
-  for (std::size_t v = 0; v < heights.size(); ++v) heights[v] = section.height(contour.vertices[v]);
+  for (std::size_t v = 0; v < heights.size(); ++v) heights[v] = family.height(contour.vertices[v]);
   std::vector<std::vector<Index>> touching(levels.size());
   for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
     const auto& simplex = contour.simplices[s];
@@ -60,7 +61,7 @@ std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour,
 template <int N>
 struct Parallels {
   Vector<N> normal;
-  Section<N> section;
+  HyperplaneFamily<N> family;
   std::vector<double> levels;                ///< ascending, each once
   std::vector<std::vector<Index>> touching;  ///< by level, the simplices that touch it
 };
@@ -78,8 +79,9 @@ std::vector<StackedCut> group_by_normal(std::span<const Hyperplane<N>> hyperplan
   for (const Hyperplane<N>& hyperplane : hyperplanes) {
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const Parallels<N>& other) { return other.normal == hyperplane.normal; });
-    if (group == groups.end()) group = groups.insert(group, {hyperplane.normal, Section<N>(hyperplane.normal), {}, {}});
-    const double level = group->section.template level<Real>(hyperplane.offset);
+    if (group == groups.end())
+      group = groups.insert(group, {hyperplane.normal, HyperplaneFamily<N>(hyperplane.normal), {}, {}});
+    const double level = group->family.template level<Real>(hyperplane.offset);
     group->levels.push_back(level);
     stack.push_back({static_cast<std::size_t>(group - groups.begin()), level});
   }
@@ -97,10 +99,10 @@ void report(const Progress& progress, double fraction) { detail::tell(progress, 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
                                                               const Hyperplane<N>& hyperplane) {
-  const Section<N> section(hyperplane.normal);
+  const HyperplaneFamily<N> family(hyperplane.normal);
   detail::require_sound(contour);
-  const double level = section.template level<Real>(hyperplane.offset);
-  return detail::cut_simplices(contour, section, level, touching_simplices(contour, section, level));
+  const double level = family.template level<Real>(hyperplane.offset);
+  return detail::cut_simplices(contour, family, level, touching_simplices(contour, family, level));
 }
 
 template <int N, Coordinate Real>
@@ -114,12 +116,12 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   // one pass over the contour for each normal
   for (std::size_t i = 0; i < groups.size(); ++i) {
     report(work.progress, static_cast<double>(i) / steps);
-    groups[i].touching = touching_levels(contour, groups[i].section, groups[i].levels);
+    groups[i].touching = touching_levels(contour, groups[i].family, groups[i].levels);
   }
   const auto cut_of = [&](const StackedCut& cut) {
     const Parallels<N>& group = groups[cut.parallels];
     const auto place = std::lower_bound(group.levels.begin(), group.levels.end(), cut.level) - group.levels.begin();
-    return detail::cut_simplices(contour, group.section, cut.level, group.touching[static_cast<std::size_t>(place)]);
+    return detail::cut_simplices(contour, group.family, cut.level, group.touching[static_cast<std::size_t>(place)]);
   };
   // the cuts: one per thread at a time, so that progress can be reported between them
   std::vector<Contour<N - 1, Real>> cuts(stack.size());

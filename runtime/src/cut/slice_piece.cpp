@@ -70,7 +70,7 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most) 
   return corners;
 }
 
-std::vector<PointKey> pinched_points(std::span<const Piece> pieces, std::span<const Corner> corners) {
+std::vector<PointKey> nonmanifold_points(std::span<const Piece> pieces, std::span<const Corner> corners) {
   std::vector<PointKey> result;
   const bool of_segments = !pieces.empty() && pieces[0].count == 2;
   Links links(pieces);

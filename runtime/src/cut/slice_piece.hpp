@@ -42,6 +42,6 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most);
 /// The keys, ascending, of the points at which the pieces do not form one fan (polygons) or one path (segments), or
 /// that have an edge in more than two polygons. `corners`: of these pieces. O(c) for c pieces if few meet at each
 /// point.
-std::vector<PointKey> pinched_points(std::span<const Piece> pieces, std::span<const Corner> corners);
+std::vector<PointKey> nonmanifold_points(std::span<const Piece> pieces, std::span<const Corner> corners);
 
 }  // namespace tegl::detail

@@ -44,9 +44,10 @@ class CountOutput final : public ContourOutput<N, Real> {
  public:
   using typename ContourOutput<N, Real>::Room;
   Room open(const ContourPart& /*part*/) override { return {nullptr, nullptr}; }
-  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/,
+              const NonmanifoldCandidates& nonmanifold) override {
     size = {all.end_vertex, all.end_simplex};
-    any_missing = pinches.any_missing();
+    any_missing = nonmanifold.any_missing();
   }
 
   ContourSize size;
@@ -73,7 +74,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     }
   }
 
-  void close(const ContourPart& part, const PinchList& /*pinches*/) override {
+  void close(const ContourPart& part, const NonmanifoldCandidates& /*nonmanifold*/) override {
     if constexpr (sizeof(I) != sizeof(Index)) {
       auto* wide = room_.simplices.data() + part.first_simplex;
       for (const Simplex& simplex : narrow_) {
@@ -84,9 +85,9 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     }
   }
 
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
     size = {all.end_vertex, all.end_simplex};
-    any_missing = pinches.any_missing();
+    any_missing = nonmanifold.any_missing();
     if (caps == nullptr || any_missing) return;
     check(size.vertices + caps->vertices().size(), size.simplices + caps->simplices().size());
     std::copy(caps->vertices().begin(), caps->vertices().end(), room_.vertices.data() + size.vertices);

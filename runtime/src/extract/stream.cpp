@@ -36,7 +36,7 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
   std::vector<Index> narrow;
   for (const std::uint64_t v : candidates)
     if (std::binary_search(numbers.begin(), numbers.end(), v)) narrow.push_back(local(v));
-  separate_pinches(around, narrow, kMaxVertices);
+  split_nonmanifold(around, narrow, kMaxVertices);
 
   // pass the changes to the sink
   const auto number = [&](Index v) { return v < numbers.size() ? numbers[v] : size_.vertices + (v - numbers.size()); };

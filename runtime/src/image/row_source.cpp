@@ -14,7 +14,6 @@
 #include "tegl/image.hpp"
 #include "tegl/tile/corners.hpp"
 =======
-#include "base/corners.hpp"
 #include "image/edge_alphas.hpp"
 #include "image/edge_stencil.hpp"
 #include "image/sobel.hpp"

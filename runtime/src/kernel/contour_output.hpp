@@ -56,7 +56,7 @@ struct ContourPart {
 
 template <int N, class Real>
 class Caps;
-class PinchList;
+class NonmanifoldCandidates;
 
 /// Output of an extraction. It receives the parts in order, each by open and close. Vertex numbers in simplices count
 /// modulo 2^32; those in a part's simplices belong to this part or to the previous one.
@@ -83,10 +83,11 @@ class ContourOutput {
   /// parallel, so that the system allocates them one by one and no two threads wait for the same one.
   [[nodiscard]] virtual std::size_t pieces_ahead() const noexcept { return 0; }
   virtual void touch_ahead(std::size_t /*piece*/) noexcept {}
-  /// Called after a part is written. `pinches`: vertices of this and all previous parts that may have to be duplicated.
-  virtual void close(const ContourPart& /*part*/, const PinchList& /*pinches*/) {}
+  /// Called after a part is written. `nonmanifold`: vertices of this and all previous parts that may have to be
+  /// duplicated.
+  virtual void close(const ContourPart& /*part*/, const NonmanifoldCandidates& /*nonmanifold*/) {}
   /// Called after all parts are written. `caps` may be null.
-  virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) = 0;
+  virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) = 0;
 };
 
 /// Parameters of an extraction other than the user's options.

@@ -82,7 +82,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         counter_(shape_, tables, row_table_, options.close, estimator_.get()),
         tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes() && !counter_.lists_cubes()),
-        pinches_(shape_, counter_),
+        nonmanifold_(shape_, counter_),
         workers_(options.work.threads,
                  [this] {
                    return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
@@ -150,11 +150,11 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     gather_border(first, end);
     watch.add_to(stats_.close_seconds);
     if (estimator_) estimator_->rethrow();
-    output_.close(part_, pinches_);
+    output_.close(part_, nonmanifold_);
     watch.add_to(stats_.generate_seconds);
     // after the last batch
     if (end < slabs) return;
-    output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
+    output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, nonmanifold_);
     watch.add_to(stats_.close_seconds);
   }
 
@@ -442,19 +442,19 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   /// Gathers caps and candidates for non-manifold vertices from slabs first ... end - 1.
   void gather_border(std::size_t first, std::size_t end) {
     // Vertex numbers count modulo 2^32. Numbers in this batch belong to this part or the previous one.
-    pinches_.set_least(before_part_);
+    nonmanifold_.set_least(before_part_);
     if (caps_) caps_->set_least(before_part_);
     before_part_ = part_.first_vertex;
     if (first == 0) {
-      pinches_.open_slab(0, slab(0));
-      pinches_.add_layer(0, layer(0));
+      nonmanifold_.open_slab(0, slab(0));
+      nonmanifold_.add_layer(0, layer(0));
       if (caps_) caps_->add_layer(0, layer(0), nullptr, &slab(0));
     }
     reporter_.begin_pass(end - first);
     for (std::size_t k = first; k < end; ++k) {
-      pinches_.add_slab(k, slab(k));
-      if (const Slab<N>* const above = slab_above(k + 1)) pinches_.open_slab(k + 1, *above);
-      pinches_.add_layer(k + 1, layer(k + 1));
+      nonmanifold_.add_slab(k, slab(k));
+      if (const Slab<N>* const above = slab_above(k + 1)) nonmanifold_.open_slab(k + 1, *above);
+      nonmanifold_.add_layer(k + 1, layer(k + 1));
       if (caps_) {
         caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
         caps_->add_slab(k, view(k));
@@ -486,7 +486,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   Counter<N> counter_;
   TileWriter<N, Real> tiles_;
   std::optional<Caps<N, Real>> caps_;
-  PinchCandidates<N> pinches_;
+  NonmanifoldCollector<N> nonmanifold_;
   Workers<Scratch> workers_;
   bool ahead_;                    ///< whether the next batch is classified while one is generated
   std::size_t batch_;             ///< slabs per batch
@@ -546,13 +546,13 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   [[nodiscard]] std::size_t pieces_ahead() const noexcept override { return ahead_.size(); }
   void touch_ahead(std::size_t piece) noexcept override { *static_cast<volatile unsigned char*>(ahead_[piece]) = 0; }
 
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
     if (caps != nullptr) add_caps(*caps, all.end_vertex);
-    if (!pinches.any_missing()) return;
-    std::vector<Index> candidates(pinches.vertices().begin(), pinches.vertices().end());
+    if (!nonmanifold.any_missing()) return;
+    std::vector<Index> candidates(nonmanifold.vertices().begin(), nonmanifold.vertices().end());
     for (std::uint64_t v = all.end_vertex; v < contour_.vertices.size(); ++v)
       candidates.push_back(static_cast<Index>(v));
-    separate_pinches(contour_, candidates, max_vertices_);
+    split_nonmanifold(contour_, candidates, max_vertices_);
   }
 
  private:

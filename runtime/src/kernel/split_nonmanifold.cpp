@@ -20,13 +20,13 @@
 namespace tegl::detail {
 
 template <int N>
-PinchCandidates<N>::PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter)
+NonmanifoldCollector<N>::NonmanifoldCollector(const RowShape<N>& shape, const Counter<N>& counter)
     : shape_(shape), counter_(counter), buffer_(shape.pitch()) {
   for (Slab<N>& slab : invalid_) slab.all_valid = false;  // makes cells_of_valid_tiles read the bits of invalid tiles
 }
 
 template <int N>
-void PinchCandidates<N>::open_slab(std::size_t k, const Slab<N>& slab) {
+void NonmanifoldCollector<N>::open_slab(std::size_t k, const Slab<N>& slab) {
   std::vector<Word>& invalid = invalid_[k % 2].valid;
   std::fill(invalid.begin(), invalid.end(), Word{0});
   slabs_ = k + 1;
@@ -43,7 +43,7 @@ void PinchCandidates<N>::open_slab(std::size_t k, const Slab<N>& slab) {
 }
 
 template <int N>
-void PinchCandidates<N>::add_layer(std::size_t k, const Layer<N>& layer) {
+void NonmanifoldCollector<N>::add_layer(std::size_t k, const Layer<N>& layer) {
   if (!any_missing_) return;
   const Slab<N>* const below = k > 0 ? &invalid_[(k - 1) % 2] : nullptr;
   const Slab<N>* const above = k < slabs_ ? &invalid_[k % 2] : nullptr;
@@ -52,14 +52,14 @@ void PinchCandidates<N>::add_layer(std::size_t k, const Layer<N>& layer) {
 }
 
 template <int N>
-void PinchCandidates<N>::add_slab(std::size_t k, const Slab<N>& slab) {
+void NonmanifoldCollector<N>::add_slab(std::size_t k, const Slab<N>& slab) {
   if (!any_missing_) return;
   for (std::size_t row = 0; row < shape_.rows(); ++row) add_row(slab.edges, N - 1, row, nullptr, &invalid_[k % 2]);
 }
 
 template <int N>
-void PinchCandidates<N>::add_row(const EdgePlane& plane, int axis, std::size_t row, const Slab<N>* below,
-                                 const Slab<N>* above) {
+void NonmanifoldCollector<N>::add_row(const EdgePlane& plane, int axis, std::size_t row, const Slab<N>* below,
+                                      const Slab<N>* above) {
   if (plane.count[row] == 0 || !counter_.cells_of_valid_tiles(1u << axis, row, below, above, buffer_.data())) return;
   const Word* const bits = plane.bits[0].data() + row * shape_.words();
   for (std::size_t w = 0; w < shape_.words(); ++w)
@@ -69,16 +69,16 @@ void PinchCandidates<N>::add_row(const EdgePlane& plane, int axis, std::size_t r
     }
 }
 
-template class PinchCandidates<2>;
-template class PinchCandidates<3>;
-template class PinchCandidates<4>;
+template class NonmanifoldCollector<2>;
+template class NonmanifoldCollector<3>;
+template class NonmanifoldCollector<4>;
 
 namespace {
 
 template <int N, class Real>
-class Separation {
+class NonmanifoldSplitter {
  public:
-  Separation(Contour<N, Real>& contour, std::vector<Index> candidates, std::uint64_t max_vertices)
+  NonmanifoldSplitter(Contour<N, Real>& contour, std::vector<Index> candidates, std::uint64_t max_vertices)
       : contour_(contour), candidates_(std::move(candidates)), max_vertices_(max_vertices) {}
 
   void run() {
@@ -89,7 +89,7 @@ class Separation {
       for (std::size_t v = vertices; v < contour_.vertices.size(); ++v) candidates_.push_back(static_cast<Index>(v));
       gather_stars();
       while (split_edges()) gather_stars();
-      while (part_holes()) gather_stars();
+      while (separate_holes()) gather_stars();
     }
   }
 
@@ -104,11 +104,11 @@ class Separation {
     std::size_t place;
   };
   /// A simplex of a star at the edge to one of its other vertices.
-  struct Around {
+  struct EdgeIncidence {
     Index to;
     std::size_t fan;
     Index simplex;
-    auto operator<=>(const Around&) const = default;
+    auto operator<=>(const EdgeIncidence&) const = default;
   };
   /// A face of a simplex of a star that no other simplex shares (a boundary face), and its hole.
   struct Rim {
@@ -234,17 +234,17 @@ class Separation {
       for (const Index w : a.others) sets_.join(corner(a.place, w), corner(b.place, w));
     });
     // fan of each simplex at each edge
-    around_.clear();
+    incidences_.clear();
     for (std::size_t i = 0; i < star.size(); ++i)
       for (std::size_t j = 0; j < N; ++j)
         if (const Index w = contour_.simplices[star[i]][j]; w > v)
-          around_.push_back({w, sets_.find(N * i + j), star[i]});
-    std::sort(around_.begin(), around_.end());
+          incidences_.push_back({w, sets_.find(N * i + j), star[i]});
+    std::sort(incidences_.begin(), incidences_.end());
     // all fans except the first of each edge
-    for (std::size_t i = 1; i < around_.size(); ++i) {
-      const Around& here = around_[i];
-      if (here.to != around_[i - 1].to) continue;  // first fan of the next edge
-      if (here.fan != around_[i - 1].fan) fans.push_back({v, here.to, {}});
+    for (std::size_t i = 1; i < incidences_.size(); ++i) {
+      const EdgeIncidence& here = incidences_[i];
+      if (here.to != incidences_[i - 1].to) continue;  // first fan of the next edge
+      if (here.fan != incidences_[i - 1].fan) fans.push_back({v, here.to, {}});
       if (!fans.empty() && fans.back().from == v && fans.back().to == here.to)
         fans.back().simplices.push_back(here.simplex);
     }
@@ -281,7 +281,7 @@ class Separation {
   /// If two holes in the data meet in an edge of the grid, holes of the contour meet in a vertex whose link is a sphere
   /// with several holes. Each hole except the first gets its own copy of the vertex. Tetrahedra fill the zero-width gap
   /// between the two copies. Returns false if no such vertex was left.
-  bool part_holes() {
+  bool separate_holes() {
     std::vector<bool> changed(contour_.vertices.size(), false);
     bool any = false;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -342,7 +342,7 @@ class Separation {
   std::vector<Index> members_;
   std::vector<Face> faces_;
   std::vector<Index> ends_;  ///< two for each triangle of a star: its vertices except the star's
-  std::vector<Around> around_;
+  std::vector<EdgeIncidence> incidences_;
   std::vector<Rim> rim_;
   std::vector<Index> own_;
   BasicDisjointSets<std::size_t> sets_;
@@ -351,14 +351,14 @@ class Separation {
 }  // namespace
 
 template <int N, class Real>
-void separate_pinches(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices) {
+void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices) {
   // In 2D an edge of the grid has only two tiles, so contours cannot touch themselves.
   if constexpr (N > 2)
-    if (!candidates.empty()) Separation<N, Real>(contour, candidates, max_vertices).run();
+    if (!candidates.empty()) NonmanifoldSplitter<N, Real>(contour, candidates, max_vertices).run();
 }
 
 #define TEGL_INSTANTIATE(N, Real) \
-  template void separate_pinches<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t);
+  template void split_nonmanifold<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

@@ -20,7 +20,7 @@
 namespace tegl::detail {
 
 /// Candidates for non-manifold vertices, as far as the extraction has come.
-class PinchList {
+class NonmanifoldCandidates {
  public:
   /// Ascending, without duplicates.
   [[nodiscard]] const std::vector<std::uint64_t>& vertices() const noexcept { return vertices_; }
@@ -34,9 +34,9 @@ class PinchList {
 /// Gathers candidates during an extraction: vertices on grid edges that belong to both a valid tile and a tile with
 /// missing corners.
 template <int N>
-class PinchCandidates : public PinchList {
+class NonmanifoldCollector : public NonmanifoldCandidates {
  public:
-  PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter);
+  NonmanifoldCollector(const RowShape<N>& shape, const Counter<N>& counter);
 
   /// Call for each slab in order, after its valid tiles are known and before adding edges in or beside it.
   void open_slab(std::size_t k, const Slab<N>& slab);
@@ -62,6 +62,6 @@ class PinchCandidates : public PinchList {
 /// on the contour only. Throws TooLarge beyond `max_vertices`. O(S + c log c), with S simplices in all and c simplices
 /// around candidates.
 template <int N, class Real>
-void separate_pinches(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices);
+void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices);
 
 }  // namespace tegl::detail

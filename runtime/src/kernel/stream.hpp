@@ -102,21 +102,21 @@ class StreamOutput final : public ContourOutput<N, Real> {
     return {vertices_.data(), simplices_.data(), with_normals_ ? normals_.data() : nullptr};
   }
 
-  void close(const ContourPart& part, const PinchList& pinches) override {
+  void close(const ContourPart& part, const NonmanifoldCandidates& nonmanifold) override {
     wide_.resize(simplices_.size());
     for (std::size_t s = 0; s < simplices_.size(); ++s)
       for (int j = 0; j < N; ++j)
         wide_[s][j] = before_first_ + static_cast<Index>(simplices_[s][j] - static_cast<Index>(before_first_));
     add_vertices(vertices_, normals_);
     sink_.add_simplices(wide_);
-    if (pinches.any_missing()) remember(part, pinches.vertices());
+    if (nonmanifold.any_missing()) remember(part, nonmanifold.vertices());
     size_ = {part.end_vertex, part.end_simplex};
   }
 
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
-    std::vector<std::uint64_t> candidates = pinches.vertices();
-    if (caps != nullptr) add_caps(*caps, all, pinches.any_missing(), candidates);
-    if (pinches.any_missing()) separate(candidates);
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
+    std::vector<std::uint64_t> candidates = nonmanifold.vertices();
+    if (caps != nullptr) add_caps(*caps, all, nonmanifold.any_missing(), candidates);
+    if (nonmanifold.any_missing()) separate(candidates);
   }
 
   [[nodiscard]] const ContourSize& size() const noexcept { return size_; }

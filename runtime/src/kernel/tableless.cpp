@@ -101,7 +101,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     number_vertices(k);
     watch.add_to(stats_.find_seconds);
     if (k > 0) write(k - 1);
-    if (k == slabs) output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, no_pinches_);
+    if (k == slabs) output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, no_candidates_);
     watch.add_to(stats_.generate_seconds);
   }
 
@@ -352,7 +352,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         }
       });
       if (estimator_) estimator_->rethrow();
-      output_.close(part, no_pinches_);
+      output_.close(part, no_candidates_);
     }
     part_first_ = part_end_;
   }
@@ -480,7 +480,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   std::uint64_t simplices_ = 0;
   std::uint64_t part_first_ = 0, part_end_ = 0;  ///< vertices of the current part
   typename ContourOutput<N, Real>::Room room_{};
-  PinchList no_pinches_;
+  NonmanifoldCandidates no_candidates_;
 };
 
 /// A contour in memory, or only its size.
@@ -498,7 +498,8 @@ class BuiltContour final : public ContourOutput<N, Real> {
     return {contour_->vertices.data() + part.first_vertex, contour_->simplices.data() + part.first_simplex,
             normals_ ? contour_->normals.data() + part.first_vertex : nullptr};
   }
-  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& /*pinches*/) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/,
+              const NonmanifoldCandidates& /*nonmanifold*/) override {
     size = {all.end_vertex, all.end_simplex};
   }
 

@@ -127,7 +127,7 @@ void expect_streamed_in_all_ways(const std::array<std::size_t, N>& sizes) {
         replaced += expect_streamed<Real>(holey_noise<T, N>(sizes, seed++, missing), options);
       }
   if (std::is_floating_point_v<T> && N > 2) {
-    EXPECT_GT(replaced, 0u) << "pinches that span parts were to be tested";
+    EXPECT_GT(replaced, 0u) << "candidates that span parts were to be tested";
   }
 }
 
@@ -204,7 +204,7 @@ TEST(Streamed, NumbersPassTwoToTheThirtyTwo) {
   detail::StreamOutput<3, float> output(collector, false);
   const detail::RowShape<3> shape({4, 4, 4});
   const detail::Counter<3> counter(shape, detail::generated_tables<3>({}), nullptr, false);
-  const detail::PinchCandidates<3> none(shape, counter);
+  const detail::NonmanifoldCollector<3> none(shape, counter);
   const auto write = [&](std::uint64_t first, std::uint64_t end, std::uint64_t first_simplex) {
     const detail::ContourPart part{first, end, first_simplex, first_simplex + 1, 0.5};
     const auto room = output.open(part);
