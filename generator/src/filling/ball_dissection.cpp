@@ -14,7 +14,7 @@ namespace tegl::gen {
 namespace {
 
 constexpr std::size_t kMost = 32;  // maximum number of vertices of a component
-constexpr std::uint8_t kNone = 0xff;
+constexpr std::uint8_t kNoThird = 0xff;
 
 /// Random numbers that are equal on all platforms (G. Marsaglia, Xorshift RNGs, 2003).
 class Dice {
@@ -37,7 +37,7 @@ class Front {
   Front(const std::vector<std::uint8_t>& vertices, const std::vector<std::array<std::uint8_t, 3>>& triangles,
         const SigmaComplex& sigma)
       : vertices_(vertices), sigma_(&sigma), left_(vertices.size()) {
-    for (auto& row : third_) row.fill(kNone);
+    for (auto& row : third_) row.fill(kNoThird);
     for (const auto& t : triangles) add(t[0], t[1], t[2]);
   }
 
@@ -85,7 +85,7 @@ class Front {
     std::vector<LocalSimplex> result;
     for (std::uint8_t a = 0; a < vertices_.size(); ++a)
       for (std::uint8_t b = 0; b < vertices_.size(); ++b)
-        if (const std::uint8_t c = third_[a][b]; c != kNone && a < b && a < c) {
+        if (const std::uint8_t c = third_[a][b]; c != kNoThird && a < b && a < c) {
           LocalSimplex t{vertices_[a], vertices_[b], vertices_[c], 0};
           std::sort(t.begin(), t.begin() + 3);
           if (std::find(result.begin(), result.end(), t) == result.end()) result.push_back(t);
@@ -108,7 +108,7 @@ class Front {
   }
   [[nodiscard]] std::uint8_t neighbour(std::uint8_t v) const {
     std::uint8_t w = 0;
-    while (third_[v][w] == kNone) ++w;
+    while (third_[v][w] == kNoThird) ++w;
     return w;
   }
   void add(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
@@ -121,7 +121,7 @@ class Front {
     used_triangles_.set(triangle_key(a, b, c));
   }
   void drop(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
-    third_[a][b] = third_[b][c] = third_[c][a] = kNone;
+    third_[a][b] = third_[b][c] = third_[c][a] = kNoThird;
     --degree_[a], --degree_[b], --degree_[c];
   }
   bool take(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) {

@@ -185,10 +185,10 @@ std::vector<LocalSimplex> cone(int n, const Component& c, std::uint8_t apex) {
   return result;
 }
 
-using SignedFace = std::pair<LocalSimplex, int>;
+using SortedFace = std::pair<LocalSimplex, int>;
 
 /// The simplex with ascending vertices, and the sign of the permutation.
-SignedFace sorted_face(LocalSimplex s, int count) {
+SortedFace sorted_face(LocalSimplex s, int count) {
   const int sign = facets::sort_vertices(s, count);
   return {s, sign};
 }
@@ -296,7 +296,7 @@ std::vector<LocalSimplex> oriented(std::vector<LocalSimplex> tetrahedra, const C
   while (!tetrahedra.empty()) {
     const std::size_t before = tetrahedra.size();
     std::erase_if(tetrahedra, [&](const LocalSimplex& t) {
-      std::array<SignedFace, 4> faces;
+      std::array<SortedFace, 4> faces;
       int sign = 0;
       for (int drop = 0; drop < 4; ++drop) {
         LocalSimplex face{};

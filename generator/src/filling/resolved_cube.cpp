@@ -63,9 +63,9 @@ struct Frame {
 
 /// The polygons of Sigma, each from its smallest edge on, in ascending order of these edges.
 std::vector<Polygon> polygons_of(const Frame& frame, const TileFacets& tile) {
-  constexpr std::uint8_t kNone = 255;
+  constexpr std::uint8_t kNoEdge = 255;
   std::array<std::uint8_t, kEdges> next{};
-  next.fill(kNone);
+  next.fill(kNoEdge);
   for (std::size_t j = 0; j < tile.sigma.size(); ++j) {
     std::uint8_t from = frame.edge_of_face[tile.vertices[tile.sigma[j][0]].face];
     std::uint8_t to = frame.edge_of_face[tile.vertices[tile.sigma[j][1]].face];
@@ -74,11 +74,11 @@ std::vector<Polygon> polygons_of(const Frame& frame, const TileFacets& tile) {
   }
   std::vector<Polygon> polygons;
   for (std::uint8_t e = 0; e < kEdges; ++e) {
-    if (next[e] == kNone) continue;
+    if (next[e] == kNoEdge) continue;
     Polygon& polygon = polygons.emplace_back();
-    for (std::uint8_t at = e; next[at] != kNone;) {
+    for (std::uint8_t at = e; next[at] != kNoEdge;) {
       polygon.push_back(at);
-      at = std::exchange(next[at], kNone);
+      at = std::exchange(next[at], kNoEdge);
     }
   }
   return polygons;

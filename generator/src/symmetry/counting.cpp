@@ -85,7 +85,7 @@ std::uint64_t count_corner_cycles(const CycleType& type) {
   return fixed / divisor;
 }
 
-int determinant(const CycleType& type) {
+int determinant_of(const CycleType& type) {
   int reflections = 0;
   for (const int k : type.positive) {
     reflections += k - 1;
@@ -110,7 +110,7 @@ std::vector<CycleType> cycle_types(int n) {
         type.negative = negative;
         type.elements = order / (centraliser_factor(positive) * centraliser_factor(negative));
         type.corner_cycles = count_corner_cycles(type);
-        type.det = determinant(type);
+        type.det = determinant_of(type);
         elements += type.elements;
         types.push_back(std::move(type));
       }

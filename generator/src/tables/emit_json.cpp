@@ -68,7 +68,7 @@ void shape(std::string& text, const TileTables& table) {
                  tile_kind_name(table.tile), fmt::join(corners, ", "), fmt::join(edges, ", "), fmt::join(faces, ", "));
 }
 
-EmittedFile tile_file(const TableSet& set, const TileTables& table) {
+EmittedFile json_of_tile(const TableSet& set, const TileTables& table) {
   std::string text = opening(set, "tile", table.dim);
   shape(text, table);
   fmt::format_to(Out(text),
@@ -113,7 +113,7 @@ EmittedFile region_file(const TableSet& set, const RegionTables& table) {
           std::move(text)};
 }
 
-EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
+EmittedFile json_of_resolved(const TableSet& set, const ResolvedCube& table) {
   std::string text = opening(set, "resolved", 3);
   std::vector<std::string> squares;
   for (const auto& square : table.squares) squares.push_back(fmt::format("[{}]", fmt::join(square, ",")));
@@ -141,9 +141,9 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
 
 std::vector<EmittedFile> emit_json(const TableSet& set) {
   std::vector<EmittedFile> files;
-  for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
+  for (const TileTables& table : set.tiles) files.push_back(json_of_tile(set, table));
   for (const RegionTables& table : set.regions) files.push_back(region_file(set, table));
-  if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
+  if (set.resolved) files.push_back(json_of_resolved(set, *set.resolved));
   return files;
 }
 

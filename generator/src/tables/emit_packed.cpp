@@ -248,7 +248,7 @@ void data(Writer& out, const Dialect& dialect, const TileTables& table, const Pa
 /// The complete table of the cube. Words: 256 by signature (first entry | ambiguous squares << 16); six per entry (for
 /// separate, low and high: first triangle | triangles << 16 | own vertices << 24, then the first mask); one per
 /// triangle (a byte per vertex); one per mask.
-EmittedFile resolved_file(const TableSet& set, const Dialect& dialect, const ResolvedCube& table) {
+EmittedFile packed_resolved(const TableSet& set, const Dialect& dialect, const ResolvedCube& table) {
   // words
   std::vector<std::uint32_t> words;
   for (std::size_t s = 0; s < table.first_entry.size(); ++s)
@@ -335,7 +335,7 @@ std::vector<EmittedFile> emit_packed(const TableSet& set, Language language) {
     files.push_back({fmt::format("{}.{}", name, dialect.suffix), out.take()});
     if (table.dim == 4 && language != Language::cuda) files.push_back({name + ".u32", to_bytes(packed.words)});
   }
-  if (set.resolved) files.push_back(resolved_file(set, dialect, *set.resolved));
+  if (set.resolved) files.push_back(packed_resolved(set, dialect, *set.resolved));
   return files;
 }
 
