@@ -172,11 +172,11 @@ void add_tiles() {
   const auto add_tile = [](const char* name, std::uint32_t signature, bool random_signature, bool random_signs) {
     benchmark::RegisterBenchmark((std::string("tile_facets/5D/") + name).c_str(), [=](benchmark::State& state) {
       std::mt19937_64 random(1);
-      std::vector<facets::Choice> signs;
+      std::vector<tile::Choice> signs;
       for (auto _ : state) {
         const std::uint64_t key = random_signature ? random() & 0xffffffffU : signature;
         signs.resize(random_signs ? 243 : 0);
-        for (auto& sign : signs) sign = static_cast<facets::Choice>(random() % 3);
+        for (auto& sign : signs) sign = static_cast<tile::Choice>(random() % 3);
         benchmark::DoNotOptimize(tile_facets<N>(key, signs));
       }
     })->Unit(benchmark::kMillisecond);

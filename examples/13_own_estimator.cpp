@@ -45,8 +45,8 @@ double middle(const tegl::AmbiguousFace& face) {
   return sum;
 }
 
-tegl::facets::Choice cubic(const tegl::AmbiguousFace& face) {
-  return middle(face) >= face.isovalue() ? tegl::facets::Choice::high : tegl::facets::Choice::low;
+tegl::tile::Choice cubic(const tegl::AmbiguousFace& face) {
+  return middle(face) >= face.isovalue() ? tegl::tile::Choice::high : tegl::tile::Choice::low;
 }
 
 /// The contour at 0, on a grid with `fineness` steps per unit.

@@ -13,7 +13,7 @@ const TileTable& tile_table(int dim, Triangulation triangulation) noexcept {
   return *kTables[dim - 2][static_cast<std::size_t>(triangulation)];
 }
 
-const RegionTable& region_table(int k, Triangulation triangulation, facets::Alternative alternative) noexcept {
+const RegionTable& region_table(int k, Triangulation triangulation, tile::Alternative alternative) noexcept {
   static constexpr const RegionTable* kTables[3][2][2] = {
       {{&kRegion1BarycentricLow, &kRegion1BarycentricHigh}, {&kRegion1CompactLow, &kRegion1CompactHigh}},
       {{&kRegion2BarycentricLow, &kRegion2BarycentricHigh}, {&kRegion2CompactLow, &kRegion2CompactHigh}},

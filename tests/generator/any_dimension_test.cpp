@@ -16,7 +16,7 @@
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/tile_certifier.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 namespace {
 
 std::vector<Choice> random_choices(const FaceLattice& lattice, std::mt19937_64& random) {
@@ -426,4 +426,4 @@ TEST(AnyDimension, WrongArgumentsAreSaid) {
 }
 
 }  // namespace
-}  // namespace tegl::facets
+}  // namespace tegl::tile

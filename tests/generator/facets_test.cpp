@@ -22,8 +22,8 @@
 namespace tegl::gen {
 namespace {
 
-using facets::Fault;
-using facets::fault_name;
+using tile::Fault;
+using tile::fault_name;
 
 constexpr Triangulation kTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
 

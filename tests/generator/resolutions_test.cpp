@@ -20,9 +20,9 @@
 namespace tegl::gen {
 namespace {
 
-using facets::Choice;
-using facets::FaceLattice;
-using facets::FacetBuilder;
+using tile::Choice;
+using tile::FaceLattice;
+using tile::FacetBuilder;
 
 TEST(Resolutions, ACubeHas656AndAllPass) {
   const ResolutionFigures figures = certify_all_resolutions(TileKind::cube, 3, 2);
@@ -37,7 +37,7 @@ TEST(Resolutions, ATesseractHasAsManyAsTheTheorySays) {
   const Lattice tiles(TileKind::cube, 4);
   const FaceLattice lattice = face_lattice(TileKind::cube, 4);
   std::uint64_t pairs = 0, by_class = 0;
-  for (facets::Signature s = 0; s < 65536; ++s) pairs += std::uint64_t{1} << ambiguous_polygons(lattice, s).size();
+  for (tile::Signature s = 0; s < 65536; ++s) pairs += std::uint64_t{1} << ambiguous_polygons(lattice, s).size();
   EXPECT_EQ(pairs, 48453090u);
   const auto elements = symmetries(tiles.tile(4), GroupKind::Full, false);
   for (const std::uint32_t s : transversal(tiles.tile(4), elements).representatives)
@@ -70,7 +70,7 @@ TEST(Resolutions, TheCheckerboardReachesGenusFive) {
     state = state * 1664525u + 1013904223u;
     for (std::size_t k = 0; k < squares.size(); ++k)
       choices[squares[k]] = ((state >> (8 + k)) & 1u) != 0 ? Choice::high : Choice::low;
-    const auto& tile = builder.build(0x6996, {choices, facets::Alternative::low}, facets::Geometry::without);
+    const auto& tile = builder.build(0x6996, {choices, tile::Alternative::low}, tile::Geometry::without);
     for (const int euler : tile.sigma_euler) least = std::min(least, euler);
   }
   EXPECT_EQ(least, -8);
@@ -126,31 +126,31 @@ TEST(InParallel, TheFailureOfTheSmallestUnitIsTold) {
 /// Names of a tile's vertices that are independent of the numbering of corners after a symmetry has renamed these.
 class Names {
  public:
-  Names(const FaceLattice& lattice, const facets::TileFacets& tile, const std::vector<std::uint32_t>& corner)
+  Names(const FaceLattice& lattice, const tile::TileFacets& tile, const std::vector<std::uint32_t>& corner)
       : lattice_(lattice), tile_(tile), corner_(corner), names_(tile.vertices.size()) {}
 
-  std::uint64_t operator()(facets::VertexId v) {
+  std::uint64_t operator()(tile::VertexId v) {
     if (names_[v] != 0) return names_[v];
-    const facets::Vertex& vertex = tile_.vertices[v];
-    facets::Signature face = 0;
+    const tile::Vertex& vertex = tile_.vertices[v];
+    tile::Signature face = 0;
     for (std::size_t c = 0; c < corner_.size(); ++c)
-      if (((lattice_.faces()[vertex.face].corners >> c) & 1u) != 0) face |= facets::Signature{1} << corner_[c];
+      if (((lattice_.faces()[vertex.face].corners >> c) & 1u) != 0) face |= tile::Signature{1} << corner_[c];
     std::uint64_t name = mix(face * 31 + static_cast<unsigned>(vertex.kind));
-    if (vertex.copied != facets::kNoVertex) name = mix(name + (*this)(vertex.copied) * 3);
-    for (const facets::Simplex& s : vertex.of) name += mix(unordered(s) + 77);
+    if (vertex.copied != tile::kNoVertex) name = mix(name + (*this)(vertex.copied) * 3);
+    for (const tile::Simplex& s : vertex.of) name += mix(unordered(s) + 77);
     return names_[v] = mix(name);
   }
 
-  std::uint64_t unordered(const facets::Simplex& s) {
+  std::uint64_t unordered(const tile::Simplex& s) {
     std::uint64_t sum = 0;
-    for (int i = 0; i < facets::size(s); ++i) sum += (*this)(s[i]);
+    for (int i = 0; i < tile::size(s); ++i) sum += (*this)(s[i]);
     return mix(sum);
   }
 
   /// A simplex with its orientation times `sign`.
-  std::uint64_t oriented(const facets::Simplex& s, int sign) {
-    for (int i = 0; i < facets::size(s); ++i)
-      for (int j = i + 1; j < facets::size(s); ++j)
+  std::uint64_t oriented(const tile::Simplex& s, int sign) {
+    for (int i = 0; i < tile::size(s); ++i)
+      for (int j = i + 1; j < tile::size(s); ++j)
         if ((*this)(s[j]) < (*this)(s[i])) sign = -sign;
     return unordered(s) + (sign > 0 ? 1 : 2);
   }
@@ -162,32 +162,32 @@ class Names {
   }
 
   const FaceLattice& lattice_;
-  const facets::TileFacets& tile_;
+  const tile::TileFacets& tile_;
   const std::vector<std::uint32_t>& corner_;
   std::vector<std::uint64_t> names_;
 };
 
-std::multiset<std::uint64_t> named(const FaceLattice& lattice, const facets::TileFacets& tile,
+std::multiset<std::uint64_t> named(const FaceLattice& lattice, const tile::TileFacets& tile,
                                    const std::vector<std::uint32_t>& corner, int det) {
   Names names(lattice, tile, corner);
   std::multiset<std::uint64_t> result;
-  for (const facets::Facet& facet : tile.facets)
-    for (const facets::Simplex& s : facet.simplices) result.insert(names.oriented(s, det));
+  for (const tile::Facet& facet : tile.facets)
+    for (const tile::Simplex& s : facet.simplices) result.insert(names.oriented(s, det));
   return result;
 }
 
 /// The faces' choices after a symmetry.
 std::vector<Choice> moved(const FaceLattice& lattice, const std::vector<Choice>& choices,
                           const std::vector<std::uint32_t>& corner) {
-  std::map<facets::Signature, Choice> by_corners;
+  std::map<tile::Signature, Choice> by_corners;
   for (std::size_t f = 0; f < choices.size(); ++f) {
-    facets::Signature image = 0;
+    tile::Signature image = 0;
     for (std::size_t c = 0; c < corner.size(); ++c)
-      if (((lattice.faces()[f].corners >> c) & 1u) != 0) image |= facets::Signature{1} << corner[c];
+      if (((lattice.faces()[f].corners >> c) & 1u) != 0) image |= tile::Signature{1} << corner[c];
     by_corners[image] = choices[f];
   }
   std::vector<Choice> result;
-  for (const facets::Face& face : lattice.faces()) result.push_back(by_corners.at(face.corners));
+  for (const tile::Face& face : lattice.faces()) result.push_back(by_corners.at(face.corners));
   return result;
 }
 
@@ -202,17 +202,17 @@ TEST(Resolutions, BuildingAfterASymmetryIsSymmetryAfterBuilding) {
     for (std::uint32_t c = 0; c < 1u << n; ++c) same.push_back(c);
     const auto elements = symmetries(tiles.tile(n), GroupKind::Full, false);
     for (int i = 0; i < 40; ++i) {
-      const facets::Signature s = n == 4 && i == 0 ? 0x6996 : random() & lattice.faces().back().corners;
+      const tile::Signature s = n == 4 && i == 0 ? 0x6996 : random() & lattice.faces().back().corners;
       std::vector<Choice> choices(lattice.faces().size(), Choice::separate);
       for (const std::uint32_t f : ambiguous_polygons(lattice, s))
         choices[f] = random() % 2 == 0 ? Choice::low : Choice::high;
-      const auto tile = builder.build(s, {choices, facets::Alternative::low});
+      const auto tile = builder.build(s, {choices, tile::Alternative::low});
       for (const TileSymmetry& g : elements) {
-        facets::Signature image = 0;
+        tile::Signature image = 0;
         for (std::size_t c = 0; c < g.corner.size(); ++c)
-          if (((s >> c) & 1u) != 0) image |= facets::Signature{1} << g.corner[c];
+          if (((s >> c) & 1u) != 0) image |= tile::Signature{1} << g.corner[c];
         const std::vector<Choice> image_choices = moved(lattice, choices, g.corner);
-        const auto& other = builder.build(image, {image_choices, facets::Alternative::low});
+        const auto& other = builder.build(image, {image_choices, tile::Alternative::low});
         ASSERT_EQ(named(lattice, tile, g.corner, g.det), named(lattice, other, same, 1)) << n << "D, signature " << s;
       }
     }
@@ -232,14 +232,14 @@ TEST(Resolutions, EveryTesseractIsThatOfTheBarycentricTable) {
                                 Triangulation::barycentric);
     for (std::uint32_t s = 0; s < 65536; ++s) {
       std::multiset<Portrait> ours, theirs;
-      const facets::Resolution resolution{{}, high ? facets::Alternative::high : facets::Alternative::low};
-      const auto& built = builder.build(s, resolution, facets::Geometry::without);
-      for (const facets::Facet& facet : built.facets) {
-        if (facet.filling == facets::Filling::side) continue;  // the tables have smaller ones
+      const tile::Resolution resolution{{}, high ? tile::Alternative::high : tile::Alternative::low};
+      const auto& built = builder.build(s, resolution, tile::Geometry::without);
+      for (const tile::Facet& facet : built.facets) {
+        if (facet.filling == tile::Filling::side) continue;  // the tables have smaller ones
         Portrait portrait{facet.simplices.size(), {}};
-        for (const facets::Simplex& simplex : facet.simplices)
+        for (const tile::Simplex& simplex : facet.simplices)
           for (int i = 0; i < 4; ++i)
-            if (const facets::Vertex& v = built.vertices[simplex[i]]; v.kind == facets::VertexKind::edge)
+            if (const tile::Vertex& v = built.vertices[simplex[i]]; v.kind == tile::VertexKind::edge)
               ++portrait.second[lattice.faces()[v.face].corners];
         ours.insert(portrait);
       }

@@ -15,14 +15,14 @@
 #include "base/lattice.hpp"
 #include "filling/resolutions.hpp"
 #include "filling/resolved_cube.hpp"
-#include "tegl/tile/certificate.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
 namespace {
 
-using facets::Choice;
 using tables::kTile3Resolved;
+using tile::Choice;
 
 std::vector<std::array<std::uint8_t, 3>> triangles_of(const tables::ResolvedList& list) {
   std::vector<std::array<std::uint8_t, 3>> result(list.triangle_count);
@@ -76,33 +76,33 @@ TEST(ResolvedCube, Has656EntriesEachReachedOnce) {
 }
 
 TEST(ResolvedCube, EveryEntryIsCertifiedAndIsTheSurfaceThatTheBuilderFinds) {
-  const facets::FaceLattice lattice = facets::FaceLattice::cube(3);
+  const tile::FaceLattice lattice = tile::FaceLattice::cube(3);
   const CubeLattice tiles(3);
-  facets::FacetBuilder builder(lattice);
-  facets::Certifier certifier;
-  std::map<facets::Signature, std::uint32_t> face_of;
+  tile::FacetBuilder builder(lattice);
+  tile::Certifier certifier;
+  std::map<tile::Signature, std::uint32_t> face_of;
   for (std::uint32_t f = 0; f < lattice.faces().size(); ++f) face_of[lattice.faces()[f].corners] = f;
   const Tile& cube = tiles.tile(3);
   int tunnels = 0;
   for_each_entry([&](std::uint32_t s, unsigned high, const tables::ResolvedEntry& entry) {
     std::vector<Choice> choices(lattice.faces().size(), Choice::separate);
     for (std::size_t q = 0; q < 6; ++q) {
-      facets::Signature corners = 0;
-      for (const std::uint8_t c : cube.faces[q].corner) corners |= facets::Signature{1} << c;
+      tile::Signature corners = 0;
+      for (const std::uint8_t c : cube.faces[q].corner) corners |= tile::Signature{1} << c;
       choices[face_of.at(corners)] = ((high >> q) & 1u) != 0 ? Choice::high : Choice::low;
     }
     for (const Choice centre : {Choice::separate, Choice::low, Choice::high}) {
       choices.back() = centre;
-      facets::TileFacets tile = builder.build(s, {choices, facets::Alternative::low});
+      tile::TileFacets tile = builder.build(s, {choices, tile::Alternative::low});
       const tables::ResolvedList& list = centre == Choice::separate ? entry.separate
                                          : centre == Choice::low    ? entry.low
                                                                     : entry.high;
       const auto triangles = triangles_of(list);
       const auto [parts, euler] = topology(triangles);
       std::vector<std::array<std::uint8_t, 3>> built;
-      std::map<facets::VertexId, std::uint8_t> number;
-      for (const facets::Facet& facet : tile.facets)
-        for (const facets::Simplex& t : facet.simplices) {
+      std::map<tile::VertexId, std::uint8_t> number;
+      for (const tile::Facet& facet : tile.facets)
+        for (const tile::Simplex& t : facet.simplices) {
           auto& row = built.emplace_back();
           for (std::size_t i = 0; i < 3; ++i)
             row[i] = number.try_emplace(t[i], static_cast<std::uint8_t>(number.size())).first->second;
@@ -111,23 +111,23 @@ TEST(ResolvedCube, EveryEntryIsCertifiedAndIsTheSurfaceThatTheBuilderFinds) {
       ASSERT_EQ(entry.components, tile.sigma_euler.size());
       tunnels += parts < entry.components ? 1 : 0;
       // Replaces the builder's triangles by the table's.
-      std::map<std::uint8_t, facets::VertexId> id;
-      for (facets::VertexId v = 0; v < tile.vertices.size(); ++v)
-        for (std::uint8_t e = 0; e < cube.edge_count() && tile.vertices[v].kind == facets::VertexKind::edge; ++e)
+      std::map<std::uint8_t, tile::VertexId> id;
+      for (tile::VertexId v = 0; v < tile.vertices.size(); ++v)
+        for (std::uint8_t e = 0; e < cube.edge_count() && tile.vertices[v].kind == tile::VertexKind::edge; ++e)
           if (lattice.faces()[tile.vertices[v].face].corners ==
-              (facets::Signature{1} << cube.edges[e][0] | facets::Signature{1} << cube.edges[e][1]))
+              (tile::Signature{1} << cube.edges[e][0] | tile::Signature{1} << cube.edges[e][1]))
             id[e] = v;
       for (std::uint8_t k = 0; k < list.own_vertices; ++k) {
-        id[static_cast<std::uint8_t>(12 + k)] = static_cast<facets::VertexId>(tile.vertices.size());
-        tile.vertices.push_back({facets::VertexKind::side, lattice.tile(), 100u + k, facets::kNoVertex, {}});
+        id[static_cast<std::uint8_t>(12 + k)] = static_cast<tile::VertexId>(tile.vertices.size());
+        tile.vertices.push_back({tile::VertexKind::side, lattice.tile(), 100u + k, tile::kNoVertex, {}});
       }
       tile.facets.assign(1, {});
       for (const auto& t : triangles) {
-        facets::Simplex simplex = facets::kNoSimplex;
+        tile::Simplex simplex = tile::kNoSimplex;
         for (std::size_t i = 0; i < 3; ++i) simplex[i] = id.at(t[i]);
         tile.facets[0].simplices.push_back(simplex);
       }
-      ASSERT_EQ(certifier.certify(lattice, tile), facets::Fault::none) << s << " " << high;
+      ASSERT_EQ(certifier.certify(lattice, tile), tile::Fault::none) << s << " " << high;
     }
   });
   // 308 entries with a star of two, three or four polygons are joined by one sign; 8 with a chain of three by both.

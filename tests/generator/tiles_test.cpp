@@ -93,7 +93,7 @@ TEST(TileContours, PassTheirCertificateForEverySignature) {
         const ContourBuilder builder(lattice, shape.dim, a, t);
         TableCertifier certifier(builder);
         for (Signature s = 0; s <= builder.tile().full(); ++s)
-          EXPECT_EQ(certifier.certify(s, builder.build(s)), facets::Fault::none) << "signature " << s;
+          EXPECT_EQ(certifier.certify(s, builder.build(s)), tile::Fault::none) << "signature " << s;
       }
   }
 }

@@ -15,23 +15,23 @@
 namespace tegl::test {
 
 /// One of three choices by a hash of the face's values, so that all combinations of neighbours occur.
-inline facets::Choice random_choice(const AmbiguousFace& face) {
+inline tile::Choice random_choice(const AmbiguousFace& face) {
   std::uint64_t hash = 0x9e3779b97f4a7c15u;
   for (const double value : face.values()) {
     hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0xbf58476d1ce4e5b9u;
     hash ^= hash >> 29;
   }
-  constexpr std::array<facets::Choice, 3> kChoices{facets::Choice::separate, facets::Choice::low, facets::Choice::high};
+  constexpr std::array<tile::Choice, 3> kChoices{tile::Choice::separate, tile::Choice::low, tile::Choice::high};
   return kChoices[hash % 3];
 }
 
 /// By the mean of minimum and maximum; invariant under mirroring of the face.
-inline facets::Choice mid_range(const AmbiguousFace& face) {
+inline tile::Choice mid_range(const AmbiguousFace& face) {
   const auto [least, largest] = std::minmax_element(face.values().begin(), face.values().end());
-  return *least + *largest >= 2 * face.isovalue() ? facets::Choice::high : facets::Choice::low;
+  return *least + *largest >= 2 * face.isovalue() ? tile::Choice::high : tile::Choice::low;
 }
 
-inline ExtractOptions by_estimator(facets::Choice (*choose)(const AmbiguousFace&)) {
+inline ExtractOptions by_estimator(tile::Choice (*choose)(const AmbiguousFace&)) {
   ExtractOptions options;
   options.ambiguity = Ambiguity::custom;
   options.estimator.choose = choose;

@@ -30,8 +30,7 @@ class RecursiveBuilder {
  public:
   explicit RecursiveBuilder(const ExtractOptions& options)
       : lattice_(N),
-        builder_(lattice_, N,
-                 options.ambiguity == Ambiguity::low ? facets::Alternative::low : facets::Alternative::high,
+        builder_(lattice_, N, options.ambiguity == Ambiguity::low ? tile::Alternative::low : tile::Alternative::high,
                  options.triangulation) {}
 
   const gen::TileContour& contour(unsigned signature) {

@@ -11,7 +11,7 @@
 
 #include "shelling.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// Reuses its memory from tile to tile.
 class Certifier::Impl {
@@ -295,4 +295,4 @@ const char* fault_name(Fault fault) noexcept {
   return "unknown";
 }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -11,7 +11,7 @@
 #include "shelling.hpp"
 #include "tegl/tile/disjoint_sets.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 namespace {
 
@@ -197,4 +197,4 @@ bool collapses_to_a_circle(const Simplices& simplices) {
 
 int euler_characteristic(const Simplices& simplices) { return simplices.empty() ? 0 : euler_of(all_faces(simplices)); }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

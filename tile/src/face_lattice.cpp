@@ -11,7 +11,7 @@
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/corners.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 namespace {
 
@@ -158,4 +158,4 @@ FaceLattice FaceLattice::octahedron(int n) {
   return {n, maximal};
 }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -8,7 +8,7 @@
 
 #include "tegl/tile/facets.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// All faces of a face, of every dimension, ascending; the face itself is the last.
 inline std::vector<std::uint32_t> closure(const FaceLattice& lattice, std::uint32_t face) {
@@ -32,4 +32,4 @@ inline Signature compressed(Signature signature, const std::vector<int>& corners
   return result;
 }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -13,7 +13,7 @@
 #include "faces.hpp"
 #include "pieces.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 namespace {
 
@@ -256,4 +256,4 @@ TileFacets build_facets(const FaceLattice& lattice, Signature signature, const R
   return FacetBuilder(lattice).build(signature, resolution);
 }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

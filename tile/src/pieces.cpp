@@ -8,7 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 namespace {
 
@@ -450,4 +450,4 @@ void PieceBuilder::orient(std::uint32_t begin, int boundary_euler, Filling filli
   piece_->facets.push_back({filling, boundary_euler, begin, static_cast<std::uint32_t>(piece_->contour.size())});
 }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -13,7 +13,7 @@
 #include "tegl/tile/disjoint_sets.hpp"
 #include "tegl/tile/facets.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// A vertex of a piece that lies in no proper face of the face. Vertices are ordered by the face that owns them, in the
 /// lattice's order, the face itself last; within one face in order of creation.
@@ -140,4 +140,4 @@ class PieceBuilder {
   Shelling shelling_;
 };
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

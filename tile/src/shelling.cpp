@@ -7,7 +7,7 @@
 #include <bit>
 #include <random>
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 void SimplexMap::clear(std::size_t entries) {
   if (const std::size_t needed = std::bit_ceil(2 * entries + 16); needed > slots_.size() || epoch_ + 1 == 0) {
@@ -144,4 +144,4 @@ void Shelling::take_large_faces(std::uint32_t simplex) {
   }
 }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -12,7 +12,7 @@
 
 #include "tegl/tile/complex.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// Hash of a set of vertices: the sum of one number per vertex, so that adding or removing a vertex is one addition.
 inline std::uint64_t vertex_hash(VertexId vertex) noexcept {
@@ -110,4 +110,4 @@ class Shelling {
   SimplexMap used_;
 };
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -12,7 +12,7 @@
 
 #include "faces.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 namespace {
 
@@ -162,4 +162,4 @@ Fault TileCertifier::certify(Signature signature, const Resolution& resolution) 
 const TileFacets& TileCertifier::tile() const& { return impl_->tile(); }
 TileFacets TileCertifier::tile() const&& { return impl_->tile(); }
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

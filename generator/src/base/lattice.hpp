@@ -15,7 +15,7 @@
 
 namespace tegl::gen {
 
-using facets::Signature;
+using tile::Signature;
 
 struct Tile;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Cuts balls into tetrahedra without added vertices (private to the generator). Whether a given complex is a ball is
-// decided by facets::shape_of.
+// decided by tile::shape_of.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Converts the contours of the tables to the form that facets::Certifier takes, for tiles of any dimension.
+// Converts the contours of the tables to the form that tile::Certifier takes, for tiles of any dimension.
 #include "filling/certificate.hpp"
 
 #include <map>
@@ -11,8 +11,8 @@ namespace tegl::gen {
 
 namespace {
 
-facets::Simplex simplex_of(const LocalSimplex& s, int count) {
-  facets::Simplex result = facets::kNoSimplex;
+tile::Simplex simplex_of(const LocalSimplex& s, int count) {
+  tile::Simplex result = tile::kNoSimplex;
   for (int i = 0; i < count; ++i) result[i] = s[i];
   return result;
 }
@@ -22,7 +22,7 @@ facets::Simplex simplex_of(const LocalSimplex& s, int count) {
 TableCertifier::TableCertifier(const ContourBuilder& builder)
     : builder_(builder), lattice_(face_lattice(builder.tile().kind, builder.dim())) {
   const Tile& tile = builder.tile();
-  const std::vector<facets::Face>& faces = lattice_.faces();
+  const std::vector<tile::Face>& faces = lattice_.faces();
   const std::vector<std::uint32_t>& maximal = faces[lattice_.tile()].faces;
   // the tile's number of each maximal face
   for (const std::uint32_t g : maximal)
@@ -42,7 +42,7 @@ TableCertifier::TableCertifier(const ContourBuilder& builder)
   tile_.in_face.resize(maximal.size()), tile_.in_face_sign.resize(maximal.size());
 }
 
-facets::Fault TableCertifier::certify(Signature signature, const TileContour& contour) {
+tile::Fault TableCertifier::certify(Signature signature, const TileContour& contour) {
   const int n = builder_.dim();
   // the contour
   tile_.facets.assign(1, {});
@@ -50,16 +50,16 @@ facets::Fault TableCertifier::certify(Signature signature, const TileContour& co
     for (const LocalSimplex& s : facet.simplices) tile_.facets[0].simplices.push_back(simplex_of(s, n));
   // Sigma and the contours in the faces, from the builder
   tile_.sigma.clear(), tile_.sigma_sign.clear();
-  const facets::Face& whole = lattice_.faces()[lattice_.tile()];
+  const tile::Face& whole = lattice_.faces()[lattice_.tile()];
   for (std::size_t j = 0; j < face_.size(); ++j) {
     const std::uint32_t f = face_[j];
     tile_.in_face[j].clear(), tile_.in_face_sign[j].clear();
     for (const LocalFacet& facet : builder_.face_contour(f, signature).facets)
       for (LocalSimplex s : facet.simplices) {
         for (int i = 0; i < n - 1; ++i) s[i] = builder_.lift(f, s[i]);
-        facets::Simplex simplex = simplex_of(s, n - 1);
+        tile::Simplex simplex = simplex_of(s, n - 1);
         const int sign =
-            builder_.tile().faces[f].sign * builder_.orientation() * facet.sign * facets::sort_vertices(simplex);
+            builder_.tile().faces[f].sign * builder_.orientation() * facet.sign * tile::sort_vertices(simplex);
         tile_.sigma.push_back(simplex);
         tile_.sigma_sign.push_back(sign);
         tile_.in_face[j].push_back(simplex);
@@ -69,7 +69,7 @@ facets::Fault TableCertifier::certify(Signature signature, const TileContour& co
   return certifier_.certify(lattice_, tile_);
 }
 
-facets::Fault certify(const ContourBuilder& builder, Signature signature, const TileContour& contour) {
+tile::Fault certify(const ContourBuilder& builder, Signature signature, const TileContour& contour) {
   return TableCertifier(builder).certify(signature, contour);
 }
 

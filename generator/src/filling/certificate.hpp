@@ -11,7 +11,7 @@
 
 namespace tegl::gen {
 
-/// Certifies the contours of one builder with facets::Certifier. Sigma is taken from the builder's faces, not from the
+/// Certifies the contours of one builder with tile::Certifier. Sigma is taken from the builder's faces, not from the
 /// contour. Not thread-safe.
 class TableCertifier {
  public:
@@ -19,17 +19,17 @@ class TableCertifier {
   explicit TableCertifier(const ContourBuilder& builder);
 
   /// Returns the fault of a tile's contour, or Fault::none. May be called for any number of signatures in sequence.
-  facets::Fault certify(Signature signature, const TileContour& contour);
+  tile::Fault certify(Signature signature, const TileContour& contour);
 
  private:
   const ContourBuilder& builder_;
-  facets::FaceLattice lattice_;
+  tile::FaceLattice lattice_;
   std::vector<std::uint32_t> face_;  ///< by maximal face of the lattice: its number in the tile
-  facets::TileFacets tile_;
-  facets::Certifier certifier_;
+  tile::TileFacets tile_;
+  tile::Certifier certifier_;
 };
 
 /// Certifies a single tile with a temporary TableCertifier.
-facets::Fault certify(const ContourBuilder& builder, Signature signature, const TileContour& contour);
+tile::Fault certify(const ContourBuilder& builder, Signature signature, const TileContour& contour);
 
 }  // namespace tegl::gen

@@ -189,7 +189,7 @@ using SortedFace = std::pair<LocalSimplex, int>;
 
 /// The simplex with ascending vertices, and the sign of the permutation.
 SortedFace sorted_face(LocalSimplex s, int count) {
-  const int sign = facets::sort_vertices(s, count);
+  const int sign = tile::sort_vertices(s, count);
   return {s, sign};
 }
 

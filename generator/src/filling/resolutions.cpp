@@ -21,19 +21,18 @@ namespace tegl::gen {
 
 namespace {
 
-using facets::Alternative;
-using facets::Choice;
-using facets::FaceLattice;
-using facets::Fault;
-using facets::TileCertifier;
+using tile::Alternative;
+using tile::Choice;
+using tile::FaceLattice;
+using tile::Fault;
+using tile::TileCertifier;
 
-std::string text_of(const FaceLattice& lattice, Signature signature, const facets::Resolution& resolution,
-                    Fault fault) {
+std::string text_of(const FaceLattice& lattice, Signature signature, const tile::Resolution& resolution, Fault fault) {
   std::string choices;
   for (std::size_t f = 0; f < resolution.choices.size(); ++f)
     if (lattice.faces()[f].dim >= 2) choices += "slh"[static_cast<std::size_t>(resolution.choices[f])];
   return fmt::format("signature {}, faces resolved {} (s separate, l low, h high), {} alternative: {}", signature,
-                     choices, resolution.alternative == Alternative::low ? "low" : "high", facets::fault_name(fault));
+                     choices, resolution.alternative == Alternative::low ? "low" : "high", tile::fault_name(fault));
 }
 
 /// State of one thread: a certifier and its sums.
@@ -46,17 +45,17 @@ class Worker {
 
   /// Certifies one tile and counts each component of its Sigma `weight` times. True if a component is not a sphere.
   bool certify(Signature signature, Alternative alternative, std::uint64_t weight) {
-    const facets::Resolution resolution{choices_, alternative};
+    const tile::Resolution resolution{choices_, alternative};
     const Fault fault = certifier_.certify(signature, resolution);
     const FaceLattice& lattice = certifier_.lattice();
     if (fault != Fault::none) throw Error(ErrorCode::CertificateFailed, text_of(lattice, signature, resolution, fault));
-    const facets::TileFacets& tile = certifier_.tile();
+    const tile::TileFacets& tile = certifier_.tile();
     std::uint64_t simplices = 0;
-    for (const facets::Facet& facet : tile.facets) simplices += facet.simplices.size();
+    for (const tile::Facet& facet : tile.facets) simplices += facet.simplices.size();
     figures_.tiles += 1;
     figures_.simplices += simplices;
     figures_.max_simplices = std::max(figures_.max_simplices, simplices);
-    for (const facets::Facet& facet : tile.facets) ++figures_.by_filling[static_cast<std::size_t>(facet.filling)];
+    for (const tile::Facet& facet : tile.facets) ++figures_.by_filling[static_cast<std::size_t>(facet.filling)];
     bool others = false;
     for (const int euler : tile.sigma_euler) {
       if (weight > 0) figures_.euler[euler] += weight;
@@ -195,7 +194,7 @@ FaceLattice face_lattice(TileKind kind, int n) {
 std::vector<std::uint32_t> ambiguous_polygons(const FaceLattice& lattice, Signature signature) {
   std::vector<std::uint32_t> result;
   for (std::uint32_t f = 0; f < lattice.faces().size(); ++f) {
-    const facets::Face& face = lattice.faces()[f];
+    const tile::Face& face = lattice.faces()[f];
     if (face.dim != 2) continue;
     const auto changes = std::count_if(face.faces.begin(), face.faces.end(), [&](std::uint32_t edge) {
       return std::popcount(signature & lattice.faces()[edge].corners) == 1;

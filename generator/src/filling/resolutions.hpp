@@ -25,7 +25,7 @@ struct ResolutionFigures {
   std::uint64_t classes_with_non_spherical = 0;  ///< classes with such a pair
   std::uint64_t simplices = 0;                   ///< total of all certified tiles
   std::uint64_t max_simplices = 0;               ///< maximum over the tiles
-  std::array<std::uint64_t, 3> by_filling{};     ///< facets of all tiles: simplex, cone, side (facets::Filling)
+  std::array<std::uint64_t, 3> by_filling{};     ///< facets of all tiles: simplex, cone, side (tile::Filling)
   std::map<int, std::uint64_t> euler{};  ///< Euler characteristic of a component of Sigma -> number of components
 };
 
@@ -36,7 +36,7 @@ using Progress = std::function<void(double)>;
 /// ambiguous polygons. The construction commutes with the symmetries that keep the signature, provided that no larger
 /// face is joined. So one tile per orbit of resolutions is built and represents the orbit. A tile with a non-spherical
 /// component is filled in both ways: two tiles. All tiles are certified with the contours in their faces
-/// (facets::TileCertifier). n = 2 to 4. `threads`: 0 = one per processor. Errors: CertificateFailed, with signature,
+/// (tile::TileCertifier). n = 2 to 4. `threads`: 0 = one per processor. Errors: CertificateFailed, with signature,
 /// resolution and fault.
 [[nodiscard]] ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads,
                                                         const Progress& progress = {});
@@ -49,9 +49,9 @@ using Progress = std::function<void(double)>;
                                                unsigned threads, const Progress& progress = {});
 
 /// The face lattice of a tile of a kind, in the generator's numbering.
-[[nodiscard]] facets::FaceLattice face_lattice(TileKind kind, int n);
+[[nodiscard]] tile::FaceLattice face_lattice(TileKind kind, int n);
 
 /// The ambiguous faces of dimension 2, whose boundary changes sign more than twice. Indices, ascending.
-[[nodiscard]] std::vector<std::uint32_t> ambiguous_polygons(const facets::FaceLattice& lattice, Signature signature);
+[[nodiscard]] std::vector<std::uint32_t> ambiguous_polygons(const tile::FaceLattice& lattice, Signature signature);
 
 }  // namespace tegl::gen

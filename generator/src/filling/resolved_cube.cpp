@@ -24,10 +24,10 @@ namespace tegl::gen {
 
 namespace {
 
-using facets::Choice;
-using facets::FaceLattice;
-using facets::TileFacets;
-using facets::VertexId;
+using tile::Choice;
+using tile::FaceLattice;
+using tile::TileFacets;
+using tile::VertexId;
 
 constexpr std::size_t kEdges = 12;
 constexpr std::size_t kOwn = kEdges;  ///< number of the first vertex that is not an edge point
@@ -105,28 +105,28 @@ class Alone {
       }
     }
     for (VertexId v = 0; v < tile_.vertices.size(); ++v)
-      if (tile_.vertices[v].kind == facets::VertexKind::edge) id_[frame.edge_of_face[tile_.vertices[v].face]] = v;
+      if (tile_.vertices[v].kind == tile::VertexKind::edge) id_[frame.edge_of_face[tile_.vertices[v].face]] = v;
     for (std::uint32_t own = 0; own < kMaxOwn; ++own) {
       id_[kOwn + own] = static_cast<VertexId>(tile_.vertices.size());
-      tile_.vertices.push_back({facets::VertexKind::side, frame.lattice.tile(), own, facets::kNoVertex, {}});
+      tile_.vertices.push_back({tile::VertexKind::side, frame.lattice.tile(), own, tile::kNoVertex, {}});
     }
   }
 
   bool passes(const Triangles& filling) {
-    facets::Facet facet;
+    tile::Facet facet;
     for (const Triangle& t : filling) {
-      facets::Simplex& simplex = facet.simplices.emplace_back(facets::kNoSimplex);
+      tile::Simplex& simplex = facet.simplices.emplace_back(tile::kNoSimplex);
       for (std::size_t i = 0; i < 3; ++i) simplex[i] = id_[t[i]];
     }
     tile_.facets.assign(1, facet);
-    return certifier_.certify(frame_->lattice, tile_) == facets::Fault::none;
+    return certifier_.certify(frame_->lattice, tile_) == tile::Fault::none;
   }
 
  private:
   const Frame* frame_;
   TileFacets tile_;
   std::array<VertexId, kEdges + kMaxOwn> id_{};
-  facets::Certifier certifier_;
+  tile::Certifier certifier_;
 };
 
 /// Search for a connected surface of genus 0 with the given boundary and the shortest inner edges.
@@ -333,7 +333,7 @@ class Table {
     tables::ResolvedEntry entry{};
     for (const Choice choice : {Choice::separate, Choice::low, Choice::high}) {
       choices.back() = choice;
-      tile_ = builder_.build(signature, {choices, facets::Alternative::low}, facets::Geometry::without);
+      tile_ = builder_.build(signature, {choices, tile::Alternative::low}, tile::Geometry::without);
       const std::vector<Polygon> polygons = polygons_of(frame_, tile_);
       entry.components = static_cast<std::uint8_t>(polygons.size());
       tables::ResolvedList& list = choice == Choice::separate ? entry.separate
@@ -345,7 +345,7 @@ class Table {
       }
       list.first_triangle = static_cast<std::uint16_t>(table_.triangles.size() / 3);
       list.first_mask = static_cast<std::uint16_t>(table_.masks.size());
-      for (const facets::Facet& facet : tile_.facets) fill(list, around(facet, polygons), choice);
+      for (const tile::Facet& facet : tile_.facets) fill(list, around(facet, polygons), choice);
     }
     table_.entries.push_back(entry);
   }
@@ -354,11 +354,11 @@ class Table {
 
  private:
   /// The polygons that bound a facet of the tile.
-  [[nodiscard]] std::vector<Polygon> around(const facets::Facet& facet, const std::vector<Polygon>& polygons) const {
+  [[nodiscard]] std::vector<Polygon> around(const tile::Facet& facet, const std::vector<Polygon>& polygons) const {
     unsigned edges = 0;
-    for (const facets::Simplex& s : facet.simplices)
-      for (int i = 0; i < facets::size(s); ++i)
-        if (const facets::Vertex& v = tile_.vertices[s[i]]; v.kind == facets::VertexKind::edge)
+    for (const tile::Simplex& s : facet.simplices)
+      for (int i = 0; i < tile::size(s); ++i)
+        if (const tile::Vertex& v = tile_.vertices[s[i]]; v.kind == tile::VertexKind::edge)
           edges |= 1u << frame_.edge_of_face[v.face];
     std::vector<Polygon> result;
     for (const Polygon& polygon : polygons)
@@ -417,7 +417,7 @@ class Table {
   }
 
   const Frame& frame_;
-  facets::FacetBuilder builder_;
+  tile::FacetBuilder builder_;
   ContourBuilder compact_low_{frame_.tiles, 3, Alternative::low, Triangulation::compact};
   ContourBuilder compact_high_{frame_.tiles, 3, Alternative::high, Triangulation::compact};
   ResolvedCube table_;

@@ -24,7 +24,7 @@ inline Key key_of(std::array<std::uint8_t, 4> v, int count) {
 }
 
 /// Parity of the permutation that sorts the first `count` vertices: +1 or -1.
-inline int parity(std::array<std::uint8_t, 4> v, int count) { return facets::sort_vertices(v, count); }
+inline int parity(std::array<std::uint8_t, 4> v, int count) { return tile::sort_vertices(v, count); }
 
 inline LocalSimplex without(const LocalSimplex& s, int drop, int n) {
   LocalSimplex face{};

@@ -13,18 +13,18 @@
 
 namespace tegl::gen {
 
-using facets::Alternative;
-using facets::Filling;
 using tegl::Triangulation;
+using tile::Alternative;
+using tile::Filling;
 
 const char* alternative_name(Alternative a) noexcept;      ///< "low", "high"
 const char* triangulation_name(Triangulation t) noexcept;  ///< "barycentric", "compact"
 
-/// An oriented simplex by local vertices as in the table contract; the first n count for an n-tile. facets::Simplex
+/// An oriented simplex by local vertices as in the table contract; the first n count for an n-tile. tile::Simplex
 /// has the vertices of any tile instead.
 using LocalSimplex = std::array<std::uint8_t, 4>;
 
-/// One facet of the contour, as facets::Facet, by local vertices.
+/// One facet of the contour, as tile::Facet, by local vertices.
 struct LocalFacet {
   Filling filling = Filling::simplex;     ///< how it is filled
   int sign = 1;                           ///< dimension 1 only: +1 if the edge's second end is high

@@ -146,13 +146,13 @@ std::size_t simplex_count(const TileContour& contour) {
 
 /// Proves it by a collapse to a circle; the certificate proves that the facet is a manifold.
 bool is_solid_torus(const LocalFacet& facet) {
-  facets::Simplices simplices;
+  tile::Simplices simplices;
   for (const LocalSimplex& s : facet.simplices) {
-    facets::Simplex& simplex = simplices.emplace_back(facets::kNoSimplex);
+    tile::Simplex& simplex = simplices.emplace_back(tile::kNoSimplex);
     std::copy(s.begin(), s.end(), simplex.begin());
-    facets::sort_vertices(simplex);
+    tile::sort_vertices(simplex);
   }
-  return facets::collapses_to_a_circle(simplices);
+  return tile::collapses_to_a_circle(simplices);
 }
 
 /// The facet that fills a non-spherical component of Sigma, or null.

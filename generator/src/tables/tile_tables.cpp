@@ -33,7 +33,7 @@ std::vector<Canonical> canonical(int n, const std::vector<LocalSimplex>& simplic
   for (const LocalSimplex& s : simplices) {
     std::array<std::uint32_t, 4> names{};
     for (int i = 0; i < n; ++i) names[i] = name(s[i]);
-    const int sign = facets::sort_vertices(names, n) * (reversed ? -1 : 1);
+    const int sign = tile::sort_vertices(names, n) * (reversed ? -1 : 1);
     result.push_back({sign > 0 ? 1u : 0u, names[0], names[1], names[2], names[3]});
   }
   std::sort(result.begin(), result.end());
@@ -236,9 +236,9 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder, const
   const auto build = [&](TableCertifier& certifier, std::uint64_t number) {
     const auto s = static_cast<std::uint32_t>(number);
     contours[s] = builder.build(s);
-    if (const facets::Fault fault = certifier.certify(s, contours[s]); fault != facets::Fault::none)
+    if (const tile::Fault fault = certifier.certify(s, contours[s]); fault != tile::Fault::none)
       throw Error(ErrorCode::CertificateFailed,
-                  fmt::format("signature {} of the {}-tile: {}", s, builder.dim(), facets::fault_name(fault)));
+                  fmt::format("signature {} of the {}-tile: {}", s, builder.dim(), tile::fault_name(fault)));
   };
   in_parallel(
       count, kChunk, 0, [&] { return TableCertifier(builder); }, build, [](const TableCertifier&) {});

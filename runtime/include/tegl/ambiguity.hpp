@@ -95,7 +95,7 @@ struct Estimator {
   /// of vertices or simplices than was counted, or tiles around a cube get different fillings of it. Changes that are
   /// not detected give tiles that do not match. In neither case is memory outside of the contour written. For a square,
   /// `separate` means `low`. Exceptions end the extraction and reach its caller.
-  std::function<facets::Choice(const AmbiguousFace& face)> choose = {};
+  std::function<tile::Choice(const AmbiguousFace& face)> choose = {};
   /// How many samples beyond the face, along any axis, `choose` may read with AmbiguousFace::sample. Streaming keeps as
   /// many layers as this requires; samples farther away are unavailable.
   std::size_t reach = 0;

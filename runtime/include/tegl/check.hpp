@@ -36,7 +36,7 @@ struct MeshReport {
 /// A link is tested as a whole: no face in more than two of its simplices, no pinched vertex, connected, and the Euler
 /// characteristic of a sphere (closed) or a ball. For d = 3 this decides between sphere and disc by the classification
 /// of surfaces. For d = 4 the link is shown to be a sphere or ball by a shelling, else by collapsing it
-/// (facets::shape_of); a link for which both fail counts as bad, and so does one of 65 535 vertices or more. A simplex
+/// (tile::shape_of); a link for which both fail counts as bad, and so does one of 65 535 vertices or more. A simplex
 /// has measure zero if one of its heights is at most 1e-14 of its longest edge: differences of coordinates and the
 /// orthogonalisation carry a rounding error of a few 1e-16 of that edge, and simplices that are merely thin are thicker
 /// by orders of magnitude if coordinates have float precision.

@@ -31,7 +31,7 @@ struct CubeDecision {
   /// two high regions inside the cube that are separate on its faces: the contour has a tunnel around the connection
   /// (an annulus between two loops) and discs in the remaining loops, a copy of the low part of the cube's surface.
   /// `low`: the same with high and low exchanged. There are no other cases: at most two loops are joined.
-  facets::Choice centre = facets::Choice::separate;
+  tile::Choice centre = tile::Choice::separate;
 
   bool operator==(const CubeDecision&) const = default;  ///< member by member
 };
@@ -50,7 +50,7 @@ struct CubeJoin {
 };
 const std::array<CubeJoin, 656>& cube_joins() noexcept;
 /// The centre choice of a cube with this entry.
-facets::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
+tile::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
 /// Without the floating-point filter, for tests: all signs by exact arithmetic.
 bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept;
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept;
@@ -91,7 +91,7 @@ CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept
 
 /// The choice for the inside of a cube only.
 template <Value T>
-facets::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept {
+tile::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept {
   return decide_cube<T>(values, isovalue).centre;
 }
 

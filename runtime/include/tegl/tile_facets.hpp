@@ -13,7 +13,7 @@
 
 namespace tegl {
 
-/// The number of a face of the N-cube, as used by `signs` and facets::Vertex::face: faces are ordered by dimension,
+/// The number of a face of the N-cube, as used by `signs` and tile::Vertex::face: faces are ordered by dimension,
 /// then by the ascending numbers of their corners. Corner v has coordinate v >> a & 1 on axis a. The face has the
 /// corners `base | s` for all subsets s of the bits of `axes` (theory's numbering), and as many dimensions as `axes`
 /// has bits. Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1) after the
@@ -53,11 +53,11 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// Time: microseconds in 2D, about 0.1 ms in 3D and 4D, up to 10 ms in 5D, seconds in 6D; docs/cost.md has measured
 /// times of 5D. Up to 4D most of it is the setup of a builder.
 ///
-/// For many tiles use one facets::FacetBuilder of facets::FaceLattice::cube(N) per thread: it keeps the data that tiles
+/// For many tiles use one tile::FacetBuilder of tile::FaceLattice::cube(N) per thread: it keeps the data that tiles
 /// share.
 template <int N>
-requires DimensionBetween<N, 2, 6> facets::TileFacets tile_facets(
-    std::uint64_t signature, std::span<const facets::Choice> signs = {},
-    facets::Alternative otherwise = facets::Alternative::low);
+requires DimensionBetween<N, 2, 6> tile::TileFacets tile_facets(std::uint64_t signature,
+                                                                std::span<const tile::Choice> signs = {},
+                                                                tile::Alternative otherwise = tile::Alternative::low);
 
 }  // namespace tegl

@@ -92,8 +92,8 @@ bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigne
   const unsigned r = packed_squares(means.high, ambiguous);
   const bool has_choice = table.entries[table.first_entry[signature] + r].components > 1;
   decision.high_squares = static_cast<std::uint8_t>(means.high & ambiguous);
-  const auto centre = (means.high >> 6) != 0 ? facets::Choice::high : facets::Choice::low;
-  decision.centre = has_choice ? centre : facets::Choice::separate;
+  const auto centre = (means.high >> 6) != 0 ? tile::Choice::high : tile::Choice::low;
+  decision.centre = has_choice ? centre : tile::Choice::separate;
   return (means.unsure & (ambiguous | (has_choice ? 64u : 0u))) == 0;
 }
 
@@ -221,7 +221,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   answer(questions, estimator.isovalue());
   for (std::size_t q = 0; q < questions.count; ++q) {
     Variant& variant = tiles.variants[asked[q]];
-    const auto joined = static_cast<unsigned>(joins[entries[q]].high ? facets::Choice::high : facets::Choice::low);
+    const auto joined = static_cast<unsigned>(joins[entries[q]].high ? tile::Choice::high : tile::Choice::low);
     if (questions.answers[q] == JoinQuestions::yes) variant = table.variant(entries[q], joined);
     if (questions.answers[q] == JoinQuestions::unsure) variant = {};
   }

@@ -173,21 +173,20 @@ bool FaceEstimator<N>::is_square_high(const Index& base, unsigned axes,
                                       std::span<const double, 4> values) const noexcept {
   if (ambiguity_ == Ambiguity::mean) return is_mean_high(values, isovalue_);
   if (ambiguity_ == Ambiguity::saddle) return tegl::square_is_high<double>(values, isovalue_);
-  return ask(base, axes, values) == facets::Choice::high;
+  return ask(base, axes, values) == tile::Choice::high;
 }
 
 template <int N>
-facets::Choice FaceEstimator<N>::choice(const Index& base, unsigned axes,
-                                        std::span<const double> values) const noexcept {
+tile::Choice FaceEstimator<N>::choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
   if (ambiguity_ == Ambiguity::custom) return ask(base, axes, values);
   if (ambiguity_ == Ambiguity::saddle && values.size() == 8)
     return tegl::cube_choice<double>(values.first<8>(), isovalue_);
-  return is_mean_high(values, isovalue_) ? facets::Choice::high : facets::Choice::low;
+  return is_mean_high(values, isovalue_) ? tile::Choice::high : tile::Choice::low;
 }
 
 template <int N>
-facets::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
-  if (failed_.load(std::memory_order_relaxed)) return facets::Choice::separate;
+tile::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
+  if (failed_.load(std::memory_order_relaxed)) return tile::Choice::separate;
   // Limited to the caller's reach: streamed images may have no other samples in memory.
   AmbiguousFace::Surroundings near = around_;
   const auto reach = static_cast<std::ptrdiff_t>(std::min<std::size_t>(estimator_.reach, 1u << 30));
@@ -198,12 +197,12 @@ facets::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span
   }
   try {
     const AmbiguousFace face(base, axes, values, isovalue_, near);
-    const facets::Choice choice = call_apart([&] { return estimator_.choose(face); });
-    return choice <= facets::Choice::high ? choice : facets::Choice::separate;
+    const tile::Choice choice = call_apart([&] { return estimator_.choose(face); });
+    return choice <= tile::Choice::high ? choice : tile::Choice::separate;
   } catch (...) {
     keep_error(std::current_exception());
   }
-  return facets::Choice::separate;
+  return tile::Choice::separate;
 }
 
 template <int N>

@@ -57,7 +57,7 @@ class FaceEstimator {
   [[nodiscard]] bool is_by_means() const noexcept { return ambiguity_ == Ambiguity::mean; }
   [[nodiscard]] double isovalue() const noexcept { return isovalue_; }
   /// The filling of a face of dimension 3 or more.
-  [[nodiscard]] facets::Choice choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
+  [[nodiscard]] tile::Choice choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
 
   /// Whether a caller's estimator decides. Its answers may change between calls.
   [[nodiscard]] bool is_callers() const noexcept { return ambiguity_ == Ambiguity::custom; }
@@ -68,7 +68,7 @@ class FaceEstimator {
   void rethrow() const;
 
  private:
-  [[nodiscard]] facets::Choice ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
+  [[nodiscard]] tile::Choice ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
 
   void keep_error(std::exception_ptr error) const noexcept;
 

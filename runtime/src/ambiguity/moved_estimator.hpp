@@ -26,7 +26,7 @@ class MovedFace {
   MovedFace& operator=(const MovedFace&) = delete;
 
   /// Returns the choice of `choose` for the face.
-  [[nodiscard]] facets::Choice ask(const std::function<facets::Choice(const AmbiguousFace&)>& choose) const {
+  [[nodiscard]] tile::Choice ask(const std::function<tile::Choice(const AmbiguousFace&)>& choose) const {
     // base and axes in the original order
     std::array<std::size_t, N> base{};
     std::array<unsigned, N> bit{};  // by original axis: bit of a corner's number in the moved face

@@ -55,7 +55,7 @@ namespace tegl::detail {
 
 namespace {
 
-using facets::Choice;
+using tile::Choice;
 
 /// A value minus the isovalue spans 2^-1074 ... 2^1025; the polynomials have degree 4 at most.
 inline constexpr unsigned kExactBits = 4 * (1025 + 1074) + 16;

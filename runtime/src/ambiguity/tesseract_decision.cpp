@@ -75,7 +75,7 @@ static ResolvedTile settled_tile(const ResolvedCubes& cubes, unsigned signature)
   const std::uint64_t signatures = cubes.signatures(tile.key.signature);
   for (unsigned f = 0; f < 8; ++f) {
     tile.cubes[f] = static_cast<std::uint16_t>(signatures >> (8 * f) & 255);
-    tile.lists[f] = cubes.list(tile.cubes[f], 0, facets::Choice::separate);
+    tile.lists[f] = cubes.list(tile.cubes[f], 0, tile::Choice::separate);
     if (cubes.own_vertices(tile.lists[f]) != 0)
       tile.with_vertices = static_cast<std::uint8_t>(tile.with_vertices | 1u << f);
   }
@@ -109,11 +109,11 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   for (unsigned f = 0; f < 8; ++f) {
     const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
     tile.cubes[f] = static_cast<std::uint16_t>(in_cube);
-    tile.lists[f] = cubes.list_of_entry(table.first_entry[in_cube], facets::Choice::separate);
+    tile.lists[f] = cubes.list_of_entry(table.first_entry[in_cube], tile::Choice::separate);
     if (!ambiguous_cubes[in_cube]) continue;
     const unsigned r =
         packed_squares(static_cast<unsigned>(squares >> (8 * f) & 255), table.ambiguous_squares[in_cube]);
-    auto choice = facets::Choice::separate;
+    auto choice = tile::Choice::separate;
     if (table.entries[table.first_entry[in_cube] + r].components > 1) {
       const unsigned corner = (f % 2) << (f / 2);
       const unsigned axes = 15u ^ 1u << (f / 2);
@@ -121,8 +121,8 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
     }
     tile.cubes[f] = CubeKey(in_cube, r, choice).bits();
     tile.lists[f] = cubes.list_of_entry(table.first_entry[in_cube] + r, choice);
-    if (choice == facets::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
-    if (choice == facets::Choice::high) tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | 1u << f);
+    if (choice == tile::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
+    if (choice == tile::Choice::high) tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | 1u << f);
   }
   // cubes with vertices, and the tile itself
   for (unsigned f = 0; f < 8; ++f)
@@ -135,8 +135,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
 /// Decides the centres of a tile's cubes by the trilinear interpolant. `entries`: of its cubes. Returns false if
 /// rounding could decide.
 static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isovalue,
-                           const std::array<std::uint16_t, 8>& entries,
-                           std::array<facets::Choice, 8>& choices) noexcept {
+                           const std::array<std::uint16_t, 8>& entries, std::array<tile::Choice, 8>& choices) noexcept {
   const auto& joins = cube_joins();
   const auto value = [&](unsigned f, unsigned corner) {
     const unsigned of_tile = kCubesIn4D[f][corner];
@@ -161,7 +160,7 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
   answer(questions, isovalue);
   for (std::size_t q = 0; q < questions.count; ++q) {
     if (questions.answers[q] == JoinQuestions::unsure) return false;
-    const auto joined = joins[entries[asked[q]]].high ? facets::Choice::high : facets::Choice::low;
+    const auto joined = joins[entries[asked[q]]].high ? tile::Choice::high : tile::Choice::low;
     if (questions.answers[q] == JoinQuestions::yes) choices[asked[q]] = joined;
   }
   return true;
@@ -175,7 +174,7 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.key = {};
   tile.key.signature = static_cast<std::uint16_t>(signature);
   tile.key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
-  tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? facets::Choice::high : facets::Choice::low;
+  tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
   // entries of the cubes
   const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
   std::array<std::uint16_t, 8> entries;
@@ -183,13 +182,13 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
     entries[f] = static_cast<std::uint16_t>(cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
                                                         static_cast<unsigned>(squares >> (8 * f) & 63)));
   // choices of the cubes
-  std::array<facets::Choice, 8> choices{};
+  std::array<tile::Choice, 8> choices{};
   if (estimator.is_by_means()) {
     unsigned with_choice = 0;
     for (unsigned f = 0; f < 8; ++f) {
       const auto is_high = static_cast<unsigned>(high >> (kFirstCube<4> + f) & 1u);
       const unsigned has_choice = cubes.has_choice(entries[f]) ? 1 : 0;
-      choices[f] = static_cast<facets::Choice>(has_choice * (1 + is_high));
+      choices[f] = static_cast<tile::Choice>(has_choice * (1 + is_high));
       with_choice |= has_choice << f;
     }
     const auto high_cubes = static_cast<unsigned>(high >> kFirstCube<4>);
@@ -199,8 +198,8 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
     if (!decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
     unsigned low = 0, joined = 0;
     for (unsigned f = 0; f < 8; ++f) {
-      low |= (choices[f] == facets::Choice::low ? 1u : 0u) << f;
-      joined |= (choices[f] == facets::Choice::high ? 1u : 0u) << f;
+      low |= (choices[f] == tile::Choice::low ? 1u : 0u) << f;
+      joined |= (choices[f] == tile::Choice::high ? 1u : 0u) << f;
     }
     tile.key.low_cubes = static_cast<std::uint8_t>(low);
     tile.key.high_cubes = static_cast<std::uint8_t>(joined);

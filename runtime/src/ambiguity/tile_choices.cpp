@@ -47,14 +47,14 @@ bool TileChoices<N>::is_open(const Face& face, unsigned signature, const TileKey
   if (face.dim == 2) return signature == 6 || signature == 9;
   if (face.dim == 4) return !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(signature));
   unsigned high = 0;
-  for (unsigned q = 0; q < 6; ++q) high |= (key.choice(face.squares[q]) == facets::Choice::high ? 1u : 0u) << q;
-  const std::uint16_t list = ResolvedCubes::instance().list(signature, high, facets::Choice::separate);
+  for (unsigned q = 0; q < 6; ++q) high |= (key.choice(face.squares[q]) == tile::Choice::high ? 1u : 0u) << q;
+  const std::uint16_t list = ResolvedCubes::instance().list(signature, high, tile::Choice::separate);
   return ResolvedCubes::instance().summary(list).part_count > 1;
 }
 
 template <int N>
-facets::Choice TileChoices<N>::ask(CellKind<N> kind, const Index& base, unsigned face_base,
-                                   unsigned axes) const noexcept {
+tile::Choice TileChoices<N>::ask(CellKind<N> kind, const Index& base, unsigned face_base,
+                                 unsigned axes) const noexcept {
   const unsigned shift = kind.spread(face_base), along = kind.spread(axes);
   Index at = base;
   for (int a = 0; a < N; ++a) at[a] += shift >> a & 1u;
@@ -62,9 +62,8 @@ facets::Choice TileChoices<N>::ask(CellKind<N> kind, const Index& base, unsigned
   estimator_.source().corner_values(at, along, values.data());
   const std::size_t count = std::size_t{1} << std::popcount(axes);
   if (count > 4) return estimator_.choice(at, along, std::span<const double>(values).first(count));
-  return estimator_.is_square_high(at, along, std::span<const double>(values).template first<4>())
-             ? facets::Choice::high
-             : facets::Choice::low;
+  return estimator_.is_square_high(at, along, std::span<const double>(values).template first<4>()) ? tile::Choice::high
+                                                                                                   : tile::Choice::low;
 }
 
 template <int N>

@@ -36,8 +36,7 @@ class TileChoices {
     std::array<std::uint16_t, 6> squares{};  ///< of a cube, in the order of tables::ResolvedTable
   };
   [[nodiscard]] bool is_open(const Face& face, unsigned signature, const TileKey& key) const noexcept;
-  [[nodiscard]] facets::Choice ask(CellKind<N> kind, const Index& base, unsigned face_base,
-                                   unsigned axes) const noexcept;
+  [[nodiscard]] tile::Choice ask(CellKind<N> kind, const Index& base, unsigned face_base, unsigned axes) const noexcept;
 
   const FaceEstimator<N>& estimator_;
   std::vector<Face> faces_;  ///< faces that have choices, except the tile

@@ -275,7 +275,7 @@ class FacetExtraction {
     const unsigned signature = rows_.signature(kind.corners, row, i);
     const KnownKind::Sub& inner = kind.subs[4];
     const bool high = ambiguous_signatures<2>()[signature] && inner.numbers->type(row, i) != signature;
-    return ResolvedCubes::instance().list(signature, high ? 1u << 4 : 0, facets::Choice::separate);
+    return ResolvedCubes::instance().list(signature, high ? 1u << 4 : 0, tile::Choice::separate);
   }
 
   [[nodiscard]] std::uint16_t cube_type(const KnownKind& kind, std::size_t row, std::size_t i) const noexcept {
@@ -305,7 +305,7 @@ class FacetExtraction {
       facets.type = kind.numbers->type(row, i);
     } else {
       begin_tesseract(kind, row, i, signature, scratch.tesseract);
-      scratch.tesseract.fill(static_cast<facets::Choice>(kind.numbers->type(row, i)));
+      scratch.tesseract.fill(static_cast<tile::Choice>(kind.numbers->type(row, i)));
       facets.tesseract = &scratch.tesseract;
     }
     return facets;
@@ -328,7 +328,7 @@ class FacetExtraction {
   /// Resolves a tesseract. Called once, when its facets are counted.
   void choose_tesseract(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
                         FacetScratch& scratch) const {
-    auto choice = facets::Choice::separate;
+    auto choice = tile::Choice::separate;
     if (!kind.outward && begin_tesseract(kind, row, i, signature, scratch.tesseract) > 1) {
       const auto base = place_of(row, i);
       std::array<double, std::size_t{1} << N> values;

@@ -151,8 +151,8 @@ void FacetTables::add_cube(unsigned number) {
         if (part.component == first) points = static_cast<std::uint16_t>(points | 1u << edge_named(part.ends[0]));
       continue;
     }
-    inside.joins = cubes.list(of.signature, of.high_squares, facets::Choice::low) == number ? facets::Choice::low
-                                                                                            : facets::Choice::high;
+    inside.joins =
+        cubes.list(of.signature, of.high_squares, tile::Choice::low) == number ? tile::Choice::low : tile::Choice::high;
     for (const Triangle& triangle : triangles)
       if (connected.find(triangle[0]) == part_of(all[first])) add_triangle(triangle, all, inside);
   }

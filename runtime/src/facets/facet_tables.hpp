@@ -51,7 +51,7 @@ class FacetTables {
     std::vector<std::array<std::uint8_t, 2>>
         segments;  ///< start and end: an edge of the cube (its point), or kCubeEdges + index in `points`
     /// Choice of the cube's centre if there is a tunnel: all corners of that sign are connected in the cube.
-    facets::Choice joins = facets::Choice::separate;
+    tile::Choice joins = tile::Choice::separate;
   };
 
   /// Builds the tables of edges, squares and cubes. Types are signatures; if ambiguities are resolved from the data:

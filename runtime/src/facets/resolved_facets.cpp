@@ -92,7 +92,7 @@ std::uint32_t ResolvedFacets::region(std::size_t component, bool high) const noe
     reached = with_neighbours(reached) & corners;
     for (unsigned f = 0; f < 8; ++f) {
       if (cubes_[f] == kNone) continue;
-      if (tables_->inside(cubes_[f]).joins == (high ? facets::Choice::high : facets::Choice::low))
+      if (tables_->inside(cubes_[f]).joins == (high ? tile::Choice::high : tile::Choice::low))
         join(lifted_corners(f, 0xff));
       const CubeList& cube = ResolvedCubes::instance().lists()[cubes_[f]];
       const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[cube.signature];
@@ -104,15 +104,15 @@ std::uint32_t ResolvedFacets::region(std::size_t component, bool high) const noe
   return reached;
 }
 
-void ResolvedFacets::fill(facets::Choice choice) {
+void ResolvedFacets::fill(tile::Choice choice) {
   const std::size_t count = components_.size();
   facet_of_.resize(count);
   for (std::size_t c = 0; c < count; ++c) facet_of_[c] = c;
   if (count > 1) {
-    const bool high = choice != facets::Choice::high;  // the side that is copied
+    const bool high = choice != tile::Choice::high;  // the side that is copied
     std::vector<std::uint32_t> regions(count, 0);
     for (std::size_t c = 0; c < count; ++c) {
-      if (choice == facets::Choice::separate && is_sphere(c)) continue;
+      if (choice == tile::Choice::separate && is_sphere(c)) continue;
       regions[c] = region(c, high);
       const auto same = std::find(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(c), regions[c]);
       facet_of_[c] = static_cast<std::size_t>(same - regions.begin());

@@ -28,7 +28,7 @@ class ResolvedFacets {
   /// Computes its facets. `choice`: sign of its centre. separate: each sphere bounds its own facet, and other
   /// components are filled as with a low centre. low, high: all components around one boundary region of the other sign
   /// (high regions for low, low ones for high) bound one facet, which is a copy of that region, moved inwards.
-  void fill(facets::Choice choice);
+  void fill(tile::Choice choice);
 
   [[nodiscard]] unsigned count() const noexcept { return static_cast<unsigned>(first_.size() - 1); }
   [[nodiscard]] std::size_t entry_count() const noexcept { return entries_.size(); }

@@ -28,7 +28,7 @@ const RowTable* row_table() {
 
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options) {
-  using facets::Alternative;
+  using tile::Alternative;
   const Triangulation triangulation = options.triangulation;
   const Alternative alternative = options.ambiguity == Ambiguity::high ? Alternative::high : Alternative::low;
   TableSet<N> set;

@@ -209,17 +209,17 @@ class LinkChecker {
               static_cast<std::int64_t>(link_edges_.size() + pieces_.size());
     constexpr std::int64_t kSphere = D % 2 == 1 ? 2 : 0;  // S^0, S^1, S^2, S^3: 2, 0, 2, 0
     if (euler != (closed_ ? kSphere : 1)) return false;
-    if constexpr (D == 4) return link_vertices < facets::kNoVertex && link_shape() != facets::Shape::other;
+    if constexpr (D == 4) return link_vertices < tile::kNoVertex && link_shape() != tile::Shape::other;
     return true;
   }
 
-  [[nodiscard]] facets::Shape link_shape() {
-    link_.assign(pieces_.size(), facets::kNoSimplex);
+  [[nodiscard]] tile::Shape link_shape() {
+    link_.assign(pieces_.size(), tile::kNoSimplex);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      for (int i = 0; i < D; ++i) link_[p][i] = static_cast<facets::VertexId>(number_[pieces_[p][i]]);
-      facets::sort_vertices(link_[p]);
+      for (int i = 0; i < D; ++i) link_[p][i] = static_cast<tile::VertexId>(number_[pieces_[p][i]]);
+      tile::sort_vertices(link_[p]);
     }
-    return facets::shape_of(link_);
+    return tile::shape_of(link_);
   }
 
   const Complex<D>& complex_;
@@ -238,7 +238,7 @@ class LinkChecker {
   // D = 4
   std::vector<Index> number_;              // by vertex: its number in the current link
   std::vector<std::uint64_t> link_edges_;  // smaller end in the upper 32 bits, ascending
-  facets::Simplices link_;
+  tile::Simplices link_;
   bool closed_ = true;
   bool branching_ = false;
 };

@@ -11,11 +11,11 @@
 
 namespace tegl::detail {
 
-using facets::VertexId;
-using facets::VertexKind;
+using tile::VertexId;
+using tile::VertexKind;
 
-CubeFaces::CubeFaces(int n) : lattice_(facets::FaceLattice::cube(n)), numbers_(std::size_t{1} << (2 * n)) {
-  for (const facets::Face& face : lattice_.faces()) {
+CubeFaces::CubeFaces(int n) : lattice_(tile::FaceLattice::cube(n)), numbers_(std::size_t{1} << (2 * n)) {
+  for (const tile::Face& face : lattice_.faces()) {
     const auto least = static_cast<unsigned>(std::countr_zero(face.corners));
     const unsigned most = 63u - static_cast<unsigned>(std::countl_zero(face.corners));
     numbers_[least << n | (least ^ most)] = static_cast<std::uint16_t>(cells_.size());
@@ -36,14 +36,14 @@ bool is_of_contour(VertexKind kind) {
 /// Numbers the vertices that are needed: first the contour's own in the builder's order, then those they depend on.
 class Numbering {
  public:
-  explicit Numbering(const facets::TileFacets& tile) : number_(tile.vertices.size(), kUnused) {
+  explicit Numbering(const tile::TileFacets& tile) : number_(tile.vertices.size(), kUnused) {
     for (std::size_t v = 0; v < tile.vertices.size(); ++v)
       if (is_of_contour(tile.vertices[v].kind)) add(static_cast<VertexId>(v));
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const facets::Vertex& vertex = tile.vertices[order_[i]];
-      if (vertex.copied != facets::kNoVertex) add(vertex.copied);
-      for (const facets::Simplex& s : vertex.of)
-        for (int j = 0; j < facets::size(s); ++j) add(s[j]);
+      const tile::Vertex& vertex = tile.vertices[order_[i]];
+      if (vertex.copied != tile::kNoVertex) add(vertex.copied);
+      for (const tile::Simplex& s : vertex.of)
+        for (int j = 0; j < tile::size(s); ++j) add(s[j]);
     }
   }
   [[nodiscard]] const std::vector<VertexId>& order() const { return order_; }
@@ -64,13 +64,13 @@ class Numbering {
 
 /// Appends the simplices below a barycentre. Their order, here and in `append_mean`, depends on the face only, so
 /// floating-point sums over them do as well.
-void append_simplices(const CubeFaces& cube, const facets::TileFacets& tile, const facets::Vertex& vertex,
+void append_simplices(const CubeFaces& cube, const tile::TileFacets& tile, const tile::Vertex& vertex,
                       const Numbering& number, std::vector<std::uint16_t>& of) {
-  for (const facets::Simplex& simplex : vertex.of) {
+  for (const tile::Simplex& simplex : vertex.of) {
     const std::size_t start = of.size();
-    for (int j = 0; j < facets::size(simplex); ++j) {
+    for (int j = 0; j < tile::size(simplex); ++j) {
       of.push_back(number[simplex[j]]);
-      const facets::Vertex& corner = tile.vertices[simplex[j]];
+      const tile::Vertex& corner = tile.vertices[simplex[j]];
       const bool is_middle =
           corner.kind == VertexKind::barycentre && cube.cells()[corner.face].dim + 1 == cube.cells()[vertex.face].dim;
       if (!is_middle) continue;
@@ -81,10 +81,10 @@ void append_simplices(const CubeFaces& cube, const facets::TileFacets& tile, con
 }
 
 /// Appends the vertices around a centre.
-void append_mean(const facets::Vertex& vertex, const Numbering& number, std::vector<std::uint16_t>& of) {
+void append_mean(const tile::Vertex& vertex, const Numbering& number, std::vector<std::uint16_t>& of) {
   std::vector<VertexId> around;
-  for (const facets::Simplex& simplex : vertex.of)
-    around.insert(around.end(), simplex.begin(), simplex.begin() + facets::size(simplex));
+  for (const tile::Simplex& simplex : vertex.of)
+    around.insert(around.end(), simplex.begin(), simplex.begin() + tile::size(simplex));
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (const VertexId v : around) of.push_back(number[v]);
@@ -92,11 +92,11 @@ void append_mean(const facets::Vertex& vertex, const Numbering& number, std::vec
 
 }  // namespace
 
-BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
+BuiltTile::BuiltTile(const CubeFaces& cube, const tile::TileFacets& tile) {
   const Numbering number(tile);
   // vertices, by face
   for (const VertexId v : number.order()) {
-    const facets::Vertex& vertex = tile.vertices[v];
+    const tile::Vertex& vertex = tile.vertices[v];
     const auto n = static_cast<std::uint16_t>(vertices.size());
     const auto face = static_cast<std::uint16_t>(vertex.face);
     if (is_of_contour(vertex.kind)) {
@@ -108,14 +108,14 @@ BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
     const auto first = static_cast<std::uint32_t>(of.size());
     if (vertex.kind == VertexKind::barycentre) append_simplices(cube, tile, vertex, number, of);
     if (vertex.kind == VertexKind::centre) append_mean(vertex, number, of);
-    const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
+    const std::uint16_t copied = vertex.copied == tile::kNoVertex ? kUnused : number[vertex.copied];
     vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size()), 0, 0});
   }
   // simplices
-  is_settled = tile.facets.size() == 1 && tile.facets[0].filling != facets::Filling::side;
-  for (const facets::Facet& facet : tile.facets)
-    for (const facets::Simplex& s : facet.simplices)
-      for (int j = 0; j < facets::size(s); ++j) simplices.push_back(number[s[j]]);
+  is_settled = tile.facets.size() == 1 && tile.facets[0].filling != tile::Filling::side;
+  for (const tile::Facet& facet : tile.facets)
+    for (const tile::Simplex& s : facet.simplices)
+      for (int j = 0; j < tile::size(s); ++j) simplices.push_back(number[s[j]]);
   // edges of faces with several barycentres
   for (FaceVertices& face : faces) {
     if (face.count == 1 || face.face == cube.tile()) face.by_edges = false;
@@ -144,7 +144,7 @@ BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
   const std::lock_guard lock(from_.mutex_);
   if (from_.builders_.empty()) {
     from_.builders_.reserve(from_.made_ + 1);  // so that returning a builder cannot throw
-    builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice(), from_.max_builder_bytes_);
+    builder_ = std::make_unique<tile::FacetBuilder>(from_.cube_.lattice(), from_.max_builder_bytes_);
     ++from_.made_;
   } else {
     builder_ = std::move(from_.builders_.back());
@@ -158,10 +158,10 @@ BuiltTiles::BuilderLoan::~BuilderLoan() {
 }
 
 BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(const TileKey& key) const {
-  std::vector<facets::Choice> choices;
+  std::vector<tile::Choice> choices;
   if (key.has_choices()) {
     const auto& cells = from_.cube_.cells();
-    choices.assign(cells.size(), facets::Choice::separate);
+    choices.assign(cells.size(), tile::Choice::separate);
     for (std::size_t face = from_.cube_.first_choice(); face < cells.size(); ++face)
       choices[face] = key.choice(face - from_.cube_.first_choice());
   }

@@ -31,7 +31,7 @@ class CubeFaces {
   };
   explicit CubeFaces(int n);
 
-  [[nodiscard]] const facets::FaceLattice& lattice() const noexcept { return lattice_; }
+  [[nodiscard]] const tile::FaceLattice& lattice() const noexcept { return lattice_; }
   [[nodiscard]] int dim() const noexcept { return lattice_.dim(); }
   /// By number in the lattice.
   [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
@@ -44,7 +44,7 @@ class CubeFaces {
   [[nodiscard]] std::size_t first_choice() const noexcept { return first_choice_; }
 
  private:
-  facets::FaceLattice lattice_;
+  tile::FaceLattice lattice_;
   std::vector<Cell> cells_;
   std::vector<std::uint16_t> numbers_;
   std::size_t first_choice_ = 0;
@@ -64,7 +64,7 @@ decltype(auto) too_large_as_error(const Build& build) {
 /// the number that all tiles at the face agree on. Vertices follow that only positions depend on.
 struct BuiltTile {
   struct Vertex {
-    facets::VertexKind kind;
+    tile::VertexKind kind;
     std::uint16_t face;                          ///< number in the lattice
     std::uint16_t copied;                        ///< side: the vertex that it copies
     std::uint32_t first, end;                    ///< barycentre, centre: its range in `of`
@@ -88,7 +88,7 @@ struct BuiltTile {
   bool is_settled = true;                ///< its boundary's contour is one sphere: its own choice does not matter
 
   /// Throws Error{TooLarge} for a tile with more than 32768 vertices.
-  BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile);
+  BuiltTile(const CubeFaces& cube, const tile::TileFacets& tile);
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
@@ -98,16 +98,16 @@ struct BuiltTile {
 /// Determines the contour in a tile: its high corners and the choices for its faces.
 struct TileKey {
   std::uint64_t signature = 0;
-  /// Two bits (facets::Choice) for each face of dimension 2 or more, in lattice order.
+  /// Two bits (tile::Choice) for each face of dimension 2 or more, in lattice order.
   std::array<std::uint64_t, 5> choices{};
 
   friend bool operator==(const TileKey&, const TileKey&) = default;
   friend auto operator<=>(const TileKey&, const TileKey&) = default;
   [[nodiscard]] bool has_choices() const noexcept { return choices != decltype(choices){}; }
-  [[nodiscard]] facets::Choice choice(std::size_t number) const noexcept {
-    return static_cast<facets::Choice>(choices[number / 32] >> (2 * (number % 32)) & 3u);
+  [[nodiscard]] tile::Choice choice(std::size_t number) const noexcept {
+    return static_cast<tile::Choice>(choices[number / 32] >> (2 * (number % 32)) & 3u);
   }
-  void choose(std::size_t number, facets::Choice choice) noexcept {
+  void choose(std::size_t number, tile::Choice choice) noexcept {
     choices[number / 32] |= static_cast<std::uint64_t>(choice) << (2 * (number % 32));
   }
 };
@@ -133,7 +133,7 @@ struct SeenTile {
 class BuiltTiles {
  public:
   using Pointer = std::shared_ptr<const BuiltTile>;
-  BuiltTiles(const CubeFaces& cube, facets::Alternative alternative, std::size_t max_bytes, std::size_t builders)
+  BuiltTiles(const CubeFaces& cube, tile::Alternative alternative, std::size_t max_bytes, std::size_t builders)
       : cube_(cube),
         symmetries_(cube.dim()),
         alternative_(alternative),
@@ -214,20 +214,20 @@ class BuiltTiles {
 
    private:
     BuiltTiles& from_;
-    std::unique_ptr<facets::FacetBuilder> builder_;
+    std::unique_ptr<tile::FacetBuilder> builder_;
   };
   void keep(const TileKey& key, const Pointer& tile);
 
   const CubeFaces& cube_;
   CubeSymmetries symmetries_;
-  facets::Alternative alternative_;
+  tile::Alternative alternative_;
   std::size_t max_bytes_;          ///< for tiles
   std::size_t max_builder_bytes_;  ///< for each builder
   std::size_t bytes_ = 0;
   std::unordered_map<TileKey, Pointer, TileKeyHash> known_;
   std::mutex mutex_;      ///< guards the members below
   std::size_t made_ = 0;  ///< builders created, including lent ones
-  std::vector<std::unique_ptr<facets::FacetBuilder>> builders_;
+  std::vector<std::unique_ptr<tile::FacetBuilder>> builders_;
 };
 
 }  // namespace tegl::detail

@@ -19,7 +19,7 @@ class CubeKey {
   static constexpr unsigned kVariants = 1 + 3 * 64;
 
   explicit constexpr CubeKey(unsigned bits) noexcept : bits_(static_cast<std::uint16_t>(bits)) {}
-  constexpr CubeKey(unsigned signature, unsigned resolution, facets::Choice choice) noexcept
+  constexpr CubeKey(unsigned signature, unsigned resolution, tile::Choice choice) noexcept
       : CubeKey(of_variant(signature, 1 + 3 * resolution + static_cast<unsigned>(choice))) {}
 
   /// The cube with this signature and variant.
@@ -33,8 +33,8 @@ class CubeKey {
   [[nodiscard]] constexpr bool is_plain() const noexcept { return variant() == 0; }
   /// For a plain cube: the first resolution, and Choice::separate.
   [[nodiscard]] constexpr unsigned resolution() const noexcept { return is_plain() ? 0 : (variant() - 1) / 3; }
-  [[nodiscard]] constexpr facets::Choice choice() const noexcept {
-    return is_plain() ? facets::Choice::separate : static_cast<facets::Choice>((variant() - 1) % 3);
+  [[nodiscard]] constexpr tile::Choice choice() const noexcept {
+    return is_plain() ? tile::Choice::separate : static_cast<tile::Choice>((variant() - 1) % 3);
   }
 
  private:

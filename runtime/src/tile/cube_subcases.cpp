@@ -129,7 +129,7 @@ void ResolvedCubes::number_lists(Triangulation triangulation) {
         if (same == choice) {
           list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
           lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
-          const CubeKey resolved(s, entry - kTile3Resolved.first_entry[s], static_cast<facets::Choice>(choice));
+          const CubeKey resolved(s, entry - kTile3Resolved.first_entry[s], static_cast<tile::Choice>(choice));
           key_of_.push_back(ambiguous_signatures<3>()[s] ? resolved : CubeKey(s));
           Summary& summary = summaries_.emplace_back();
           summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;

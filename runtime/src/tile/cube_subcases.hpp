@@ -73,11 +73,11 @@ class ResolvedCubes {
     return unsigned{of.first_entry} + kPackedSquares[of.ambiguous][high_squares];
   }
   /// Number of a list, less than lists().size(), or kNone for a cube of one sign.
-  [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, facets::Choice choice) const noexcept {
+  [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, tile::Choice choice) const noexcept {
     return list_of_entry(entry(signature, high_squares), choice);
   }
   /// Number of a list by entry of tables::kTile3Resolved.
-  [[nodiscard]] std::uint16_t list_of_entry(unsigned entry, facets::Choice choice) const noexcept {
+  [[nodiscard]] std::uint16_t list_of_entry(unsigned entry, tile::Choice choice) const noexcept {
     return list_of_[3 * entry + static_cast<unsigned>(choice)];
   }
   /// Whether the choice matters for an entry.

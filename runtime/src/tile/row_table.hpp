@@ -54,7 +54,7 @@ class RowTable {
   [[nodiscard]] std::uint32_t entry(unsigned key) const noexcept {
     return entries_[variants_.empty() ? key : variant_places_[CubeKey(key).signature()] + CubeKey(key).variant()];
   }
-  /// The cube of an entry of tables::ResolvedTable. `choice`: facets::Choice of its centre, if that matters.
+  /// The cube of an entry of tables::ResolvedTable. `choice`: tile::Choice of its centre, if that matters.
   [[nodiscard]] const Variant& variant(unsigned resolved, unsigned choice) const noexcept {
     return variants_[4 * resolved + choice];
   }

@@ -16,7 +16,7 @@
 namespace tegl::detail {
 namespace {
 
-using facets::Choice;
+using tile::Choice;
 
 constexpr unsigned kCubes = ResolvedCubes::kCubes;
 constexpr unsigned kMaskEdge = 16;  ///< bit of edge 0 in masks

@@ -50,7 +50,7 @@ struct ResolvedKey {
   std::uint16_t signature = 0;
   std::uint8_t low_cubes = 0, high_cubes = 0;  ///< bit f: the centre of cube f is low, or high; neither: separate
   /// separate: spheres are coned, other components are filled as with a low centre.
-  facets::Choice tile = facets::Choice::separate;
+  tile::Choice tile = tile::Choice::separate;
 };
 
 /// The contour of a tile. Local vertices: [0, 32) are on its edges; 32 + 3 f + j is own vertex j of cube f's list; 56 +

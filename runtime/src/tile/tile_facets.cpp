@@ -28,9 +28,9 @@ requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsign
 }
 
 template <int N>
-requires DimensionBetween<N, 2, 6> facets::TileFacets tile_facets(std::uint64_t signature,
-                                                                  std::span<const facets::Choice> signs,
-                                                                  facets::Alternative otherwise) {
+requires DimensionBetween<N, 2, 6> tile::TileFacets tile_facets(std::uint64_t signature,
+                                                                std::span<const tile::Choice> signs,
+                                                                tile::Alternative otherwise) {
   constexpr std::uint64_t kCorners = ~std::uint64_t{0} >> (64 - (1 << N));
   if ((signature & ~kCorners) != 0)
     throw Error(ErrorCode::InvalidArgument,
@@ -39,13 +39,13 @@ requires DimensionBetween<N, 2, 6> facets::TileFacets tile_facets(std::uint64_t 
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} signs for the faces of a {}D tile; expected 0 or {}", signs.size(), N, kFaceCount<N>));
   return detail::too_large_as_error([&] {
-    return facets::build_facets(cube_faces<N>().lattice(), signature, {.choices = signs, .alternative = otherwise});
+    return tile::build_facets(cube_faces<N>().lattice(), signature, {.choices = signs, .alternative = otherwise});
   });
 }
 
 #define TEGL_INSTANTIATE(N)                                          \
   template std::size_t face_number<N>(unsigned base, unsigned axes); \
-  template facets::TileFacets tile_facets<N>(std::uint64_t, std::span<const facets::Choice>, facets::Alternative);
+  template tile::TileFacets tile_facets<N>(std::uint64_t, std::span<const tile::Choice>, tile::Alternative);
 TEGL_INSTANTIATE(2)
 TEGL_INSTANTIATE(3)
 TEGL_INSTANTIATE(4)

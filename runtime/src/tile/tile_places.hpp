@@ -104,11 +104,11 @@ class TilePlaces {
  private:
   Point find(const BuiltTile::Vertex& vertex) noexcept {
     switch (vertex.kind) {
-      case facets::VertexKind::barycentre:
+      case tile::VertexKind::barycentre:
         return barycentre(vertex);
-      case facets::VertexKind::centre:
+      case tile::VertexKind::centre:
         return vertex.first == vertex.end ? beside(vertex) : mean(vertex);
-      case facets::VertexKind::side:
+      case tile::VertexKind::side:
         return pushed_inwards(vertex);
       default:
         return corner_point<N>(cube_.cells()[vertex.face].base);

@@ -147,7 +147,7 @@ void VariantTable<3>::add_variants(Triangulation triangulation) {
       for (unsigned choice = 0; choice < lists.size(); ++choice) {
         Polygons polygons(*lists[choice]);
         if (triangulation == Triangulation::barycentric) cone_discs(polygons);
-        const CubeKey key(s, r, static_cast<facets::Choice>(choice));
+        const CubeKey key(s, r, static_cast<tile::Choice>(choice));
         add(key.bits(), polygons.triangles, polygons.cones, polygons.masks);
       }
     }
@@ -190,7 +190,7 @@ void VariantTable<3>::make_rows() {
       const unsigned entry = table.first_entry[s] + r;
       for (unsigned choice = 0; choice < 3; ++choice) {
         const unsigned chosen = table.entries[entry].components > 1 ? choice : 0;
-        const CubeKey key(s, r, static_cast<facets::Choice>(chosen));
+        const CubeKey key(s, r, static_cast<tile::Choice>(chosen));
         const tables::List& list = lists_[list_of_[key.bits()]];
         variants[4 * entry + choice] = {key.bits(), static_cast<std::int8_t>(list.simplex_count - plain.simplex_count),
                                         static_cast<std::int8_t>(list.cone_vertices + list.side_vertices -

@@ -220,7 +220,7 @@ TEST(JsonTables, HoldTheContourOfEverySignature) {
 TEST(JsonTables, HoldTheRegions) {
   for (const int k : {1, 2, 3})
     for (const Triangulation t : kTriangulations)
-      for (const facets::Alternative a : {facets::Alternative::low, facets::Alternative::high}) {
+      for (const tile::Alternative a : {tile::Alternative::low, tile::Alternative::high}) {
         const std::string name =
             "region" + std::to_string(k) + "_" + gen::triangulation_name(t) + "_" + gen::alternative_name(a) + ".json";
         const auto file = nlohmann::json::parse(table_text(name));

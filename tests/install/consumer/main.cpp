@@ -7,16 +7,16 @@
 
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/slice.hpp"
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/facets.hpp"
 #include "tegl/tile/tile_certifier.hpp"
-#include "tegl/slice.hpp"
 #include "tegl/tile_facets.hpp"
 
 /// A cube with two opposite high corners and a high centre: a tunnel, topologically a cylinder.
 bool tunnel_is_sound() {
-  using namespace tegl::facets;
+  using namespace tegl::tile;
   std::vector<Choice> signs(tegl::kFaceCount<3>);
   signs[tegl::face_number<3>(0, 7)] = Choice::high;
   const TileFacets tile = tegl::tile_facets<3>(0b10000001, signs);

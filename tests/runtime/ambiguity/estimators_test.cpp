@@ -44,7 +44,7 @@ ExtractOptions with(Ambiguity ambiguity) {
     options.estimator.choose = [](const AmbiguousFace& face) {
       std::size_t hash = face.axes();
       for (const std::size_t i : face.base()) hash = hash * 31 + i;
-      return static_cast<facets::Choice>(hash * 2654435761u / 1024 % 3);
+      return static_cast<tile::Choice>(hash * 2654435761u / 1024 % 3);
     };
   return options;
 }
@@ -75,12 +75,12 @@ void expect_same_bytes(const Contour<N, Real>& a, const Contour<N, Real>& b) {
 /// the face of the grid that contains them and their number there; their positions have no meaning.
 template <Value T, int N>
 Contour<N, float> by_tiles(const OwnedImage<T, N>& image, double isovalue) {
-  facets::FacetBuilder builder(facets::FaceLattice::cube(N));
+  tile::FacetBuilder builder(tile::FaceLattice::cube(N));
   const auto& faces = builder.lattice().faces();
   std::map<std::array<std::size_t, N + 2>, Index> numbers;
   Contour<N, float> contour;
   const auto sizes = image.grid.sizes();
-  std::vector<facets::Choice> choices(faces.size());
+  std::vector<tile::Choice> choices(faces.size());
   for_each_sample<N>(image.grid, [&](std::size_t, const std::array<std::size_t, N>& base) {
     for (int a = 0; a < N; ++a)
       if (base[a] + 1 == sizes[a]) return;
@@ -96,15 +96,15 @@ Contour<N, float> by_tiles(const OwnedImage<T, N>& image, double isovalue) {
       std::vector<double> corners;
       for (std::uint64_t rest = faces[f].corners; rest != 0; rest &= rest - 1)
         corners.push_back(values[static_cast<std::size_t>(std::countr_zero(rest))]);
-      choices[f] = has_high_mean(corners, isovalue) ? facets::Choice::high : facets::Choice::low;
+      choices[f] = has_high_mean(corners, isovalue) ? tile::Choice::high : tile::Choice::low;
     }
-    const facets::TileFacets& tile = builder.build(signature, {.choices = choices});
+    const tile::TileFacets& tile = builder.build(signature, {.choices = choices});
     std::vector<Index> ids(tile.vertices.size());
-    for (const facets::Facet& facet : tile.facets)
-      for (const facets::Simplex& simplex : facet.simplices) {
+    for (const tile::Facet& facet : tile.facets)
+      for (const tile::Simplex& simplex : facet.simplices) {
         std::array<Index, N> to;
         for (int j = 0; j < N; ++j) {
-          const facets::Vertex& vertex = tile.vertices[simplex[j]];
+          const tile::Vertex& vertex = tile.vertices[simplex[j]];
           const std::uint64_t corners = faces[vertex.face].corners;
           const auto least = static_cast<std::size_t>(std::countr_zero(corners));
           std::array<std::size_t, N + 2> name{};
@@ -161,7 +161,7 @@ struct Neighbourhood {
     return {[this, reach](const AmbiguousFace& face) { return choose(face, static_cast<std::ptrdiff_t>(reach)); },
             reach};
   }
-  facets::Choice choose(const AmbiguousFace& face, std::ptrdiff_t reach) {
+  tile::Choice choose(const AmbiguousFace& face, std::ptrdiff_t reach) {
     ++asked;
     if (face.image_dim() != N || face.dim() != std::popcount(face.axes()) ||
         face.values().size() != std::size_t{1} << face.dim())
@@ -186,7 +186,7 @@ struct Neighbourhood {
         if ((face.axes() >> a & 1u) != 0) steps[a] = static_cast<std::ptrdiff_t>(v >> bit++ & 1u);
       if (face.sample(steps) != face.values()[v]) ++wrong;
     }
-    return sum >= face.isovalue() * 2 * N ? facets::Choice::high : facets::Choice::low;
+    return sum >= face.isovalue() * 2 * N ? tile::Choice::high : tile::Choice::low;
   }
 };
 
@@ -290,7 +290,7 @@ TYPED_TEST(Estimators, OfTheCallersThatTakeTheMeanGiveItsBytes) {
   const auto image = noise<T, N>(odd_grid<N>(N == 2 ? 70 : N == 3 ? 17 : 5), 10);
   ExtractOptions options = with(Ambiguity::custom);
   options.estimator.choose = [](const AmbiguousFace& face) {
-    return has_high_mean(face.values(), face.isovalue()) ? facets::Choice::high : facets::Choice::low;
+    return has_high_mean(face.values(), face.isovalue()) ? tile::Choice::high : tile::Choice::low;
   };
   expect_same_bytes(extract(image.view(), noise_isovalue<T>(), options),
                     extract(image.view(), noise_isovalue<T>(), with(Ambiguity::mean)));
@@ -367,7 +367,7 @@ TEST(Mean, IsComparedWithTheIsovalueExactly) {
 TEST(EstimatorsOfTheCaller, ThatThrowEndTheExtraction) {
   const auto image = noise<float, 3>(std::size_t{12}, 1);
   ExtractOptions options = with(Ambiguity::custom);
-  options.estimator.choose = [](const AmbiguousFace&) -> facets::Choice { throw std::domain_error("no opinion"); };
+  options.estimator.choose = [](const AmbiguousFace&) -> tile::Choice { throw std::domain_error("no opinion"); };
   for (const unsigned threads : {1u, 4u}) {
     options.work.threads = threads;
     EXPECT_THROW(extract(image.view(), 0.5, options), std::domain_error);
@@ -381,7 +381,7 @@ ExtractOptions with_changing_answers() {
   options.ambiguity = Ambiguity::custom;
   options.work.threads = 1;
   options.estimator.choose = [calls = std::make_shared<std::atomic<std::uint64_t>>(0)](const AmbiguousFace&) {
-    return static_cast<facets::Choice>((++*calls * 0x9e3779b97f4a7c15u >> 33) % 3);
+    return static_cast<tile::Choice>((++*calls * 0x9e3779b97f4a7c15u >> 33) % 3);
   };
   return options;
 }
@@ -431,14 +431,14 @@ TEST(EstimatorsOfTheCaller, ThatThrowOnlyWhenAskedAgainReachTheCaller) {
   std::size_t calls = 0;
   options.estimator.choose = [&](const AmbiguousFace&) {
     ++calls;
-    return facets::Choice::high;
+    return tile::Choice::high;
   };
   count(image.view(), 0.5, options);
   const std::size_t least = calls + calls / 2;
   calls = 0;
   options.estimator.choose = [&](const AmbiguousFace&) {
     if (++calls > least) throw std::domain_error("no opinion");
-    return facets::Choice::high;
+    return tile::Choice::high;
   };
   EXPECT_THROW(extract(image.view(), 0.5, options), std::domain_error);
 }

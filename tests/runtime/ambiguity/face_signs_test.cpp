@@ -174,14 +174,14 @@ void compare_joins(const Kind& kind) {
   std::size_t asked = 0, joined = 0, unsure = 0;
   for (int round = 0; round < 300; ++round) {
     JoinQuestions questions;
-    std::array<facets::Choice, JoinQuestions::kMost> expected;
+    std::array<tile::Choice, JoinQuestions::kMost> expected;
     for (int cube = 0; cube < 64; ++cube) {
       std::array<double, 8> values;
       for (double& value : values) value = kind.sample(random);
       const CubeDecision decision = decide_cube_exactly(values, kind.isovalue);
       const CubeJoin& join = cube_joins()[entry_of(signature_of(values, kind.isovalue), decision.high_squares)];
       if (join.pairs == 0) {
-        ASSERT_EQ(decision.centre, facets::Choice::separate);
+        ASSERT_EQ(decision.centre, tile::Choice::separate);
       } else if (join.pairs == 1) {
         for (std::size_t e = 0; e < 8; ++e) questions.ends[e][questions.count] = values[join.corners[e]];
         questions.sign[questions.count] = join.high ? 1.0 : -1.0;
@@ -191,11 +191,11 @@ void compare_joins(const Kind& kind) {
     answer(questions, kind.isovalue);
     for (std::size_t q = 0; q < questions.count; ++q, ++asked) {
       const auto found = questions.answers[q];
-      const auto by_sign = questions.sign[q] > 0.0 ? facets::Choice::high : facets::Choice::low;
+      const auto by_sign = questions.sign[q] > 0.0 ? tile::Choice::high : tile::Choice::low;
       unsure += found == JoinQuestions::unsure ? 1 : 0;
-      joined += expected[q] != facets::Choice::separate ? 1 : 0;
+      joined += expected[q] != tile::Choice::separate ? 1 : 0;
       ASSERT_TRUE(found == JoinQuestions::unsure ||
-                  (found == JoinQuestions::yes ? by_sign : facets::Choice::separate) == expected[q])
+                  (found == JoinQuestions::yes ? by_sign : tile::Choice::separate) == expected[q])
           << kind.name;
     }
   }

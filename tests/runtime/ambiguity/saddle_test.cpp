@@ -22,7 +22,7 @@
 namespace tegl {
 namespace {
 
-using facets::Choice;
+using tile::Choice;
 using Cube = std::array<std::int64_t, 8>;
 using Values = std::array<double, 8>;
 

@@ -13,7 +13,6 @@
 #include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
-#include "tegl/tile/tile_certifier.hpp"
 #include "tegl/io.hpp"
 #include "tegl/io/active_tiles.hpp"
 #include "tegl/io/elements.hpp"
@@ -31,6 +30,7 @@
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream.hpp"
+#include "tegl/tile/tile_certifier.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tegl/track.hpp"
 
@@ -307,11 +307,11 @@ static_assert(is_safe_of_temporaries<ActiveTiles<3>>(CALL(grid())));
 static_assert(is_safe_of_temporaries<PendingPath>(CALL(path())));
 static_assert(is_safe_of_temporaries<PendingPath>(CALL(target())));
 static_assert(is_safe_of_temporaries<PendingPath>(CALL(place())));
-static_assert(is_safe_of_temporaries<facets::FaceLattice>(CALL(faces())));
-static_assert(is_safe_of_temporaries<facets::FacetBuilder>(CALL(lattice())));
-static_assert(is_safe_of_temporaries<facets::FacetBuilder>(CALL(build(1))));
-static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(lattice())));
-static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(tile())));
+static_assert(is_safe_of_temporaries<tile::FaceLattice>(CALL(faces())));
+static_assert(is_safe_of_temporaries<tile::FacetBuilder>(CALL(lattice())));
+static_assert(is_safe_of_temporaries<tile::FacetBuilder>(CALL(build(1))));
+static_assert(is_safe_of_temporaries<tile::TileCertifier>(CALL(lattice())));
+static_assert(is_safe_of_temporaries<tile::TileCertifier>(CALL(tile())));
 #undef CALL
 
 // Views for Eigen: of named objects only.
@@ -377,8 +377,7 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
   [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = "float"}, {.big_endian = true}};
   [[maybe_unused]] const Projection projections[] = {{.direction = {1, 0, 0, 0}}, {.eye_distance = 1}};
   [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = {1, 0, 0, 0}}, {.offset = 1}};
-  [[maybe_unused]] const facets::Resolution resolution[] = {{.choices = {}},
-                                                            {.alternative = facets::Alternative::high}};
+  [[maybe_unused]] const tile::Resolution resolution[] = {{.choices = {}}, {.alternative = tile::Alternative::high}};
   [[maybe_unused]] const Attribute attributes[] = {{.name = "a"}, {.width = 2}};
   [[maybe_unused]] const Mesh meshes[] = {{.dim = 1}, {.simplices = {0, 1}}, {.isovalue = 1.0}};
   [[maybe_unused]] const ContourRoom<3, float> room[] = {{.vertices = {}}, {.simplices = {}}};

@@ -205,7 +205,7 @@ TEST(Progress, NorAreEstimators) {
       if (++depth > deepest) deepest = depth;
       tbb::parallel_for(0, 4, [](int) {});
       --depth;
-      return facets::Choice::high;
+      return tile::Choice::high;
     };
     way.make(options);
     EXPECT_EQ(deepest, 1) << way.name;

@@ -299,9 +299,9 @@ TEST(FacetsOf4d, AreThoseThatTheBuilderOfTilesFinds) {
       ExtractOptions options;
       options.ambiguity = ambiguity;
       const auto facets = extract_facets<float>(view_of(tile_image(signature)), 0.5, options);
-      auto expected = tile_facets<4>(signature, {},
-                                     ambiguity == Ambiguity::low ? facets::Alternative::low : facets::Alternative::high)
-                          .sigma_euler;
+      auto expected =
+          tile_facets<4>(signature, {}, ambiguity == Ambiguity::low ? tile::Alternative::low : tile::Alternative::high)
+              .sigma_euler;
       std::vector<int> eulers;
       for (std::size_t f = 0; f < facets.count(3); ++f) eulers.push_back(2 * facet_euler(facets, 3, f));
       std::sort(expected.begin(), expected.end());
@@ -314,24 +314,24 @@ TEST(FacetsOf4d, AreThoseThatTheBuilderOfTilesFinds) {
 }
 
 /// The Euler characteristics of the connected components of a facet's simplices.
-std::vector<int> parts_of(const facets::Facet& facet) {
-  std::map<facets::VertexId, facets::VertexId> leader;
-  const std::function<facets::VertexId(facets::VertexId)> find = [&](facets::VertexId v) {
+std::vector<int> parts_of(const tile::Facet& facet) {
+  std::map<tile::VertexId, tile::VertexId> leader;
+  const std::function<tile::VertexId(tile::VertexId)> find = [&](tile::VertexId v) {
     const auto at = leader.try_emplace(v, v).first;
     return at->second == v ? v : at->second = find(at->second);
   };
-  for (const facets::Simplex& simplex : facet.simplices)
-    for (int j = 1; j < facets::size(simplex); ++j) leader[find(simplex[j])] = find(simplex[0]);
-  std::set<std::vector<facets::VertexId>> faces;
-  for (const facets::Simplex& simplex : facet.simplices)
-    for (unsigned set = 1; set < 1u << facets::size(simplex); ++set) {
-      std::vector<facets::VertexId> face;
-      for (int j = 0; j < facets::size(simplex); ++j)
+  for (const tile::Simplex& simplex : facet.simplices)
+    for (int j = 1; j < tile::size(simplex); ++j) leader[find(simplex[j])] = find(simplex[0]);
+  std::set<std::vector<tile::VertexId>> faces;
+  for (const tile::Simplex& simplex : facet.simplices)
+    for (unsigned set = 1; set < 1u << tile::size(simplex); ++set) {
+      std::vector<tile::VertexId> face;
+      for (int j = 0; j < tile::size(simplex); ++j)
         if ((set >> j & 1u) != 0) face.push_back(simplex[j]);
       std::sort(face.begin(), face.end());
       faces.insert(face);
     }
-  std::map<facets::VertexId, int> euler;
+  std::map<tile::VertexId, int> euler;
   for (const auto& face : faces) euler[find(face[0])] += face.size() % 2 == 1 ? 1 : -1;
   std::vector<int> result;
   for (const auto& [first, sum] : euler) result.push_back(sum);
@@ -340,7 +340,7 @@ std::vector<int> parts_of(const facets::Facet& facet) {
 
 TEST(FacetsOf4d, ResolvedInAnyWayAreThoseThatTheBuilderOfTilesFinds) {
   std::mt19937_64 bits(5);
-  std::vector<facets::Choice> signs(kFaceCount<4>);
+  std::vector<tile::Choice> signs(kFaceCount<4>);
   ExtractOptions options;
   options.ambiguity = Ambiguity::custom;
   options.estimator.choose = [&](const AmbiguousFace& face) {
@@ -351,10 +351,10 @@ TEST(FacetsOf4d, ResolvedInAnyWayAreThoseThatTheBuilderOfTilesFinds) {
   std::size_t several = 0, negative = 0;
   for (int i = 0; i < 600; ++i) {
     const auto signature = static_cast<unsigned>(random_below(bits, 65536));
-    for (facets::Choice& sign : signs) sign = static_cast<facets::Choice>(random_below(bits, 3));
+    for (tile::Choice& sign : signs) sign = static_cast<tile::Choice>(random_below(bits, 3));
     const auto hierarchy = extract_facets<float>(view_of(tile_image(signature)), 0.5, options);
     std::vector<int> expected, eulers;
-    for (const facets::Facet& facet : tile_facets<4>(signature, signs).facets)
+    for (const tile::Facet& facet : tile_facets<4>(signature, signs).facets)
       for (const int euler : parts_of(facet)) expected.push_back(euler);
     for (std::size_t f = 0; f < hierarchy.count(3); ++f) eulers.push_back(facet_euler(hierarchy, 3, f));
     std::sort(expected.begin(), expected.end());
@@ -375,12 +375,12 @@ TYPED_TEST(Facets, OfEstimatorsThatAnswerDifferentlyOrThrowAreAnError) {
   options.ambiguity = Ambiguity::custom;
   std::atomic<unsigned> calls = 0;
   options.estimator.choose = [&](const AmbiguousFace&) {
-    return static_cast<facets::Choice>((++calls * 2654435761u >> 8) % 3);
+    return static_cast<tile::Choice>((++calls * 2654435761u >> 8) % 3);
   };
   if (N > 2)
     expect_error(ErrorCode::InvalidArgument, "gave different results for the same face",
                  [&] { extract_facets<float>(image.view(), 0.5, options); });
-  options.estimator.choose = [](const AmbiguousFace&) -> facets::Choice { throw std::domain_error("no opinion"); };
+  options.estimator.choose = [](const AmbiguousFace&) -> tile::Choice { throw std::domain_error("no opinion"); };
   EXPECT_THROW(extract_facets<float>(image.view(), 0.5, options), std::domain_error);
 }
 

@@ -119,8 +119,8 @@ TEST(BuiltTiles, KeepNoMoreThanTheyMayWhateverTheNumberOfBuilders) {
   std::vector<detail::TileKey> keys(60);
   for (detail::TileKey& key : keys) key.signature = bits() & 0xffffffff;
   for (const std::size_t builders : {1, 4}) {
-    detail::BuiltTiles limited(cube, facets::Alternative::low, kLimit, builders);
-    detail::BuiltTiles roomy(cube, facets::Alternative::low, std::size_t{1} << 28, builders);
+    detail::BuiltTiles limited(cube, tile::Alternative::low, kLimit, builders);
+    detail::BuiltTiles roomy(cube, tile::Alternative::low, std::size_t{1} << 28, builders);
     const auto side_by_side = [&](std::size_t count, const auto& work) {
       std::vector<std::thread> threads;
       for (std::size_t i = 0; i < builders; ++i)
@@ -196,12 +196,12 @@ TEST(ExtractTiles, TilesIn4dHaveTheContoursOfTheTablesWhereAllIsConed) {
     const auto image = noise<float, 4>(2, seed);
     std::uint64_t signature = 0;
     for (unsigned v = 0; v < 16; ++v) signature |= std::uint64_t{image.values[v] >= 0.5F} << v;
-    const auto sides = [&](facets::Alternative otherwise) {
+    const auto sides = [&](tile::Alternative otherwise) {
       const auto tile = tile_facets<4>(signature, {}, otherwise);
       return std::any_of(tile.facets.begin(), tile.facets.end(),
-                         [](const auto& facet) { return facet.filling == facets::Filling::side; });
+                         [](const auto& facet) { return facet.filling == tile::Filling::side; });
     };
-    if (sides(facets::Alternative::low) || sides(facets::Alternative::high)) continue;
+    if (sides(tile::Alternative::low) || sides(tile::Alternative::high)) continue;
     ++coned;
     expect_as_by_tables(image.view(), 0.5);
   }
@@ -366,10 +366,10 @@ TEST(Extract5d, AnEstimatorThatAlwaysSaysLowGivesTheLowConnectedContour) {
   const auto low = extract<double>(image.view(), 0.5, options);
   options.ambiguity = Ambiguity::custom;
   options.estimator.choose = [](const AmbiguousFace& face) {
-    return face.dim() == 2 ? facets::Choice::low : facets::Choice::separate;
+    return face.dim() == 2 ? tile::Choice::low : tile::Choice::separate;
   };
   EXPECT_TRUE(same_surface(rounded(low), rounded(extract<double>(image.view(), 0.5, options))));
-  options.estimator.choose = [](const AmbiguousFace&) -> facets::Choice { throw std::runtime_error("no idea"); };
+  options.estimator.choose = [](const AmbiguousFace&) -> tile::Choice { throw std::runtime_error("no idea"); };
   EXPECT_THROW(extract<double>(image.view(), 0.5, options), std::runtime_error);
 }
 

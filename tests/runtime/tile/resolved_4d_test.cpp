@@ -50,10 +50,10 @@ TEST(Resolved4d, ClosedNoiseIsAClosedManifoldAndSoIsEveryCut) {
 }
 
 /// A random choice for each face of the grid, determined by its position.
-facets::Choice hashed(const AmbiguousFace& face) {
+tile::Choice hashed(const AmbiguousFace& face) {
   std::uint64_t hash = face.axes();
   for (const std::size_t i : face.base()) hash = (hash ^ hash >> 31 ^ i) * 0x9e3779b97f4a7c15u;
-  return static_cast<facets::Choice>((hash >> 40) % 3);
+  return static_cast<tile::Choice>((hash >> 40) % 3);
 }
 
 TEST(Resolved4d, AnyChoicesForTheFacesGiveAClosedManifold) {

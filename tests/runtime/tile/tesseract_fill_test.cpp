@@ -27,12 +27,12 @@
 namespace tegl::detail {
 namespace {
 
-using facets::Choice;
-using facets::FaceLattice;
-using facets::kNoSimplex;
-using facets::Simplex;
-using facets::Simplices;
-using facets::VertexId;
+using tile::Choice;
+using tile::FaceLattice;
+using tile::kNoSimplex;
+using tile::Simplex;
+using tile::Simplices;
+using tile::VertexId;
 
 constexpr unsigned kFirstOwn = ResolvedTesseract::kFirstOwn;
 
@@ -139,12 +139,12 @@ class AsBuilt {
 
   [[nodiscard]] const FaceLattice& lattice() const { return lattice_; }
 
-  facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view,
-                                Triangulation triangulation = Triangulation::compact) const {
-    facets::TileFacets tile;
+  tile::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view,
+                              Triangulation triangulation = Triangulation::compact) const {
+    tile::TileFacets tile;
     for (unsigned v = 0; v < kFirstOwn + view.own_vertices; ++v) {
-      facets::Vertex vertex;
-      vertex.kind = v < 32 ? facets::VertexKind::edge : facets::VertexKind::side;
+      tile::Vertex vertex;
+      vertex.kind = v < 32 ? tile::VertexKind::edge : tile::VertexKind::side;
       vertex.face = v < 32 ? edge_face_[v] : v < kFirstOwn ? face_of_cube((v - 32) / 3) : lattice_.tile();
       vertex.number = v;
       tile.vertices.push_back(vertex);
@@ -160,12 +160,12 @@ class AsBuilt {
         Simplex triangle = kNoSimplex;
         for (unsigned i = 0; i < 3; ++i)
           triangle[i] = static_cast<VertexId>(ResolvedCubes::instance().lifted(f, at[i]));
-        const int sign = facets::sort_vertices(triangle);
+        const int sign = tile::sort_vertices(triangle);
         tile.in_face[g].push_back(triangle), tile.in_face_sign[g].push_back(sign);
         tile.sigma.push_back(triangle), tile.sigma_sign.push_back(sign * lattice_.faces().back().signs[g]);
       }
     }
-    facets::Facet& facet = tile.facets.emplace_back();
+    tile::Facet& facet = tile.facets.emplace_back();
     for (std::uint32_t q = 0; q < view.simplex_count; ++q) {
       Simplex& simplex = facet.simplices.emplace_back(kNoSimplex);
       for (unsigned i = 0; i < 4; ++i) simplex[i] = view.simplices[4 * q + i];
@@ -174,14 +174,14 @@ class AsBuilt {
   }
 
   /// The tile made by FacetBuilder.
-  const facets::TileFacets& built(const ResolvedKey& key) {
+  const tile::TileFacets& built(const ResolvedKey& key) {
     std::vector<Choice> choices(lattice_.faces().size(), Choice::separate);
     for (unsigned q = 0; q < 24; ++q)
       choices[face_number<4>(kTesseractSquares[q].base, kTesseractSquares[q].axes)] =
           (key.squares >> q & 1u) != 0 ? Choice::high : Choice::low;
     for (unsigned f = 0; f < 8; ++f) choices[face_of_cube(f)] = cube_choice(key, f);
     choices[lattice_.tile()] = key.tile;
-    return builder_.build(key.signature, {choices, facets::Alternative::low}, facets::Geometry::without);
+    return builder_.build(key.signature, {choices, tile::Alternative::low}, tile::Geometry::without);
   }
 
  private:
@@ -191,7 +191,7 @@ class AsBuilt {
 
   FaceLattice lattice_ = FaceLattice::cube(4);
   std::array<std::uint32_t, 32> edge_face_{};
-  facets::FacetBuilder builder_{FaceLattice::cube(4)};
+  tile::FacetBuilder builder_{FaceLattice::cube(4)};
 };
 
 /// Topology of a filling on the points on the tile's edges, independent of its triangulation: which points are
@@ -201,10 +201,10 @@ class Topology {
   static constexpr std::size_t kMostColumns = 2048;
   using Row = std::bitset<kMostColumns>;
 
-  explicit Topology(const facets::TileFacets& tile) {
+  explicit Topology(const tile::TileFacets& tile) {
     std::map<VertexId, std::uint32_t> edge_of;
     for (VertexId v = 0; v < tile.vertices.size(); ++v)
-      if (tile.vertices[v].kind == facets::VertexKind::edge) edge_of[v] = tile.vertices[v].face;
+      if (tile.vertices[v].kind == tile::VertexKind::edge) edge_of[v] = tile.vertices[v].face;
     std::map<VertexId, VertexId> root;
     const auto find = [&](VertexId v) {
       root.try_emplace(v, v);
@@ -216,7 +216,7 @@ class Topology {
     std::set<std::pair<VertexId, VertexId>> others;
     const FaceLattice lattice = FaceLattice::cube(4);
     std::set<std::array<VertexId, 3>> triangles;
-    for (const facets::Facet& facet : tile.facets)
+    for (const tile::Facet& facet : tile.facets)
       for (const Simplex& s : facet.simplices)
         for (int omitted = 0; omitted < 4; ++omitted) {
           std::array<VertexId, 3> t;
@@ -256,9 +256,9 @@ class Topology {
 
  private:
   static bool in_square(const FaceLattice& lattice, std::uint32_t a, std::uint32_t b) {
-    const facets::Signature both = lattice.faces()[a].corners | lattice.faces()[b].corners;
+    const tile::Signature both = lattice.faces()[a].corners | lattice.faces()[b].corners;
     return std::any_of(lattice.faces().begin(), lattice.faces().end(),
-                       [&](const facets::Face& f) { return f.dim == 2 && (both & ~f.corners) == 0; });
+                       [&](const tile::Face& f) { return f.dim == 2 && (both & ~f.corners) == 0; });
   }
 
   void reduce(const std::set<std::array<VertexId, 3>>& triangles,
@@ -319,7 +319,7 @@ std::vector<std::uint16_t> class_representatives() {
 }
 
 /// Counts the genera of the components of Sigma.
-void note_genera(const facets::TileFacets& tile, std::map<int, int>& count) {
+void note_genera(const tile::TileFacets& tile, std::map<int, int>& count) {
   std::vector<VertexId> root(tile.vertices.size());
   for (VertexId v = 0; v < root.size(); ++v) root[v] = v;
   const auto find = [&](VertexId v) {
@@ -350,19 +350,19 @@ class ResolvedTiles : public ::testing::Test {
     ASSERT_EQ(size.simplices, view.simplex_count);
     ASSERT_EQ(size.own_vertices, view.own_vertices);
     ASSERT_LT(kFirstOwn + view.own_vertices, 256u);
-    const facets::TileFacets tile = as_built_(key, view, triangulation);
+    const tile::TileFacets tile = as_built_(key, view, triangulation);
     note_genera(tile, genera_);
-    const facets::Fault fault = certifier_.certify(as_built_.lattice(), tile);
-    ASSERT_EQ(fault, facets::Fault::none)
-        << facets::fault_name(fault) << " signature " << key.signature << " squares " << key.squares << " low "
-        << int{key.low_cubes} << " high " << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
+    const tile::Fault fault = certifier_.certify(as_built_.lattice(), tile);
+    ASSERT_EQ(fault, tile::Fault::none) << tile::fault_name(fault) << " signature " << key.signature << " squares "
+                                        << key.squares << " low " << int{key.low_cubes} << " high "
+                                        << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
   }
 
   Keys keys_;
   AsBuilt as_built_;
   ResolvedTesseract tile_, barycentric_{Triangulation::barycentric};
   std::size_t keys_certified_ = 0;
-  facets::Certifier certifier_;
+  tile::Certifier certifier_;
   std::map<int, int> genera_;  ///< genus -> number of components of Sigma
 };
 
@@ -405,7 +405,7 @@ TEST_F(ResolvedTiles, WhereNothingIsToBeChosenTheyAreThoseOfTheCompactTable) {
 TEST_F(ResolvedTiles, FillingsAreThoseOfTheEngine) {
   for (int i = 0; i < 2000; ++i) {
     const ResolvedKey key = i % 2 == 0 ? keys_.uniform() : keys_.of_means();
-    const facets::TileFacets found = as_built_(key, tile_.find(key));
+    const tile::TileFacets found = as_built_(key, tile_.find(key));
     ASSERT_EQ(Topology(found), Topology(as_built_.built(key)))
         << " signature " << key.signature << " squares " << key.squares << " low " << int{key.low_cubes} << " high "
         << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);

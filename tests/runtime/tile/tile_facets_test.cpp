@@ -14,21 +14,21 @@
 namespace tegl {
 namespace {
 
-using facets::Choice;
+using tile::Choice;
 
 template <int N>
-facets::Fault certified(std::uint64_t signature, std::span<const Choice> signs = {}) {
-  return facets::certify(facets::FaceLattice::cube(N), tile_facets<N>(signature, signs));
+tile::Fault certified(std::uint64_t signature, std::span<const Choice> signs = {}) {
+  return tile::certify(tile::FaceLattice::cube(N), tile_facets<N>(signature, signs));
 }
 
-std::size_t simplex_count(const facets::TileFacets& tile) {
+std::size_t simplex_count(const tile::TileFacets& tile) {
   std::size_t count = 0;
-  for (const facets::Facet& facet : tile.facets) count += facet.simplices.size();
+  for (const tile::Facet& facet : tile.facets) count += facet.simplices.size();
   return count;
 }
 
 TEST(TileFacets, FacesAreNumberedByTheirBaseAndAxes) {
-  const auto faces = facets::FaceLattice::cube(3).faces();
+  const auto faces = tile::FaceLattice::cube(3).faces();
   EXPECT_EQ(face_number<3>(5, 0), 5u);
   EXPECT_EQ(face_number<3>(0, 7), kFaceCount<3> - 1);
   EXPECT_EQ(faces[face_number<3>(4, 1)].corners, (1u << 4) | (1u << 5));
@@ -45,9 +45,9 @@ TEST(TileFacets, ASquareIsCutOrJoinedByTheSignOfItsCentre) {
   EXPECT_EQ(cut.facets.size(), 2u);
   // The edges have numbers 4 to 7: along x below, along y left, along y right, along x above. Corner 1 is cut off
   // between the edges below and right; if corners 1 and 2 are joined, corner 0 is cut off.
-  const auto faces_of = [](const facets::TileFacets& tile) {
+  const auto faces_of = [](const tile::TileFacets& tile) {
     std::vector<std::vector<std::uint32_t>> result;
-    for (const facets::Facet& facet : tile.facets) {
+    for (const tile::Facet& facet : tile.facets) {
       std::vector<std::uint32_t> faces;
       for (int i = 0; i < 2; ++i) faces.push_back(tile.vertices[facet.simplices[0][i]].face);
       std::sort(faces.begin(), faces.end());
@@ -70,13 +70,13 @@ TEST(TileFacets, AHighCentreOfACubeJoinsOppositeCornersByATunnel) {
   signs[face_number<3>(0, 7)] = Choice::high;
   const auto tunnel = tile_facets<3>(0b10000001, signs);
   ASSERT_EQ(tunnel.facets.size(), 1u);
-  EXPECT_EQ(facets::euler_characteristic([&] {
-              facets::Simplices simplices = tunnel.facets[0].simplices;
-              for (facets::Simplex& s : simplices) facets::sort_vertices(s);
+  EXPECT_EQ(tile::euler_characteristic([&] {
+              tile::Simplices simplices = tunnel.facets[0].simplices;
+              for (tile::Simplex& s : simplices) tile::sort_vertices(s);
               return simplices;
             }()),
             0);
-  EXPECT_EQ(certified<3>(0b10000001, signs), facets::Fault::none);
+  EXPECT_EQ(certified<3>(0b10000001, signs), tile::Fault::none);
 }
 
 TEST(TileFacets, SeededTilesWithRandomSignsAreCertifiedUpTo5d) {
@@ -87,16 +87,16 @@ TEST(TileFacets, SeededTilesWithRandomSignsAreCertifiedUpTo5d) {
     return result;
   };
   for (int i = 0; i < 40; ++i) {
-    EXPECT_EQ(certified<3>(random() & 0xff, signs(kFaceCount<3>)), facets::Fault::none);
-    EXPECT_EQ(certified<4>(random() & 0xffff, signs(kFaceCount<4>)), facets::Fault::none);
+    EXPECT_EQ(certified<3>(random() & 0xff, signs(kFaceCount<3>)), tile::Fault::none);
+    EXPECT_EQ(certified<4>(random() & 0xffff, signs(kFaceCount<4>)), tile::Fault::none);
   }
-  EXPECT_EQ(certified<5>(random() & 0xffffffff, signs(kFaceCount<5>)), facets::Fault::none);
+  EXPECT_EQ(certified<5>(random() & 0xffffffff, signs(kFaceCount<5>)), tile::Fault::none);
 }
 
 TEST(TileFacets, ACornerOfA6dTileIsCutOffByASimplex) {
   const auto tile = tile_facets<6>(std::uint64_t{1} << 63);
   ASSERT_EQ(simplex_count(tile), 1u);
-  EXPECT_EQ(facets::size(tile.facets[0].simplices[0]), 6);
+  EXPECT_EQ(tile::size(tile.facets[0].simplices[0]), 6);
 }
 
 TEST(TileFacets, WrongArgumentsAreErrors) {

@@ -24,6 +24,6 @@ extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegio
 const TileTable& tile_table(int dim, Triangulation triangulation) noexcept;
 
 /// The table of the k-tile's high regions, k = 1, 2, 3.
-const RegionTable& region_table(int k, Triangulation triangulation, facets::Alternative alternative) noexcept;
+const RegionTable& region_table(int k, Triangulation triangulation, tile::Alternative alternative) noexcept;
 
 }  // namespace tegl::tables

@@ -8,7 +8,7 @@
 
 #include "tegl/tile/facets.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// Why a filled tile fails.
 enum class Fault : std::uint8_t {
@@ -54,4 +54,4 @@ class Certifier {
 /// Checks a single tile with a temporary Certifier.
 Fault certify(const FaceLattice& lattice, const TileFacets& tile);
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// How a face of dimension 2 or more fills its contour.
 enum class Choice : std::uint8_t {
@@ -18,4 +18,4 @@ enum class Choice : std::uint8_t {
 /// they are connected. The values are the numbers of the generated tables.
 enum class Alternative : std::uint8_t { low = 0, high = 1 };
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// Vertex number within one tile.
 using VertexId = std::uint16_t;
@@ -77,4 +77,4 @@ bool collapses_to_a_circle(const Simplices& simplices);
 /// Euler characteristic of the complex.
 int euler_characteristic(const Simplices& simplices);
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

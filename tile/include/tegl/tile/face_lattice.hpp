@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// Set of corners of a tile: bit v = corner v.
 using Signature = std::uint64_t;
@@ -49,4 +49,4 @@ class FaceLattice {
   std::vector<Face> faces_;
 };
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -23,7 +23,7 @@
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/face_lattice.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// How the ambiguities of a tile are resolved.
 struct Resolution {
@@ -119,4 +119,4 @@ class FacetBuilder {
 /// the time.
 TileFacets build_facets(const FaceLattice& lattice, Signature signature, const Resolution& resolution = {});
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile

@@ -9,7 +9,7 @@
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/facets.hpp"
 
-namespace tegl::facets {
+namespace tegl::tile {
 
 /// Certifier proves that a tile's boundary is Sigma. This class also proves Sigma correct, whatever the builder did. In
 /// each face, Sigma must equal the contour of that face built on its own, so a neighbour that shares the face has the
@@ -44,4 +44,4 @@ class TileCertifier {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tegl::facets
+}  // namespace tegl::tile
