@@ -60,7 +60,7 @@ Calls all_that_make_contours(Calls others) {
 
 /// Functions that look up vertices by number.
 Calls all_that_follow_vertices() {
-  static const std::vector<Hyperplane<4>> hyperplanes = {Hyperplane<4>::across(3, 0.5)};
+  static const std::vector<double> at = {0.5};
   return all_that_make_contours({
       {"label_components", [](const Any& c) { label_components(c); }},
       {"components", [](const Any& c) { components(c, no_labels()); }},
@@ -149,7 +149,7 @@ TEST(UnsoundLabels, AreRefused) {
 }
 
 TEST(UnsoundContours, CoordinatesThatAreNotFiniteAreRefused) {
-  static const std::vector<Hyperplane<4>> hyperplanes = {Hyperplane<4>::across(3, 0.5)};
+  static const std::vector<double> at = {0.5};
   for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     Any contour = tetrahedron();
     contour.vertices[2][1] = x;

@@ -173,7 +173,7 @@ TEST(MeasureCuts, OfASingleContourMeetTheTimesThatDoublesMiss) {
   at.push_back(0.8);
   const std::vector<CutMeasures> found = measure_cuts(contour, at);
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const double size = test::measure(slice(contour, Hyperplane<N>::across(N - 1, at[i])));
+    const double size = test::measure(slice(contour, Hyperplane<4>::across(3, at[i])));
     EXPECT_EQ(found[i].at, at[i]);
     EXPECT_GT(size, 1.0);
     EXPECT_NEAR(found[i].size, size, 1e-5 * size) << at[i];

@@ -69,7 +69,7 @@ std::vector<Part<N>> parts_at(const Contour<N, double>& contour, double time) {
     Contour<N, double> alone = contour;
     alone.simplices.clear();
     for (const std::size_t s : part.simplices) alone.simplices.push_back(contour.simplices[s]);
-    part.cut = slice(alone, Hyperplane<4>::across(3, time));
+    part.cut = slice(alone, Hyperplane<N>::across(N - 1, time));
     result.push_back(std::move(part));
   }
   return result;
@@ -192,7 +192,7 @@ TrackGraph expect_right(const Contour<N, double>& contour) {
     const double time = options.times[i];
     parts[0] = std::exchange(parts[1], parts_at(contour, time));
     segments[0] = std::exchange(segments[1], segments_of(parts[1], graph, time));
-    const MeshReport report = check(slice(contour, Hyperplane<4>::across(3, time)));
+    const MeshReport report = check(slice(contour, Hyperplane<N>::across(N - 1, time)));
     EXPECT_EQ(report.components, parts[1].size()) << "at " << time;
     EXPECT_EQ(report.euler, euler_at(graph, time)) << "at " << time;
     if (segments[1].size() != parts[1].size()) return graph;

@@ -273,10 +273,10 @@ void expect_first_sample_is_the_cut(const Contour<N, double>& contour) {
   std::array<double, 2> sums{};
   for (const TrackSegment& segment : graph.segments)
     for (const TrackSample& sample : segment.samples) sums[sample.time == first ? 0 : 1] += sample.measure;
-  const double at_first = test::measure(slice(contour, Hyperplane<4>::across(3, first)));
+  const double at_first = test::measure(slice(contour, Hyperplane<N>::across(N - 1, first)));
   EXPECT_GT(at_first, 1.0);
   EXPECT_NEAR(sums[0], at_first, 1e-9 * at_first);
-  EXPECT_NEAR(sums[1], test::measure(slice(contour, Hyperplane<4>::across(3, first + 0.7))), 1e-9 * at_first);
+  EXPECT_NEAR(sums[1], test::measure(slice(contour, Hyperplane<N>::across(N - 1, first + 0.7))), 1e-9 * at_first);
 }
 
 TEST(Track, AtTheFirstTimeSamplesAreTheCutFromAbove) {
