@@ -403,5 +403,6 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
 TEGL_INSTANTIATE_VIEW(2)
 TEGL_INSTANTIATE_VIEW(3)
 TEGL_INSTANTIATE_VIEW(4)
+#undef TEGL_INSTANTIATE_VIEW
 
 }  // namespace tegl::cli

@@ -266,5 +266,6 @@ TEGL_INSTANTIATE(3, float)
 TEGL_INSTANTIATE(3, double)
 TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
 
 }  // namespace tegl

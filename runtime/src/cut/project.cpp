@@ -34,7 +34,7 @@ namespace {
 
 using detail::HyperplaneFamily;
 
-void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "projecting was cancelled"); }
+constexpr const char* kCancelledProject = "projecting was cancelled";
 
 /// The points and heights of a projected contour.
 template <class Real>
@@ -216,11 +216,11 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
 
 template <Coordinate Real>
 Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
-  report(work.progress, 0.0);
+  detail::tell(work.progress, 0.0, kCancelledProject);
   const View<Real> view = view_of(contour, projection);
-  report(work.progress, 0.3);
+  detail::tell(work.progress, 0.3, kCancelledProject);
   const std::vector<double> sides = along_sight(contour, projection, view);
-  report(work.progress, 0.6);
+  detail::tell(work.progress, 0.6, kCancelledProject);
   // The projected contour with the side function as last coordinate; the outline is its cut at 0.
   Contour<4, double> raised;
   raised.vertices.resize(view.points.size());
@@ -232,7 +232,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   replace(raised.vertex_attributes, height_attribute(contour, projection, view));
   raised.simplex_attributes = contour.simplex_attributes;
   Contour<3, double> cut = slice(raised, Hyperplane<4>::across(3, 0.0));
-  report(work.progress, 0.9);
+  detail::tell(work.progress, 0.9, kCancelledProject);
   Contour<3, Real> result;
   result.direction = contour.direction;
   name_axes(contour, projection, result.axis_names, result.axis_units);
@@ -245,7 +245,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   // The cut has the orientation of the contour in the raised space, where the far side is up.
   if (!view.is_right_handed)
     for (auto& simplex : result.simplices) std::swap(simplex[1], simplex[2]);
-  report(work.progress, 1.0);
+  detail::tell(work.progress, 1.0, kCancelledProject);
   return result;
 }
 

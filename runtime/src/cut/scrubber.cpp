@@ -47,9 +47,7 @@ struct Range {
   Index simplex;
 };
 
-void report(const Progress& progress, double fraction) {
-  detail::tell(progress, fraction, "building a scrubber was cancelled");
-}
+constexpr const char* kCancelledScrubber = "building a scrubber was cancelled";
 
 }  // namespace
 
@@ -60,7 +58,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   const detail::HyperplaneFamily<N> family(normal_);
   (void)family.template level<Real>(hyperplane.offset);  // throws if it is not finite
   detail::require_sound(contour);
-  report(work.progress, 0.0);
+  detail::tell(work.progress, 0.0, kCancelledScrubber);
   if (contour.simplices.empty()) {
     nodes_.push_back({0, 0});
     return;
@@ -95,7 +93,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   });
   // Stable radix sorts: by one end, then by node.
   const auto gather = [&](std::vector<Entry>& entries, double fraction, const auto& key, const auto& end) {
-    report(work.progress, fraction);
+    detail::tell(work.progress, fraction, kCancelledScrubber);
     detail::sort_by_bits(ranges, kPlaceBits, key);
     detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); });
     entries.resize(ranges.size());
@@ -112,7 +110,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   }
   nodes_.push_back({0, ranges.size()});
   nodes_.shrink_to_fit();
-  report(work.progress, 1.0);
+  detail::tell(work.progress, 1.0, kCancelledScrubber);
 }
 
 template <int N, Coordinate Real>

@@ -92,7 +92,7 @@ std::vector<StackedCut> group_by_normal(std::span<const Hyperplane<N>> hyperplan
   return stack;
 }
 
-void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "cuts cancelled"); }
+constexpr const char* kCancelledSlice = "cuts cancelled";
 
 }  // namespace
 
@@ -115,7 +115,7 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   const auto steps = static_cast<double>(groups.size() + stack.size());
   // one pass over the contour for each normal
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    report(work.progress, static_cast<double>(i) / steps);
+    detail::tell(work.progress, static_cast<double>(i) / steps, kCancelledSlice);
     groups[i].touching = touching_levels(contour, groups[i].family, groups[i].levels);
   }
   const auto cut_of = [&](const StackedCut& cut) {
@@ -128,13 +128,13 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   struct Nothing {};
   detail::Workers<Nothing> workers(work.threads, [] { return Nothing(); });
   for (std::size_t first = 0; first < cuts.size(); first += workers.count()) {
-    report(work.progress, static_cast<double>(groups.size() + first) / steps);
+    detail::tell(work.progress, static_cast<double>(groups.size() + first) / steps, kCancelledSlice);
     const std::size_t count = std::min(workers.count(), cuts.size() - first);
     workers.for_range(count, 1, [&](std::size_t from, std::size_t to, Nothing&) {
       for (std::size_t i = first + from; i < first + to; ++i) cuts[i] = cut_of(stack[i]);
     });
   }
-  report(work.progress, 1.0);
+  detail::tell(work.progress, 1.0, kCancelledSlice);
   return cuts;
 }
 
@@ -146,5 +146,6 @@ TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)
 TEGL_INSTANTIATE_SLICE(4, double)
+#undef TEGL_INSTANTIATE_SLICE
 
 }  // namespace tegl

@@ -208,15 +208,15 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>&
   return result;
 }
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real, I)                                                                      \
+#define TEGL_INSTANTIATE_INTO(T, N, Real, I)                                                                     \
   template ExtractedSize extract_into<T, N, Real, I>(const Image<T, N>&, double, const ContourRoom<N, Real, I>&, \
                                                      const ExtractOptions&);
 #define TEGL_INSTANTIATE_DIM(T, N)                                                                  \
   template ExtractedSize count_with_stats<T, N>(const Image<T, N>&, double, const ExtractOptions&); \
-  TEGL_INSTANTIATE_ONE(T, N, float, std::uint32_t)                                                  \
-  TEGL_INSTANTIATE_ONE(T, N, float, std::uint64_t)                                                  \
-  TEGL_INSTANTIATE_ONE(T, N, double, std::uint32_t)                                                 \
-  TEGL_INSTANTIATE_ONE(T, N, double, std::uint64_t)
+  TEGL_INSTANTIATE_INTO(T, N, float, std::uint32_t)                                                 \
+  TEGL_INSTANTIATE_INTO(T, N, float, std::uint64_t)                                                 \
+  TEGL_INSTANTIATE_INTO(T, N, double, std::uint32_t)                                                \
+  TEGL_INSTANTIATE_INTO(T, N, double, std::uint64_t)
 #define TEGL_INSTANTIATE(T)                                                                         \
   template ExtractedSize count_with_stats<T, 5>(const Image<T, 5>&, double, const ExtractOptions&); \
   TEGL_INSTANTIATE_DIM(T, 2)                                                                        \
@@ -224,6 +224,6 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>&
   TEGL_INSTANTIATE_DIM(T, 4)
 #include "base/instantiate.hpp"
 #undef TEGL_INSTANTIATE_DIM
-#undef TEGL_INSTANTIATE_ONE
+#undef TEGL_INSTANTIATE_INTO
 
 }  // namespace tegl

@@ -283,5 +283,6 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
   TEGL_INSTANTIATE_REAL(T, N, float)      \
   TEGL_INSTANTIATE_REAL(T, N, double)
 #include "base/instantiate.hpp"
+#undef TEGL_INSTANTIATE_REAL
 
 }  // namespace tegl

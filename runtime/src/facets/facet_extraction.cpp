@@ -639,5 +639,6 @@ TEGL_INSTANTIATE(3, float)
 TEGL_INSTANTIATE(3, double)
 TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
 
 }  // namespace tegl::detail

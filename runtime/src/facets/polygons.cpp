@@ -363,5 +363,6 @@ TEGL_INSTANTIATE(3)
 TEGL_INSTANTIATE(4)
 template Contour<3, float> triangulate(const FacetHierarchy<3, float>&, PolygonTriangulation, const WorkOptions&);
 template Contour<3, double> triangulate(const FacetHierarchy<3, double>&, PolygonTriangulation, const WorkOptions&);
+#undef TEGL_INSTANTIATE
 
 }  // namespace tegl

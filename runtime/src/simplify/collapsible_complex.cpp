@@ -14,7 +14,7 @@
 namespace tegl::detail {
 namespace {
 
-constexpr std::size_t kReportEvery = std::size_t{1} << 14;  ///< simplices between two progress reports
+constexpr std::size_t kSimplicesPerReport = std::size_t{1} << 14;  ///< simplices between two progress reports
 
 constexpr std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -46,7 +46,7 @@ CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, st
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
   for (std::size_t s = simplices_.size(); s-- > 0;) {
-    if (s % kReportEvery == 0)
+    if (s % kSimplicesPerReport == 0)
       tell(progress, 0.3 * (1.0 - static_cast<double>(s) / static_cast<double>(simplices_.size())));
     for (int i = 0; i < N; ++i) {
       const Index v = simplices_[s][i];
@@ -66,7 +66,7 @@ CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, st
 template <int N>
 void CollapsibleComplex<N>::find_border(const Progress& progress) {
   for (Index s = 0; s < simplices_.size(); ++s) {
-    if (s % kReportEvery == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
+    if (s % kSimplicesPerReport == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
     for (int omitted = 0; omitted < N; ++omitted) {
       // Every simplex with this face is in the star of each of its vertices; any one of them will do.
       const Index at = simplices_[s][omitted == 0 ? 1 : 0];

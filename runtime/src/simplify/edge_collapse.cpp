@@ -18,10 +18,11 @@ namespace {
 
 /// Minimum cosine of the angle by which a normal may turn: 78 degrees.
 constexpr double kLeastCosine = 0.2;
-/// Simplices of at least this shape are accepted whatever the shapes before. Those at or below kFlat count as flat.
+/// Simplices of at least this shape are accepted whatever the shapes before. Those at or below kFlatShape count as
+/// flat.
 template <int N>
 constexpr double kGoodShape = N == 4 ? 0.01 : 0.05;
-constexpr double kFlat = 1e-6;
+constexpr double kFlatShape = 1e-6;
 /// Weight of a border face relative to its simplex.
 constexpr double kBorderWeight = 10.0;
 /// Maximum distance of a place from the middle of the edge, in edge lengths.
@@ -277,8 +278,8 @@ bool EdgeCollapse<N>::keeps_shape(Index s, Index moving, const PointN<N>& place,
   const double old_shape = shape_of_simplex<N>(before, old_length);
   const double new_shape = shape_of_simplex<N>(after, new_length);
   // a flat simplex may stay flat if it gets no flatter
-  const bool was_flat = old_shape <= kFlat;
-  if (new_shape <= kFlat) return was_flat && new_shape >= old_shape;
+  const bool was_flat = old_shape <= kFlatShape;
+  if (new_shape <= kFlatShape) return was_flat && new_shape >= old_shape;
   // orientation: against the mean normal if it was flat, else against its own
   if (was_flat) {
     if (!(dot(new_normal, normal_around(edge)) > 0.0)) return false;

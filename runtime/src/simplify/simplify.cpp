@@ -28,7 +28,7 @@ namespace tegl {
 namespace detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 /// Rounds that reduce the tolerance of parts with too large an error; later rounds set it to 0.
 constexpr unsigned kScalingRounds = 6;
 constexpr unsigned kMostRounds = 12;
@@ -70,7 +70,7 @@ class Simplifier {
     require_options(options);
     require_sound(contour);
     for (int a = 0; a < N; ++a) {
-      double low = kInfinity, high = -kInfinity;
+      double low = kUnlimited, high = -kUnlimited;
       for (const auto& vertex : contour.vertices) {
         low = std::min(low, static_cast<double>(vertex[a]));
         high = std::max(high, static_cast<double>(vertex[a]));
@@ -143,8 +143,8 @@ class Simplifier {
     if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
       return finish(unchanged(is_reducible() ? SimplifyEnd::error : end_without_limits(contour_)));
     if (options_.max_error) return finish(run_within_max_error());
-    if (!options_.measure) return finish(one_round(uniform_tolerance(kInfinity), 1.0, count_));
-    return finish(minimize_error(kInfinity));
+    if (!options_.measure) return finish(one_round(uniform_tolerance(kUnlimited), 1.0, count_));
+    return finish(minimize_error(kUnlimited));
   }
 
   [[nodiscard]] std::vector<double> uniform_tolerance(double error) const {
@@ -208,7 +208,7 @@ class Simplifier {
   /// searches for the smallest maximum error with which the count is still reached, up to `most`.
   Round minimize_error(double most) {
     const bool fast = options_.method == SimplifyMethod::fast;
-    Round best = one_round(uniform_tolerance(fast ? most : kInfinity), progress_after(0.25), count_);
+    Round best = one_round(uniform_tolerance(fast ? most : kUnlimited), progress_after(0.25), count_);
     measure(best, progress_after(1.0 / 3.0));
     if (best.end != SimplifyEnd::count || fast) return best;
     double low = smallest_tolerance(best);
@@ -287,7 +287,7 @@ class Simplifier {
   /// also those for a contour that is no manifold.
   bool is_reducible() {
     const std::size_t before = contour_.simplices.size();
-    const Round round = one_round(uniform_tolerance(kInfinity), progress_after(0.5), before - 1, true);
+    const Round round = one_round(uniform_tolerance(kUnlimited), progress_after(0.5), before - 1, true);
     stats_.rounds = 0;
     if (end_without_limits(contour_) == SimplifyEnd::count) return false;
     return round.is_limited || round.result.simplices.size() < before;
@@ -393,8 +393,8 @@ class Simplifier {
       // simplify with the smallest tolerance; test whether it is the limit
       const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
       remains.simplices = within(tightest);
-      round.is_limited = remains.simplices.size() > count_ && tightest < kInfinity &&
-                         within(kInfinity).size() < remains.simplices.size();
+      round.is_limited = remains.simplices.size() > count_ && tightest < kUnlimited &&
+                         within(kUnlimited).size() < remains.simplices.size();
       stats_.simplify_seconds += seconds_since(start);
     }
     set_result(round, remains, nullptr);

@@ -26,7 +26,7 @@ namespace {
 /// Weight of the squared edge length in the key of an edge, so that flat regions begin with short edges: a thousandth
 /// of the length counts as error.
 constexpr double kLengthShare = 1e-6;
-constexpr std::size_t kReportEvery = 1024;
+constexpr std::size_t kCallsPerReport = 1024;
 constexpr int kMostPasses = 20;
 constexpr double kLeastGain = 0.02;
 
@@ -43,7 +43,7 @@ class ProgressReporter {
   }
   /// Counts a step that removes no simplex. Throws Cancelled.
   void count_step(std::size_t alive) {
-    if (calls_++ % kReportEvery == 0) tell(alive);
+    if (calls_++ % kCallsPerReport == 0) tell(alive);
   }
 
  private:

@@ -68,7 +68,6 @@ std::vector<std::pair<std::uint8_t, std::uint8_t>> outline(const std::vector<std
 
 /// Cones every disc with more than one triangle from its barycentre. Other components are kept.
 void cone_discs(Polygons& polygons) {
-  constexpr unsigned kFirstOwn = Polygons::kFirstOwn;
   // cone discs
   std::vector<std::vector<std::uint8_t>> kept;
   std::vector<std::uint8_t> triangles;
@@ -79,7 +78,7 @@ void cone_discs(Polygons& polygons) {
     } else if (around.size() == 3) {
       triangles.insert(triangles.end(), part.begin(), part.end());
     } else {
-      const auto apex = static_cast<std::uint8_t>(kFirstOwn + polygons.cones++);
+      const auto apex = static_cast<std::uint8_t>(Polygons::kFirstOwn + polygons.cones++);
       for (const auto& [from, to] : around) triangles.insert(triangles.end(), {apex, from, to});
     }
   }
@@ -88,9 +87,9 @@ void cone_discs(Polygons& polygons) {
   std::map<std::uint8_t, std::uint8_t> number;
   for (const std::vector<std::uint8_t>& part : kept)
     for (const std::uint8_t v : part) {
-      if (v >= kFirstOwn && number.try_emplace(v, kFirstOwn + polygons.cones + masks.size()).second)
-        masks.push_back(polygons.masks[v - kFirstOwn]);
-      triangles.push_back(v < kFirstOwn ? v : number.at(v));
+      if (v >= Polygons::kFirstOwn && number.try_emplace(v, Polygons::kFirstOwn + polygons.cones + masks.size()).second)
+        masks.push_back(polygons.masks[v - Polygons::kFirstOwn]);
+      triangles.push_back(v < Polygons::kFirstOwn ? v : number.at(v));
     }
   polygons.triangles = std::move(triangles);
   polygons.masks = std::move(masks);
