@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -48,33 +49,36 @@ class SinkInTurn final : public ContourSink<N, Real> {
 };
 
 /// One of the extractions, with the objects that it refers to.
-template <Value T, int N, class Real>
+template <int N, class Real>
 struct OneOfSeveral {
-  OneOfSeveral(detail::LayerRing<T, N>& ring, const StreamedContour<N, Real>& contour, ExtractOptions its_options,
-               std::mutex& calls)
+  OneOfSeveral(std::unique_ptr<detail::SampleSource<N>> its_source, const Grid<N>& grid, ContourSink<N, Real>& its_sink,
+               ExtractOptions its_options, std::mutex& calls)
       : options(std::move(its_options)),
-        source(ring, contour.isovalue, options.epsilon),
-        sink(*contour.sink, calls),
+        source(std::move(its_source)),
+        sink(its_sink, calls),
         output(sink, options.normals),
-        extraction(detail::make_extraction<N, Real>(source, ring.grid(), detail::generated_tables<N>(options), options,
-                                                    detail::streaming_plan(ring.grid()), output)) {}
+        extraction(detail::make_extraction<N, Real>(*source, grid, detail::generated_tables<N>(options), options,
+                                                    detail::streaming_plan(grid), output)) {}
 
   ExtractOptions options;
-  detail::LayerSource<T, N> source;
+  std::unique_ptr<detail::SampleSource<N>> source;
   SinkInTurn<N, Real> sink;
   detail::StreamOutput<N, Real> output;
   std::unique_ptr<detail::SteppedExtraction<N, Real>> extraction;  ///< null if the image has no tiles
   std::exception_ptr error;
 };
 
-/// All extractions, processing the same batch in parallel.
-template <Value T, int N, class Real>
+/// Makes the samples of one of the extractions, with its isovalue.
+template <int N>
+using SourceMaker = std::function<std::unique_ptr<detail::SampleSource<N>>(double isovalue)>;
+
+/// All extractions, processing the same batch in parallel. Compiled once for all value types.
+template <int N, class Real>
 class SideBySide {
  public:
-  SideBySide(LayerReader<T, N>& layers, std::span<const StreamedContour<N, Real>> contours,
+  SideBySide(const SourceMaker<N>& make_source, const Grid<N>& grid, std::span<const StreamedContour<N, Real>> contours,
              const ExtractOptions& options)
       : progress_(options.work.progress),
-        ring_(layers),
         threads_(options.work.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.work.threads),
         at_once_(std::min(threads_, static_cast<unsigned>(std::min<std::size_t>(contours.size(), ~0U)))),
         workers_(at_once_, [] { return Nothing{}; }) {
@@ -82,7 +86,7 @@ class SideBySide {
       ExtractOptions own = options;
       own.work.threads = threads_ / at_once_;
       if (progress_) own.work.progress = [this](double share) { return tell(share); };
-      all_.push_back(std::make_unique<One>(ring_, contour, std::move(own), calls_));
+      all_.push_back(std::make_unique<One>(make_source(contour.isovalue), grid, *contour.sink, std::move(own), calls_));
     }
   }
 
@@ -105,7 +109,7 @@ class SideBySide {
   }
 
  private:
-  using One = OneOfSeveral<T, N, Real>;
+  using One = OneOfSeveral<N, Real>;
   struct Nothing {};  ///< per-thread state: none
 
   /// Reads the layers of the next batch. Returns false after the last one.
@@ -132,7 +136,6 @@ class SideBySide {
   }
 
   const Progress& progress_;
-  detail::LayerRing<T, N> ring_;
   std::mutex calls_;
   unsigned threads_;
   unsigned at_once_;
@@ -153,7 +156,11 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_s
     detail::check_arguments(contour.isovalue, options);
   }
   if (contours.empty()) return {};
-  SideBySide<T, N, Real> all(layers, contours, options);
+  detail::LayerRing<T, N> ring(layers);
+  const SourceMaker<N> make_source = [&](double isovalue) {
+    return std::make_unique<detail::LayerSource<T, N>>(ring, isovalue, options.epsilon);
+  };
+  SideBySide<N, Real> all(make_source, layers.grid(), contours, options);
   all.run();
   return all.results();
 }

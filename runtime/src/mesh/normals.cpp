@@ -72,6 +72,22 @@ double weight_of(const std::array<PointOf<N>, N>& corners, int j, double measure
   return weights == NormalWeights::equal ? 1.0 : angle_at<N>(corners, j);
 }
 
+/// Gradients at all vertices, as normals. Compiled once for all value types.
+template <int N, class Real>
+void interpolate_gradients(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid,
+                           const Contour<N, Real>& contour, const WorkOptions& work,
+                           Buffer<typename Contour<N, Real>::Vertex>& normals) {
+  const detail::GridLocator<N> locator(grid);
+  detail::for_each_item(normals.size(), work.threads, work.progress, [&](std::size_t v) {
+    std::array<double, N> point;
+    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
+    detail::CellPlace<N> place;
+    normals[v] = {};
+    if (locator.find(point, place))
+      normals[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
+  });
+}
+
 }  // namespace
 
 template <int N, Coordinate Real>
@@ -126,18 +142,10 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
 template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
     const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind, const WorkOptions& work) {
-  const detail::GridLocator<N> locator(image.grid());
   const detail::ImageSource<T, N> source(image, 0.0, 0.0);
-  const detail::NormalWriter<N, Real> writer(source, image.grid(), contour.direction, kind);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.vertices.size());
-  detail::for_each_item(result.size(), work.threads, work.progress, [&](std::size_t v) {
-    std::array<double, N> point;
-    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
-    detail::CellPlace<N> place;
-    result[v] = {};
-    if (locator.find(point, place))
-      result[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
-  });
+  interpolate_gradients(detail::NormalWriter<N, Real>(source, image.grid(), contour.direction, kind), image.grid(),
+                        contour, work, result);
   return result;
 }
 

@@ -9,14 +9,15 @@
 
 #include "base/workers.hpp"
 #include "image/locate.hpp"
+#include "image/row_source.hpp"
 
 namespace tegl {
 
 namespace {
 
 /// The interpolated value at a place of a cell; NaN if missing samples have more than kSlack of the weight.
-template <Value T, int N>
-double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noexcept {
+template <int N>
+double value_at(const detail::CornerValues<N>& samples, const detail::CellPlace<N>& place) noexcept {
   double sum = 0.0;
   double present = 0.0;
   for (unsigned corner = 0; corner < 1u << N; ++corner) {
@@ -29,7 +30,7 @@ double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noe
     }
     // This also skips the index beyond the end of an axis with one sample.
     if (weight == 0.0) continue;
-    const auto value = static_cast<double>(image(index));
+    const auto value = samples.value(index);
     if (std::isnan(value)) continue;
     present += weight;
     sum += weight * value;
@@ -39,6 +40,19 @@ double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noe
   return present < 1.0 - 1e-12 ? sum / present : sum;
 }
 
+/// Interpolates at all vertices. Compiled once for all value types.
+template <int N, Coordinate Real>
+void interpolate(const detail::CornerValues<N>& samples, const Grid<N>& grid, const Contour<N, Real>& contour,
+                 const WorkOptions& work, Buffer<double>& values) {
+  const detail::GridLocator<N> locator(grid);
+  detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
+    std::array<double, N> point;
+    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
+    detail::CellPlace<N> place;
+    values[v] = locator.find(point, place) ? value_at(samples, place) : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
 }  // namespace
 
 template <Value T, int N, Coordinate Real>
@@ -46,14 +60,7 @@ requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, co
                                                     std::string name, std::string unit, const WorkOptions& work) {
   Attribute attribute{std::move(name), std::move(unit), 1, {}};
   attribute.values.resize(contour.vertices.size());
-  const detail::GridLocator<N> locator(image.grid());
-  detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
-    std::array<double, N> point;
-    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
-    detail::CellPlace<N> place;
-    attribute.values[v] =
-        locator.find(point, place) ? value_at(image, place) : std::numeric_limits<double>::quiet_NaN();
-  });
+  interpolate(detail::ImageSource<T, N>(image, 0.0, 0.0), image.grid(), contour, work, attribute.values);
   return attribute;
 }
 
