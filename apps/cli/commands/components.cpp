@@ -10,12 +10,15 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "base/table.hpp"
 #include "base/units.hpp"
 #include "input/commands.hpp"
 #include "input/component_selection.hpp"
 #include "input/contour_input.hpp"
+#include "io/base/text.hpp"
+#include "io/meshes/meshes.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -162,7 +165,9 @@ class ComponentsCommand final : public ContourInputCommand {
       add_component_attribute(contour, labels);
       const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen, bar.stage("select")), input);
       const Progress progress = bar.stage("write");
-      written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress, compress_.compression()); });
+      written.write(output_, [&](const PendingPath& file) {
+        write_mesh(mesh, file, {.work = {.progress = progress}, .compression = compress_.compression()});
+      });
       lost_ = lost_vertices(mesh, output_);
       remark(lost_.remark(output_));
     }
@@ -172,7 +177,8 @@ class ComponentsCommand final : public ContourInputCommand {
       lost_ += lost;
     }
     if (!csv_.empty())
-      written.write(csv_, [&](const auto& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
+      written.write(csv_,
+                    [&](const PendingPath& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
     written.keep();
     write_seconds_ = watch.lap();
     return found;
@@ -184,8 +190,8 @@ class ComponentsCommand final : public ContourInputCommand {
           std::all_of(conditions.begin(), conditions.end(), [&](const auto& condition) { return condition(facts); }));
     std::vector<std::size_t> order = by_size(found);
     if (order.empty() && !found.facts.empty())
-      throw Error(ErrorCode::EmptyResult, fmt::format("none of the {} fulfils the condition; expected one at least",
-                                                      counted(found.facts.size(), "component", "components")));
+      throw EmptyResult(fmt::format("none of the {} fulfils the condition; expected one at least",
+                                    counted(found.facts.size(), "component", "components")));
     for (std::size_t i = largest_; largest_ > 0 && i < order.size(); ++i) found.chosen[order[i]] = false;
   }
 
@@ -218,8 +224,9 @@ class ComponentsCommand final : public ContourInputCommand {
       const std::string name = split_name(label);
       require_output(name, files());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
-      const Mesh mesh = mesh_of(parts[label], input);
-      written.write(name, [&](const auto& file) { write_mesh(mesh, file, {}, compress_.compression()); });
+      const MeshView mesh = mesh_of(parts[label], input);
+      written.write(name,
+                    [&](const PendingPath& file) { write_mesh(mesh, file, {.compression = compress_.compression()}); });
       lost += lost_vertices(mesh, name);
     }
     return lost;

@@ -327,7 +327,7 @@ class ContourCommand final : public Command {
   Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
     options_.add_shape_normals(contour);
     attributes_.sample_to(contour, image_options(), threads, bar);
-    return to_mesh(contour);
+    return to_mesh(std::move(contour));
   }
 
   /// Extracts the contours with --index, which is read once; its time counts as reading.

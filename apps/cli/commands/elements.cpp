@@ -155,7 +155,7 @@ class ElementsCommand final : public ContourInputCommand {
     for (const Attribute& attribute : all.attributes) report.attributes.push_back(range_of(attribute));
     // write
     ElementFileOptions options = file_options();
-    options.progress = bar.stage("write");
+    options.work.progress = bar.stage("write");
     watch.lap();
     write_elements(all, output_, options);
     report.output_bytes = std::filesystem::file_size(output_);

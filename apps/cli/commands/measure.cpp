@@ -16,6 +16,7 @@
 #include "input/contour_input.hpp"
 #include "input/cuts.hpp"
 #include "output/output.hpp"
+#include "tegl/io/text.hpp"
 
 namespace tegl::cli {
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
@@ -72,10 +73,8 @@ Mesh to_mesh(ProjectedContour<double> projected) {
   Mesh mesh;
   mesh.dim = 3;
   mesh.space_dim = 3;
-  for (const auto& vertex : projected.vertices)
-    mesh.coordinates.insert(mesh.coordinates.end(), vertex.begin(), vertex.end());
-  for (const auto& simplex : projected.tetrahedra)
-    mesh.simplices.insert(mesh.simplices.end(), simplex.begin(), simplex.end());
+  mesh.coordinates = std::move(projected.vertices);
+  mesh.simplices = std::move(projected.tetrahedra);
   mesh.axis_names.assign(projected.axis_names.begin(), projected.axis_names.end());
   mesh.axis_units.assign(projected.axis_units.begin(), projected.axis_units.end());
   mesh.vertex_attributes = std::move(projected.vertex_attributes);
@@ -151,9 +150,9 @@ class ProjectCommand final : public ContourInputCommand {
     result.mesh = project_as_asked(*contour, projection, bar);
     result.seconds.slice = watch.lap();
     if (result.mesh.simplices.empty() && !contour->simplices.empty())
-      throw Error(ErrorCode::EmptyResult,
-                  "nothing has an outline along this direction: it stands still; expected "
-                  "something that moves (or --as cuts)");
+      throw EmptyResult(
+          "nothing has an outline along this direction: it stands still; expected "
+          "something that moves (or --as cuts)");
     // check, write, report
     if (!no_check_ && kind_ != "tetrahedra") check_result(result, bar);
     write_result(result, bar);

@@ -15,10 +15,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "base/printable.hpp"
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
+#include "tegl/io/text.hpp"
 #include "view/view_page.hpp"
 
 namespace tegl::cli {
@@ -146,8 +148,7 @@ class ViewCommand final : public ContourInputCommand {
   Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
     ContourInput input = read_contour(bar, true);
     if (input.size().simplices == 0)
-      throw Error(ErrorCode::EmptyResult,
-                  "the contour is empty; expected one with simplices, as a page shows something");
+      throw EmptyResult("the contour is empty; expected one with simplices, as a page shows something");
     std::optional<double> first, last;
     ImageInfo info;
     if (input.image) {
