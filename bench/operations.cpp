@@ -266,7 +266,7 @@ void run_file(const Image<T, 4>& image, double isovalue, unsigned threads, int r
   ExtractOptions options;
   options.work.threads = threads;
   Subject<T> subject{image, isovalue, threads, extract<double>(image, isovalue, options), 0, 0, nullptr, {}, {}};
-  if (subject.contour.vertices.empty()) throw Error(ErrorCode::EmptyResult, "the contour is empty");
+  if (subject.contour.vertices.empty()) throw Error(ErrorCode::InvalidArgument, "the contour is empty");
   const auto [least, most] = std::minmax_element(subject.contour.vertices.begin(), subject.contour.vertices.end(),
                                                  [](const auto& a, const auto& b) { return a[3] < b[3]; });
   subject.first = (*least)[3];

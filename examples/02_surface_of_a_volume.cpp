@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   tegl::ExtractOptions options;
   options.close = true;
   const auto surface = tegl::extract(image, 0.4, options);
-  tegl::write_mesh(tegl::to_mesh(surface), argv[1]);
+  tegl::write_mesh(surface, argv[1]);
 
   const tegl::MeshReport report = tegl::check(surface);
   std::printf("%s: %zu triangles, %zu component(s), Euler characteristic %lld, %zu open edges\n", argv[1],

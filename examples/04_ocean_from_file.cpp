@@ -26,7 +26,7 @@ tegl::Contour<3> surface_at(const tegl::AnyImage& any, double temperature, doubl
 int run(const char* in, const char* out) {
   const auto [image, info] = tegl::read_image(in);
   const tegl::Contour<3> surface = surface_at(image, 20.0, 7.3);
-  tegl::write_mesh(tegl::to_mesh(surface), out);
+  tegl::write_mesh(surface, out);
 
   float deepest = 0.0F;
   for (const auto& vertex : surface.vertices) deepest = std::max(deepest, vertex[2]);

@@ -82,9 +82,9 @@ void write_any(const AnyElements& elements, const std::string& path, const std::
       "components", components,
       {{"covariant", ElementComponents::covariant}, {"contravariant", ElementComponents::contravariant}});
   options.header = header;
-  options.progress = call.progress();
+  options.work.progress = call.progress();
   call.run([&] {
-    const FileLock lock(options.progress);
+    const FileLock lock(options.work.progress);
     std::visit([&](const auto& e) { write_elements(e, path, options); }, elements.elements);
   });
 }

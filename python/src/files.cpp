@@ -5,7 +5,9 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
-#include "tegl/io.hpp"
+#include "io/images/series_request.hpp"
+#include "tegl/io/images.hpp"
+#include "tegl/io/meshes.hpp"
 #include "tegl/io/series.hpp"
 
 namespace tegl::python {
@@ -104,7 +106,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   ReadImageResult read = call.run([&] {
     const FileLock lock(tell);
     SeriesOptions options = series_options(files, request, kWords);
-    options.progress = tell;
+    options.work.progress = tell;
     options.separate_process = separate_process;
     return read_with_hint(files, options);
   });
@@ -126,17 +128,17 @@ void write_any(const AnyContour& contour, const std::string& path, const py::obj
   Call call(progress);
   const Progress tell = call.progress();
   call.run([&] {
-    Mesh mesh = std::visit(
-        []<int N, class Real>(const Contour<N, Real>& c) -> Mesh {
+    MeshView mesh = std::visit(
+        []<int N, class Real>(const Contour<N, Real>& c) -> MeshView {
           if constexpr (N <= 4)
-            return to_mesh(c);
+            return c;
           else
             throw_dimension("a file", N, "2 to 4 dimensions");
         },
         contour.contour);
     mesh.isovalue = contour.isovalue;
     const FileLock lock(tell);
-    write_mesh(mesh, path, tell);
+    write_mesh(mesh, path, {.work = {.progress = tell}});
   });
 }
 
@@ -147,7 +149,7 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside
   const Mesh mesh = call.run([&] {
     const FileLock lock(tell);
     ReadMeshOptions options;
-    options.progress = tell;
+    options.work.progress = tell;
     options.allow_outside_paths = allow_outside_paths;
     options.separate_process = separate_process;
     return read_mesh(path, options);

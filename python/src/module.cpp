@@ -108,8 +108,6 @@ PyObject* exception_of(ErrorCode code, PyObject* cancelled) {
       return PyExc_OSError;
     case ErrorCode::TooLarge:
       return PyExc_OverflowError;
-    case ErrorCode::EmptyResult:
-      return PyExc_RuntimeError;
     case ErrorCode::Cancelled:
       return cancelled;
     default:

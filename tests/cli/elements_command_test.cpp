@@ -173,7 +173,7 @@ TEST_F(ElementsCommand, ContoursTakeAttributesAlong) {
 
 TEST_F(ElementsCommand, ContoursHaveNormalsOfTheKindAskedFor) {
   const std::string file = ball_file({12, 12, 12}, 4.0);
-  std::vector<Buffer<double>> kinds;
+  std::vector<MeshArray<double>> kinds;
   const std::vector<std::vector<std::string>> spellings = {
       {"--normals"},          {"--normals", "gradient"},  {"--normals=sobel"},
       {"--normals", "sobel"}, {"--normals", "geometric"}, {"--normals", "flat"}};
@@ -189,7 +189,7 @@ TEST_F(ElementsCommand, ContoursHaveNormalsOfTheKindAskedFor) {
     ASSERT_EQ(mesh.normals.empty(), flat);
     ASSERT_EQ(mesh.simplex_attributes.size(), flat ? 1u : 0u);
     // The normals of a ball point outwards.
-    const Buffer<double>& normals = flat ? mesh.simplex_attributes[0].values : mesh.normals;
+    const MeshArray<double> normals = flat ? MeshArray<double>(mesh.simplex_attributes[0].values) : mesh.normals;
     for (std::size_t i = 0; i < normals.size() / 3; ++i) {
       const std::size_t v = flat ? mesh.simplices[3 * i] : i;
       double along = 0;

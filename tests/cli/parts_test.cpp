@@ -299,7 +299,6 @@ TEST(ExitCodes, AreAsDocumented) {
   EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::FileNotFound)), 3);
   EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::MalformedFile)), 4);
   EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::UnsupportedData)), 4);
-  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::EmptyResult)), 5);
   EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::WriteFailed)), 6);
   EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::Cancelled)), 130);
   for (const char* code : {"0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "6 ", "70 ", "130 "}) {

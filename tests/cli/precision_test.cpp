@@ -30,7 +30,7 @@ class Precision : public ProgramTest {
     EXPECT_EQ(run.exit, 0) << run.err;
     return static_cast<double>(std::filesystem::file_size(path(output)));
   }
-  static void expect_floats(const Buffer<double>& values) {
+  static void expect_floats(const MeshArray<double>& values) {
     for (const double value : values) ASSERT_EQ(value, static_cast<double>(static_cast<float>(value)));
   }
 

@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <set>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -285,6 +286,42 @@ TEST_F(SeriesCommand, TimesGoWithTheFilesAsListedAndInputIsTheOrderRead) {
   EXPECT_EQ(listed["axes"][3]["first"], 11);
   expect_refused(2, of_frames({"info", "--times", "3,2,1,0,4,5,6,7,8,9,10,11", "--sort", "name"}, {}),
                  {"lies at 1 by", frames_[2], frames_[3] + " at 0", "--times", "--sort name"});
+}
+
+TEST_F(SeriesCommand, IsSlicedFromTheFilesBesideTheCutOnly) {
+  run({"slice", whole_, "--iso", "0.1", "--at", "t=4.5", "-o", path("whole.ply")});
+  run({"slice", whole_, "--iso", "0.1", "--at", "t=4.5", "--normals", "-o", path("whole_normals.ply")});
+  const std::vector<std::string> sound = frames_;
+  // Text that is no numbers: found only when the values are read.
+  std::string garbage;
+  for (int i = 0; i < 1000; ++i) garbage += "garbage ";
+  const auto damage = [&](const std::set<std::size_t>& kept) {
+    for (std::size_t k = 0; k < frames_.size(); ++k)
+      if (!kept.contains(k))
+        frames_[k] = write("damaged_" + std::to_string(k) + ".nrrd",
+                           "NRRD0004\ntype: float\ndimension: 3\nsizes: 10 10 10\nencoding: ascii\n\n" + garbage);
+  };
+  const auto slice = [&](const std::string& at, const std::string& to, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"--iso", "0.1", "--at", at, "-o", path(to)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return of_frames({"slice", "--sort", "given"}, arguments);
+  };
+  damage({4, 5});
+  run(slice("t=4.5", "series.ply"));
+  expect_same_mesh("whole.ply", "series.ply");
+  expect_refused(4, slice("t=4", "none.ply"), {frames_[3], "garbage"});
+  expect_refused(4, slice("t=4.5", "none.ply", {"--normals"}), {frames_[3], "garbage"});
+  expect_refused(4, slice("t=4.5,7.5", "none_{t}.ply"), {frames_[7], "garbage"});
+  // Whether an isovalue lies outside of the values may depend on all files.
+  expect_refused(4, of_frames({"slice", "--sort", "given"}, {"--iso", "1000", "--at", "t=4.5", "-o", path("none.ply")}),
+                 {frames_[0], "garbage"});
+  run(of_frames({"slice", "--sort", "given", "--allow-empty"},
+                {"--iso", "1000", "--at", "t=4.5", "-o", path("empty.ply")}));
+  frames_ = sound;
+  damage({3, 4, 5, 6});
+  run(slice("t=4.5", "series_normals.ply", {"--normals"}));
+  expect_same_mesh("whole_normals.ply", "series_normals.ply");
+  EXPECT_EQ(read_mesh(path("whole_normals.ply")).normals, read_mesh(path("series_normals.ply")).normals);
 }
 
 TEST_F(SeriesCommand, OfFilesThatDoNotFitFailsNamingTheFileAndLeavesNothing) {

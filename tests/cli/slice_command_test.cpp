@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <utility>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -25,6 +28,11 @@ class Slice : public ProgramTest {
     file_ = write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 2}));  // t = 0, 2, 4, 6, 8 s
   }
   [[nodiscard]] const std::string& file() const { return file_; }
+  static std::string bytes(const std::string& name) {
+    std::ifstream in(name, std::ios::binary);
+    EXPECT_TRUE(in) << name;
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
 
  private:
   std::string file_;
@@ -45,6 +53,74 @@ TEST_F(Slice, OfMovingBallsIsTwoSpheresThenOne) {
   const RunResult late = run_tegl({"slice", file(), "--iso", "0", "--at", "t=7.3", "-o", path("b.ply"), "--json"});
   ASSERT_EQ(late.exit, 0) << late.err;
   EXPECT_EQ(late.json()["euler"], 2);
+}
+
+/// Samples with the last axis moved to the front.
+Samples with_last_axis_first(const Samples& samples) {
+  const std::size_t layers = samples.sizes.back();
+  const std::size_t size = samples.values.size() / layers;
+  Samples result{{layers}, {}};
+  result.sizes.insert(result.sizes.end(), samples.sizes.begin(), samples.sizes.end() - 1);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = 0; k < layers; ++k) result.values.push_back(samples.values[k * size + i]);
+  return result;
+}
+
+TEST_F(Slice, IsTheSameFromLayersAndFromTheWholeImage) {
+  // The list of images is the last axis of one file, which is read by layers, and the first of the other, which is not.
+  const Samples samples = merging_balls(10, 6);
+  const std::string layers = write("layers.nrrd", nrrd_bytes(samples, "kinds: domain domain domain list\n"));
+  const std::string whole =
+      write("whole.nrrd", nrrd_bytes(with_last_axis_first(samples), "kinds: list domain domain domain\n"));
+  EXPECT_EQ(run_tegl({"contour", whole, "--stream", "--iso", "0", "-o", path("a.vtkhdf")}).exit, 4);
+  EXPECT_EQ(run_tegl({"contour", layers, "--stream", "--iso", "0", "-o", path("a.vtkhdf")}).exit, 0);
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--normals"},
+                                             {"--normals", "sobel"},
+                                             {"--precision", "float"},
+                                             {"--ambiguity", "saddle", "--close"},
+                                             {"--scale", "t=0.3"},
+                                             {"--at", "x=4.5"}}) {
+    const auto cut = [&](const std::string& from, const std::string& to) {
+      std::vector<std::string> arguments = {
+          "slice", from, "--iso", "0.25", "--at", "t=4.75,0,2,5,0.5", "-o", path(to + "_{axis}_{t}.ply"), "--json"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const RunResult run = run_tegl(arguments);
+      EXPECT_EQ(run.exit, 0) << run.err;
+      nlohmann::json reports = run.json();
+      for (nlohmann::json& report : reports) {
+        report.erase("seconds");
+        report.erase("input");
+        report.erase("output");
+      }
+      return reports;
+    };
+    EXPECT_EQ(cut(layers, "layers"), cut(whole, "whole"));
+    for (const char* const t : {"0", "0.5", "2", "4.75", "5"})
+      EXPECT_EQ(bytes(path(std::string("layers_t_") + t + ".ply")), bytes(path(std::string("whole_t_") + t + ".ply")))
+          << t;
+  }
+}
+
+TEST_F(Slice, OfLayersFailsAsThatOfTheWholeImage) {
+  const Samples samples = merging_balls(10, 6);
+  const std::string layers = write("layers.nrrd", nrrd_bytes(samples, "kinds: domain domain domain list\n"));
+  const std::string whole =
+      write("whole.nrrd", nrrd_bytes(with_last_axis_first(samples), "kinds: list domain domain domain\n"));
+  const auto before = files();
+  for (const auto& [iso, at] : {std::pair("1000", "t=1.5"), std::pair("0", "t=7"), std::pair("1000", "t=7"),
+                                std::pair("0", "q=1"), std::pair("nan", "t=1")}) {
+    const auto cut = [&](const std::string& file) {
+      return run_tegl({"slice", file, "--iso", iso, "--at", at, "-o", path("out.ply")});
+    };
+    const RunResult of_layers = cut(layers);
+    const RunResult of_whole = cut(whole);
+    EXPECT_EQ(of_layers.exit, of_whole.exit) << iso << " " << at;
+    EXPECT_EQ(of_layers.err.substr(of_layers.err.rfind(".nrrd") + 1),
+              of_whole.err.substr(of_whole.err.rfind(".nrrd") + 1));
+  }
+  EXPECT_EQ(files(), before);
 }
 
 TEST_F(Slice, OfASavedContourEqualsThatOfItsImage) {

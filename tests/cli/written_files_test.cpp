@@ -10,8 +10,11 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <utility>
 
+#include "io/base/text.hpp"
 #include "output/output.hpp"
+#include "tegl/io/text.hpp"
 
 namespace tegl::cli {
 namespace {
@@ -19,6 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
+
+// The path of a temporary PendingPath would be of a removed file.
+template <class File>
+concept HasPath = requires(File&& file) {
+  std::forward<File>(file).path();
+};
+static_assert(HasPath<PendingPath&> && HasPath<const PendingPath&> && !HasPath<PendingPath>);
 
 class WrittenFilesTest : public testing::Test {
  protected:
@@ -41,7 +51,7 @@ class WrittenFilesTest : public testing::Test {
     return all;
   }
   void write(WrittenFiles& written, const std::string& name, const std::string& content) const {
-    written.write(path(name), [&](const fs::path& file) { write_text(content, file); });
+    written.write(path(name), [&](const PendingPath& file) { write_text(content, file); });
   }
 
   fs::path folder_;
@@ -144,9 +154,9 @@ TEST_F(WrittenFilesTest, KeepThePermissionsOfWhatWasThere) {
   write_text("new", path("private.csv"));
   write_text("new", path("shared.csv"));
   WrittenFiles written;
-  written.write(path("several.csv"), [&](const fs::path& file) {
+  written.write(path("several.csv"), [&](const PendingPath& file) {
     write_text("new", file);
-    EXPECT_EQ(mode(file), 0600U) << "not only in the end";
+    EXPECT_EQ(mode(file.path()), 0600U) << "not only in the end";
   });
   write(written, "fresh.csv", "new");
   written.keep();

@@ -32,6 +32,19 @@ PUBLIC = {
     "runtime/io": ["tile/include", "runtime/include"],
     "apps/cli": ["tile/include", "runtime/include"],
 }
+# Private headers of a library that others may include, by these names from `runtime`. They are not installed.
+SHARED = {
+    "apps/cli": [
+        "io/base/pending_path.hpp",
+        "io/base/text.hpp",
+        "io/images/series_request.hpp",
+        "io/meshes/contour_file.hpp",
+        "io/meshes/facets.hpp",
+        "io/meshes/meshes.hpp",
+        "io/reports/tracks.hpp",
+    ],
+    "python/src": ["io/images/series_request.hpp"],
+}
 MOST_LINES = {".hpp": 400, ".cpp": 700}
 INCLUDE = re.compile(r'^\s*#\s*include\s+["<]([^">]+)[">]', re.MULTILINE)
 DOOR = re.compile(r"^May use: (.+)\.$", re.MULTILINE)
@@ -150,6 +163,21 @@ def faults_of_public_headers(source, user, folders):
     return faults
 
 
+def faults_of_shared_headers(source, user, allowed):
+    """Includes of private headers that the user may not know, and shared ones that are gone or need other private ones."""
+    faults = [f"{name}: shared with {user}, and not there" for name in allowed
+              if not (source / "runtime" / name).is_file()]
+    for name in allowed:
+        used = [other for other in INCLUDE.findall((source / "runtime" / name).read_text())
+                if (source / "runtime/io" / other).is_file()]
+        faults += [f"{name} is shared and includes {other}; expected public headers" for other in used]
+    for file in sources_below(source / user):
+        used = [name for name in INCLUDE.findall(file.read_text()) if (source / "runtime" / name).is_file()]
+        faults += [f"{file.relative_to(source)} includes {name}, which is private" for name in used
+                   if name not in allowed]
+    return faults
+
+
 def faults_of_headers(folder):
     """Circles of public headers."""
     arrows = {}
@@ -183,6 +211,17 @@ class Rooms(unittest.TestCase):
             with self.subTest(user):
                 faults = faults_of_public_headers(SOURCE, user, folders)
                 self.assertEqual([], faults, "\n".join(faults))
+
+    def test_private_headers_are_shared_by_name(self):
+        for user, allowed in SHARED.items():
+            with self.subTest(user):
+                faults = faults_of_shared_headers(SOURCE, user, allowed)
+                self.assertEqual([], faults, "\n".join(faults))
+
+    def test_public_headers_include_public_ones(self):
+        for file in sources_below(SOURCE / "runtime/include"):
+            for name in re.findall(r'#include "([^"]+)"', file.read_text()):
+                self.assertTrue(name.startswith("tegl/"), f"{file} includes {name}")
 
     def test_public_headers_have_no_circle(self):
         for folder in ("runtime/include", "tile/include"):

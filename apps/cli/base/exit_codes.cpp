@@ -19,8 +19,6 @@ ExitCode exit_code(ErrorCode code) noexcept {
     case ErrorCode::UnsupportedData:
     case ErrorCode::TooLarge:
       return ExitCode::BadInput;
-    case ErrorCode::EmptyResult:
-      return ExitCode::Nothing;
     case ErrorCode::WriteFailed:
       return ExitCode::OutputFailed;
     case ErrorCode::Cancelled:

@@ -13,8 +13,8 @@
 #include <ctime>
 #include <utility>
 
+#include "io/base/pending_path.hpp"
 #include "tegl/error.hpp"
-#include "tegl/io/pending_path.hpp"
 
 namespace tegl::cli {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "tegl/io.hpp"
+#include "tegl/io/images.hpp"
 
 namespace tegl::cli {
 

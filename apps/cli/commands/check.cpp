@@ -15,7 +15,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCheckExamples =
     "Examples:\n"
     "  tegl check skull.ply\n"
     "  tegl check --require closed --json ball.vtkhdf\n"
@@ -33,7 +33,7 @@ class CheckCommand final : public Command {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"closed", "nondegenerate"}));
-    app().footer(kExamples);
+    app().footer(kCheckExamples);
   }
 
   ExitCode run(const Streams& streams) override {

@@ -9,19 +9,22 @@
 #include <numeric>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "base/table.hpp"
 #include "base/units.hpp"
 #include "input/commands.hpp"
 #include "input/component_selection.hpp"
 #include "input/contour_input.hpp"
+#include "io/base/text.hpp"
+#include "io/meshes/meshes.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kComponentsExamples =
     "Examples:\n"
     "  tegl components head.nii.gz --iso 60\n"
     "  tegl components head.nii.gz --iso 60 --largest 1 -o skin.ply\n"
@@ -33,7 +36,7 @@ constexpr const char* kExamples =
     "axis; AXIS.min, AXIS.max, AXIS.span, AXIS.centroid; and, or, not, parentheses.";
 
 /// The components, independent of their dimension.
-struct Found {
+struct FoundComponents {
   std::vector<ComponentFacts> facts;  ///< by label
   std::vector<bool> chosen;
 };
@@ -93,7 +96,7 @@ class ComponentsCommand final : public ContourInputCommand {
         ->check(whole_number(0))
         ->type_name("COUNT")
         ->capture_default_str();
-    app().footer(kExamples);
+    app().footer(kComponentsExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -106,7 +109,8 @@ class ComponentsCommand final : public ContourInputCommand {
     for (int a = 0; a < input.space_dim(); ++a) axes_.push_back(input.axis_name(a));
     std::vector<ComponentSelection> conditions;
     for (const std::string& condition : conditions_) conditions.emplace_back(condition, axes_);
-    const Found found = std::visit([&](auto& contour) { return work(contour, input, conditions, bar); }, input.contour);
+    const FoundComponents found =
+        std::visit([&](auto& contour) { return work(contour, input, conditions, bar); }, input.contour);
     // report
     bar.clear();
     if (json())
@@ -155,11 +159,11 @@ class ComponentsCommand final : public ContourInputCommand {
 
   /// Labels, selects and writes components.
   template <int N>
-  Found work(Contour<N, double>& contour, const ContourInput& input, const std::vector<ComponentSelection>& conditions,
-             ProgressBar& bar) {
+  FoundComponents work(Contour<N, double>& contour, const ContourInput& input,
+                       const std::vector<ComponentSelection>& conditions, ProgressBar& bar) {
     Stopwatch watch;
     const ComponentLabels labels = label_components(contour, {threads(), bar.stage("components")});
-    Found found;
+    FoundComponents found;
     found.facts = facts_of(components(contour, labels, {threads(), bar.stage("measure")}));
     components_seconds_ = watch.lap();
     choose(found, conditions);
@@ -169,7 +173,9 @@ class ComponentsCommand final : public ContourInputCommand {
       const Mesh mesh =
           mesh_of(select_components(contour, labels, found.chosen, {threads(), bar.stage("select")}), input);
       const Progress progress = bar.stage("write");
-      written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress, compress_.compression()); });
+      written.write(output_, [&](const PendingPath& file) {
+        write_mesh(mesh, file, {.work = {.progress = progress}, .compression = compress_.compression()});
+      });
       lost_ = lost_vertices(mesh, output_);
       remark(lost_.remark(output_));
     }
@@ -179,25 +185,26 @@ class ComponentsCommand final : public ContourInputCommand {
       lost_ += lost;
     }
     if (!csv_.empty())
-      written.write(csv_, [&](const auto& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
+      written.write(csv_,
+                    [&](const PendingPath& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
     written.keep();
     write_seconds_ = watch.lap();
     return found;
   }
 
-  void choose(Found& found, const std::vector<ComponentSelection>& conditions) const {
+  void choose(FoundComponents& found, const std::vector<ComponentSelection>& conditions) const {
     for (const ComponentFacts& facts : found.facts)
       found.chosen.push_back(
           std::all_of(conditions.begin(), conditions.end(), [&](const auto& condition) { return condition(facts); }));
     std::vector<std::size_t> order = by_size(found);
     if (order.empty() && !found.facts.empty())
-      throw Error(ErrorCode::EmptyResult, fmt::format("none of the {} meets the conditions; expected at least one",
-                                                      counted(found.facts.size(), "component", "components")));
+      throw EmptyResult(fmt::format("none of the {} meets the conditions; expected at least one",
+                                    counted(found.facts.size(), "component", "components")));
     for (std::size_t i = largest_; largest_ > 0 && i < order.size(); ++i) found.chosen[order[i]] = false;
   }
 
   /// The labels of the selected components, the largest first.
-  static std::vector<std::size_t> by_size(const Found& found) {
+  static std::vector<std::size_t> by_size(const FoundComponents& found) {
     std::vector<std::size_t> order;
     for (std::size_t label = 0; label < found.facts.size(); ++label)
       if (found.chosen[label]) order.push_back(label);
@@ -209,7 +216,7 @@ class ComponentsCommand final : public ContourInputCommand {
   /// Writes a file per component; returns the number of vertices that coincide in the files.
   template <int N>
   LostVertices write_split(const Contour<N, double>& contour, const ContourInput& input, const ComponentLabels& labels,
-                           const Found& found, ProgressBar& bar, WrittenFiles& written) const {
+                           const FoundComponents& found, ProgressBar& bar, WrittenFiles& written) const {
     constexpr std::size_t kMostFiles = 10000;
     const auto count = static_cast<std::size_t>(std::count(found.chosen.begin(), found.chosen.end(), true));
     if (count > kMostFiles)
@@ -225,14 +232,16 @@ class ComponentsCommand final : public ContourInputCommand {
       const std::string name = split_name(label);
       require_output(name, files());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
-      const Mesh mesh = mesh_of(parts[label], input);
-      written.write(name, [&](const auto& file) { write_mesh(mesh, file, {}, compress_.compression()); });
+      const MeshView mesh = mesh_of(parts[label], input);
+      written.write(name,
+                    [&](const PendingPath& file) { write_mesh(mesh, file, {.compression = compress_.compression()}); });
       lost += lost_vertices(mesh, name);
     }
     return lost;
   }
 
-  [[nodiscard]] Table table(const ContourInput& input, const Found& found, std::string (*to_text)(double)) const {
+  [[nodiscard]] Table table(const ContourInput& input, const FoundComponents& found,
+                            std::string (*to_text)(double)) const {
     const std::vector<std::string> of_axes = units(input);
     Table result{{"label", "rank", "vertices", "simplices",
                   heading_with_unit("size", measure_unit(of_axes, input.space_dim() - 1)),
@@ -254,7 +263,7 @@ class ComponentsCommand final : public ContourInputCommand {
   }
 
   /// A narrower table, with the box as ranges.
-  [[nodiscard]] Table shown_table(const Found& found, int dim) const {
+  [[nodiscard]] Table shown_table(const FoundComponents& found, int dim) const {
     Table result{{"label", "simplices", measure_name(dim, dim + 1), "enclosed", "Euler"}, {}};
     for (const std::string& axis : axes_) result.headings.push_back(axis);
     for (const std::size_t label : by_size(found)) {
@@ -277,7 +286,8 @@ class ComponentsCommand final : public ContourInputCommand {
     return result;
   }
 
-  [[nodiscard]] std::string report(const Console& console, const ContourInput& input, const Found& found) const {
+  [[nodiscard]] std::string report(const Console& console, const ContourInput& input,
+                                   const FoundComponents& found) const {
     const int dim = input.space_dim() - 1;
     const std::size_t chosen = by_size(found).size();
     const std::string all = counted(found.facts.size(), "component", "components");
@@ -305,7 +315,7 @@ class ComponentsCommand final : public ContourInputCommand {
     return text;
   }
 
-  [[nodiscard]] Json document(const ContourInput& input, const Found& found) const {
+  [[nodiscard]] Json document(const ContourInput& input, const FoundComponents& found) const {
     Json json;
     add_input_keys(json, input);
     const auto unit = [](const std::optional<std::string>& of) { return of ? Json(*of) : Json(nullptr); };

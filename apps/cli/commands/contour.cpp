@@ -29,7 +29,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kContourExamples =
     "Examples:\n"
     "  tegl contour head.nii.gz --iso 60 -o head.ply\n"
     "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
@@ -106,7 +106,7 @@ class ContourCommand final : public Command {
                    "to .vtkhdf");
     add_image_options();
     add_quiet();
-    app().footer(kExamples);
+    app().footer(kContourExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -338,7 +338,7 @@ class ContourCommand final : public Command {
   Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
     options_.add_shape_normals(contour);
     attributes_.sample_to(contour, image_options(), threads, bar);
-    return to_mesh(contour);
+    return to_mesh(std::move(contour));
   }
 
   /// Extracts the contours with --index, which is read once; its time counts as reading.

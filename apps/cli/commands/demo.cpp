@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples =
+constexpr const char* kDemoExamples =
     "Examples:\n"
     "  tegl demo\n"
     "  tegl demo --frames 240\n"
@@ -189,7 +189,7 @@ class DemoCommand final : public Command {
     app().add_flag("--no-animation", no_animation_,
                    "show one map, of the beginning of August, instead of the animation");
     add_quiet();
-    app().footer(kExamples);
+    app().footer(kDemoExamples);
   }
 
   ExitCode run(const Streams& streams) override {

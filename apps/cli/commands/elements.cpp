@@ -22,7 +22,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kElementsExamples =
     "Examples:\n"
     "  tegl elements energy.nrrd --iso 0.5 --per cell -o surface.dat\n"
     "  tegl elements hydro.nc --var e --iso 0.3 --attribute hydro.nc:T --attribute hydro.nc:ux -o surface.dat "
@@ -85,7 +85,7 @@ class ElementsCommand final : public ContourInputCommand {
         ->check(CLI::IsMember({"covariant", "contravariant"}))
         ->capture_default_str();
     app().add_flag("--header", header_, "text files: a first line with the names of the columns");
-    app().footer(kExamples);
+    app().footer(kElementsExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -157,7 +157,7 @@ class ElementsCommand final : public ContourInputCommand {
     for (const Attribute& attribute : all.attributes) report.attributes.push_back(range_of(attribute));
     // write
     ElementFileOptions options = file_options();
-    options.progress = bar.stage("write");
+    options.work.progress = bar.stage("write");
     watch.lap();
     write_elements(all, output_, options);
     report.output_bytes = std::filesystem::file_size(output_);

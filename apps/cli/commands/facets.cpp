@@ -10,6 +10,7 @@
 
 #include "base/numbers.hpp"
 #include "input/extraction.hpp"
+#include "io/meshes/facets.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -85,8 +86,9 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
     result.seconds.check = watch.lap();
   }
   const Progress progress = bar.stage("write");
-  result.output_bytes =
-      written.write(result.output, [&](const auto& file) { write_facets(facets, file, progress, work.compression); });
+  result.output_bytes = written.write(result.output, [&](const PendingPath& file) {
+    write_facets(facets, file, {.work = {.progress = progress}, .compression = work.compression});
+  });
   result.seconds.write = watch.lap();
 }
 

@@ -11,7 +11,8 @@
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/facet_hierarchy.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/images.hpp"
+#include "tegl/io/write_options.hpp"
 #include "tegl/polygons.hpp"
 
 namespace tegl::cli {

@@ -23,7 +23,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kIndexExamples =
     "Examples:\n"
     "  tegl index head.nii.gz\n"
     "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
@@ -106,7 +106,7 @@ class IndexCommand final : public Command {
         ->capture_default_str();
     add_image_options();
     add_quiet();
-    app().footer(kExamples);
+    app().footer(kIndexExamples);
   }
 
   ExitCode run(const Streams& streams) override {

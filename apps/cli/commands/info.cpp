@@ -18,7 +18,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kInfoExamples =
     "Examples:\n"
     "  tegl info brain.nii.gz\n"
     "  tegl info ocean.nc --var TEMP --json\n"
@@ -332,7 +332,7 @@ class InfoCommand final : public Command {
             "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); or an index (.tindex)",
             Files::image) {
     add_image_options();
-    app().footer(kExamples);
+    app().footer(kInfoExamples);
   }
 
   ExitCode run(const Streams& streams) override {

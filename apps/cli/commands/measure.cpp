@@ -15,12 +15,13 @@
 #include "input/contour_input.hpp"
 #include "input/cuts.hpp"
 #include "output/output.hpp"
+#include "tegl/io/text.hpp"
 
 namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kMeasureExamples =
     "Examples:\n"
     "  tegl measure head.nii.gz --iso 60 --close\n"
     "  tegl contour ocean.nc --iso 20 --close -o ocean.vtkhdf\n"
@@ -56,7 +57,7 @@ class MeasureCommand final : public ContourInputCommand {
         ->check(whole_number(2, 1000000))
         ->type_name("COUNT");
     app().add_option("--csv", csv_, "the measures of the cuts as CSV")->type_name("FILE");
-    app().footer(kExamples);
+    app().footer(kMeasureExamples);
   }
 
   ExitCode run(const Streams& streams) override {

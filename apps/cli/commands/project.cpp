@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
@@ -24,7 +25,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kProjectExamples =
     "Examples:\n"
     "  tegl project heart.nii.gz --iso 400 --close -o swept.glb          (the space that the wall sweeps, by time)\n"
     "  tegl project fingers.vtkhdf --as cuts --count 6 -o positions.ply  (six positions in one file)\n"
@@ -72,10 +73,8 @@ Mesh to_mesh(ProjectedContour<double> projected) {
   Mesh mesh;
   mesh.dim = 3;
   mesh.space_dim = 3;
-  for (const auto& vertex : projected.vertices)
-    mesh.coordinates.insert(mesh.coordinates.end(), vertex.begin(), vertex.end());
-  for (const auto& simplex : projected.tetrahedra)
-    mesh.simplices.insert(mesh.simplices.end(), simplex.begin(), simplex.end());
+  mesh.coordinates = std::move(projected.vertices);
+  mesh.simplices = std::move(projected.tetrahedra);
   mesh.axis_names.assign(projected.axis_names.begin(), projected.axis_names.end());
   mesh.axis_units.assign(projected.axis_units.begin(), projected.axis_units.end());
   mesh.vertex_attributes = std::move(projected.vertex_attributes);
@@ -123,7 +122,7 @@ class ProjectCommand final : public ContourInputCommand {
     app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
     attributes_.add_to(app());
-    app().footer(kExamples);
+    app().footer(kProjectExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -152,9 +151,9 @@ class ProjectCommand final : public ContourInputCommand {
     result.mesh = project_as_asked(*contour, projection, bar);
     result.seconds.slice = watch.lap();
     if (result.mesh.simplices.empty() && !contour->simplices.empty())
-      throw Error(ErrorCode::EmptyResult,
-                  "the projection along this direction has no outline: the contour does not move along it; expected a "
-                  "moving contour, another direction or --as cuts");
+      throw EmptyResult(
+          "the projection along this direction has no outline: the contour does not move along it; expected a "
+          "moving contour, another direction or --as cuts");
     // check, write, report
     if (!no_check_ && kind_ != "tetrahedra") check_result(result, bar);
     write_result(result, bar);

@@ -21,7 +21,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSimplifyExamples =
     "Examples:\n"
     "  tegl simplify head.nii.gz --iso 60 --max-error 0.5 -o head.ply\n"
     "  tegl simplify skull.ply --ratio 0.1 -o tenth.ply\n"
@@ -76,7 +76,7 @@ class SimplifyCommand final : public ContourInputCommand {
         ->required();
     app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
-    app().footer(kExamples);
+    app().footer(kSimplifyExamples);
   }
 
   ExitCode run(const Streams& streams) override {

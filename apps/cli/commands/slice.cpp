@@ -6,9 +6,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
+#include "base/interrupt.hpp"
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
 #include "input/attributes.hpp"
@@ -16,6 +22,7 @@
 #include "input/contour_input.hpp"
 #include "input/cuts.hpp"
 #include "input/extraction.hpp"
+#include "input/layer_image.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 
@@ -23,7 +30,7 @@ namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSliceExamples =
     "Examples:\n"
     "  tegl slice heart.nii.gz --iso 400 --at t=7.3 -o heart.ply\n"
     "  tegl contour ocean.nc --iso 20 -o ocean.vtkhdf\n"
@@ -93,7 +100,7 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
       result.image_dim = N;
       auto cut = std::exchange(cuts[i], {});
       own.add_shape_normals(cut);
-      result.mesh = to_mesh(cut);
+      result.mesh = to_mesh(std::move(cut));
       result.cut->frame = frame_for_report<N>(*result.cut, factors);
     }
     // The time of a pass is divided equally among its cuts.
@@ -125,8 +132,18 @@ Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
   return cut;
 }
 
-template <class Real>
-Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
+/// Calls f with the image of any type and dimension.
+template <class F>
+auto visit_image(const AnyImage& image, const F& f) {
+  return std::visit([&](const auto& typed) { return std::visit(f, typed); }, image);
+}
+template <Value T, int N, class F>
+auto visit_image(const LayerImage<T, N>& image, const F& f) {
+  return f(image);
+}
+
+template <class Real, class Source>
+Mesh slice_mesh(const Source& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
                 const ExtractionOptions& own, const ExtractOptions& options, ExtractStats& stats) {
   const auto of_owned = [&](const auto& owned) -> Mesh {
     constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
@@ -139,12 +156,12 @@ Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const st
       others.erase(others.begin() + *cut.across);
       stretch(contour, others);
       own.add_shape_normals(contour);
-      return to_mesh(contour);
+      return to_mesh(std::move(contour));
     } else {
       throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // checked before by require_cuttable
     }
   };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+  return visit_image(image, of_owned);
 }
 
 /// Appends the vertices of a cut, in the coordinates of the space that was cut.
@@ -219,7 +236,7 @@ class SliceCommand final : public Command {
     app().add_flag("--no-check", no_check_, "skip the check of the result");
     add_image_options();
     add_quiet();
-    app().footer(kExamples);
+    app().footer(kSliceExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -291,7 +308,108 @@ class SliceCommand final : public Command {
     return results;
   }
 
-  std::vector<ContourResult> cut_image(std::vector<Cut> cuts, ProgressBar& bar) {
+  std::vector<ContourResult> cut_image(const std::vector<Cut>& cuts, ProgressBar& bar) {
+    if (planes_.empty())
+      if (std::optional<std::vector<ContourResult>> results = cut_layers(cuts, bar)) return std::move(*results);
+    turn_to_all_files();  // as listed, whatever order they were opened in
+    return cut_whole_image(cuts, bar);
+  }
+
+  /// Cuts an image across its last axis, of which it reads only the layers that the cuts need. Nullopt, also for
+  /// errors, if the whole image has to be read.
+  std::optional<std::vector<ContourResult>> cut_layers(const std::vector<Cut>& cuts, ProgressBar& bar) {
+    const double isovalue = options_.isovalue();
+    Stopwatch watch;
+    const Progress progress = bar.stage("read");
+    OpenLayersResult input;
+    try {
+      input = open();
+    } catch (const Error&) {
+      return std::nullopt;  // not a format with layers, or reading reports the error
+    }
+    const auto of_layers =
+        [&]<Value T, int N>(
+            const std::unique_ptr<LayerReader<T, N>>& layers) -> std::optional<std::vector<ContourResult>> {
+      if (std::is_same_v<T, double> && may_be_whole_numbers(input.info)) return std::nullopt;
+      if constexpr (N >= 3) {
+        std::vector<LayersOfCut> needed;
+        std::vector<ContourResult> results = plan<T>(layers->grid(), cuts, needed);
+        if (results.empty()) return std::nullopt;
+        require_cuts(N, "image");
+        for (ContourResult& result : results) {
+          result.isovalue = isovalue;
+          result.variable = input.info.variable;
+        }
+        RangedLayers<T, N> ranged(*layers, isovalue, isovalue);
+        LayerImage<T, N> image(ranged);
+        read_layers(image, needed, progress);
+        if (!options_.allows_empty()) require_both_sides(image, input.info, progress);
+        results.front().seconds.read = watch.lap();
+        for (ContourResult& result : results) {
+          result.seconds.read = results.front().seconds.read;
+          cut_slab(image, result, bar);
+        }
+        return results;
+      } else {
+        return std::nullopt;
+      }
+    };
+    return std::visit([&](const auto& any) { return std::visit(of_layers, any); }, input.layers);
+  }
+
+  /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis,
+  /// or are not valid.
+  template <Value T, int N>
+  std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayersOfCut>& needed) {
+    constexpr int kLast = N - 1;
+    const AnyImage header = without_samples<T, N>(grid);
+    if (std::any_of(grid.axes.begin(), grid.axes.end(), [](const Axis& axis) { return axis.size() < 2; }) ||
+        !is_apart(header, kLast) || !LayerImage<T, N>::fits_address_space(grid))
+      return {};
+    std::vector<ContourResult> results;
+    try {
+      const CutSpace space = space_of(header);
+      factors_ = parse_scale(scale_, space);
+      results = results_for(cuts, space);
+    } catch (const Error&) {
+      return {};
+    } catch (const EmptyResult&) {
+      return {};
+    }
+    const bool normals = options_.library_options().normals;
+    for (ContourResult& result : results) {
+      if (*result.cut->across != kLast) return {};
+      const auto layers = options_.single_precision() ? layers_of_cut<float, T, N>(grid, result.cut->value, normals)
+                                                      : layers_of_cut<double, T, N>(grid, result.cut->value, normals);
+      if (!layers && !result.cut->is_outside) return {};
+      needed.push_back(layers.value_or(LayersOfCut{}));
+      result.image_dim = N;
+    }
+    return results;
+  }
+
+  /// Reads the layers that cuts need, in ascending order.
+  template <Value T, int N>
+  static void read_layers(LayerImage<T, N>& image, std::vector<LayersOfCut> needed, const Progress& progress) {
+    std::ranges::sort(needed, {}, &LayersOfCut::first);
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+      if (!progress(static_cast<double>(i) / static_cast<double>(needed.size())))
+        InterruptHandler::throw_if_requested();
+      image.read(needed[i]);
+    }
+  }
+
+  /// As require_contour, which has the whole image: reads further layers only if those of the cuts are all on one side.
+  template <Value T, int N>
+  void require_both_sides(LayerImage<T, N>& image, const ImageInfo& info, const Progress& progress) const {
+    image.complete_range([&](double fraction) {
+      if (!progress(fraction)) InterruptHandler::throw_if_requested();
+    });
+    const double isovalue = options_.isovalue();
+    if (is_outside(isovalue, image.range())) throw outside_error(isovalue, image.range(), info.value_unit);
+  }
+
+  std::vector<ContourResult> cut_whole_image(std::vector<Cut> cuts, ProgressBar& bar) {
     const double isovalue = options_.isovalue();
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
@@ -323,7 +441,8 @@ class SliceCommand final : public Command {
   }
 
   /// Contours only the layers of a cut.
-  void cut_slab(const AnyImage& image, ContourResult& result, ProgressBar& bar) const {
+  template <class Source>
+  void cut_slab(const Source& image, ContourResult& result, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.work.progress = bar.stage("slice");
     ExtractStats& stats = result.stats.emplace();

@@ -11,9 +11,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
 #include "input/extraction.hpp"
+#include "input/ranged_layers.hpp"
+#include "io/meshes/contour_file.hpp"
 #include "output/output.hpp"
 #include "tegl/stream.hpp"
 
@@ -21,76 +24,37 @@ namespace tegl::cli {
 
 namespace {
 
-/// Layers that update the range of values read, until samples are on both sides of every isovalue.
-template <class T, int N>
-class RangedLayers final : public LayerReader<T, N> {
- public:
-  RangedLayers(LayerReader<T, N>& layers, const std::vector<ContourResult>& results)
-      : layers_(layers), least_(*results.front().isovalue), most_(least_) {
-    for (const ContourResult& result : results) {
-      least_ = std::min(least_, *result.isovalue);
-      most_ = std::max(most_, *result.isovalue);
-    }
-    for (int a = 0; a + 1 < N; ++a) layer_size_ *= grid().axes[static_cast<std::size_t>(a)].size();
-  }
-
-  [[nodiscard]] const Grid<N>& grid() const noexcept override { return layers_.grid(); }
-  void read(std::size_t k, T* to) override {
-    layers_.read(k, to);
-    if (range_.min < least_ && most_ <= range_.max) return;
-    for (std::size_t i = 0; i < layer_size_; ++i) {
-      const auto value = static_cast<double>(to[i]);
-      if (std::isnan(value)) continue;
-      range_.min = std::fmin(range_.min, value);
-      range_.max = std::fmax(range_.max, value);
-    }
-  }
-  /// The range of the values read so far; complete if an isovalue lies outside of it.
-  [[nodiscard]] const ValueRange& range() const noexcept { return range_; }
-
- private:
-  LayerReader<T, N>& layers_;
-  double least_, most_;
-  std::size_t layer_size_ = 1;
-  ValueRange range_{static_cast<double>(NAN), static_cast<double>(NAN)};
-};
-
 template <int N, class Real, class T>
 std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
                                       std::vector<ContourResult>& results) {
   // check the axes
   for (int a = 0; a < N; ++a)
     if (source.grid().axes[a].size() < 2)
-      throw Error(ErrorCode::EmptyResult,
-                  fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
-                              axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
+      throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
+                                    axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
   // open the output files
-  RangedLayers<T, N> layers(source, results);
-  std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
-  std::vector<StreamedContour<N, Real>> contours;
-  std::vector<ExtractedSize> extracted;
-  std::vector<std::string> remarks;
+  const auto [least, most] =
+      std::ranges::minmax_element(results, {}, [](const ContourResult& result) { return *result.isovalue; });
+  RangedLayers<T, N> layers(source, *least->isovalue, *most->isovalue);
   WrittenFiles written;
+  std::vector<std::unique_ptr<PendingContour<N, Real>>> files;
+  std::vector<StreamedContour<N, Real>> contours;
+  std::vector<std::string> remarks;
   Stopwatch watch;
   for (const ContourResult& result : results) {
-    const std::filesystem::path file = written.stage(result.output);
-    written.with_target_names([&] {
-      files.push_back(
-          std::make_unique<ContourFile<N, Real>>(file, layers.grid(), result.isovalue, options.compression));
-    });
+    files.push_back(std::make_unique<PendingContour<N, Real>>(written.stage(result.output), layers.grid(),
+                                                              result.isovalue, options.compression));
     contours.push_back({*result.isovalue, files.back().get()});
   }
   // extract, check the range of values, complete the files
-  written.with_target_names([&] {
-    extracted = extract_streamed_several<Real>(layers, contours, options.extract);
-    for (std::size_t i = 0; i < contours.size(); ++i) {
-      const double isovalue = contours[i].isovalue;
-      const bool outside = is_outside(isovalue, layers.range());
-      if (outside && !options.allow_empty) throw outside_error(isovalue, layers.range(), unit);
-      if (!outside && extracted[i].size.simplices == 0) remarks.push_back(remark_on_missing(isovalue));
-    }
-    for (const auto& file : files) file->commit();
-  });
+  const std::vector<ExtractedSize> extracted = extract_streamed_several<Real>(layers, contours, options.extract);
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    const double isovalue = contours[i].isovalue;
+    const bool outside = is_outside(isovalue, layers.range());
+    if (outside && !options.allow_empty) throw outside_error(isovalue, layers.range(), unit);
+    if (!outside && extracted[i].size.simplices == 0) remarks.push_back(remark_on_missing(isovalue));
+  }
+  for (const auto& file : files) file->close();
   written.keep();
   // report
   const double seconds = watch.lap();

@@ -9,7 +9,8 @@
 
 #include "output/result.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/layers.hpp"
+#include "tegl/io/write_options.hpp"
 
 namespace tegl::cli {
 

@@ -19,14 +19,16 @@
 #include "base/numbers.hpp"
 #include "base/units.hpp"
 #include "input/contour_input.hpp"
+#include "io/base/text.hpp"
+#include "io/meshes/meshes.hpp"
+#include "io/reports/tracks.hpp"
 #include "output/output.hpp"
-#include "tegl/io/tracks.hpp"
 
 namespace tegl::cli {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kTrackExamples =
     "Examples:\n"
     "  tegl track ocean.nc --iso 20 -o ocean.svg\n"
     "  tegl contour heart.nii.gz --iso 400 -o heart.vtkhdf\n"
@@ -119,7 +121,7 @@ class TrackCommand final : public ContourInputCommand {
         ->type_name("COUNT")
         ->excludes(longest);
     compress_.add_to(app());
-    app().footer(kExamples);
+    app().footer(kTrackExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -221,21 +223,23 @@ class TrackCommand final : public ContourInputCommand {
       const Progress writing = bar.stage("write");
       const auto write_labelled = [&](auto& contour) {
         add_labels(contour, graph);
-        const Mesh mesh = mesh_of(contour, input);
-        written.write(output, [&](const auto& file) { write_mesh(mesh, file, writing, compress_.compression()); });
+        const MeshView mesh = mesh_of(contour, input);
+        written.write(output, [&](const PendingPath& file) {
+          write_mesh(mesh, file, {.work = {.progress = writing}, .compression = compress_.compression()});
+        });
         const LostVertices lost = lost_vertices(mesh, output);
         remark(lost.remark(output));
         lost_ += lost;
       };
       if (is_track_file(output))
-        written.write(output, [&](const auto& file) { write_track(graph, file, {.title = title(input)}); });
+        written.write(output, [&](const PendingPath& file) { write_track(graph, file, {.title = title(input)}); });
       else
         std::visit(write_labelled, input.contour);
     }
     // tables
     if (!csv_.empty())
       for (const Csv& table : kTables)
-        written.write(csv_ + table.ending, [&](const auto& file) { write_text(table.text(graph), file); });
+        written.write(csv_ + table.ending, [&](const PendingPath& file) { write_text(table.text(graph), file); });
     written.keep();
   }
 

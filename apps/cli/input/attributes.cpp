@@ -66,7 +66,7 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
     const FileAndVariable from = parse_file_and_variable(text);
     const Progress progress = bar.stage("attribute");
     reading.variable = from.variable;
-    reading.progress = [&](double fraction) { return progress(0.7 * fraction); };
+    reading.work.progress = [&](double fraction) { return progress(0.7 * fraction); };
     const ReadImageResult input = read_attribute(from.file, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,

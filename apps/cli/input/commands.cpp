@@ -16,7 +16,7 @@ namespace {
 template <class Options>
 Options reading_options(const ImageOptions& given, Progress progress) {
   Options options;
-  options.progress = std::move(progress);
+  options.work.progress = std::move(progress);
   options.allow_outside_paths = given.allow_outside_paths();
   options.separate_process = given.separate_process();
   return options;

@@ -16,7 +16,9 @@
 #include "base/exit_codes.hpp"
 #include "input/image_input.hpp"
 #include "output/result.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/images.hpp"
+#include "tegl/io/layers.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
 

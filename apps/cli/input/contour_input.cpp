@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "output/output.hpp"
 
@@ -59,8 +60,7 @@ Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty) {
   Mesh mesh = read_finite_mesh(file, options);
   if (mesh.simplices.empty() && !allow_empty)
-    throw Error(ErrorCode::EmptyResult,
-                "the saved contour is empty; expected one with simplices (--allow-empty: an empty result)");
+    throw EmptyResult("the saved contour is empty; expected one with simplices (--allow-empty: an empty result)");
   return mesh;
 }
 

@@ -13,7 +13,7 @@
 #include "input/extraction.hpp"
 #include "output/result.hpp"
 #include "tegl/contour.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
 
@@ -60,10 +60,18 @@ void add_input_keys(Json& json, const ContourInput& input);
 /// Lines of a report about the input: the file, the isovalue if known, the size of the contour.
 std::string input_text(const ContourInput& input);
 
-/// Converts a contour to a mesh with its isovalue. All its vertices must be from the input.
+/// A contour as a mesh with the isovalue of the input: a view of the contour, or its memory taken over from a
+/// temporary. All its vertices must be from the input.
 template <int N, class Real>
-Mesh mesh_of(const Contour<N, Real>& contour, const ContourInput& input) {
-  Mesh mesh = to_mesh(contour);
+MeshView mesh_of(const Contour<N, Real>& contour, const ContourInput& input) {
+  MeshView mesh(contour);
+  mesh.isovalue = input.isovalue;
+  mesh.single_precision = input.single_precision;
+  return mesh;
+}
+template <int N, class Real>
+Mesh mesh_of(Contour<N, Real>&& contour, const ContourInput& input) {
+  Mesh mesh = to_mesh(std::move(contour));
   mesh.isovalue = input.isovalue;
   mesh.single_precision = input.single_precision;
   return mesh;

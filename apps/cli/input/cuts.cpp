@@ -273,12 +273,11 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
   return values;
 }
 
-Error outside_error(const Cut& cut, const CutAxis& axis, std::string_view of) {
+EmptyResult outside_error(const Cut& cut, const CutAxis& axis, std::string_view of) {
   const auto texts = numbers_apart({axis.first, axis.last, cut.level.value_or(cut.value)});
-  return {
-      ErrorCode::EmptyResult,
+  return EmptyResult(
       fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {} (--allow-empty: an empty cut)",
-                  cut.axis, cut.text, of, texts[0], axis.name, texts[1])};
+                  cut.axis, cut.text, of, texts[0], axis.name, texts[1]));
 }
 
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty) {

@@ -8,8 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "output/result.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/images.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
 
@@ -65,8 +67,8 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
 /// extent unless `allow_empty`.
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty);
 
-/// The EmptyResult error of a cut outside of an axis's range. `of`: the object with this range.
-Error outside_error(const Cut& cut, const CutAxis& axis, std::string_view of);
+/// The error of a cut outside of an axis's range. `of`: the object with this range.
+EmptyResult outside_error(const Cut& cut, const CutAxis& axis, std::string_view of);
 
 /// The output file of each cut: `pattern` with these replacements. "{t}" or "{at}", or the axis as typed in braces: the
 /// number as typed; "{axis}": that axis; "{n}": the cut's position from 1, with equally many digits for all. Throws

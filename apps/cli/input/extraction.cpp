@@ -10,6 +10,7 @@
 
 #include "base/numbers.hpp"
 #include "base/statistics.hpp"
+#include "io/meshes/meshes.hpp"
 #include "output/output.hpp"
 #include "tegl/normals.hpp"
 
@@ -145,30 +146,29 @@ int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 
 
 bool is_outside(double isovalue, const ValueRange& range) { return !(isovalue > range.min && isovalue <= range.max); }
 
-Error outside_error(double isovalue, const ValueRange& range, const std::string& unit) {
+EmptyResult outside_error(double isovalue, const ValueRange& range, const std::string& unit) {
   constexpr const char* kAllow = "(--allow-empty: an empty result)";
   if (std::isnan(range.min))
-    return {ErrorCode::EmptyResult,
-            fmt::format("all samples are missing; expected values on both sides of the isovalue {}", kAllow)};
+    return EmptyResult(
+        fmt::format("all samples are missing; expected values on both sides of the isovalue {}", kAllow));
   if (range.min == range.max) {
     const auto texts = numbers_apart({range.min, isovalue});
-    return {ErrorCode::EmptyResult,
-            fmt::format("all values are {}; expected values on both sides of the isovalue {} {}", texts[0], texts[1],
-                        kAllow)};
+    return EmptyResult(fmt::format("all values are {}; expected values on both sides of the isovalue {} {}", texts[0],
+                                   texts[1], kAllow));
   }
   const auto texts = numbers_apart({isovalue, range.min, range.max});
-  return {ErrorCode::EmptyResult, fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
-                                              "expected {1} < isovalue <= {2} {4}",
-                                              texts[0], texts[1], texts[2], unit.empty() ? "" : " " + unit, kAllow)};
+  return EmptyResult(
+      fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
+                  "expected {1} < isovalue <= {2} {4}",
+                  texts[0], texts[1], texts[2], unit.empty() ? "" : " " + unit, kAllow));
 }
 
 void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
   const auto require_tiles = [](const auto& owned) {
     for (std::size_t a = 0; a < owned.grid.axes.size(); ++a) {
       if (owned.grid.axes[a].size() > 1) continue;
-      throw Error(ErrorCode::EmptyResult,
-                  fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
-                              axis_label(owned.grid.axes[a].name, a)));
+      throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
+                                    axis_label(owned.grid.axes[a].name, a)));
     }
   };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
@@ -201,8 +201,9 @@ void write_result(ContourResult& result, ProgressBar& bar, WrittenFiles& written
   const Progress progress = bar.stage("write");
   Stopwatch watch;
   result.mesh.isovalue = result.isovalue;
-  result.output_bytes = written.write(
-      result.output, [&](const auto& file) { write_mesh(result.mesh, file, progress, result.compression); });
+  result.output_bytes = written.write(result.output, [&](const PendingPath& file) {
+    write_mesh(result.mesh, file, {.work = {.progress = progress}, .compression = result.compression});
+  });
   result.lost = lost_vertices(result.mesh, result.output);
   result.seconds.write = watch.lap();
 }

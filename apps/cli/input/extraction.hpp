@@ -9,13 +9,14 @@
 #include <variant>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/progress.hpp"
 #include "base/statistics.hpp"
 #include "input/cuts.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/images.hpp"
 #include "tegl/polygons.hpp"
 
 namespace tegl::cli {
@@ -76,8 +77,8 @@ int image_dim(const AnyImage& image);
 /// sample is.
 bool is_outside(double isovalue, const ValueRange& range);
 
-/// The EmptyResult error of such an isovalue. `unit`: of the values; may be empty.
-Error outside_error(double isovalue, const ValueRange& range, const std::string& unit);
+/// The error of such an isovalue. `unit`: of the values; may be empty.
+EmptyResult outside_error(double isovalue, const ValueRange& range, const std::string& unit);
 
 /// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every
 /// axis, and samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`.

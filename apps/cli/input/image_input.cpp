@@ -11,6 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "input/cuts.hpp"
+#include "io/images/series_request.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -232,7 +233,7 @@ RawLayout ImageOptions::raw_layout() const {
 ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
-  options.progress = progress;
+  options.work.progress = progress;
   options.separate_process = separate_process();
   return remembered(with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); }));
 }

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "output/result.hpp"
-#include "tegl/io.hpp"
 #include "tegl/io/series.hpp"
 
 namespace tegl::cli {
@@ -62,7 +62,8 @@ class ImageOptions {
   /// Stores the remarks of a result.
   template <class Result>
   Result remembered(Result result) const {
-    remarks_.insert(remarks_.end(), result.info.remarks.begin(), result.info.remarks.end());
+    for (const std::string& remark : result.info.remarks)  // a file may be opened before it is read as a whole
+      if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) remarks_.push_back(remark);
     return result;
   }
 

@@ -17,7 +17,7 @@ namespace {
 
 /// Number of distinct positions of the used vertices, with coordinates converted to `Real`.
 template <class Real>
-std::uint64_t places(const Mesh& mesh, const std::vector<bool>& used) {
+std::uint64_t places(const MeshView& mesh, const std::vector<bool>& used) {
   const auto n = static_cast<std::size_t>(mesh.space_dim);
   std::vector<std::array<Real, 4>> rows;
   rows.reserve(used.size());
@@ -63,7 +63,7 @@ std::string LostVertices::remark(const std::filesystem::path& output) const {
   return text;
 }
 
-LostVertices lost_vertices(const Mesh& mesh, const std::filesystem::path& output) {
+LostVertices lost_vertices(const MeshView& mesh, const std::filesystem::path& output) {
   const MeshFileFormat* const format = find_mesh_file_format(output);
   const bool is_stl = format != nullptr && format->extension == ".stl";
   LostVertices lost;

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tegl/io.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
 
@@ -28,6 +28,6 @@ struct LostVertices {
 
 /// Counts them for the format of `output`: only .gltf and .glb (single precision) and .stl (also without vertex
 /// numbers) can have any. O(V log V) time for these; O(1) for others.
-LostVertices lost_vertices(const Mesh& mesh, const std::filesystem::path& output);
+LostVertices lost_vertices(const MeshView& mesh, const std::filesystem::path& output);
 
 }  // namespace tegl::cli

@@ -13,6 +13,7 @@
 
 #include "base/interrupt.hpp"
 #include "base/numbers.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl::cli {
 
@@ -32,6 +33,26 @@ void require_new(std::map<fs::path, fs::path>& targets, const fs::path& place, c
               fmt::format("{} {}; expected a file for each result", target.string(),
                           other->second == target ? "would be written twice"
                                                   : fmt::format("is the same file as {}", other->second.string())));
+}
+
+/// Calls `write`. All its errors concern the output: scripts distinguish input and output by the exit code.
+template <class Write>
+void as_errors_of(const fs::path& output, const Write& write) {
+  try {
+    write();
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::Cancelled) throw;
+    const std::string message = error.what();
+    const bool named = message.find(output.string()) != std::string::npos;
+    throw Error(ErrorCode::WriteFailed, named ? message : fmt::format("{}: {}", output.string(), message));
+  }
+}
+
+/// In bytes; 0 if it is unknown.
+std::uint64_t size_of_file(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return error ? 0 : size;
 }
 
 }  // namespace
@@ -127,45 +148,20 @@ void require_different_outputs(const std::vector<std::string>& outputs) {
 }
 
 std::uint64_t write_file(const fs::path& output, const std::function<void()>& write) {
-  try {
-    write();
-  } catch (const Error& error) {
-    // All errors here concern the output: scripts distinguish input and output by the exit code.
-    if (error.code() == ErrorCode::Cancelled) throw;
-    const std::string message = error.what();
-    const bool named = message.find(output.string()) != std::string::npos;
-    throw Error(ErrorCode::WriteFailed, named ? message : fmt::format("{}: {}", output.string(), message));
-  }
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(output, error);
-  return error ? 0 : size;
+  as_errors_of(output, write);
+  return size_of_file(output);
 }
 
-fs::path WrittenFiles::stage(const fs::path& target) {
+const PendingPath& WrittenFiles::stage(const fs::path& target) {
   const PendingPath& added = staged_.emplace_back(target);
   require_new(targets_, added.place(), target);
-  return added.path();
+  return added;
 }
 
-void WrittenFiles::with_target_names(const std::function<void()>& work) const {
-  try {
-    work();
-  } catch (const Error& error) {
-    std::string message = error.what();
-    for (const PendingPath& staged : staged_) {
-      const std::string name = staged.path().string();
-      for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name))
-        message.replace(at, name.size(), staged.target().string());
-    }
-    throw Error(error.code(), message);
-  }
-}
-
-std::uint64_t WrittenFiles::write(const fs::path& target, const std::function<void(const fs::path&)>& write) {
-  const fs::path file = stage(target);
-  std::uint64_t bytes = 0;
-  with_target_names([&] { bytes = write_file(file, [&] { write(file); }); });
-  return bytes;
+std::uint64_t WrittenFiles::write(const fs::path& target, const std::function<void(const PendingPath&)>& write) {
+  const PendingPath& file = stage(target);
+  as_errors_of(target, [&] { write(file); });
+  return size_of_file(file.path());
 }
 
 void WrittenFiles::keep() {

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tegl/io.hpp"
-#include "tegl/io/pending_path.hpp"
+#include "io/base/pending_path.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
 
@@ -66,15 +66,12 @@ std::uint64_t write_file(const std::filesystem::path& output, const std::functio
 /// Previous files stay until then.
 class WrittenFiles {
  public:
-  /// The temporary name for a target, with the same extension. Errors: WriteFailed if the target exists and is not a
-  /// file or cannot be overwritten; InvalidArgument if another target is the same file.
-  std::filesystem::path stage(const std::filesystem::path& target);
-  /// Calls `write` with the temporary name for a target, and returns the file's size in bytes. Errors: WriteFailed for
+  /// The temporary file for a target, valid as long as this object. Errors: WriteFailed if the target exists and is not
+  /// a file or cannot be overwritten; InvalidArgument if another target is the same file.
+  const PendingPath& stage(const std::filesystem::path& target);
+  /// Calls `write` with the temporary file for a target, and returns the file's size in bytes. Errors: WriteFailed for
   /// any failure, naming the target; Cancelled.
-  std::uint64_t write(const std::filesystem::path& target,
-                      const std::function<void(const std::filesystem::path&)>& write);
-  /// Calls `work`; in its errors, temporary names are replaced by target names.
-  void with_target_names(const std::function<void()>& work) const;
+  std::uint64_t write(const std::filesystem::path& target, const std::function<void(const PendingPath&)>& write);
   /// Renames all files to their targets. Errors: WriteFailed; the previous files are restored then.
   void keep();
 

@@ -14,7 +14,7 @@
 #include "output/lost_vertices.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
 

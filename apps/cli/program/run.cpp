@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/interrupt.hpp"
 #include "base/printable.hpp"
 #include "base/suggestions.hpp"
@@ -47,22 +48,26 @@ ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_vi
 
 constexpr std::string_view kCancelled = "cancelled";
 
-/// The message of an error, preceded by the input's name if it does not contain it.
-std::string with_file(const tegl::Error& error, const Command& command) {
-  using tegl::ErrorCode;
-  constexpr std::array kAboutInput = {
-      ErrorCode::InvalidGrid,     ErrorCode::EmptyResult,      ErrorCode::FileNotFound, ErrorCode::MalformedFile,
-      ErrorCode::UnsupportedData, ErrorCode::VariableNotFound, ErrorCode::TooLarge,     ErrorCode::UnsupportedFormat,
-  };
-  const std::string message = error.what();
-  const bool about_input = std::find(kAboutInput.begin(), kAboutInput.end(), error.code()) != kAboutInput.end();
+/// A message about the input, preceded by the input's name if it does not contain it.
+std::string with_file(const std::string& message, const Command& command) {
   const auto names_one_of = [&](const std::vector<std::string>& files) {
     return std::any_of(files.begin(), files.end(),
                        [&](const std::string& file) { return message.find(file) != std::string::npos; });
   };
   const tegl::cli::InputFiles input = command.inputs();
   const bool is_named = names_one_of(input.names) || names_one_of(command.other_inputs());
-  return !about_input || is_named ? message : fmt::format("{}: {}", input.text(), message);
+  return is_named ? message : fmt::format("{}: {}", input.text(), message);
+}
+
+/// The message of an error of the library, with the input's name if it is about the input.
+std::string message_of(const tegl::Error& error, const Command& command) {
+  using tegl::ErrorCode;
+  constexpr std::array kAboutInput = {
+      ErrorCode::InvalidGrid,      ErrorCode::FileNotFound, ErrorCode::MalformedFile,     ErrorCode::UnsupportedData,
+      ErrorCode::VariableNotFound, ErrorCode::TooLarge,     ErrorCode::UnsupportedFormat,
+  };
+  const bool about_input = std::find(kAboutInput.begin(), kAboutInput.end(), error.code()) != kAboutInput.end();
+  return about_input ? with_file(error.what(), command) : error.what();
 }
 
 /// Runs the command with signal handling, and reports its error.
@@ -95,7 +100,9 @@ ExitCode run(Command& command, const Streams& streams) {
   } catch (const tegl::cli::BrokenPipe&) {
     tegl::cli::end_by_signal(SIGPIPE);
   } catch (const tegl::Error& error) {
-    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command));
+    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), message_of(error, command));
+  } catch (const tegl::cli::EmptyResult& error) {
+    return fail(ExitCode::Nothing, "EmptyResult", with_file(error.what(), command));
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: out of memory", command.inputs().text()));
   } catch (const std::exception& error) {

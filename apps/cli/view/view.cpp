@@ -15,10 +15,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "base/printable.hpp"
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
+#include "tegl/io/text.hpp"
 #include "view/view_page.hpp"
 
 namespace tegl::cli {
@@ -27,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExamples =
+constexpr const char* kViewExamples =
     "Examples:\n"
     "  tegl view ocean.nc --iso 20 -o ocean.html\n"
     "  tegl contour heart.nii.gz --iso 400 --normals -o heart.vtkhdf\n"
@@ -77,7 +79,7 @@ class ViewCommand final : public ContourInputCommand {
                     "the patient's sides towards which x, y and z grow, such as RAS (right, anterior, superior) or "
                     "LPS, or none; default: as in the image's file; saved contours do not have them")
         ->type_name("LETTERS");
-    app().footer(kExamples);
+    app().footer(kViewExamples);
   }
 
   ExitCode run(const Streams& streams) override {
@@ -142,8 +144,7 @@ class ViewCommand final : public ContourInputCommand {
 
   Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
     ContourInput input = read_contour(bar, true);
-    if (input.size().simplices == 0)
-      throw Error(ErrorCode::EmptyResult, "the contour is empty; expected one with simplices");
+    if (input.size().simplices == 0) throw EmptyResult("the contour is empty; expected one with simplices");
     std::optional<double> first, last;
     ImageInfo info;
     if (input.image) {

@@ -13,7 +13,6 @@ enum class ErrorCode {
   InvalidArgument,    ///< an option or parameter is out of its range
   InvalidGrid,        ///< sizes, strides or axes that do not form a grid
   InvalidIsovalue,    ///< NaN or infinite
-  EmptyResult,        ///< no contour at this isovalue or cut (raised by programs, not by `extract`)
   FileNotFound,       ///< the file does not exist or is not readable
   MalformedFile,      ///< the file is damaged or contradicts itself
   UnsupportedFormat,  ///< a format or extension that is not supported

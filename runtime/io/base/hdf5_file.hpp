@@ -16,7 +16,7 @@
 #include "base/hdf5_driver.hpp"
 #include "base/hdf5_handle.hpp"
 #include "tegl/error.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/write_options.hpp"
 
 namespace tegl::io_detail {
 

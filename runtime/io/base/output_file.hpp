@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Buffered output to files that appear complete or not at all.
+// Buffered output to a pending file.
 #pragma once
 
 #include <cstdio>
@@ -10,15 +10,15 @@
 #include <string_view>
 #include <vector>
 
-#include "tegl/error.hpp"
-#include "tegl/io/pending_path.hpp"
+#include "base/pending_path.hpp"
 
 namespace tegl::io_detail {
 
-/// A PendingPath with buffered output.
+/// Buffered output to the temporary file of a PendingPath, which must live as long. Errors: WriteFailed, with the
+/// target and the reason.
 class OutputFile {
  public:
-  explicit OutputFile(const std::filesystem::path& target);
+  explicit OutputFile(const PendingPath& pending);
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
@@ -26,17 +26,17 @@ class OutputFile {
   void write_range(std::span<const T> values) {
     write(values.data(), values.size_bytes());
   }
-  /// Flushes, closes and renames the file to its target.
-  void commit();
-  [[nodiscard]] const std::filesystem::path& target() const noexcept { return pending_.target(); }
+  /// Flushes and closes the file. The caller commits the PendingPath.
+  void close();
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
 
  private:
   struct CloseFile {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
-  PendingPath pending_;
+  std::filesystem::path target_;
   std::vector<char> buffer_;
-  std::unique_ptr<std::FILE, CloseFile> file_;  ///< after pending_: closed before that removes the file
+  std::unique_ptr<std::FILE, CloseFile> file_;  ///< after buffer_: closed before that is freed
 };
 
 }  // namespace tegl::io_detail

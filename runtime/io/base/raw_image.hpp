@@ -13,7 +13,7 @@
 
 #include "base/value_array.hpp"
 #include "tegl/eigen.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/images.hpp"
 
 namespace tegl::io_detail {
 
@@ -31,6 +31,9 @@ struct RawGrid {
   /// Removed axes of one sample, most likely time first; they give the position of the image along them.
   std::vector<SingleAxis> single;
 };
+
+/// How much of a file to read: everything, or grid and metadata with an empty array of the values' type.
+enum class Extent { whole, header };
 
 struct RawImage {
   RawGrid grid;

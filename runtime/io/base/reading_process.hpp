@@ -9,6 +9,22 @@
 
 namespace tegl::io_detail {
 
+/// The limits of a process that reads files, which the functions below raise.
+class ReadingLimits {
+ public:
+  ReadingLimits() = default;
+  ReadingLimits(const ReadingLimits&) = delete;
+  ReadingLimits& operator=(const ReadingLimits&) = delete;
+  virtual ~ReadingLimits() = default;
+  virtual void file(const std::filesystem::path& path) = 0;  ///< see now_reading
+  virtual void memory(std::uint64_t bytes) = 0;              ///< see expect_memory
+  virtual void objects(std::uint64_t count) = 0;             ///< see expect_objects
+  virtual void step(std::uint64_t bytes) = 0;                ///< see expect_step
+};
+
+/// Sets the limits of this process, which must live as long as it reads; null: none, as at the start.
+void set_reading_limits(ReadingLimits* limits) noexcept;
+
 /// Starts the file `path`: messages name it, and memory for its headers and tables is allowed.
 void now_reading(const std::filesystem::path& path);
 

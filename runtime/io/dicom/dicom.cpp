@@ -4,6 +4,8 @@
 // values plane by plane.
 //
 // Based on: NEMA PS3.3, C.7.6.2.1.1 (Image Position and Image Orientation).
+#include "dicom/dicom.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,7 +16,6 @@
 
 #include "base/common.hpp"
 #include "base/raw_image.hpp"
-#include "base/readers.hpp"
 #include "base/reading_process.hpp"
 #include "dicom/dicom_file.hpp"
 

@@ -2,7 +2,8 @@
 //
 // DICOM functions for builds without DCMTK: they throw an error.
 #include "base/common.hpp"
-#include "base/readers.hpp"
+#include "dicom/dicom.hpp"
+#include "dicom/dicom_file.hpp"
 
 namespace tegl::io_detail {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Readers of images layer by layer, and of headerless raw files.
+#include "images/layers.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,8 +11,8 @@
 
 #include "base/common.hpp"
 #include "base/raw_image.hpp"
-#include "base/readers.hpp"
 #include "base/sample_reader.hpp"
+#include "images/images.hpp"
 #include "process/separate_reading.hpp"
 
 namespace tegl {
@@ -166,16 +168,10 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
 
 OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
   ReadImageOptions silent = options;  // opening is fast, and a child process must not call the caller's functions
-  silent.progress = nullptr;
+  silent.work.progress = nullptr;
   const auto open = [&] { return LayersOfFiles{open_any_layers(path, silent), {path}}; };
   const bool separate = options.separate_process && needs_separate_process(path);
   return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
-}
-
-OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
-  ReadImageOptions options;
-  options.variable = variable;
-  return open_layers(path, options);
 }
 
 RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {

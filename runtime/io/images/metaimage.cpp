@@ -4,6 +4,8 @@
 // keys and values to fixed buffers that longer ones overflow; such files are refused as malformed.
 //
 // Based on: S. Aylward, "MetaIO: Introduction and Documentation" (ITK wiki).
+#include "images/metaimage.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,7 +15,6 @@
 
 #include "base/common.hpp"
 #include "base/named_path.hpp"
-#include "base/readers.hpp"
 
 namespace tegl::io_detail {
 

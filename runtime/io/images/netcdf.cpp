@@ -5,6 +5,8 @@
 //
 // Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
 // conventions of the NetCDF Users' Guide.
+#include "images/netcdf.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +22,6 @@
 #include <fmt/ranges.h>
 
 #include "base/common.hpp"
-#include "base/readers.hpp"
 #include "base/reading_process.hpp"
 #include "images/netcdf_file.hpp"
 
@@ -413,7 +414,7 @@ NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::siz
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
   // header
-  const NcFile file(path, options.progress, options.allow_outside_paths);
+  const NcFile file(path, options.work.progress, options.allow_outside_paths);
   Found found = find_variable(file, options);
   VariableGrid grid = read_grid(file, found.variable, found.slab);
   found.info.axis_directions = std::move(grid.directions);
@@ -421,7 +422,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
-  image.values = unpack(file.values(found.variable, slab, options.progress), packing);
+  image.values = unpack(file.values(found.variable, slab, options.work.progress), packing);
   if (extent == Extent::whole) image.values = in_order(std::move(image.values), grid, grid.grid.axes.back().size());
   image.grid = std::move(grid.grid);
   image.info = std::move(found.info);
@@ -429,7 +430,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
 }
 
 RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageOptions& options) {
-  const auto file = std::make_shared<const NcFile>(path, options.progress, options.allow_outside_paths);
+  const auto file = std::make_shared<const NcFile>(path, options.work.progress, options.allow_outside_paths);
   if (file->is_compressed())
     fail(ErrorCode::UnsupportedData, path,
          "is compressed as a whole and cannot be read layer by layer; expected an uncompressed file");

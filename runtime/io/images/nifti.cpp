@@ -3,6 +3,8 @@
 // Reads headers of NIfTI-1 images.
 //
 // Based on: R. W. Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004; nifti1.h.
+#include "images/nifti.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,7 +15,6 @@
 
 #include "base/common.hpp"
 #include "base/inflate.hpp"
-#include "base/readers.hpp"
 
 namespace tegl::io_detail {
 

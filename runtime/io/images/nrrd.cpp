@@ -3,6 +3,8 @@
 // Reads headers of NRRD images, with attached data or a separate data file.
 //
 // Based on: G. Kindlmann, "Definition of NRRD File Format" (Teem), versions NRRD0001 to NRRD0005.
+#include "images/nrrd.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -14,7 +16,6 @@
 
 #include "base/common.hpp"
 #include "base/named_path.hpp"
-#include "base/readers.hpp"
 
 namespace tegl::io_detail {
 

@@ -13,9 +13,11 @@
 
 #include "base/common.hpp"
 #include "base/raw_image.hpp"
-#include "base/readers.hpp"
 #include "base/reading_process.hpp"
 #include "base/time_units.hpp"
+#include "dicom/dicom.hpp"
+#include "images/images.hpp"
+#include "images/layers.hpp"
 #include "process/separate_reading.hpp"
 
 namespace tegl {
@@ -36,7 +38,10 @@ struct Member {
 };
 
 ReadImageOptions member_options(const SeriesOptions& options, const Progress& progress) {
-  return {options.variable, progress, options.fixed, options.allow_outside_paths};
+  return {.variable = options.variable,
+          .work = {.progress = progress},
+          .fixed = options.fixed,
+          .allow_outside_paths = options.allow_outside_paths};
 }
 
 RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {
@@ -234,7 +239,7 @@ std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOp
   std::vector<Member> members;
   for (const std::size_t i : order) {
     const fs::path& path = files[i];
-    tick(options.progress, 0.0, path);
+    tick(options.work.progress, 0.0, path);
     RawImage header = read_member(path, Extent::header, options, {});
     members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index(),
                        options.coordinates.empty() ? 0.0 : options.coordinates[i]});
@@ -281,9 +286,9 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
     std::visit([&](auto& all) { all.reserve(count * layer); }, values);
     for (std::size_t i = begin; i < begin + count; ++i) {
       Progress progress;
-      if (own.progress)
+      if (own.work.progress)
         progress = [&](double share) {
-          return own.progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
+          return own.work.progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
         };
       append(values, read_member(paths[i], Extent::whole, own, progress).values, layer, paths[i]);
       tick(progress, 1.0, paths[i]);
@@ -300,7 +305,7 @@ RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions&
   if (!options.fixed.empty())
     fail(ErrorCode::InvalidArgument, files[0], "is a DICOM file, which has no dimension '{}'; expected no fixed index",
          options.fixed[0].dimension);
-  return open_dicom(files, options.variable, options.progress);
+  return open_dicom(files, options.variable, options.work.progress);
 }
 
 LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions& options) {
@@ -310,7 +315,7 @@ LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions&
 
 /// Reads one or several files in this process.
 ImageOfFiles read_files(std::span<const fs::path> files, const SeriesOptions& options) {
-  if (files.size() == 1) return {read_member(files[0], Extent::whole, options, options.progress), {files[0]}};
+  if (files.size() == 1) return {read_member(files[0], Extent::whole, options, options.work.progress), {files[0]}};
   auto [layers, order] = open_several(files, options);
   ImageOfFiles result;
   result.image.values = layers.read(0, layers.grid.axes.back().size());
@@ -330,91 +335,29 @@ bool is_read_separately(std::span<const fs::path> files, const SeriesOptions& op
   return options.separate_process && !options.raw && needs_separate_process(files);
 }
 
-/// Throws if an option for several files is used with one file.
-void require_several(std::span<const fs::path> files, const SeriesRequest& request, const SeriesWords& words) {
-  if (files.size() != 1) return;
-  for (const auto& [is_given, word] :
-       {std::pair(request.times.has_value(), &words.times), std::pair(request.time_step.has_value(), &words.time_step),
-        std::pair(request.time_unit.has_value(), &words.time_unit), std::pair(request.sort.has_value(), &words.sort)})
-    if (is_given)
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("{} with one file, {}; expected several files that become one image", *word, files[0].string()));
-}
-
-/// Throws if the files are in a shell's order, with frame_10 before frame_2.
-void require_order_that_is_meant(std::span<const fs::path> files, const SeriesWords& words) {
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const std::string& a = files[i - 1].native();
-    const std::string& b = files[i].native();
-    if (a < b && natural_less(b, a))
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("{} comes before {}, as shells list names; expected {} for the order of the numbers in "
-                              "them, or {} for this one",
-                              a, b, words.by_name, words.given));
-  }
-}
-
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
-
-SeriesOptions series_options(std::span<const fs::path> files, const SeriesRequest& request, const SeriesWords& words) {
-  const auto refuse = [](const std::string& text) { throw Error(ErrorCode::InvalidArgument, text); };
-  require_several(files, request, words);
-  if (request.times && request.time_step)
-    refuse(fmt::format("{} with {}; expected one of the two", words.times, words.time_step));
-  if (request.sort == SeriesOrder::coordinate && request.time_step)
-    refuse(fmt::format("{} with {}, which follows the order; expected {}, or those of the headers", words.by_time,
-                       words.time_step, words.times));
-  if (request.times && request.times->size() != files.size())
-    refuse(fmt::format("{} has {} numbers for {} files; expected one for each", words.times, request.times->size(),
-                       files.size()));
-  if (request.time_step && std::isfinite(*request.time_step) && !std::isnormal(*request.time_step))
-    refuse(fmt::format("{} is {}; expected a number of a size of at least {:.2g}", words.time_step, *request.time_step,
-                       std::numeric_limits<double>::min()));
-  if (request.raw && !request.fixed.empty())
-    refuse(fmt::format("an index of the dimension '{}' with raw values, whose dimensions have no names; expected none",
-                       request.fixed[0].dimension));
-  if (!request.sort && (request.raw || !are_dicom_files(files))) require_order_that_is_meant(files, words);
-  SeriesOptions options;
-  options.variable = request.variable;
-  options.coordinates = request.times.value_or(std::vector<double>());
-  options.step = request.time_step;
-  options.unit = request.time_unit.value_or("");
-  options.order = request.sort.value_or(SeriesOrder::given);
-  options.raw = request.raw;
-  options.fixed = request.fixed;
-  options.allow_outside_paths = request.allow_outside_paths;
-  return options;
-}
-
-std::string series_hint(const Error& error, const SeriesOptions& options, const SeriesWords& words) {
-  if (error.code() != ErrorCode::InvalidArgument || options.order != SeriesOrder::by_name ||
-      options.coordinates.empty())
-    return "";
-  return fmt::format(" ({}, with {}, which go with the files as listed)", words.by_name, words.times);
-}
 
 ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
   const auto read = [&](const Progress& progress) {
     SeriesOptions own = options;
-    own.progress = progress;
+    own.work.progress = progress;
     return read_files(files, own);
   };
-  auto [image, order] =
-      is_read_separately(files, options) ? read_separately(files[0], options.progress, read) : read(options.progress);
+  auto [image, order] = is_read_separately(files, options) ? read_separately(files[0], options.work.progress, read)
+                                                           : read(options.work.progress);
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), files[0]);
-  tick(options.progress, 1.0, files[0]);
+  tick(options.work.progress, 1.0, files[0]);
   return {{std::move(result), std::move(info)}, std::move(order)};
 }
 
 OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
   SeriesOptions silent = options;  // the caller reads the layers and reports progress itself
-  silent.progress = nullptr;
+  silent.work.progress = nullptr;
   const auto open = [&] { return open_files(files, silent); };
   LayersOfFiles opened = is_read_separately(files, options) ? open_separately(files[0], open) : open();
   return {to_open_layers(std::move(opened.layers), files[0]), std::move(opened.files)};

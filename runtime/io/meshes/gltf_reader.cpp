@@ -8,6 +8,8 @@
 // before it is made.
 //
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.5 to 3.7 and 4.4.
+#include "meshes/gltf_reader.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -20,7 +22,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/common.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "base/named_path.hpp"
 #include "meshes/attributes.hpp"
 
@@ -432,7 +434,7 @@ class GltfReader {
 
   /// Appends the vectors of an attribute, each transformed by `map`.
   template <class Map>
-  View vectors(const Json& attributes, const char* name, Buffer<double>& to, const Map& map) const {
+  View vectors(const Json& attributes, const char* name, MeshArray<double>& to, const Map& map) const {
     const View view = view_of(number_at(attributes, name, std::nullopt), 3);
     constexpr int kFloat = 5126;
     if (view.component != kFloat) malformed("{} of component type {}; expected {}", name, view.component, kFloat);

@@ -6,6 +6,8 @@
 // units in the mesh's extras; other attributes are not supported by the format.
 //
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
+#include "meshes/gltf_writer.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/common.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "base/output_file.hpp"
 #include "meshes/attributes.hpp"
 
@@ -31,7 +33,7 @@ struct Positions {
   std::array<float, 3> high{};
 };
 
-Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
+Positions positions(const MeshView& mesh, const std::filesystem::path& path) {
   Positions result;
   result.low.fill(std::numeric_limits<float>::infinity());
   result.high.fill(-std::numeric_limits<float>::infinity());
@@ -47,7 +49,7 @@ Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
 }
 
 /// Converts normals; glTF requires length 1, so those of length 0 become (0, 0, 1).
-std::vector<std::array<float, 3>> normals(const Mesh& mesh) {
+std::vector<std::array<float, 3>> normals(const MeshView& mesh) {
   std::vector<std::array<float, 3>> result(mesh.normals.size() / static_cast<std::size_t>(mesh.space_dim));
   for (std::size_t v = 0; v < result.size(); ++v) {
     const auto row = normal(mesh, v);
@@ -79,7 +81,7 @@ std::vector<float> linear(const Attribute& attribute) {
 }
 
 /// Selects attributes of up to four numbers. Names start with an underscore (section 3.7.2.1) and are in capitals.
-std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesystem::path& path) {
+std::vector<GltfAttribute> gltf_attributes(const MeshView& mesh, const std::filesystem::path& path) {
   std::vector<GltfAttribute> result;
   FileNames names({});
   for (const Attribute& attribute : mesh.vertex_attributes) {
@@ -103,12 +105,12 @@ std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesyst
 
 /// The contents of the buffer, in their order.
 struct Content {
-  const Mesh& mesh;
+  const MeshView& mesh;
   Positions points;
   std::vector<GltfAttribute> attributes;
 };
 
-Json asset(const Mesh& mesh) {
+Json asset(const MeshView& mesh) {
   Json extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
   extras["axis_names"] = mesh.axis_names;
   extras["axis_units"] = mesh.axis_units;
@@ -275,8 +277,9 @@ void write_binary(const Content& content, const Json& json, OutputFile& file) {
 
 }  // namespace
 
-void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
-  OutputFile file(path);
+void write_gltf(const MeshView& mesh, const PendingPath& pending, const Progress& progress) {
+  const std::filesystem::path& path = pending.target();
+  OutputFile file(pending);
   Content content{mesh, positions(mesh, path), gltf_attributes(mesh, path)};
   content.points.normals = normals(mesh);
   tick(progress, 0.5, path);
@@ -286,7 +289,7 @@ void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progr
   else
     write_text(content, json, file);
   tick(progress, 1.0, path);
-  file.commit();
+  file.close();
 }
 
 }  // namespace tegl::io_detail

@@ -68,7 +68,7 @@ class ObjReader {
     std::optional<Index> normal;
   };
 
-  static std::size_t rows(const Buffer<double>& numbers) { return numbers.size() / 3; }
+  static std::size_t rows(const MeshArray<double>& numbers) { return numbers.size() / 3; }
 
   template <class... Args>
   [[noreturn]] void bad(fmt::format_string<Args...> format, Args&&... args) const {
@@ -117,7 +117,7 @@ class ObjReader {
     bad("{}; expected a number{}", shown(word), is_number ? " in the range of double" : "");
   }
 
-  void read_row(std::string_view key, std::string_view line, Buffer<double>& numbers) {
+  void read_row(std::string_view key, std::string_view line, MeshArray<double>& numbers) {
     std::size_t count = 0;
     for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
       const double value = number(word);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Declares the reader of Wavefront OBJ.
+// Reads Wavefront OBJ.
 #pragma once
 
 #include <filesystem>
 
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 
 namespace tegl::io_detail {
 

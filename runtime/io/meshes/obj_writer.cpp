@@ -5,10 +5,12 @@
 // precision). The format does not support units, names, the isovalue or attributes.
 //
 // Based on: Wavefront Technologies, "The Advanced Visualizer", appendix B1, "Object Files (.obj)", 1991.
+#include "meshes/obj_writer.hpp"
+
 #include <cmath>
 
 #include "base/block_writer.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 
 namespace tegl::io_detail {
 
@@ -23,7 +25,7 @@ void put_row(BlockWriter& out, std::string_view key, const std::array<double, 3>
     out.put_format("{} {} {} {}\n", key, row[0], row[1], row[2]);
 }
 
-std::array<double, 3> finite_position(const Mesh& mesh, std::size_t vertex, const std::filesystem::path& path) {
+std::array<double, 3> finite_position(const MeshView& mesh, std::size_t vertex, const std::filesystem::path& path) {
   const auto point = position(mesh, vertex);
   for (const double value : point)
     if (!std::isfinite(value))
@@ -34,8 +36,9 @@ std::array<double, 3> finite_position(const Mesh& mesh, std::size_t vertex, cons
 
 }  // namespace
 
-void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
-  OutputFile file(path);
+void write_obj(const MeshView& mesh, const PendingPath& pending, const Progress& progress) {
+  const std::filesystem::path& path = pending.target();
+  OutputFile file(pending);
   BlockWriter out(file, progress);
   const std::size_t vertices = vertex_count(mesh);
   const bool with_normals = !mesh.normals.empty();
@@ -58,7 +61,7 @@ void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progre
     out.put_text("\n");
   });
   tick(progress, 1.0, path);
-  file.commit();
+  file.close();
 }
 
 }  // namespace tegl::io_detail

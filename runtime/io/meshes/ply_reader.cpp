@@ -4,6 +4,8 @@
 // skipped. Every count is checked against the remaining bytes before it is used.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
+#include "meshes/ply_reader.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,7 +17,7 @@
 #include <set>
 
 #include "base/common.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "meshes/attributes.hpp"
 
 namespace tegl::io_detail {

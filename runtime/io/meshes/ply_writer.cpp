@@ -5,13 +5,15 @@
 // the standard ones, with comments for their names and units. Colours that are multiples of 1/255 become bytes.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
+#include "meshes/ply_writer.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "base/block_writer.hpp"
 #include "base/common.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "base/output_file.hpp"
 #include "meshes/attributes.hpp"
 
@@ -36,7 +38,7 @@ struct Properties {
 };
 
 /// Chooses property names, which are single words; comments hold the attributes' names and units.
-std::vector<Properties> properties_of(const std::vector<Attribute>& attributes, FileNames names) {
+std::vector<Properties> properties_of(std::span<const Attribute> attributes, FileNames names) {
   std::vector<Properties> result;
   for (const Attribute& attribute : attributes) {
     Properties& properties = result.emplace_back(Properties{&attribute, {}, is_color_of_bytes(attribute)});
@@ -53,7 +55,7 @@ std::vector<Properties> properties_of(const std::vector<Attribute>& attributes, 
 
 class PlyWriter {
  public:
-  PlyWriter(const Mesh& mesh, OutputFile& file, const Progress& progress)
+  PlyWriter(const MeshView& mesh, OutputFile& file, const Progress& progress)
       : mesh_(mesh),
         file_(file),
         out_(file, progress),
@@ -144,7 +146,7 @@ class PlyWriter {
     put_attributes(of_simplices_, s);
   }
 
-  const Mesh& mesh_;
+  const MeshView& mesh_;
   OutputFile& file_;
   BlockWriter out_;
   std::vector<Properties> of_vertices_, of_simplices_;
@@ -152,11 +154,12 @@ class PlyWriter {
 
 }  // namespace
 
-void write_ply(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
-  OutputFile file(path);
+void write_ply(const MeshView& mesh, const PendingPath& pending, const Progress& progress) {
+  const std::filesystem::path& path = pending.target();
+  OutputFile file(pending);
   PlyWriter(mesh, file, progress).run();
   tick(progress, 1.0, path);
-  file.commit();
+  file.close();
 }
 
 }  // namespace tegl::io_detail

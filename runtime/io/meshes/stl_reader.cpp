@@ -4,6 +4,8 @@
 // merged. Normals and attribute bytes are skipped.
 //
 // Based on: 3D Systems, "StereoLithography Interface Specification", 1989.
+#include "meshes/stl_reader.hpp"
+
 #include <array>
 #include <bit>
 #include <cmath>
@@ -13,7 +15,7 @@
 #include <vector>
 
 #include "base/common.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 
 namespace tegl::io_detail {
 

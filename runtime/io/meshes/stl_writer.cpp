@@ -6,6 +6,8 @@
 // as in memory, and the facet's normal points to that side.
 //
 // Based on: 3D Systems, "Stereolithography Interface Specification", 1988.
+#include "meshes/stl_writer.hpp"
+
 #include <array>
 #include <bit>
 #include <limits>
@@ -13,7 +15,7 @@
 #include <Eigen/Geometry>
 
 #include "base/block_writer.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 
 namespace tegl::io_detail {
 
@@ -46,9 +48,10 @@ std::uint32_t stl_triangle_count(std::uint64_t triangles, const std::filesystem:
   return static_cast<std::uint32_t>(triangles);
 }
 
-void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
+void write_stl(const MeshView& mesh, const PendingPath& pending, const Progress& progress) {
+  const std::filesystem::path& path = pending.target();
   const std::uint32_t count = stl_triangle_count(simplex_count(mesh), path);
-  OutputFile file(path);
+  OutputFile file(pending);
   BlockWriter out(file, progress);
   // A file that begins with "solid" is read as text STL.
   constexpr std::size_t kHeader = 80;
@@ -68,7 +71,7 @@ void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progre
     out.put_byte(0);
   });
   tick(progress, 1.0, path);
-  file.commit();
+  file.close();
 }
 
 }  // namespace tegl::io_detail

@@ -4,6 +4,8 @@
 // layout.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
+#include "meshes/vtkhdf.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +13,7 @@
 
 #include "base/common.hpp"
 #include "base/hdf5_file.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "base/reading_process.hpp"
 #include "meshes/vtkhdf_names.hpp"
 #include "meshes/vtkhdf_writer.hpp"
@@ -152,7 +154,7 @@ class Reader {
   }
 
   /// Converts rows of three numbers to rows of four.
-  void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) {
+  void add_fourth(const H5Handle& point_data, const char* name, MeshArray<double>& rows) {
     const std::size_t count = rows.size() / 3;
     file_.claim(point_data.id(), name);
     expect_numbers(count + 4 * count);
@@ -243,18 +245,25 @@ class Reader {
 
 }  // namespace
 
-void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress, Compression compression) {
+void write_vtkhdf(const MeshView& mesh, const PendingPath& file, const Progress& progress, Compression compression) {
+  const fs::path& path = file.target();
   // Offsets are at most the number of vertex numbers.
   const std::size_t largest_id = std::max(vertex_count(mesh), mesh.simplices.size());
   VtkhdfWriter writer(
-      path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh),
-             mesh.isovalue, mesh.single_precision,
+      file, {mesh.dim,
+             mesh.space_dim,
+             {mesh.axis_names.begin(), mesh.axis_names.end()},
+             {mesh.axis_units.begin(), mesh.axis_units.end()},
+             vertex_count(mesh),
+             simplex_count(mesh),
+             mesh.isovalue,
+             mesh.single_precision,
              mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
              compression});
   // progress
   std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
-  for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
-    for (const Attribute& attribute : *attributes) all += attribute.values.size();
+  for (const std::span<const Attribute> attributes : {mesh.vertex_attributes, mesh.simplex_attributes})
+    for (const Attribute& attribute : attributes) all += attribute.values.size();
   const auto in_blocks = [&](auto values, std::size_t before, std::size_t columns, auto&& append) {
     const std::size_t most = kMostRows * columns;
     for (std::size_t at = 0; at < values.size(); at += most) {
@@ -263,16 +272,24 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
     }
   };
   // points, normals, simplices
-  in_blocks(std::span<const double>(mesh.coordinates), 0, static_cast<std::size_t>(mesh.space_dim),
-            [&](std::span<const double> part) { writer.append_vertices(part); });
-  in_blocks(std::span<const double>(mesh.normals), mesh.coordinates.size(), static_cast<std::size_t>(mesh.space_dim),
-            [&](std::span<const double> part) { writer.append_normals(part); });
-  in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size() + mesh.normals.size(),
-            static_cast<std::size_t>(mesh.dim) + 1,
+  const auto space_dim = static_cast<std::size_t>(mesh.space_dim);
+  std::vector<double> converted;
+  const auto doubles = [&](auto part) -> std::span<const double> {
+    if constexpr (std::is_same_v<decltype(part), std::span<const double>>) return part;
+    converted.assign(part.begin(), part.end());
+    return converted;
+  };
+  mesh.coordinates.visit([&](auto numbers) {
+    in_blocks(numbers, 0, space_dim, [&](auto part) { writer.append_vertices(doubles(part)); });
+  });
+  mesh.normals.visit([&](auto numbers) {
+    in_blocks(numbers, mesh.coordinates.size(), space_dim, [&](auto part) { writer.append_normals(doubles(part)); });
+  });
+  in_blocks(mesh.simplices, mesh.coordinates.size() + mesh.normals.size(), static_cast<std::size_t>(mesh.dim) + 1,
             [&](std::span<const Index> part) { writer.append_simplices(part); });
   // attributes
   std::size_t done = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
-  const auto append_attributes = [&](const char* group, const std::vector<Attribute>& attributes) {
+  const auto append_attributes = [&](const char* group, std::span<const Attribute> attributes) {
     for (std::size_t i = 0; i < attributes.size(); ++i) {
       const auto width = static_cast<std::size_t>(attributes[i].width);
       H5Table table = writer.attribute_table(group, attributes[i], i);
@@ -285,7 +302,7 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   append_attributes("PointData", mesh.vertex_attributes);
   append_attributes("CellData", mesh.simplex_attributes);
   tick(progress, 1.0, path);
-  writer.commit();
+  writer.close();
 }
 
 Mesh read_vtkhdf(const fs::path& path, ReadProgress& progress, bool allow_outside_paths) {

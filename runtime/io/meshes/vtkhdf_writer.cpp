@@ -68,14 +68,13 @@ VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout
         file.create_table(point_data.id(), kTimes, real_type(layout), 0, layout.expected_vertices, layout.compression));
 }
 
-VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
-    : pending_(target),
-      corners_(static_cast<std::uint64_t>(layout.dim) + 1),
+VtkhdfWriter::VtkhdfWriter(const PendingPath& pending, const VtkhdfLayout& layout)
+    : corners_(static_cast<std::uint64_t>(layout.dim) + 1),
       space_dim_(static_cast<std::size_t>(layout.space_dim)),
       expected_vertices_(layout.expected_vertices),
       compression_(layout.compression),
       real_(real_type(layout)),
-      file_(H5File::create(pending_.path(), target)),
+      file_(H5File::create(pending.path(), pending.target())),
       group_(create_root(file_, layout)),
       point_names_(reserved_point_names(layout.space_dim)) {
   tables_.emplace(file_, group_->id(), layout);
@@ -158,7 +157,7 @@ void VtkhdfWriter::replace_corner(std::uint64_t simplex, int corner, std::uint64
   tables_->connectivity.replace(H5T_NATIVE_UINT64, &vertex, simplex * corners_ + static_cast<std::uint64_t>(corner), 0);
 }
 
-void VtkhdfWriter::commit() {
+void VtkhdfWriter::close() {
   const auto single = [&](const char* name, std::uint64_t value) {
     file_.create_table(group_->id(), name, H5T_STD_I64LE, 0, 1).append(H5T_NATIVE_UINT64, &value, 1);
   };
@@ -168,7 +167,6 @@ void VtkhdfWriter::commit() {
   tables_.reset();
   group_.reset();
   file_.close();
-  pending_.commit();
 }
 
 }  // namespace tegl::io_detail

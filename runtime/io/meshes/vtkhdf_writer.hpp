@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "base/hdf5_file.hpp"
-#include "base/output_file.hpp"
+#include "base/pending_path.hpp"
 #include "meshes/attributes.hpp"
+#include "tegl/io/write_options.hpp"
 
 namespace tegl::io_detail {
 
@@ -31,10 +32,10 @@ struct VtkhdfLayout {
   Compression compression = Compression::none;
 };
 
-/// The target appears only with commit(). Errors: WriteFailed, naming the target. Memory: a few MiB.
+/// Writes to the temporary file of a PendingPath. Errors: WriteFailed, naming the target. Memory: a few MiB.
 class VtkhdfWriter {
  public:
-  VtkhdfWriter(const std::filesystem::path& target, const VtkhdfLayout& layout);
+  VtkhdfWriter(const PendingPath& pending, const VtkhdfLayout& layout);
 
   /// `coordinates`: rows of space_dim numbers.
   void append_vertices(std::span<const double> coordinates);
@@ -47,12 +48,12 @@ class VtkhdfWriter {
   /// counted from the first id in the file.
   void append_cells(unsigned char type, std::span<const std::uint32_t> ids, std::span<const std::int64_t> ends);
   /// Creates the table of an attribute. `group`: "PointData" or "CellData"; `order`: its index in that group. Append
-  /// one row per vertex or simplex, and destroy the table before commit().
+  /// one row per vertex or simplex, and destroy the table before close().
   H5Table attribute_table(const char* group, const Attribute& attribute, std::size_t order);
   /// Replaces one vertex of a simplex that was appended before.
   void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex);
-  /// Completes the file and renames it to the target.
-  void commit();
+  /// Completes and closes the file. The caller commits the PendingPath.
+  void close();
 
  private:
   /// The datasets; they must be closed before the file.
@@ -67,7 +68,6 @@ class VtkhdfWriter {
   void append_ids(hid_t type, const void* ids, std::size_t count);
 
   H5Quiet quiet_;
-  PendingPath pending_;
   std::uint64_t corners_;
   std::size_t space_dim_;
   std::uint64_t expected_vertices_;

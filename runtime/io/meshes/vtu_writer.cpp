@@ -9,6 +9,7 @@
 #include <zlib.h>
 
 #include "base/common.hpp"
+#include "base/output_file.hpp"
 
 namespace tegl::io_detail {
 namespace {
@@ -115,8 +116,9 @@ std::string header(const VtuGrid& grid, FileSizes sizes, Compression compression
 
 }  // namespace
 
-void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress,
-               Compression compression) {
+void write_vtu(const VtuGrid& grid, const PendingPath& pending, const WriteOptions& options) {
+  const std::filesystem::path& path = pending.target();
+  const Progress& progress = options.work.progress;
   // arrays in the order of the file
   std::vector<const VtuArray*> arrays;
   for (const VtuArray& array : grid.point_arrays) arrays.push_back(&array);
@@ -125,7 +127,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
   for (const VtuArray& array : grid.topology) arrays.push_back(&array);
   double all = 1.0, done = 0.0;
   for (const VtuArray* const array : arrays) all += static_cast<double>(byte_count(*array));
-  const bool is_compressed = compression != Compression::none;
+  const bool is_compressed = options.compression != Compression::none;
   // compress, or compute sizes
   std::vector<CompressedArray> compressed;
   std::vector<std::uint64_t> sizes;
@@ -140,8 +142,8 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
   }
 
   // write
-  OutputFile file(path);
-  file.write(header(grid, FileSizes(std::move(sizes)), compression));
+  OutputFile file(pending);
+  file.write(header(grid, FileSizes(std::move(sizes)), options.compression));
   for (const CompressedArray& array : compressed) array.write(file);
   for (const VtuArray* const array : arrays) {
     if (is_compressed) break;
@@ -153,7 +155,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
   }
   file.write("\n</AppendedData>\n</VTKFile>\n");
   tick(progress, 1.0, path);
-  file.commit();
+  file.close();
 }
 
 }  // namespace tegl::io_detail

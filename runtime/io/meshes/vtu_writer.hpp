@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/output_file.hpp"
-#include "tegl/io.hpp"
+#include "base/pending_path.hpp"
+#include "tegl/io/write_options.hpp"
 
 namespace tegl::io_detail {
 
@@ -65,8 +65,8 @@ struct VtuGrid {
   std::vector<std::string> axis_names, axis_units;
 };
 
-/// Writes a VTU file. With compression, the compressed arrays are held in memory. Errors: WriteFailed, Cancelled.
-void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress,
-               Compression compression);
+/// Writes a VTU file to a pending file. With compression, the compressed arrays are held in memory. Errors:
+/// WriteFailed, Cancelled.
+void write_vtu(const VtuGrid& grid, const PendingPath& file, const WriteOptions& options);
 
 }  // namespace tegl::io_detail

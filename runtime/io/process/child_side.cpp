@@ -185,6 +185,41 @@ void send_number(MessageKind kind, Number number) {
   send_message(child_side->socket, kind, packer.bytes());
 }
 
+/// Raises the limits of this child as its readers report their needs.
+class LimitsOfChild final : public ReadingLimits {
+ public:
+  void file(const std::filesystem::path& path) override {
+    constexpr std::uint64_t kTimesItsSize = 4;  // libraries keep parts of a file, and tables of its contents
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    const std::uint64_t known = error ? 0 : size;
+    child_side->memory.allow(kTimesItsSize * known);
+    child_side->file = path.string();
+    Packer packer;
+    packer.text(path.native());
+    if (packer.bytes().size() <= kMostInline) send_message(child_side->socket, MessageKind::file, packer.bytes());
+    constexpr double kSlowest = 16 * 1024 * 1024;  // bytes per second, for a library that reads a file's tables
+    send_number(MessageKind::grant, static_cast<double>(known) / kSlowest);
+  }
+
+  void memory(std::uint64_t bytes) override { child_side->memory.allow(bytes); }
+
+  void objects(std::uint64_t count) override {
+    // netCDF-C 4.9 takes 65 to 85 kB and up to 1.5 ms per variable, compressed or not, or group.
+    constexpr std::uint64_t kBytes = std::uint64_t{1} << 17;
+    constexpr double kSeconds = 0.005;
+    child_side->memory.allow(kBytes * count);
+    send_number(MessageKind::grant, kSeconds * static_cast<double>(count));
+  }
+
+  void step(std::uint64_t bytes) override {
+    constexpr std::uint64_t kSmall = std::uint64_t{1} << 25;  // negligible, and would be many messages
+    if (bytes < kSmall) return;
+    constexpr double kSlowest = 64 * 1024 * 1024;  // bytes per second, for the slowest decompression
+    send_number(MessageKind::grant, static_cast<double>(bytes) / kSlowest);
+  }
+};
+
 void send_out_of_memory() {
   if (child_side == nullptr) _exit(EXIT_FAILURE);
   const auto by_limit = static_cast<std::uint8_t>(child_side->memory.is_limiting());
@@ -232,41 +267,6 @@ std::optional<LayerRequest> ParentLink::receive() const {
   return request;
 }
 
-void now_reading(const std::filesystem::path& path) {
-  if (child_side == nullptr) return;
-  constexpr std::uint64_t kTimesItsSize = 4;  // libraries keep parts of a file, and tables of its contents
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  const std::uint64_t known = error ? 0 : size;
-  child_side->memory.allow(kTimesItsSize * known);
-  child_side->file = path.string();
-  Packer packer;
-  packer.text(path.native());
-  if (packer.bytes().size() <= kMostInline) send_message(child_side->socket, MessageKind::file, packer.bytes());
-  constexpr double kSlowest = 16 * 1024 * 1024;  // bytes per second, for a library that reads a file's tables
-  send_number(MessageKind::grant, static_cast<double>(known) / kSlowest);
-}
-
-void expect_memory(std::uint64_t bytes) {
-  if (child_side != nullptr) child_side->memory.allow(bytes);
-}
-
-void expect_objects(std::uint64_t count) {
-  if (child_side == nullptr) return;
-  // netCDF-C 4.9 takes 65 to 85 kB and up to 1.5 ms per variable, compressed or not, or group.
-  constexpr std::uint64_t kBytes = std::uint64_t{1} << 17;
-  constexpr double kSeconds = 0.005;
-  child_side->memory.allow(kBytes * count);
-  send_number(MessageKind::grant, kSeconds * static_cast<double>(count));
-}
-
-void expect_step(std::uint64_t bytes) {
-  constexpr std::uint64_t kSmall = std::uint64_t{1} << 25;  // negligible, and would be many messages
-  if (child_side == nullptr || bytes < kSmall) return;
-  constexpr double kSlowest = 64 * 1024 * 1024;  // bytes per second, for the slowest decompression
-  send_number(MessageKind::grant, static_cast<double>(bytes) / kSlowest);
-}
-
 void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildWork& work) noexcept {
   // isolate this process from the parent
   parent_process = parent;
@@ -279,6 +279,8 @@ void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const C
     silence();
     static ChildSide side{socket, ChildMemory(limits.memory), {}};
     child_side = &side;
+    static LimitsOfChild reading_limits;
+    set_reading_limits(&reading_limits);
     detail::exchange_block_source(&side.memory);
     unblock_signals();
     work(ParentLink(socket));

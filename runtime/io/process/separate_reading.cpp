@@ -10,8 +10,10 @@
 
 #include "base/common.hpp"
 #include "base/inflate.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "base/reading_process.hpp"
+#include "dicom/dicom.hpp"
+#include "dicom/dicom_file.hpp"
 
 namespace tegl::io_detail {
 
@@ -196,12 +198,13 @@ std::vector<Attribute> get_attributes(Unpacker& unpacker, std::size_t rows) {
   return attributes;
 }
 
-void put_mesh(Packer& packer, const Mesh& mesh) {
+/// The mesh must live until the package is sent.
+void put_mesh(Packer& packer, Mesh& mesh) {
   packer.number(static_cast<std::uint64_t>(mesh.dim));
   packer.number(static_cast<std::uint64_t>(mesh.space_dim));
-  packer.array(mesh.coordinates);
-  packer.array(mesh.normals);
-  packer.array(mesh.simplices);
+  packer.array(mesh.coordinates.numbers());
+  packer.array(mesh.normals.numbers());
+  packer.array(mesh.simplices.numbers());
   put_texts(packer, mesh.axis_names);
   put_texts(packer, mesh.axis_units);
   put_attributes(packer, mesh.vertex_attributes);
@@ -215,9 +218,14 @@ Mesh get_mesh(Unpacker& unpacker) {
   mesh.dim = static_cast<int>(unpacker.count(3));
   mesh.space_dim = static_cast<int>(unpacker.count(4));
   if (mesh.dim < 1 || mesh.space_dim < 2) throw BadPackage();
-  unpacker.array(mesh.coordinates);
-  unpacker.array(mesh.normals);
-  unpacker.array(mesh.simplices);
+  const auto get = [&]<class T>(MeshArray<T>& to) {
+    Buffer<T> numbers;
+    unpacker.array(numbers);
+    to = std::move(numbers);
+  };
+  get(mesh.coordinates);
+  get(mesh.normals);
+  get(mesh.simplices);
   if (mesh.coordinates.size() % static_cast<std::size_t>(mesh.space_dim) != 0 ||
       (!mesh.normals.empty() && mesh.normals.size() != mesh.coordinates.size()) ||
       mesh.simplices.size() % (static_cast<std::size_t>(mesh.dim) + 1) != 0)
@@ -380,7 +388,7 @@ ImageOfFiles read_separately(const fs::path& path, const Progress& progress,
 
 Mesh read_separately(const fs::path& path, const Progress& progress, const std::function<Mesh(const Progress&)>& read) {
   ChildProcess child(path, [&](const ParentLink& parent) {
-    const Mesh mesh = read(parent.progress());
+    Mesh mesh = read(parent.progress());
     Packer packer;
     put_mesh(packer, mesh);
     parent.send(packer);

@@ -8,8 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "base/readers.hpp"
+#include "base/raw_layers.hpp"
 #include "process/child_process.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::io_detail {
 

@@ -13,8 +13,6 @@ const char* error_name(ErrorCode code) noexcept {
       return "InvalidGrid";
     case ErrorCode::InvalidIsovalue:
       return "InvalidIsovalue";
-    case ErrorCode::EmptyResult:
-      return "EmptyResult";
     case ErrorCode::FileNotFound:
       return "FileNotFound";
     case ErrorCode::MalformedFile:

@@ -8,16 +8,10 @@
 #include <limits>
 #include <utility>
 
-<<<<<<< HEAD:runtime/src/image/extract_source.cpp
-#include "image/edge_stencil.hpp"
-#include "image/sobel.hpp"
-#include "tegl/image.hpp"
-#include "tegl/tile/corners.hpp"
-=======
 #include "image/edge_alphas.hpp"
 #include "image/edge_stencil.hpp"
 #include "image/sobel.hpp"
->>>>>>> worst:runtime/src/image/row_source.cpp
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 

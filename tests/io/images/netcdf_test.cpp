@@ -459,14 +459,16 @@ TEST(NetCdf, ProgressRisesAndCancels) {
   TempDir dir;
   write_standard(dir / "a.nc", 0);
   std::vector<double> fractions;
-  read_image(dir / "a.nc", {"", [&](double fraction) {
-                              fractions.push_back(fraction);
-                              return true;
-                            }});
+  const auto tell = [&](double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  };
+  read_image(dir / "a.nc", {.work = {.progress = tell}});
   ASSERT_GE(fractions.size(), 2U);
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
   EXPECT_EQ(fractions.back(), 1.0);
-  expect_error(ErrorCode::Cancelled, {"a.nc"}, [&] { read_image(dir / "a.nc", {"", [](double) { return false; }}); });
+  expect_error(ErrorCode::Cancelled, {"a.nc"},
+               [&] { read_image(dir / "a.nc", {.work = {.progress = [](double) { return false; }}}); });
 }
 
 }  // namespace

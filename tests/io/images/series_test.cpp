@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Series of files as one image: values, coordinates and order; and inconsistent files.
-#include "tegl/io/series.hpp"
+#include "images/series_request.hpp"
 
 #include "images/layers_support.hpp"
 #include "images/netcdf_files.hpp"
@@ -418,14 +418,14 @@ TEST_F(Series, TellsItsProgressAndCanBeStopped) {
   add_three();
   std::vector<double> told;
   SeriesOptions options;
-  options.progress = [&](double share) {
+  options.work.progress = [&](double share) {
     told.push_back(share);
     return true;
   };
   read_series(files_, options);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_EQ(told.back(), 1);
-  options.progress = [](double share) { return share < 0.5; };
+  options.work.progress = [](double share) { return share < 0.5; };
   expect_error(ErrorCode::Cancelled, {}, [&] { read_series(files_, options); });
 }
 

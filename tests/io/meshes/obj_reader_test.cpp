@@ -16,7 +16,7 @@ Mesh as_obj_has_it(const Mesh& mesh) {
   expected.axis_units.assign(3, "");
   if (mesh.space_dim == 3) return expected;
   expected.space_dim = 3;
-  for (Buffer<double> Mesh::*rows : {&Mesh::coordinates, &Mesh::normals}) {
+  for (MeshArray<double> Mesh::*rows : {&Mesh::coordinates, &Mesh::normals}) {
     (expected.*rows).clear();
     for (std::size_t i = 0; i < (mesh.*rows).size(); i += 2)
       for (const double value : {(mesh.*rows)[i], (mesh.*rows)[i + 1], 0.0}) (expected.*rows).push_back(value);
@@ -105,7 +105,7 @@ TEST(ObjReader, MeshesOfAnyBitsComeBack) {
 }
 
 std::vector<Index> simplices_of(const Mesh& mesh) { return {mesh.simplices.begin(), mesh.simplices.end()}; }
-std::vector<double> numbers_of(const Buffer<double>& numbers) { return {numbers.begin(), numbers.end()}; }
+std::vector<double> numbers_of(const MeshArray<double>& numbers) { return {numbers.begin(), numbers.end()}; }
 
 Mesh read_text(const std::string& text) {
   TempDir dir;
@@ -210,16 +210,18 @@ TEST(ObjReader, TellsItsProgressAndStops) {
   write_mesh(random_mesh(2, 3, 60000, 60000, 6, true), dir / "a.obj");
   ASSERT_GT(fs::file_size(dir / "a.obj"), std::size_t{3} << 20);
   std::vector<double> told;
-  read_mesh(dir / "a.obj", [&](double fraction) {
+  const auto tell = [&](double fraction) {
     told.push_back(fraction);
     return true;
-  });
+  };
+  read_mesh(dir / "a.obj", {.work = {.progress = tell}});
   EXPECT_GE(told.size(), 4U);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_EQ(told.front(), 0.0);
   EXPECT_EQ(told.back(), 1.0);
-  expect_error(ErrorCode::Cancelled, {"a.obj"},
-               [&] { read_mesh(dir / "a.obj", [&](double fraction) { return fraction < 0.5; }); });
+  expect_error(ErrorCode::Cancelled, {"a.obj"}, [&] {
+    read_mesh(dir / "a.obj", {.work = {.progress = [](double fraction) { return fraction < 0.5; }}});
+  });
 }
 
 }  // namespace

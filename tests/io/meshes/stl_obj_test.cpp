@@ -5,9 +5,10 @@
 #include <charconv>
 #include <sstream>
 
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
 #include "invariants.hpp"
 #include "io_support.hpp"
+#include "meshes/stl_writer.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/measure.hpp"
 

@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
     tegl::write_mesh(surface, folder / "surface.ply");
     tegl::write_mesh(contour4, folder / "contour4.vtkhdf");
     for (auto* const mesh : {&surface, &contour4}) mesh->single_precision = true;
-    tegl::write_mesh(surface, folder / "surface_float.vtkhdf", {}, tegl::Compression::deflate);
+    tegl::write_mesh(surface, folder / "surface_float.vtkhdf", {.compression = tegl::Compression::deflate});
     tegl::write_mesh(surface, folder / "surface_float.ply");
     tegl::write_mesh(contour4, folder / "contour4_float.vtkhdf");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.vtkhdf");
@@ -89,13 +89,16 @@ int main(int argc, char** argv) {
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtu");
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtkhdf");
     tegl::write_facets(facets_of_plane<4>(), folder / "polyhedra.vtu");
-    tegl::write_facets(facets_of_plane<4>(), folder / "polyhedra_packed.vtu", {}, tegl::Compression::deflate);
-    tegl::write_facets(facets_of_plane<3, float>(), folder / "polygons_float.vtkhdf", {}, tegl::Compression::deflate);
+    tegl::write_facets(facets_of_plane<4>(), folder / "polyhedra_packed.vtu",
+                       {.compression = tegl::Compression::deflate});
+    tegl::write_facets(facets_of_plane<3, float>(), folder / "polygons_float.vtkhdf",
+                       {.compression = tegl::Compression::deflate});
     tegl::write_facets(facets_of_plane<4, float>(), folder / "polyhedra_float.vtu");
-    tegl::write_facets(facets_of_plane<4, float>(), folder / "polyhedra_float_packed.vtu", {},
-                       tegl::Compression::deflate);
+    tegl::write_facets(facets_of_plane<4, float>(), folder / "polyhedra_float_packed.vtu",
+                       {.compression = tegl::Compression::deflate});
     tegl::write_facets(tegl::FacetHierarchy<4, float>(), folder / "nothing.vtu");
-    tegl::write_facets(tegl::FacetHierarchy<4, float>(), folder / "nothing_packed.vtu", {}, tegl::Compression::deflate);
+    tegl::write_facets(tegl::FacetHierarchy<4, float>(), folder / "nothing_packed.vtu",
+                       {.compression = tegl::Compression::deflate});
   } catch (const tegl::Error& error) {
     std::cerr << error.what() << "\n";
     return 1;

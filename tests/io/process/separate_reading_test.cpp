@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-const ReadImageOptions kSeparate{.variable = "", .progress = {}, .separate_process = true};
+const ReadImageOptions kSeparate{.separate_process = true};
 
 std::size_t open_descriptors() {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
@@ -208,7 +208,7 @@ TEST(SeparateReading, SeriesAreTheSame) {
   const ReadSeriesResult here = read_series(files, options);
   std::optional<double> last;
   options.separate_process = true;
-  options.progress = [&](double share) {
+  options.work.progress = [&](double share) {
     EXPECT_GE(share, last.value_or(0.0));
     last = share;
     return true;
@@ -247,9 +247,7 @@ TEST(SeparateReading, ErrorsAreTheSame) {
     EXPECT_STREQ(here.what(), there.what());
   };
   const auto image = [&](const std::string& name, const std::string& variable = "") {
-    return [=, &dir](bool separate) {
-      read_image(dir / name, {.variable = variable, .progress = {}, .separate_process = separate});
-    };
+    return [=, &dir](bool separate) { read_image(dir / name, {.variable = variable, .separate_process = separate}); };
   };
   expect(image("missing.nc"));
   expect(image("a.nc", "missing"));
@@ -299,7 +297,7 @@ TEST(SeparateReading, CancellingStopsTheChild) {
   TempDir dir;
   write_image(dir / "a.nc", {.sizes = {300, 150, 200}, .chunk = {10, 150, 200}, .deflate = 1});
   ReadImageOptions options = kSeparate;
-  options.progress = [](double share) { return share <= 0.0; };
+  options.work.progress = [](double share) { return share <= 0.0; };
   expect_error(ErrorCode::Cancelled, {"a.nc"}, [&] { read_image(dir / "a.nc", options); });
   EXPECT_FALSE(child_of_this().has_value());
 }

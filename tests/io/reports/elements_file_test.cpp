@@ -87,7 +87,7 @@ TEST_F(ElementsFile, ContravariantComponentsTurnAllSignsButThatOfTheTime) {
 /// A dataset of numbers, as rows of columns.
 std::vector<double> read_table(const std::string& path, const std::string& name, std::size_t rows,
                                std::size_t columns) {
-  OpenLayersResult opened = open_layers(path, name);
+  OpenLayersResult opened = open_layers(path, {.variable = name});
   auto& layers = *std::get<std::unique_ptr<LayerReader<double, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
   EXPECT_EQ(layers.grid().axes[0].size(), columns);
   EXPECT_EQ(layers.grid().axes[1].size(), rows);
@@ -156,7 +156,7 @@ TEST_F(ElementsFile, OfNoElementsIsValid) {
 TEST_F(ElementsFile, LeavesNothingOfWhatCannotBeWritten) {
   expect_error(ErrorCode::UnsupportedFormat, "expected .dat", [&] { write_elements(two_elements(), path("e.csv")); });
   ElementFileOptions stop;
-  stop.progress = [](double fraction) { return fraction < 0.5; };
+  stop.work.progress = [](double fraction) { return fraction < 0.5; };
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { write_elements(two_elements(), path("e.dat"), stop); });
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { write_elements(two_elements(), path("e.h5"), stop); });
   expect_error(ErrorCode::WriteFailed, "no/such/folder",

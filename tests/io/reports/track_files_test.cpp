@@ -23,7 +23,7 @@ namespace {
 using testing::HasSubstr;
 
 Contour<4, double> contour_of(const std::string& path, const std::string& variable, double isovalue) {
-  const ReadImageResult input = read_image(path, {.variable = variable, .progress = {}});
+  const ReadImageResult input = read_image(path, {.variable = variable});
   const auto& images = std::get<AnyImageN<4>>(input.image);
   return std::visit([&](const auto& owned) { return extract<double>(owned.view(), isovalue); }, images);
 }

@@ -16,7 +16,6 @@
 #include "tegl/io.hpp"
 #include "tegl/io/active_tiles.hpp"
 #include "tegl/io/elements.hpp"
-#include "tegl/io/pending_path.hpp"
 #include "tegl/io/series.hpp"
 #include "tegl/io/tracks.hpp"
 #include "tegl/measure.hpp"
@@ -304,9 +303,6 @@ static_assert(is_safe_of_temporaries<AmbiguousFace>(CALL(base())));
 static_assert(is_safe_of_temporaries<TileRowSet>(CALL(words())));
 static_assert(is_safe_of_temporaries<ActiveTiles<3>>(CALL(image())));
 static_assert(is_safe_of_temporaries<ActiveTiles<3>>(CALL(grid())));
-static_assert(is_safe_of_temporaries<PendingPath>(CALL(path())));
-static_assert(is_safe_of_temporaries<PendingPath>(CALL(target())));
-static_assert(is_safe_of_temporaries<PendingPath>(CALL(place())));
 static_assert(is_safe_of_temporaries<tile::FaceLattice>(CALL(faces())));
 static_assert(is_safe_of_temporaries<tile::FacetBuilder>(CALL(lattice())));
 static_assert(is_safe_of_temporaries<tile::FacetBuilder>(CALL(build(1))));
@@ -370,10 +366,12 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
       {.method = SeedMethod::cover}, {.scan_order = {0}}, {.work = {.threads = 1}}};
   [[maybe_unused]] const ActiveTilesOptions tiles[] = {{.work = {.threads = 1}}, {.seed_method = SeedMethod::cover}};
   [[maybe_unused]] const ElementFileOptions elements[] = {{.axes = ElementAxes::as_is}, {.header = true}};
-  [[maybe_unused]] const ReadImageOptions reading[] = {{.variable = "a"}, {.progress = progress}};
+  [[maybe_unused]] const ReadImageOptions reading[] = {{.variable = "a"}, {.work = {.progress = progress}}};
   [[maybe_unused]] const SeriesOptions series[] = {{.variable = "a"}, {.step = 1.0}, {.order = SeriesOrder::by_name}};
-  [[maybe_unused]] const SeriesRequest requests[] = {{.variable = "a"}, {.time_step = 1.0}};
-  [[maybe_unused]] const SeriesWords words[] = {{.times = "a"}, {.sort = "b"}};
+  [[maybe_unused]] const WriteOptions writing[] = {{.work = {.progress = progress}},
+                                                   {.compression = Compression::none}};
+  [[maybe_unused]] const ReadMeshOptions mesh_reading[] = {{.work = {.progress = progress}},
+                                                           {.separate_process = true}};
   [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = "float"}, {.big_endian = true}};
   [[maybe_unused]] const Projection projections[] = {{.direction = {1, 0, 0, 0}}, {.eye_distance = 1}};
   [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = {1, 0, 0, 0}}, {.offset = 1}};

@@ -167,15 +167,16 @@ TEST_F(ProgressGaps, OfReadingFilesAreShort) {
     write_mesh(to_mesh(surface), path);
     ProgressProbe probe;
     for (int attempt = 0; attempt < 3 && (attempt == 0 || probe.longest_share() > share); ++attempt) {
-      probe.watch([&](const Progress& progress) { read_mesh(path, progress); });
+      probe.watch([&](const Progress& progress) { read_mesh(path, {.work = {.progress = progress}}); });
       expect_sound(probe);
     }
     if (share < 1) {
       EXPECT_LE(probe.longest_share(), share) << "of " << probe.seconds() << " s, after " << probe.longest_after();
     }
     std::size_t seen = 0;
-    expect_error(ErrorCode::Cancelled, "cancelled",
-                 [&] { read_mesh(path, [&](double fraction) { return ++seen > 0 && fraction < 0.3; }); });
+    expect_error(ErrorCode::Cancelled, "cancelled", [&] {
+      read_mesh(path, {.work = {.progress = [&](double fraction) { return ++seen > 0 && fraction < 0.3; }}});
+    });
     EXPECT_GT(seen, 1u);
     std::filesystem::remove(path);
   }

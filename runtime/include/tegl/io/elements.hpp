@@ -26,7 +26,7 @@ struct ElementFileOptions {
   ElementAxes axes = ElementAxes::time_first;                   ///< which axis leads
   ElementComponents components = ElementComponents::covariant;  ///< how normals are written
   bool header = false;                                          ///< text: first line with column names, after a '#'
-  Progress progress = {};                                       ///< see Progress
+  WorkOptions work = {};                                        ///< progress; one thread writes
 };
 
 /// Writes elements, by extension.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // File series read as one image with an additional axis: volumes over time as a 4D image, slices as a 3D one. Link with
-// tegl::io; its rules for threads apply.
+// tegl::io; the rules for threads in tegl/io.hpp apply.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tegl/io.hpp"
+#include "tegl/io/layers.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -33,7 +33,7 @@ struct SeriesOptions {
   std::string unit = {};
   SeriesOrder order = SeriesOrder::given;  ///< order of the files
   std::optional<RawLayout> raw = {};       ///< layout of each file, for headerless raw files
-  Progress progress = {};                  ///< for read_series, over all files
+  WorkOptions work = {};                   ///< progress of read_series, over all files; one thread reads
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
@@ -48,41 +48,6 @@ struct ReadSeriesResult : ReadImageResult {
 struct OpenSeriesResult : OpenLayersResult {
   std::vector<std::filesystem::path> files = {};  ///< in the order of the new axis; DICOM: as listed
 };
-
-/// A user's request for a series. Each option may be missing.
-struct SeriesRequest {
-  std::string variable = {};                      ///< as in SeriesOptions
-  std::optional<std::vector<double>> times = {};  ///< coordinate of each file along the new axis
-  std::optional<double> time_step = {};           ///< or the distance between adjacent files
-  std::optional<std::string> time_unit = {};      ///< unit of the new axis
-  std::optional<SeriesOrder> sort = {};           ///< order of the files
-  std::optional<RawLayout> raw = {};              ///< as in SeriesOptions
-  std::vector<FixedIndex> fixed = {};             ///< as in SeriesOptions
-  bool allow_outside_paths = false;               ///< as in SeriesOptions
-};
-
-/// The names of these options in error messages, as the user interface has them: "--times" on a command line.
-struct SeriesWords {
-  std::string_view times = {};      ///< for SeriesRequest::times
-  std::string_view time_step = {};  ///< for SeriesRequest::time_step
-  std::string_view time_unit = {};  ///< for SeriesRequest::time_unit
-  std::string_view sort = {};       ///< for SeriesRequest::sort
-  std::string_view by_time = {};    ///< for the value SeriesOrder::coordinate
-  std::string_view by_name = {};    ///< for the value SeriesOrder::by_name
-  std::string_view given = {};      ///< for the value SeriesOrder::given
-};
-
-/// Converts a request to options, and checks that it is consistent and fits the files. Errors, all InvalidArgument with
-/// the names of `words`: options for several files with one file; `times` with `time_step`; a step with an order by
-/// times; a number of times other than the number of files; a step of 0; and files without `sort` in the order of a
-/// shell, frame_10 before frame_2, because a contour through these looks right and is wrong. (DICOM files have their
-/// own positions and may be in any order.)
-SeriesOptions series_options(std::span<const std::filesystem::path> files, const SeriesRequest& request,
-                             const SeriesWords& words);
-
-/// Text to append to an error of read_series or open_series: if the files are not in monotone order, it names the
-/// conflicting options. Else empty.
-std::string series_hint(const Error& error, const SeriesOptions& options, const SeriesWords& words);
 
 /// Reads files of equal shape as one image with one additional, last axis: 3D files as a 4D image, 2D files as a 3D
 /// one. Files are of any format of read_image, or raw. A single file is read without an additional axis.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Reads and writes index files of active tiles.
+#include "tegl/io/active_tiles.hpp"
+
 #include <cstdio>
 #include <string>
 
 #include "base/common.hpp"
 #include "base/output_file.hpp"
-#include "tegl/io/active_tiles.hpp"
+#include "base/pending_path.hpp"
 
 namespace tegl {
 
@@ -16,9 +18,9 @@ namespace {
 
 class FileSink final : public ByteSink {
  public:
-  explicit FileSink(const fs::path& path) : file_(path) {}
+  explicit FileSink(const PendingPath& pending) : file_(pending) {}
   void write(const void* data, std::size_t bytes) override { file_.write(data, bytes); }
-  void commit() { file_.commit(); }
+  void close() { file_.close(); }
 
  private:
   io_detail::OutputFile file_;
@@ -56,9 +58,11 @@ auto with_file(const fs::path& path, const Work& work) {
 
 template <int N>
 void write_active_tiles(const ActiveTiles<N>& active, const fs::path& path) {
-  FileSink sink(path);
-  active.save(sink);
-  sink.commit();
+  write_complete_file(path, [&](const PendingPath& file) {
+    FileSink sink(file);
+    active.save(sink);
+    sink.close();
+  });
 }
 
 template <Value T, int N>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Formats track graphs as JSON, DOT and CSV, and writes them to files.
+#include "reports/tracks.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -10,7 +12,9 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "base/output_file.hpp"
+#include "base/pending_path.hpp"
+#include "base/text.hpp"
+#include "tegl/error.hpp"
 #include "tegl/io/tracks.hpp"
 
 namespace tegl {
@@ -101,6 +105,14 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
+/// Throws UnsupportedFormat unless write_track supports the extension.
+void require_track_file(const std::filesystem::path& path) {
+  if (!is_track_file(path))
+    throw Error(ErrorCode::UnsupportedFormat,
+                fmt::format("{}: the extension is '{}'; expected .json, .dot, .gv or .svg", path.string(),
+                            path.extension().string()));
+}
+
 }  // namespace
 
 std::string track_json(const TrackGraph& graph) {
@@ -178,27 +190,28 @@ bool is_track_file(const std::filesystem::path& path) {
   return extension == ".json" || extension == ".dot" || extension == ".gv" || extension == ".svg";
 }
 
-void write_track(const TrackGraph& graph, const std::filesystem::path& path, const TrackPicture& picture) {
-  if (!is_track_file(path))
-    throw Error(ErrorCode::UnsupportedFormat,
-                fmt::format("{}: the extension is '{}'; expected .json, .dot, .gv or .svg", path.string(),
-                            path.extension().string()));
-  const std::string extension = lower_extension(path);
-  io_detail::OutputFile file(path);
-  file.write(extension == ".json"  ? track_json(graph)
+void write_track(const TrackGraph& graph, const PendingPath& file, const TrackPicture& picture) {
+  require_track_file(file.target());
+  const std::string extension = lower_extension(file.target());
+  write_text(extension == ".json"  ? track_json(graph)
              : extension == ".svg" ? track_svg(graph, picture)
-                                   : track_dot(graph));
-  file.commit();
+                                   : track_dot(graph),
+             file);
+}
+
+void write_track(const TrackGraph& graph, const std::filesystem::path& path, const TrackPicture& picture) {
+  require_track_file(path);
+  write_complete_file(path, [&](const PendingPath& file) { write_track(graph, file, picture); });
 }
 
 void write_track_csv(const TrackGraph& graph, const std::filesystem::path& stem) {
   const auto named = [&](const char* table) { return std::filesystem::path(stem.string() + table); };
-  io_detail::OutputFile events(named("-events.csv"));
-  io_detail::OutputFile segments(named("-segments.csv"));
-  io_detail::OutputFile samples(named("-samples.csv"));
-  events.write(track_events_csv(graph));
-  segments.write(track_segments_csv(graph));
-  samples.write(track_samples_csv(graph));
+  PendingPath events(named("-events.csv"));
+  PendingPath segments(named("-segments.csv"));
+  PendingPath samples(named("-samples.csv"));
+  write_text(track_events_csv(graph), events);
+  write_text(track_segments_csv(graph), segments);
+  write_text(track_samples_csv(graph), samples);
   events.commit();
   segments.commit();
   samples.commit();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Writes contours as segments, polygons and polyhedra to VTU and VTKHDF.
+#include "meshes/facets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,7 +12,7 @@
 #include "meshes/vtkhdf_names.hpp"
 #include "meshes/vtkhdf_writer.hpp"
 #include "meshes/vtu_writer.hpp"
-#include "tegl/io.hpp"
+#include "tegl/io/facets.hpp"
 
 namespace tegl {
 namespace {
@@ -132,8 +134,7 @@ bool fits_int32(const FacetHierarchy<N, Real>& facets, const FacetCells<N, Real>
 }
 
 template <int N, class Real>
-void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
-                      Compression compression) {
+void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& file, const WriteOptions& options) {
   const FacetCells<N, Real> cells(facets);
   io_detail::VtuGrid grid;
   grid.points = facets.vertices.size();
@@ -160,7 +161,7 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& pat
                  [&places](ByteSink& sink, std::size_t f) { sink.put(std::uint8_t{places[f].is_cap}); });
   const bool narrow = std::is_same_v<Real, float> && fits_int32(facets, cells);
   grid.topology = narrow ? topology_of<std::int32_t>(cells) : topology_of<std::int64_t>(cells);
-  io_detail::write_vtu(grid, path, progress, compression);
+  io_detail::write_vtu(grid, file, options);
 }
 
 /// Appends the cells from ... to - 1. `end`: number of their points so far.
@@ -186,22 +187,28 @@ Attribute attribute_of_places(const char* name, const Places& places, const Valu
 }
 
 template <int N, class Real>
-void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
-                         Compression compression) {
+void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& file, const WriteOptions& options) {
   const FacetCells<N, Real> cells(facets);
   constexpr bool kSingle = std::is_same_v<Real, float>;
-  io_detail::VtkhdfLayout layout{
-      N - 1,      N, {}, {}, facets.vertices.size(), cells.count(), {}, kSingle, kSingle && fits_int32(facets, cells),
-      compression};
+  io_detail::VtkhdfLayout layout{N - 1,
+                                 N,
+                                 {},
+                                 {},
+                                 facets.vertices.size(),
+                                 cells.count(),
+                                 {},
+                                 kSingle,
+                                 kSingle && fits_int32(facets, cells),
+                                 options.compression};
   layout.axis_names.assign(facets.axis_names.begin(), facets.axis_names.end());
   layout.axis_units.assign(facets.axis_units.begin(), facets.axis_units.end());
-  io_detail::VtkhdfWriter writer(path, layout);
+  io_detail::VtkhdfWriter writer(file, layout);
   const double all = static_cast<double>(facets.vertices.size() + facets.normals.size() + 4 * cells.count() + 1);
   double done = 0;
   /// Calls append(from, to) for blocks of 0 ... count - 1.
   const auto in_blocks = [&](std::size_t count, const auto& append) {
     for (std::size_t from = 0; from < count; from += io_detail::kMostRows) {
-      io_detail::tick(progress, (done + static_cast<double>(from)) / all, path);
+      io_detail::tick(options.work.progress, (done + static_cast<double>(from)) / all, file.target());
       append(from, std::min(count, from + io_detail::kMostRows));
     }
     done += static_cast<double>(count);
@@ -236,30 +243,45 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& 
   add_cell_array("sample", [](const FacetPlace& place) { return static_cast<double>(place.base); });
   add_cell_array("signature", [](const FacetPlace& place) { return static_cast<double>(place.signature); });
   add_cell_array("cap", [](const FacetPlace& place) { return place.is_cap ? 1.0 : 0.0; });
-  io_detail::tick(progress, 1.0, path);
-  writer.commit();
+  io_detail::tick(options.work.progress, 1.0, file.target());
+  writer.close();
+}
+
+/// Throws UnsupportedFormat unless the extension stands for a format of facets.
+void require_facet_format(const fs::path& path, int dimension) {
+  const std::string extension = io_detail::lower(path.extension().string());
+  if (extension != ".vtu" && extension != ".vtkhdf")
+    io_detail::fail(ErrorCode::UnsupportedFormat, path,
+                    "'{}' cannot hold a contour without triangulation; expected .vtu, or in 2D and 3D .vtkhdf",
+                    path.extension().string());
+  if (extension == ".vtkhdf" && dimension == 4)
+    io_detail::fail(ErrorCode::UnsupportedFormat, path,
+                    "VTKHDF files that VTK 9.1 reads cannot hold polyhedra; expected .vtu");
 }
 
 }  // namespace
 
-template <int N, class Real>
-void write_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
-                  Compression compression) {
-  const std::string extension = io_detail::lower(path.extension().string());
-  if (extension == ".vtu") return write_vtu_facets(facets, path, progress, compression);
-  if (extension != ".vtkhdf")
-    io_detail::fail(ErrorCode::UnsupportedFormat, path,
-                    "'{}' cannot hold a contour without triangulation; expected .vtu, or in 2D and 3D .vtkhdf",
-                    path.extension().string());
-  if constexpr (N == 4)
-    io_detail::fail(ErrorCode::UnsupportedFormat, path,
-                    "VTKHDF files that VTK 9.1 reads cannot hold polyhedra; expected .vtu");
-  else
-    write_vtkhdf_facets(facets, path, progress, compression);
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+void write_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& file, const WriteOptions& options) {
+  require_facet_format(file.target(), N);
+  if constexpr (N < 4) {
+    if (io_detail::lower(file.target().extension().string()) == ".vtkhdf")
+      return write_vtkhdf_facets(facets, file, options);
+  }
+  write_vtu_facets(facets, file, options);
 }
 
-#define TEGL_INSTANTIATE(N, Real) \
-  template void write_facets<N, Real>(const FacetHierarchy<N, Real>&, const fs::path&, const Progress&, Compression);
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+void write_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const WriteOptions& options) {
+  require_facet_format(path, N);
+  write_complete_file(path, [&](const PendingPath& file) { write_facets(facets, file, options); });
+}
+
+#define TEGL_INSTANTIATE(N, Real)                                                                               \
+  template void write_facets<N, Real>(const FacetHierarchy<N, Real>&, const PendingPath&, const WriteOptions&); \
+  template void write_facets<N, Real>(const FacetHierarchy<N, Real>&, const fs::path&, const WriteOptions&);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Output files that appear complete or not at all: written to a temporary name beside the target, then renamed.
+// Output files that appear complete or not at all: written to a temporary name beside the target, then renamed. Also
+// for the program, which puts several files in place together.
 #pragma once
 
 #include <filesystem>
@@ -66,5 +67,13 @@ class PendingPath {
 /// Call it once, right before the process ends: any thread that creates, commits or destroys a PendingPath afterwards
 /// waits forever.
 void remove_pending_files() noexcept;
+
+/// Calls write(pending) with the temporary file of a target, and puts the file in place.
+template <class Write>
+void write_complete_file(const std::filesystem::path& target, const Write& write) {
+  PendingPath pending(target);
+  write(pending);
+  pending.commit();
+}
 
 }  // namespace tegl

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Implements conversion between meshes and contours, and the selection of mesh formats.
+#include "meshes/meshes.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,9 +10,18 @@
 #include <type_traits>
 
 #include "base/common.hpp"
-#include "base/mesh_formats.hpp"
+#include "base/mesh_data.hpp"
+#include "base/pending_path.hpp"
 #include "meshes/attributes.hpp"
+#include "meshes/gltf_reader.hpp"
+#include "meshes/gltf_writer.hpp"
 #include "meshes/obj_reader.hpp"
+#include "meshes/obj_writer.hpp"
+#include "meshes/ply_reader.hpp"
+#include "meshes/ply_writer.hpp"
+#include "meshes/stl_reader.hpp"
+#include "meshes/stl_writer.hpp"
+#include "meshes/vtkhdf.hpp"
 #include "process/separate_reading.hpp"
 
 namespace tegl {
@@ -32,7 +43,7 @@ const MeshFileFormat& format_of(const fs::path& path) {
 
 bool is_gltf(const MeshFileFormat& format) { return format.extension == ".gltf" || format.extension == ".glb"; }
 
-void check_mesh(const Mesh& mesh, const fs::path& path) {
+void check_mesh(const MeshView& mesh, const fs::path& path) {
   const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
   const auto n = static_cast<std::size_t>(mesh.space_dim);
   if (mesh.dim < 1 || mesh.dim > 3 || mesh.space_dim < 2 || mesh.space_dim > 4 || mesh.dim > mesh.space_dim)
@@ -55,7 +66,7 @@ void check_mesh(const Mesh& mesh, const fs::path& path) {
 
 /// Every format supports triangles, and all except STL support lines. Tetrahedra and a fourth coordinate are only
 /// supported by formats with most_dim = 3.
-void check_combination(const Mesh& mesh, const MeshFileFormat& format, const fs::path& path) {
+void check_combination(const MeshView& mesh, const MeshFileFormat& format, const fs::path& path) {
   if (mesh.dim < format.least_dim)
     fail(ErrorCode::UnsupportedFormat, path,
          "'{}' cannot hold {}-simplices, which lines are made of; expected .ply, .gltf, .glb, .obj or .vtkhdf",
@@ -67,95 +78,107 @@ void check_combination(const Mesh& mesh, const MeshFileFormat& format, const fs:
          path.extension().string(), mesh.dim, mesh.space_dim, mesh.space_dim);
 }
 
+/// The format for a file's extension. Throws unless it supports the mesh and the options.
+const MeshFileFormat& checked_format(const MeshView& mesh, const fs::path& path, const WriteOptions& options) {
+  const MeshFileFormat& format = format_of(path);
+  if (options.compression != Compression::none && format.extension != ".vtkhdf")
+    fail(ErrorCode::UnsupportedFormat, path, "'{}' has no compression; expected .vtkhdf", path.extension().string());
+  check_mesh(mesh, path);
+  check_combination(mesh, format, path);
+  tick(options.work.progress, 0.0, path);
+  return format;
+}
+
+void write_format(const MeshFileFormat& format, const MeshView& mesh, const PendingPath& file,
+                  const WriteOptions& options) {
+  const Progress& progress = options.work.progress;
+  if (format.extension == ".ply")
+    write_ply(mesh, file, progress);
+  else if (is_gltf(format))
+    write_gltf(mesh, file, progress);
+  else if (format.extension == ".stl")
+    write_stl(mesh, file, progress);
+  else if (format.extension == ".obj")
+    write_obj(mesh, file, progress);
+  else
+    write_vtkhdf(mesh, file, progress, options.compression);
+}
+
 template <class Names>
 std::vector<std::string> as_vector(const Names& names) {
   return {names.begin(), names.end()};
 }
 
-}  // namespace
-
-namespace io_detail {
-
-ReadProgress::ReadProgress(const Progress& progress, const fs::path& path)
-    : progress_(progress), path_(path), size_(size_of_file(path)) {
-  tick(progress_, 0.0, path_);
+/// The numbers of all rows, one row after the other.
+template <class T, std::size_t Width>
+std::span<const T> flat(const Buffer<std::array<T, Width>>& rows) {
+  return rows.empty() ? std::span<const T>() : std::span<const T>(rows.data()->data(), rows.size() * Width);
 }
 
-void ReadProgress::add(std::uint64_t bytes) {
-  constexpr std::uint64_t kTellEvery = std::uint64_t{1} << 20;
-  done_ += bytes;
-  if (done_ - told_ < kTellEvery) return;
-  told_ = done_;
-  tick(progress_, static_cast<double>(done_) / static_cast<double>(size_), path_);
-}
-
-void CopyLimit::add(std::uint64_t count, std::uint64_t bytes, std::string_view what) {
-  std::uint64_t all = 0;
-  if (__builtin_mul_overflow(count, bytes, &all) || __builtin_add_overflow(all, taken_, &all))
-    all = std::numeric_limits<std::uint64_t>::max();
-  taken_ = all;
-  if (taken_ > most_)
-    fail(ErrorCode::TooLarge, path_, "{} take {} bytes or more; expected at most {}, 64 times the file and 64 MiB",
-         what, taken_, most_);
-}
-
-std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const fs::path& path) {
-  std::array<float, 3> result{};
-  const auto point = position(mesh, vertex);
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (!(std::abs(point[a]) <= static_cast<double>(std::numeric_limits<float>::max())))
-      fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected a value in the range of float",
-           vertex, point[a]);
-    result[a] = static_cast<float>(point[a]);
+/// The numbers of all rows as double; of a temporary in the same memory if they have that type.
+template <class Rows>
+MeshArray<double> as_doubles(Rows&& rows) {
+  using Real = std::remove_cvref_t<Rows>::value_type::value_type;
+  if constexpr (std::is_same_v<Real, double>) {
+    return std::forward<Rows>(rows);
+  } else {
+    const std::span<const Real> numbers = flat(rows);
+    return Buffer<double>(numbers.begin(), numbers.end());
   }
-  return result;
 }
 
-void flatten(Mesh& mesh, const fs::path& path) {
-  for (std::size_t v = 0; v < mesh.coordinates.size() / 3; ++v)
-    if (mesh.coordinates[3 * v + 2] != 0.0)
-      fail(ErrorCode::MalformedFile, path, "vertex {} has z = {}; expected 0, as the file is marked as planar", v,
-           mesh.coordinates[3 * v + 2]);
-  for (Buffer<double>* const rows : {&mesh.coordinates, &mesh.normals}) {
-    const std::size_t count = rows->size() / 3;
-    for (std::size_t v = 0; v < count; ++v) std::copy_n(rows->data() + 3 * v, 2, rows->data() + 2 * v);
-    rows->resize(2 * count);
-  }
-  mesh.space_dim = 2;
-}
-
-void check_indices(const Mesh& mesh, const fs::path& path) {
-  const std::size_t vertices = vertex_count(mesh);
-  for (std::size_t i = 0; i < mesh.simplices.size(); ++i)
-    if (mesh.simplices[i] >= vertices)
-      fail(ErrorCode::MalformedFile, path, "simplex {} has vertex number {}; expected less than {}",
-           i / (static_cast<std::size_t>(mesh.dim) + 1), mesh.simplices[i], vertices);
-}
-
-}  // namespace io_detail
-
-template <int N, class Real>
-requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour) {
+/// The mesh of a contour, which is a temporary (its memory is taken over) or not.
+template <class AnyContour>
+Mesh mesh_of(AnyContour&& contour) {
+  using Vertex = std::remove_cvref_t<AnyContour>::Vertex;
+  constexpr int kDim = std::tuple_size_v<Vertex>;
   Mesh mesh;
-  mesh.dim = N - 1;
-  mesh.space_dim = N;
-  const auto copy = [](const auto& rows, Buffer<double>& to) {
-    to.resize(rows.size() * N);
-    for (std::size_t v = 0; v < rows.size(); ++v)
-      for (std::size_t a = 0; a < N; ++a) to[v * N + a] = static_cast<double>(rows[v][a]);
-  };
-  copy(contour.vertices, mesh.coordinates);
-  copy(contour.normals, mesh.normals);
-  mesh.simplices.resize(contour.simplices.size() * N);
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
-    for (std::size_t c = 0; c < N; ++c) mesh.simplices[s * N + c] = contour.simplices[s][c];
-  mesh.single_precision = std::is_same_v<Real, float>;
+  mesh.dim = kDim - 1;
+  mesh.space_dim = kDim;
+  mesh.coordinates = as_doubles(std::forward<AnyContour>(contour).vertices);
+  mesh.normals = as_doubles(std::forward<AnyContour>(contour).normals);
+  mesh.simplices = std::forward<AnyContour>(contour).simplices;
+  mesh.single_precision = std::is_same_v<typename Vertex::value_type, float>;
   mesh.axis_names = as_vector(contour.axis_names);
   mesh.axis_units = as_vector(contour.axis_units);
-  mesh.vertex_attributes = contour.vertex_attributes;
-  mesh.simplex_attributes = contour.simplex_attributes;
+  mesh.vertex_attributes = std::forward<AnyContour>(contour).vertex_attributes;
+  mesh.simplex_attributes = std::forward<AnyContour>(contour).simplex_attributes;
   return mesh;
 }
+
+}  // namespace
+
+MeshView::MeshView(const Mesh& mesh)
+    : dim(mesh.dim),
+      space_dim(mesh.space_dim),
+      coordinates(std::span<const double>(mesh.coordinates)),
+      normals(std::span<const double>(mesh.normals)),
+      simplices(mesh.simplices),
+      axis_names(mesh.axis_names),
+      axis_units(mesh.axis_units),
+      vertex_attributes(mesh.vertex_attributes),
+      simplex_attributes(mesh.simplex_attributes),
+      isovalue(mesh.isovalue),
+      single_precision(mesh.single_precision) {}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> MeshView::MeshView(const Contour<N, Real>& contour)
+    : dim(N - 1),
+      space_dim(N),
+      coordinates(flat(contour.vertices)),
+      normals(flat(contour.normals)),
+      simplices(flat(contour.simplices)),
+      axis_names(contour.axis_names),
+      axis_units(contour.axis_units),
+      vertex_attributes(contour.vertex_attributes),
+      simplex_attributes(contour.simplex_attributes),
+      single_precision(std::is_same_v<Real, float>) {}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour) { return mesh_of(contour); }
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Mesh to_mesh(Contour<N, Real>&& contour) { return mesh_of(std::move(contour)); }
 
 template <int N>
 requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh) {
@@ -166,7 +189,7 @@ requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mes
                             mesh.space_dim, N - 1, N));
   const auto n = static_cast<std::size_t>(mesh.space_dim);
   Contour<N, double> contour;
-  const auto copy = [n](const Buffer<double>& from, auto& rows) {
+  const auto copy = [n](const MeshArray<double>& from, auto& rows) {
     rows.resize(from.size() / n);
     for (std::size_t v = 0; v < rows.size(); ++v)
       for (std::size_t a = 0; a < N; ++a) rows[v][a] = from[v * n + a];
@@ -198,23 +221,13 @@ const MeshFileFormat* find_mesh_file_format(const fs::path& path) {
   return found == kFormats.end() ? nullptr : found;
 }
 
-void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress, Compression compression) {
-  const MeshFileFormat& format = format_of(path);
-  if (compression != Compression::none && format.extension != ".vtkhdf")
-    fail(ErrorCode::UnsupportedFormat, path, "'{}' has no compression; expected .vtkhdf", path.extension().string());
-  check_mesh(mesh, path);
-  check_combination(mesh, format, path);
-  tick(progress, 0.0, path);
-  if (format.extension == ".ply")
-    write_ply(mesh, path, progress);
-  else if (is_gltf(format))
-    write_gltf(mesh, path, progress);
-  else if (format.extension == ".stl")
-    write_stl(mesh, path, progress);
-  else if (format.extension == ".obj")
-    write_obj(mesh, path, progress);
-  else
-    write_vtkhdf(mesh, path, progress, compression);
+void write_mesh(const MeshView& mesh, const PendingPath& file, const WriteOptions& options) {
+  write_format(checked_format(mesh, file.target(), options), mesh, file, options);
+}
+
+void write_mesh(const MeshView& mesh, const fs::path& path, const WriteOptions& options) {
+  const MeshFileFormat& format = checked_format(mesh, path, options);
+  write_complete_file(path, [&](const PendingPath& file) { write_format(format, mesh, file, options); });
 }
 
 Mesh read_mesh(const fs::path& path, const ReadMeshOptions& options) {
@@ -229,24 +242,23 @@ Mesh read_mesh(const fs::path& path, const ReadMeshOptions& options) {
                                            : read_stl(path, read);
   };
   const bool separate = options.separate_process && format.extension == ".vtkhdf";
-  Mesh mesh = separate ? read_separately(path, options.progress, read_format) : read_format(options.progress);
+  Mesh mesh = separate ? read_separately(path, options.work.progress, read_format) : read_format(options.work.progress);
   check_indices(mesh, path);
-  tick(options.progress, 1.0, path);
+  tick(options.work.progress, 1.0, path);
   return mesh;
 }
 
-Mesh read_mesh(const fs::path& path, const Progress& progress) {
-  ReadMeshOptions options;
-  options.progress = progress;
-  return read_mesh(path, options);
-}
-
-template Mesh to_mesh(const Contour<2, float>&);
-template Mesh to_mesh(const Contour<3, float>&);
-template Mesh to_mesh(const Contour<4, float>&);
-template Mesh to_mesh(const Contour<2, double>&);
-template Mesh to_mesh(const Contour<3, double>&);
-template Mesh to_mesh(const Contour<4, double>&);
+#define TEGL_INSTANTIATE(N, Real)                       \
+  template MeshView::MeshView(const Contour<N, Real>&); \
+  template Mesh to_mesh(const Contour<N, Real>&);       \
+  template Mesh to_mesh(Contour<N, Real>&&);
+TEGL_INSTANTIATE(2, float)
+TEGL_INSTANTIATE(2, double)
+TEGL_INSTANTIATE(3, float)
+TEGL_INSTANTIATE(3, double)
+TEGL_INSTANTIATE(4, float)
+TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
 template Contour<2, double> to_contour<2>(const Mesh&);
 template Contour<3, double> to_contour<3>(const Mesh&);
 template Contour<4, double> to_contour<4>(const Mesh&);

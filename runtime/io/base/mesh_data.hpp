@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Declares the readers and writers of the mesh formats, and functions that they share.
+// Functions that the readers and writers of all mesh formats share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
-#include "tegl/io.hpp"
+#include "tegl/io/meshes.hpp"
 
 namespace tegl::io_detail {
 
@@ -34,54 +37,37 @@ class ReadProgress {
   std::uint64_t told_ = 0;
 };
 
-void write_ply(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-Mesh read_ply(const std::filesystem::path& path, ReadProgress& progress);
-
-void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-/// `allow_outside_paths`: see ReadMeshOptions.
-Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
-
-void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress,
-                  Compression compression);
-/// `allow_outside_paths`: see ReadMeshOptions.
-Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
-
-void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-/// Converts the count to the 32-bit field of the file; TooLarge beyond 2^32 - 1.
-std::uint32_t stl_triangle_count(std::uint64_t triangles, const std::filesystem::path& path);
-
-void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-
-/// Merges vertices with equal (float) coordinates.
-Mesh read_stl(const std::filesystem::path& path, ReadProgress& progress);
-
 /// Name or unit of an axis; "" if the mesh has none.
-inline const std::string& axis_text(const std::vector<std::string>& texts, int axis) {
+inline const std::string& axis_text(std::span<const std::string> texts, int axis) {
   static const std::string kNone;
   return static_cast<std::size_t>(axis) < texts.size() ? texts[static_cast<std::size_t>(axis)] : kNone;
 }
 
-inline std::size_t vertex_count(const Mesh& mesh) {
+template <class AnyMesh>
+std::size_t vertex_count(const AnyMesh& mesh) {
   return mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim);
 }
-inline std::size_t simplex_count(const Mesh& mesh) {
+template <class AnyMesh>
+std::size_t simplex_count(const AnyMesh& mesh) {
   return mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1);
 }
 
 /// x, y, z of a vertex or normal; z = 0 in the plane.
-inline std::array<double, 3> row_of(const Buffer<double>& rows, const Mesh& mesh, std::size_t vertex) {
+inline std::array<double, 3> row_of(const CoordinateView& rows, const MeshView& mesh, std::size_t vertex) {
   std::array<double, 3> result{};
   const auto n = static_cast<std::size_t>(mesh.space_dim);
   for (std::size_t a = 0; a < std::min<std::size_t>(n, 3); ++a) result[a] = rows[vertex * n + a];
   return result;
 }
-inline std::array<double, 3> position(const Mesh& mesh, std::size_t vertex) {
+inline std::array<double, 3> position(const MeshView& mesh, std::size_t vertex) {
   return row_of(mesh.coordinates, mesh, vertex);
 }
-inline std::array<double, 3> normal(const Mesh& mesh, std::size_t vertex) { return row_of(mesh.normals, mesh, vertex); }
+inline std::array<double, 3> normal(const MeshView& mesh, std::size_t vertex) {
+  return row_of(mesh.normals, mesh, vertex);
+}
 
 /// The position as float; UnsupportedData if float cannot represent it.
-std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const std::filesystem::path& path);
+std::array<float, 3> float_position(const MeshView& mesh, std::size_t vertex, const std::filesystem::path& path);
 
 /// Makes a mesh planar that was read with space_dim 3, if its file was written with `space_dim` 2. MalformedFile unless
 /// all z = 0.

@@ -16,6 +16,7 @@
 #include "base/common.hpp"
 #include "base/hdf5_file.hpp"
 #include "base/output_file.hpp"
+#include "base/pending_path.hpp"
 #include "meshes/attributes.hpp"
 #include "tegl/io/elements.hpp"
 
@@ -70,8 +71,9 @@ std::string unit_of_component(const Elements<N>& elements, int axis) {
 }
 
 template <int N>
-void write_lines(const Elements<N>& elements, const fs::path& path, const ElementFileOptions& options) {
-  OutputFile file(path);
+void write_lines(const Elements<N>& elements, const PendingPath& pending, const ElementFileOptions& options) {
+  const fs::path& path = pending.target();
+  OutputFile file(pending);
   fmt::memory_buffer buffer;
   const auto out = std::back_inserter(buffer);
   if (options.header) fmt::format_to(out, "# {}\n", fmt::join(element_columns(elements, options), " "));
@@ -79,7 +81,7 @@ void write_lines(const Elements<N>& elements, const fs::path& path, const Elemen
   const std::size_t count = elements.centroids.size();
   for (std::size_t e = 0; e < count; ++e) {
     if (e % kRows == 0) {
-      tick(options.progress, static_cast<double>(e) / static_cast<double>(count), path);
+      tick(options.work.progress, static_cast<double>(e) / static_cast<double>(count), path);
       file.write(buffer.data(), buffer.size());
       buffer.clear();
     }
@@ -105,9 +107,9 @@ void write_lines(const Elements<N>& elements, const fs::path& path, const Elemen
     }
     buffer.push_back('\n');
   }
-  tick(options.progress, 1.0, path);
+  tick(options.work.progress, 1.0, path);
   file.write(buffer.data(), buffer.size());
-  file.commit();
+  file.close();
 }
 
 /// Writes a dataset of `count` rows of `columns` numbers number(row, column); 0 columns: one-dimensional.
@@ -141,7 +143,7 @@ void put_attributes(const Elements<N>& elements, const H5File& file, const Eleme
   const std::size_t count = elements.centroids.size();
   double done = 0.5;
   for (const Attribute& attribute : elements.attributes) {
-    tick(options.progress, done, path);
+    tick(options.work.progress, done, path);
     done += 0.5 / static_cast<double>(elements.attributes.size());
     std::string name = attribute.name.empty() ? "_" : attribute.name;
     std::replace(name.begin(), name.end(), '/', '_');
@@ -152,9 +154,9 @@ void put_attributes(const Elements<N>& elements, const H5File& file, const Eleme
 }
 
 template <int N>
-void write_hdf5(const Elements<N>& elements, const fs::path& path, const ElementFileOptions& options) {
+void write_hdf5(const Elements<N>& elements, const PendingPath& pending, const ElementFileOptions& options) {
   const H5Quiet quiet;
-  PendingPath pending(path);
+  const fs::path& path = pending.target();
   H5File file = H5File::create(pending.path(), path);
   // names and units of columns
   const std::array<int, N> order = order_of<N>(options);
@@ -175,23 +177,22 @@ void write_hdf5(const Elements<N>& elements, const fs::path& path, const Element
     file.put_text(root.id(), "direction", elements.direction == GradientDirection::descent ? "descent" : "ascent");
     // datasets
     const std::size_t count = elements.centroids.size();
-    tick(options.progress, 0.0, path);
+    tick(options.work.progress, 0.0, path);
     put_numbers(file, root.id(), "centroid", count, N, units,
                 [&](std::uint64_t e, std::uint64_t c) { return elements.centroids[e][order[c]]; });
-    tick(options.progress, 0.2, path);
+    tick(options.work.progress, 0.2, path);
     put_numbers(file, root.id(), "dsigma", count, N, component_units, [&](std::uint64_t e, std::uint64_t c) {
       return sign_of<N>(order[c], options) * elements.normals[e][order[c]] + 0.0;
     });
-    tick(options.progress, 0.4, path);
+    tick(options.work.progress, 0.4, path);
     put_numbers(file, root.id(), "measure", count, 0, "",
                 [&](std::uint64_t e, std::uint64_t) { return elements.measures[e]; });
     put_table<std::uint32_t>(file, root.id(), "simplices", count, 0, "", H5T_STD_U32LE, H5T_NATIVE_UINT32,
                              [&](std::uint64_t e, std::uint64_t) { return elements.counts[e]; });
     put_attributes(elements, file, options, path);
   }
-  tick(options.progress, 1.0, path);
+  tick(options.work.progress, 1.0, path);
   file.close();
-  pending.commit();
 }
 
 }  // namespace
@@ -210,10 +211,13 @@ std::vector<std::string> element_columns(const Elements<N>& elements, const Elem
 template <int N>
 void write_elements(const Elements<N>& elements, const fs::path& path, const ElementFileOptions& options) {
   const std::string extension = lower(path.extension().string());
-  if (extension == ".dat" || extension == ".txt") return write_lines(elements, path, options);
-  if (extension == ".h5" || extension == ".hdf5") return write_hdf5(elements, path, options);
-  fail(ErrorCode::UnsupportedFormat, path, "'{}' is not a format of elements; expected .dat, .txt, .h5 or .hdf5",
-       extension);
+  const bool is_text = extension == ".dat" || extension == ".txt";
+  if (!is_text && extension != ".h5" && extension != ".hdf5")
+    fail(ErrorCode::UnsupportedFormat, path, "'{}' is not a format of elements; expected .dat, .txt, .h5 or .hdf5",
+         extension);
+  write_complete_file(path, [&](const PendingPath& file) {
+    is_text ? write_lines(elements, file, options) : write_hdf5(elements, file, options);
+  });
 }
 
 #define TEGL_INSTANTIATE(N)                                                                            \

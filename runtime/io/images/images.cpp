@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Implements read_image: detects the format and performs the steps common to all formats.
+#include "images/images.hpp"
+
 #include <array>
 #include <memory>
 #include <new>
@@ -9,8 +11,12 @@
 #include "base/common.hpp"
 #include "base/inflate.hpp"
 #include "base/raw_image.hpp"
-#include "base/readers.hpp"
 #include "base/sample_reader.hpp"
+#include "dicom/dicom.hpp"
+#include "images/metaimage.hpp"
+#include "images/netcdf.hpp"
+#include "images/nifti.hpp"
+#include "images/nrrd.hpp"
 #include "process/separate_reading.hpp"
 
 namespace tegl {
@@ -124,7 +130,7 @@ RawLayers open_dicom_with(const fs::path& path, const ReadImageOptions& options)
     fail(ErrorCode::InvalidArgument, path,
          "an index of the dimension '{}' for DICOM, whose dimensions have no names; expected none, or a netCDF file",
          options.fixed[0].dimension);
-  return open_dicom(std::span(&path, 1), options.variable, options.progress);
+  return open_dicom(std::span(&path, 1), options.variable, options.work.progress);
 }
 
 }  // namespace
@@ -138,8 +144,9 @@ RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImag
   }
   require_readable_file(path);
   const Format format = format_of(path);
-  RawImage image = format == Format::NetCdf ? read_netcdf(path, extent, options)
-                                            : read_stored(open_stored(path, format, options), extent, options.progress);
+  RawImage image = format == Format::NetCdf
+                       ? read_netcdf(path, extent, options)
+                       : read_stored(open_stored(path, format, options), extent, options.work.progress);
   drop_trailing_axes(image.grid, image.info);
   return image;
 }
@@ -155,17 +162,17 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
 }
 
 ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options) {
-  tick(options.progress, 0.0, path);
+  tick(options.work.progress, 0.0, path);
   const auto read = [&](const Progress& progress) {
     ReadImageOptions own = options;
-    own.progress = progress;
+    own.work.progress = progress;
     return ImageOfFiles{read_any(path, Extent::whole, own), {}};
   };
   const bool separate = options.separate_process && needs_separate_process(path);
-  RawImage image = (separate ? read_separately(path, options.progress, read) : read(options.progress)).image;
+  RawImage image = (separate ? read_separately(path, options.work.progress, read) : read(options.work.progress)).image;
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), path);
-  tick(options.progress, 1.0, path);
+  tick(options.work.progress, 1.0, path);
   return {std::move(result), std::move(info)};
 }
 
