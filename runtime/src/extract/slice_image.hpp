@@ -162,11 +162,11 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
 
 }  // namespace tegl
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real)                                           \
+#define TEGL_INSTANTIATE_SLICE(T, N, Real)                                           \
   template tegl::Extraction<N - 1, Real> tegl::slice_image_with_stats<Real, T, N>( \
       const Image<T, N>&, double, const Hyperplane<N>&, const ExtractOptions&);
 #define TEGL_INSTANTIATE_SLICE_IMAGE(T) \
-  TEGL_INSTANTIATE_ONE(T, 3, float)     \
-  TEGL_INSTANTIATE_ONE(T, 3, double)    \
-  TEGL_INSTANTIATE_ONE(T, 4, float)     \
-  TEGL_INSTANTIATE_ONE(T, 4, double)
+  TEGL_INSTANTIATE_SLICE(T, 3, float)     \
+  TEGL_INSTANTIATE_SLICE(T, 3, double)    \
+  TEGL_INSTANTIATE_SLICE(T, 4, float)     \
+  TEGL_INSTANTIATE_SLICE(T, 4, double)
