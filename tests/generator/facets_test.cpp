@@ -25,7 +25,7 @@ namespace {
 using tile::Fault;
 using tile::fault_name;
 
-constexpr Triangulation kTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
+constexpr Triangulation kBothTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
 
 std::vector<int> polygon_sizes(const TileContour& contour) {
   std::vector<int> sizes;
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(AllElements, EquivarianceTest, testing::Values(2, 3));
 
 TEST(Facets, HighAlternativeIsTheReversedLowOneOfTheComplement) {
   for (const int n : {2, 3, 4})
-    for (const Triangulation t : kTriangulations) {
+    for (const Triangulation t : kBothTriangulations) {
       const CubeLattice lattice(n);
       const ContourBuilder low(lattice, n, Alternative::low, t), high(lattice, n, Alternative::high, t);
       std::vector<TileContour> of_low, of_high;
@@ -177,7 +177,7 @@ TEST(Facets, HighAlternativeIsTheReversedLowOneOfTheComplement) {
 
 TEST(Certificate, AConeOverATorusFailsAtItsApex) {
   const CubeLattice lattice(4);
-  for (const Triangulation t : kTriangulations) {
+  for (const Triangulation t : kBothTriangulations) {
     const ContourBuilder builder(lattice, 4, Alternative::low, t);
     for (const Signature s : {1910u, 7128u, 28662u}) {
       TileContour contour = builder.build(s);

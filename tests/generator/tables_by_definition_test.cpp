@@ -130,21 +130,21 @@ std::vector<VertexSet> simplices_of(const tables::TileTable& table, Corners s) {
   return result;
 }
 
-constexpr std::array kTriangulations{Triangulation::barycentric, Triangulation::compact};
+constexpr std::array kTableTriangulations{Triangulation::barycentric, Triangulation::compact};
 
 TEST(TablesByDefinition, EveryEntryOfEveryTileTable) {
   for (const int n : {2, 3, 4}) {
     const Corners full = (Corners{1} << (1u << n)) - 1;
     for (Corners s = 1; s < full; ++s) {
       const Parts parts(n, s, kAllLow);
-      for (const Triangulation triangulation : kTriangulations) {
+      for (const Triangulation triangulation : kTableTriangulations) {
         const auto simplices = simplices_of(tables::tile_table(n, triangulation), s);
         ASSERT_EQ(fault_of_separate(parts, simplices), "")
             << n << "D, signature " << s << ", " << triangulation_name(triangulation);
       }
     }
     for (const Corners s : {Corners{0}, full})
-      for (const Triangulation triangulation : kTriangulations)
+      for (const Triangulation triangulation : kTableTriangulations)
         EXPECT_TRUE(simplices_of(tables::tile_table(n, triangulation), s).empty());
   }
 }
@@ -225,7 +225,7 @@ TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
 
 TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
   for (const int k : {1, 2, 3})
-    for (const Triangulation triangulation : kTriangulations)
+    for (const Triangulation triangulation : kTableTriangulations)
       for (const Alternative alternative : {Alternative::low, Alternative::high}) {
         const tables::RegionTable& table = tables::region_table(k, triangulation, alternative);
         const auto size = static_cast<unsigned>(k + 1);

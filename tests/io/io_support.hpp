@@ -206,4 +206,17 @@ inline void expect_same(const Mesh& a, const Mesh& b) {
   expect_same(a.simplex_attributes, b.simplex_attributes);
 }
 
+/// A text `count` times in a row.
+inline std::string repeated(const std::string& text, std::size_t count) {
+  std::string result;
+  for (std::size_t i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+/// The number of open files of this process.
+inline std::size_t open_descriptors() {
+  return static_cast<std::size_t>(
+      std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator()));
+}
+
 }  // namespace tegl::test

@@ -29,10 +29,10 @@ namespace {
 constexpr std::size_t kWindow = std::size_t{1} << 16;
 constexpr std::size_t kLongestHeader = 16;  // of an element: tag, type, length, and the tag of an item after it
 
-/// Bytes of a file from an offset, plain or inflated. Requested positions must not decrease.
-class Bytes {
+/// FileBytes of a file from an offset, plain or inflated. Requested positions must not decrease.
+class FileBytes {
  public:
-  Bytes(const fs::path& path, std::uint64_t offset, bool deflated) : file_(std::fopen(path.c_str(), "rb")) {
+  FileBytes(const fs::path& path, std::uint64_t offset, bool deflated) : file_(std::fopen(path.c_str(), "rb")) {
     if (!file_) return;
     file_at_ = offset;
     if (!deflated) return;
@@ -104,7 +104,7 @@ class Bytes {
   std::uint64_t file_at_ = 0;  ///< file offset of position 0, or of the next bytes to inflate
 };
 
-struct Encoding {
+struct ElementEncoding {
   bool is_explicit;
   bool is_big_endian;
 };
@@ -132,7 +132,8 @@ struct Header {
 
 class Scan {
  public:
-  Scan(Bytes& bytes, std::uint64_t start, Encoding encoding) : bytes_(bytes), position_(start), encoding_(encoding) {}
+  Scan(FileBytes& bytes, std::uint64_t start, ElementEncoding encoding)
+      : bytes_(bytes), position_(start), encoding_(encoding) {}
 
   /// Whether sequences are nested deeper than the limit.
   bool is_too_deep() {
@@ -151,13 +152,13 @@ class Scan {
     std::optional<std::uint64_t> end;  ///< nullopt: ended by a mark
     bool is_item = false;
     bool is_pixels = false;
-    Encoding encoding;
+    ElementEncoding encoding;
   };
 
-  [[nodiscard]] Encoding encoding() const { return levels_.empty() ? encoding_ : levels_.back().encoding; }
+  [[nodiscard]] ElementEncoding encoding() const { return levels_.empty() ? encoding_ : levels_.back().encoding; }
 
   std::optional<Header> read_header() {
-    const Encoding e = encoding();
+    const ElementEncoding e = encoding();
     const auto bytes = bytes_.at(position_, kLongestHeader);
     if (bytes.size() < 8) return std::nullopt;
     Header header;
@@ -177,7 +178,7 @@ class Scan {
     return header;
   }
 
-  static void read_typed(std::span<const unsigned char> bytes, Encoding e, Header& header) {
+  static void read_typed(std::span<const unsigned char> bytes, ElementEncoding e, Header& header) {
     const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + 4, 2);
     constexpr std::string_view kShort = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
     const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
@@ -203,7 +204,7 @@ class Scan {
     if (header.tag == kItem && !in_pixels) return levels_.push_back({end, true, false, encoding()});
     if (header.tag != kItem && (!end || header.may_be_sequence)) {
       const bool is_pixels = (header.tag & 0xffff0000) == kPixels;
-      return levels_.push_back({end, false, is_pixels, header.is_unknown ? Encoding{false, false} : encoding()});
+      return levels_.push_back({end, false, is_pixels, header.is_unknown ? ElementEncoding{false, false} : encoding()});
     }
     position_ = end.value_or(value);
   }
@@ -217,9 +218,9 @@ class Scan {
     }
   }
 
-  Bytes& bytes_;
+  FileBytes& bytes_;
   std::uint64_t position_;
-  Encoding encoding_;
+  ElementEncoding encoding_;
   std::vector<Level> levels_;
 };
 
@@ -230,7 +231,7 @@ struct Meta {
   bool is_deflated = false;
 };
 
-Meta read_meta(Bytes& bytes) {
+Meta read_meta(FileBytes& bytes) {
   Meta meta;
   const auto mark = bytes.at(128, 4);
   if (mark.size() == 4 && std::memcmp(mark.data(), "DICM", 4) == 0) meta.start = 132;
@@ -265,14 +266,14 @@ Meta read_meta(Bytes& bytes) {
 }  // namespace
 
 std::optional<Error> nesting_fault(const fs::path& path) {
-  Bytes head(path, 0, false);
+  FileBytes head(path, 0, false);
   const Meta meta = read_meta(head);
-  constexpr std::array<Encoding, 3> kEncodings = {{{true, false}, {false, false}, {true, true}}};
+  constexpr std::array<ElementEncoding, 3> kEncodings = {{{true, false}, {false, false}, {true, true}}};
   for (const std::uint64_t start : meta.data_sets)
-    for (const Encoding encoding : kEncodings)
+    for (const ElementEncoding encoding : kEncodings)
       for (const bool deflated : {false, true}) {
         if (deflated && (!meta.is_deflated || start == meta.start)) continue;
-        Bytes bytes(path, start, deflated);
+        FileBytes bytes(path, start, deflated);
         if (Scan(bytes, 0, encoding).is_too_deep())
           return Error(ErrorCode::MalformedFile, fmt::format("{}: sequences nested deeper than {}; expected at most {}",
                                                              path.string(), kDeepestSequence, kDeepestSequence));

@@ -22,26 +22,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct StoredType {
+struct MetaType {
   std::string_view keyword;
   const char* name;
 };
 
 // MET_LONG is left out: it has 4 bytes in the format's definition, and 8 in files that ITK wrote on 64-bit machines.
-constexpr std::array<StoredType, 10> kTypes = {{{"MET_CHAR", "int8"},
-                                                {"MET_UCHAR", "uint8"},
-                                                {"MET_SHORT", "int16"},
-                                                {"MET_USHORT", "uint16"},
-                                                {"MET_INT", "int32"},
-                                                {"MET_UINT", "uint32"},
-                                                {"MET_LONG_LONG", "int64"},
-                                                {"MET_ULONG_LONG", "uint64"},
-                                                {"MET_FLOAT", "float"},
-                                                {"MET_DOUBLE", "double"}}};
+constexpr std::array<MetaType, 10> kMetaTypes = {{{"MET_CHAR", "int8"},
+                                                  {"MET_UCHAR", "uint8"},
+                                                  {"MET_SHORT", "int16"},
+                                                  {"MET_USHORT", "uint16"},
+                                                  {"MET_INT", "int32"},
+                                                  {"MET_UINT", "uint32"},
+                                                  {"MET_LONG_LONG", "int64"},
+                                                  {"MET_ULONG_LONG", "uint64"},
+                                                  {"MET_FLOAT", "float"},
+                                                  {"MET_DOUBLE", "double"}}};
 
-class Fields {
+class MetaFields {
  public:
-  Fields(const fs::path& path, std::map<std::string, std::string, std::less<>> values)
+  MetaFields(const fs::path& path, std::map<std::string, std::string, std::less<>> values)
       : path_(path), values_(std::move(values)) {}
 
   [[nodiscard]] bool has(std::string_view name) const { return values_.contains(name); }
@@ -88,9 +88,9 @@ class Fields {
   std::map<std::string, std::string, std::less<>> values_;
 };
 
-struct Header {
+struct MetaHeader {
   std::vector<std::uint64_t> sizes;
-  StoredType type{};
+  MetaType type{};
   StoredSamples samples;
 };
 
@@ -115,7 +115,7 @@ void require_room(std::string_view key, std::string_view value, const fs::path& 
 }
 
 /// Parses "Key = value" lines up to ElementDataFile, which by definition is the last one.
-Fields read_fields(const fs::path& path, std::uint64_t& end) {
+MetaFields read_fields(const fs::path& path, std::uint64_t& end) {
   constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
   const auto bytes = read_bytes(path, 0, kLongestHeader);
   const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -139,7 +139,7 @@ Fields read_fields(const fs::path& path, std::uint64_t& end) {
   return {path, std::move(values)};
 }
 
-std::vector<std::uint64_t> read_sizes(const Fields& fields, const fs::path& path) {
+std::vector<std::uint64_t> read_meta_sizes(const MetaFields& fields, const fs::path& path) {
   constexpr std::uint64_t kMostAxes = 10;  // the capacity of MetaIO
   const auto dimension = fields.number<std::uint64_t>("NDims", 0);
   if (dimension < 1 || dimension > kMostAxes)
@@ -157,13 +157,13 @@ std::vector<std::uint64_t> read_sizes(const Fields& fields, const fs::path& path
   return sizes;
 }
 
-StoredType read_type(const Fields& fields, const fs::path& path) {
+MetaType read_meta_type(const MetaFields& fields, const fs::path& path) {
   const std::string& keyword = fields.text("ElementType");
   const auto channels = fields.number<std::uint64_t>("ElementNumberOfChannels", 1);
   if (channels != 1 || keyword.ends_with("_ARRAY"))
     fail(ErrorCode::UnsupportedData, path, "{} channels of type {}; expected one number per sample", channels,
          shown(keyword));
-  for (const StoredType& type : kTypes)
+  for (const MetaType& type : kMetaTypes)
     if (type.keyword == keyword) return type;
   if (keyword == "MET_LONG" || keyword == "MET_ULONG")
     fail(ErrorCode::UnsupportedData, path, "ElementType {}, whose size depends on the machine; expected e.g. MET_INT",
@@ -172,7 +172,7 @@ StoredType read_type(const Fields& fields, const fs::path& path) {
        shown(keyword));
 }
 
-Encoding read_encoding(const Fields& fields, const fs::path& path) {
+Encoding read_meta_encoding(const MetaFields& fields, const fs::path& path) {
   const bool compressed = fields.flag("CompressedData", false);
   const bool text = !fields.flag("BinaryData", false);
   if (text && compressed)
@@ -181,7 +181,7 @@ Encoding read_encoding(const Fields& fields, const fs::path& path) {
 }
 
 /// Whether samples are not in this machine's byte order.
-bool read_byte_order(const Fields& fields, const fs::path& path) {
+bool read_byte_order(const MetaFields& fields, const fs::path& path) {
   constexpr bool kBig = std::endian::native == std::endian::big;
   const bool big = fields.flag("BinaryDataByteOrderMSB", fields.flag("ElementByteOrderMSB", kBig));
   if (fields.flag("ElementByteOrderMSB", big) != big)
@@ -191,7 +191,7 @@ bool read_byte_order(const Fields& fields, const fs::path& path) {
 }
 
 /// Offset of the samples in a separate file.
-std::uint64_t read_header_size(const Fields& fields, const StoredSamples& samples, const fs::path& path) {
+std::uint64_t read_header_size(const MetaFields& fields, const StoredSamples& samples, const fs::path& path) {
   const auto skip = fields.number<std::int64_t>("HeaderSize", 0);
   if (skip < -1) fail(ErrorCode::MalformedFile, path, "HeaderSize is {}; expected -1 or more", skip);
   if (skip >= 0) return static_cast<std::uint64_t>(skip);
@@ -202,7 +202,7 @@ std::uint64_t read_header_size(const Fields& fields, const StoredSamples& sample
   return size - std::min(size, checked_bytes(samples.sizes, bytes_of_type(samples.type), path));
 }
 
-void locate_data(const Fields& fields, std::uint64_t header_end, bool allow_outside_paths, StoredSamples& samples,
+void locate_data(const MetaFields& fields, std::uint64_t header_end, bool allow_outside_paths, StoredSamples& samples,
                  const fs::path& path) {
   const std::string& file = fields.text("ElementDataFile");
   const bool local = lower(file) == "local";
@@ -218,22 +218,23 @@ void locate_data(const Fields& fields, std::uint64_t header_end, bool allow_outs
   if (samples.encoding == Encoding::deflate) samples.compressed_bytes = static_cast<std::uint64_t>(compressed);
 }
 
-Header parse_header(const Fields& fields, std::uint64_t header_end, bool allow_outside_paths, const fs::path& path) {
+MetaHeader parse_header(const MetaFields& fields, std::uint64_t header_end, bool allow_outside_paths,
+                        const fs::path& path) {
   if (fields.has("ObjectType") && lower(fields.text("ObjectType")) != "image")
     fail(ErrorCode::UnsupportedData, path, "ObjectType is {}; expected Image", shown(fields.text("ObjectType")));
-  Header header;
-  header.sizes = read_sizes(fields, path);
-  header.type = read_type(fields, path);
+  MetaHeader header;
+  header.sizes = read_meta_sizes(fields, path);
+  header.type = read_meta_type(fields, path);
   header.samples.type = header.type.name;
   header.samples.sizes = header.sizes;
-  header.samples.encoding = read_encoding(fields, path);
+  header.samples.encoding = read_meta_encoding(fields, path);
   header.samples.swapped = read_byte_order(fields, path);
   locate_data(fields, header_end, allow_outside_paths, header.samples, path);
   return header;
 }
 
 /// The matrix has one row per axis: the world direction of a step along it.
-RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& path) {
+RawGrid make_grid(const MetaFields& fields, const MetaHeader& header, const fs::path& path) {
   const std::size_t n = header.sizes.size();
   // directions
   Eigen::MatrixXd affine = Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
@@ -262,8 +263,8 @@ RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& pa
 
 StoredImage open_metaimage(const fs::path& path, bool allow_outside_paths) {
   std::uint64_t header_end = 0;
-  const Fields fields = read_fields(path, header_end);
-  Header header = parse_header(fields, header_end, allow_outside_paths, path);
+  const MetaFields fields = read_fields(path, header_end);
+  MetaHeader header = parse_header(fields, header_end, allow_outside_paths, path);
   // grid
   StoredImage image;
   image.grid = make_grid(fields, header, path);

@@ -49,26 +49,26 @@ class HeaderBytes {
   bool swapped_ = false;
 };
 
-struct StoredType {
+struct NiftiType {
   int code;
   const char* name;
   unsigned bytes;
 };
 
-constexpr std::array<StoredType, 10> kTypes = {{{2, "uint8", 1},
-                                                {4, "int16", 2},
-                                                {8, "int32", 4},
-                                                {16, "float", 4},
-                                                {64, "double", 8},
-                                                {256, "int8", 1},
-                                                {512, "uint16", 2},
-                                                {768, "uint32", 4},
-                                                {1024, "int64", 8},
-                                                {1280, "uint64", 8}}};
+constexpr std::array<NiftiType, 10> kNiftiTypes = {{{2, "uint8", 1},
+                                                    {4, "int16", 2},
+                                                    {8, "int32", 4},
+                                                    {16, "float", 4},
+                                                    {64, "double", 8},
+                                                    {256, "int8", 1},
+                                                    {512, "uint16", 2},
+                                                    {768, "uint32", 4},
+                                                    {1024, "int64", 8},
+                                                    {1280, "uint64", 8}}};
 
-struct Header {
+struct NiftiHeader {
   std::vector<std::uint64_t> sizes;  ///< at least 3
-  StoredType type{};
+  NiftiType type{};
   bool swapped = false;  ///< not in this machine's byte order
   bool pair = false;     ///< values are in a separate .img file
   double slope = 0;      ///< 0: values are not scaled
@@ -119,10 +119,10 @@ std::vector<std::uint64_t> read_sizes(const HeaderBytes& bytes, const fs::path& 
   return sizes;
 }
 
-StoredType read_type(const HeaderBytes& bytes, const fs::path& path) {
+NiftiType read_type(const HeaderBytes& bytes, const fs::path& path) {
   const int code = bytes.get<std::int16_t>(70);
   const int bits = bytes.get<std::int16_t>(72);
-  for (const StoredType& type : kTypes)
+  for (const NiftiType& type : kNiftiTypes)
     if (type.code == code) {
       if (bits != static_cast<int>(8 * type.bytes))
         fail(ErrorCode::MalformedFile, path, "values of type {} with {} bits; expected {} bits", type.name, bits,
@@ -181,10 +181,10 @@ std::uint64_t read_vox_offset(const HeaderBytes& bytes, bool pair, const fs::pat
   return static_cast<std::uint64_t>(offset);
 }
 
-Header parse_header(const fs::path& path) {
+NiftiHeader parse_header(const fs::path& path) {
   HeaderBytes bytes(read_prefix(path, kHeaderBytes));
   check_magic(bytes, path);
-  Header header;
+  NiftiHeader header;
   header.sizes = read_sizes(bytes, path);
   header.type = read_type(bytes, path);
   header.swapped = bytes.swapped();
@@ -210,7 +210,7 @@ Header parse_header(const fs::path& path) {
 double step_or_one(double step) { return std::isfinite(step) && step > 0 ? step : 1.0; }
 
 /// nifti1.h, method 2: the rotation of the quaternion times pixdim; the third column also times qfac.
-Eigen::Matrix<double, 3, 4> qform(const Header& header) {
+Eigen::Matrix<double, 3, 4> qform(const NiftiHeader& header) {
   const auto [b, c, d, x, y, z] = header.quaternion;
   const double rest = 1.0 - (b * b + c * c + d * d);
   const double a = rest > 0 ? std::sqrt(rest) : 0.0;
@@ -229,7 +229,7 @@ Eigen::Matrix<double, 3, 4> qform(const Header& header) {
   return result;
 }
 
-Eigen::Matrix<double, 3, 4> spatial_affine(const Header& header) {
+Eigen::Matrix<double, 3, 4> spatial_affine(const NiftiHeader& header) {
   if (header.sform_code > 0) return header.srow;
   if (header.qform_code > 0) return qform(header);
   Eigen::Matrix<double, 3, 4> scaling = Eigen::Matrix<double, 3, 4>::Zero();
@@ -237,7 +237,7 @@ Eigen::Matrix<double, 3, 4> spatial_affine(const Header& header) {
   return scaling;
 }
 
-RawGrid make_grid(const Header& header, const fs::path& path) {
+RawGrid make_grid(const NiftiHeader& header, const fs::path& path) {
   const auto n = static_cast<Eigen::Index>(header.sizes.size());
   Eigen::MatrixXd affine = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(n);
@@ -302,7 +302,7 @@ StoredImage open_nifti(const fs::path& path) {
   const std::string name = lower_name(path);
   const bool is_img = name.ends_with(".img") || name.ends_with(".img.gz");
   const fs::path header_path = is_img ? partner(path, ".hdr") : path;
-  const Header header = parse_header(header_path);
+  const NiftiHeader header = parse_header(header_path);
   StoredImage image;
   StoredSamples& samples = image.samples;
   samples.path = header.pair && !is_img ? partner(path, ".img") : path;

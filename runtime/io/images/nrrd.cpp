@@ -23,10 +23,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Fields = std::map<std::string, std::string, std::less<>>;
+using NrrdFields = std::map<std::string, std::string, std::less<>>;
 
 struct Text {
-  Fields fields;
+  NrrdFields fields;
   std::uint64_t end = 0;        ///< first byte after the header
   bool has_blank_line = false;  ///< before attached data
 };
@@ -49,7 +49,7 @@ std::string without_blanks(std::string_view text) {
 }
 
 /// Parses one "field: description" line into `fields`; skips comments and key/value pairs.
-void parse_line(std::string_view line, Fields& fields, const fs::path& path) {
+void parse_line(std::string_view line, NrrdFields& fields, const fs::path& path) {
   if (line.starts_with('#') || line.find(":=") != std::string_view::npos) return;
   const std::size_t colon = line.find(": ");
   const std::string name = without_blanks(line.substr(0, colon));
@@ -82,18 +82,18 @@ Text read_header_text(const fs::path& path) {
   return text;
 }
 
-const std::string& required(const Fields& fields, std::string_view name, const fs::path& path) {
+const std::string& required(const NrrdFields& fields, std::string_view name, const fs::path& path) {
   const auto found = fields.find(name);
   if (found == fields.end()) fail(ErrorCode::MalformedFile, path, "header without the field '{}'", name);
   return found->second;
 }
 
-std::string optional_field(const Fields& fields, std::string_view name) {
+std::string optional_field(const NrrdFields& fields, std::string_view name) {
   const auto found = fields.find(name);
   return found == fields.end() ? std::string() : found->second;
 }
 
-std::vector<std::uint64_t> read_sizes(const Fields& fields, const fs::path& path) {
+std::vector<std::uint64_t> read_nrrd_sizes(const NrrdFields& fields, const fs::path& path) {
   std::uint64_t dimension = 0;
   const std::string& text = required(fields, "dimension", path);
   constexpr std::uint64_t kMostAxes = 16;
@@ -113,15 +113,15 @@ std::vector<std::uint64_t> read_sizes(const Fields& fields, const fs::path& path
   return sizes;
 }
 
-struct StoredType {
+struct NrrdType {
   const char* name;
   unsigned bytes;
 };
 
-StoredType read_type(const Fields& fields, const fs::path& path) {
+NrrdType read_nrrd_type(const NrrdFields& fields, const fs::path& path) {
   const std::string& text = required(fields, "type", path);
   const std::string name = without_blanks(text);
-  static constexpr std::array<std::pair<StoredType, std::string_view>, 10> kTypes = {{
+  static constexpr std::array<std::pair<NrrdType, std::string_view>, 10> kTypes = {{
       {{"int8", 1}, " signedchar int8 int8_t "},
       {{"uint8", 1}, " uchar unsignedchar uint8 uint8_t "},
       {{"int16", 2}, " short shortint signedshort signedshortint int16 int16_t "},
@@ -140,7 +140,7 @@ StoredType read_type(const Fields& fields, const fs::path& path) {
 }
 
 /// A field with one number per axis; NaN for entries "nan", and for all axes if the field is absent.
-std::vector<double> per_axis(const Fields& fields, std::string_view name, std::size_t axes, const fs::path& path) {
+std::vector<double> per_axis(const NrrdFields& fields, std::string_view name, std::size_t axes, const fs::path& path) {
   std::vector<double> values;
   const std::string text = optional_field(fields, name);
   if (text.empty()) return std::vector<double>(axes, kNaN);
@@ -159,7 +159,7 @@ std::vector<double> per_axis(const Fields& fields, std::string_view name, std::s
 }
 
 /// A field with one word per axis; empty if the field is absent.
-std::vector<std::string> words_per_axis(const Fields& fields, std::string_view name, std::size_t axes,
+std::vector<std::string> words_per_axis(const NrrdFields& fields, std::string_view name, std::size_t axes,
                                         const fs::path& path) {
   std::vector<std::string> result;
   const std::string text = optional_field(fields, name);
@@ -171,7 +171,7 @@ std::vector<std::string> words_per_axis(const Fields& fields, std::string_view n
 }
 
 /// A field of `count` quoted strings; empty strings if the field is absent.
-std::vector<std::string> quoted_strings(const Fields& fields, std::string_view name, std::size_t count,
+std::vector<std::string> quoted_strings(const NrrdFields& fields, std::string_view name, std::size_t count,
                                         const fs::path& path) {
   constexpr std::size_t kLongest = 1024;  // bytes of a string
   const std::string text = optional_field(fields, name);
@@ -237,7 +237,7 @@ struct Space {
   bool flip_y = false;
 };
 
-Space read_space(const Fields& fields, const fs::path& path) {
+Space read_space(const NrrdFields& fields, const fs::path& path) {
   const std::string name = lower(optional_field(fields, "space"));
   const std::string dimension = optional_field(fields, "spacedimension");
   if (name.empty() && dimension.empty()) return {};
@@ -267,16 +267,16 @@ Space read_space(const Fields& fields, const fs::path& path) {
   return space;
 }
 
-struct Header {
+struct NrrdHeader {
   std::vector<std::uint64_t> sizes;
-  StoredType type{};
+  NrrdType type{};
   std::optional<std::size_t> list_axis;  ///< axis of a list of images, read as time
   std::vector<bool> kept;                ///< by file axis: whether it is an axis of the image
   StoredSamples samples;
 };
 
 /// Classifies the axes: axes of the image, at most one list of images, and axes of components of a value.
-void read_kinds(const Fields& fields, Header& header, const fs::path& path) {
+void read_kinds(const NrrdFields& fields, NrrdHeader& header, const fs::path& path) {
   const auto kinds = words_per_axis(fields, "kinds", header.sizes.size(), path);
   for (std::size_t a = 0; a < kinds.size(); ++a) {
     const std::string& kind = kinds[a];
@@ -307,7 +307,7 @@ std::uint64_t after_lines(const fs::path& path, std::uint64_t offset, std::uint6
   return offset;
 }
 
-Encoding read_encoding(const Fields& fields, const fs::path& path) {
+Encoding read_nrrd_encoding(const NrrdFields& fields, const fs::path& path) {
   const std::string name = lower(required(fields, "encoding", path));
   if (name == "raw") return Encoding::raw;
   if (name == "gz" || name == "gzip") return Encoding::deflate;
@@ -317,7 +317,7 @@ Encoding read_encoding(const Fields& fields, const fs::path& path) {
 }
 
 /// Whether samples are not in this machine's byte order.
-bool read_byte_order(const Fields& fields, const Header& header, const fs::path& path) {
+bool read_byte_order(const NrrdFields& fields, const NrrdHeader& header, const fs::path& path) {
   if (header.type.bytes == 1 || header.samples.encoding == Encoding::text) return false;
   const std::string& order = required(fields, "endian", path);
   if (lower(order) != "little" && lower(order) != "big")
@@ -326,7 +326,7 @@ bool read_byte_order(const Fields& fields, const Header& header, const fs::path&
 }
 
 /// Sets the offset of the samples, after the lines and bytes to skip.
-void skip_to_samples(const Fields& fields, StoredSamples& samples, const fs::path& path) {
+void skip_to_samples(const NrrdFields& fields, StoredSamples& samples, const fs::path& path) {
   std::uint64_t lines = 0;
   std::int64_t bytes = 0;
   const std::string line_skip = optional_field(fields, "lineskip");
@@ -351,11 +351,11 @@ void skip_to_samples(const Fields& fields, StoredSamples& samples, const fs::pat
   }
 }
 
-void locate_data(const Text& text, Header& header, bool allow_outside_paths, const fs::path& path) {
+void locate_data(const Text& text, NrrdHeader& header, bool allow_outside_paths, const fs::path& path) {
   StoredSamples& samples = header.samples;
   samples.type = header.type.name;
   samples.sizes = header.sizes;
-  samples.encoding = read_encoding(text.fields, path);
+  samples.encoding = read_nrrd_encoding(text.fields, path);
   samples.swapped = read_byte_order(text.fields, header, path);
   const std::string file = optional_field(text.fields, "datafile");
   if (file.empty() && !text.has_blank_line)
@@ -368,10 +368,10 @@ void locate_data(const Text& text, Header& header, bool allow_outside_paths, con
   skip_to_samples(text.fields, samples, path);
 }
 
-Header parse_header(const Text& text, bool allow_outside_paths, const fs::path& path) {
-  Header header;
-  header.sizes = read_sizes(text.fields, path);
-  header.type = read_type(text.fields, path);
+NrrdHeader parse_header(const Text& text, bool allow_outside_paths, const fs::path& path) {
+  NrrdHeader header;
+  header.sizes = read_nrrd_sizes(text.fields, path);
+  header.type = read_nrrd_type(text.fields, path);
   checked_bytes(header.sizes, header.type.bytes, path);
   read_kinds(text.fields, header, path);
   locate_data(text, header, allow_outside_paths, path);
@@ -379,8 +379,8 @@ Header parse_header(const Text& text, bool allow_outside_paths, const fs::path& 
 }
 
 /// Steps and origins of axes without directions: from spacings, else from the range of the axis.
-void scalar_geometry(const Fields& fields, Header& header, std::vector<double>& steps, std::vector<double>& origins,
-                     const fs::path& path) {
+void scalar_geometry(const NrrdFields& fields, NrrdHeader& header, std::vector<double>& steps,
+                     std::vector<double>& origins, const fs::path& path) {
   const std::size_t n = header.sizes.size();
   steps = per_axis(fields, "spacings", n, path);
   origins = per_axis(fields, "axismins", n, path);
@@ -398,8 +398,8 @@ void scalar_geometry(const Fields& fields, Header& header, std::vector<double>& 
 /// Fills the affine from the space directions of the axes. If fewer axes have directions than the space has dimensions,
 /// the image is a plane or line in it, and its axes get lengths only. Returns whether directions were used, so the grid
 /// is in the frame of the space.
-bool spatial_geometry(const Fields& fields, const Space& space, const std::vector<bool>& kept, Eigen::MatrixXd& affine,
-                      Eigen::VectorXd& offset, const fs::path& path) {
+bool spatial_geometry(const NrrdFields& fields, const Space& space, const std::vector<bool>& kept,
+                      Eigen::MatrixXd& affine, Eigen::VectorXd& offset, const fs::path& path) {
   const auto directions = vectors(required(fields, "spacedirections", path), space.dimension, path);
   const auto origins = vectors(optional_field(fields, "spaceorigin"), space.dimension, path);
   if (directions.size() != kept.size())
@@ -437,7 +437,8 @@ bool spatial_geometry(const Fields& fields, const Space& space, const std::vecto
 }
 
 /// Sets names and units of the image's axes.
-void label_axes(const Fields& fields, const Header& header, const Space& space, RawGrid& grid, const fs::path& path) {
+void label_axes(const NrrdFields& fields, const NrrdHeader& header, const Space& space, RawGrid& grid,
+                const fs::path& path) {
   const auto labels = quoted_strings(fields, "labels", header.sizes.size(), path);
   const auto units = quoted_strings(fields, "units", header.sizes.size(), path);
   const auto space_units = quoted_strings(fields, "spaceunits", space.dimension, path);
@@ -463,7 +464,7 @@ void label_axes(const Fields& fields, const Header& header, const Space& space, 
 }
 
 /// Validates fields that do not affect samples or coordinates.
-void require_sound_rest(const Fields& fields, const Header& header, const Space& space, const fs::path& path) {
+void require_sound_rest(const NrrdFields& fields, const NrrdHeader& header, const Space& space, const fs::path& path) {
   per_axis(fields, "thicknesses", header.sizes.size(), path);
   for (const char* name : {"min", "max", "oldmin", "oldmax"}) {
     double value = 0;
@@ -478,7 +479,7 @@ void require_sound_rest(const Fields& fields, const Header& header, const Space&
          count, space.dimension);
 }
 
-RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, const fs::path& path) {
+RawGrid make_grid(const NrrdFields& fields, NrrdHeader& header, std::string& frame, const fs::path& path) {
   // geometry without directions
   std::vector<double> steps;
   std::vector<double> origins;
@@ -514,7 +515,7 @@ RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, cons
 
 StoredImage open_nrrd(const fs::path& path, bool allow_outside_paths) {
   const Text text = read_header_text(path);
-  Header header = parse_header(text, allow_outside_paths, path);
+  NrrdHeader header = parse_header(text, allow_outside_paths, path);
   StoredImage image;
   image.grid = make_grid(text.fields, header, image.info.world_frame, path);
   image.info.format = "NRRD";

@@ -24,7 +24,7 @@ namespace tegl::io_detail {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 struct Positions {
   std::vector<std::array<float, 3>> values;
@@ -110,8 +110,8 @@ struct Content {
   std::vector<GltfAttribute> attributes;
 };
 
-Json asset(const MeshView& mesh) {
-  Json extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
+OrderedJson asset(const MeshView& mesh) {
+  OrderedJson extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
   extras["axis_names"] = mesh.axis_names;
   extras["axis_units"] = mesh.axis_units;
   if (mesh.isovalue) extras["isovalue"] = *mesh.isovalue;
@@ -128,27 +128,28 @@ class BufferArrays {
 
   /// Appends an array of `count` items. Returns the number of its accessor. `limits`: "min" and "max", or empty.
   std::size_t add(int component, std::size_t count, const char* type, std::size_t bytes, int target,
-                  const Json& limits = Json::object()) {
-    Json accessor = {{"bufferView", views_.size()}, {"componentType", component}, {"count", count}, {"type", type}};
+                  const OrderedJson& limits = OrderedJson::object()) {
+    OrderedJson accessor = {
+        {"bufferView", views_.size()}, {"componentType", component}, {"count", count}, {"type", type}};
     accessor.update(limits);
     accessors_.push_back(std::move(accessor));
     views_.push_back({{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}, {"target", target}});
     bytes_ += bytes;
     return accessors_.size() - 1;
   }
-  void write(Json& json) const {
+  void write(OrderedJson& json) const {
     json["accessors"] = accessors_;
     json["bufferViews"] = views_;
   }
 
  private:
-  Json accessors_ = Json::array();
-  Json views_ = Json::array();
+  OrderedJson accessors_ = OrderedJson::array();
+  OrderedJson views_ = OrderedJson::array();
   std::size_t bytes_ = 0;
 };
 
 /// Adds vertices, simplices and normals; `primitive` refers to their accessors.
-void add_geometry(const Content& content, BufferArrays& arrays, Json& primitive) {
+void add_geometry(const Content& content, BufferArrays& arrays, OrderedJson& primitive) {
   const auto& [mesh, points, attributes] = content;
   constexpr int kLines = 1;
   constexpr int kTriangles = 4;
@@ -167,8 +168,8 @@ void add_geometry(const Content& content, BufferArrays& arrays, Json& primitive)
 }
 
 /// Adds the vertex attributes. Returns their names and units.
-Json add_attributes(const Content& content, BufferArrays& arrays, Json& primitive) {
-  Json texts;
+OrderedJson add_attributes(const Content& content, BufferArrays& arrays, OrderedJson& primitive) {
+  OrderedJson texts;
   for (const GltfAttribute& added : content.attributes) {
     constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     primitive["attributes"][added.semantic] =
@@ -182,25 +183,25 @@ Json add_attributes(const Content& content, BufferArrays& arrays, Json& primitiv
 }
 
 /// The JSON document. glTF allows no empty accessor, so an empty mesh is a scene without nodes.
-Json document(const Content& content, std::size_t buffer_bytes) {
-  Json json = {{"asset", asset(content.mesh)}, {"scene", 0}};
+OrderedJson document(const Content& content, std::size_t buffer_bytes) {
+  OrderedJson json = {{"asset", asset(content.mesh)}, {"scene", 0}};
   if (content.points.values.empty() || content.mesh.simplices.empty()) {
-    json["scenes"] = Json::array({Json{{"name", "empty contour"}}});
+    json["scenes"] = OrderedJson::array({OrderedJson{{"name", "empty contour"}}});
     return json;
   }
   BufferArrays arrays;
-  Json primitive;
+  OrderedJson primitive;
   add_geometry(content, arrays, primitive);
-  const Json attributes = add_attributes(content, arrays, primitive);
-  Json mesh = {{"name", "contour"}, {"primitives", Json::array({primitive})}};
+  const OrderedJson attributes = add_attributes(content, arrays, primitive);
+  OrderedJson mesh = {{"name", "contour"}, {"primitives", OrderedJson::array({primitive})}};
   if (!attributes.empty()) mesh["extras"]["tegl"]["attributes"] = attributes;
   // scene, node, mesh, material, buffer
-  json["scenes"] = Json::array({Json{{"nodes", {0}}}});
-  json["nodes"] = Json::array({Json{{"mesh", 0}, {"name", "contour"}}});
-  json["meshes"] = Json::array({mesh});
-  json["materials"] = Json::array({Json{{"name", "contour"}, {"doubleSided", true}}});
+  json["scenes"] = OrderedJson::array({OrderedJson{{"nodes", {0}}}});
+  json["nodes"] = OrderedJson::array({OrderedJson{{"mesh", 0}, {"name", "contour"}}});
+  json["meshes"] = OrderedJson::array({mesh});
+  json["materials"] = OrderedJson::array({OrderedJson{{"name", "contour"}, {"doubleSided", true}}});
   arrays.write(json);
-  json["buffers"] = Json::array({Json{{"byteLength", buffer_bytes}}});
+  json["buffers"] = OrderedJson::array({OrderedJson{{"byteLength", buffer_bytes}}});
   return json;
 }
 
@@ -237,9 +238,9 @@ std::size_t buffer_size(const Content& content) {
   return bytes;
 }
 
-std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string dumped(const OrderedJson& json) { return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace); }
 
-void write_text(const Content& content, Json json, OutputFile& file) {
+void write_text(const Content& content, OrderedJson json, OutputFile& file) {
   if (json.contains("buffers")) {
     std::vector<unsigned char> buffer;
     for (const auto part : buffer_parts(content)) buffer.insert(buffer.end(), part.begin(), part.end());
@@ -248,7 +249,7 @@ void write_text(const Content& content, Json json, OutputFile& file) {
   file.write(dumped(json));
 }
 
-void write_binary(const Content& content, const Json& json, OutputFile& file) {
+void write_binary(const Content& content, const OrderedJson& json, OutputFile& file) {
   constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
   constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
   constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
@@ -283,7 +284,7 @@ void write_gltf(const MeshView& mesh, const PendingPath& pending, const Progress
   Content content{mesh, positions(mesh, path), gltf_attributes(mesh, path)};
   content.points.normals = normals(mesh);
   tick(progress, 0.5, path);
-  const Json json = document(content, buffer_size(content));
+  const OrderedJson json = document(content, buffer_size(content));
   if (lower_name(path).ends_with(".glb"))
     write_binary(content, json, file);
   else

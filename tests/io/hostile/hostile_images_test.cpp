@@ -52,11 +52,6 @@ std::string meta(const std::string& fields, const std::string& samples, const st
 }
 const std::string kBinary = "BinaryData = True\n";
 const std::string kText = "BinaryData = False\n";
-std::string repeated(const std::string& text, std::size_t count) {
-  std::string result;
-  for (std::size_t i = 0; i < count; ++i) result += text;
-  return result;
-}
 
 TEST(HostileImages, MetaImage) {
   const std::string zipped = compressed("1234", true);

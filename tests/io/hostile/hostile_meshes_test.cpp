@@ -50,12 +50,6 @@ void expect_refused(const fs::path& path, ErrorCode code, const std::vector<std:
   }
 }
 
-std::string repeated(const std::string& text, std::size_t count) {
-  std::string result;
-  for (std::size_t i = 0; i < count; ++i) result += text;
-  return result;
-}
-
 template <class T>
 std::string raw(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};

@@ -54,10 +54,6 @@ void expect_damaged(const Error& error, const std::string& reason) {
   EXPECT_THAT(error.what(), testing::HasSubstr(kFile.string() + ": is damaged: reading it " + reason));
 }
 
-std::size_t open_descriptors() {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
-}
-
 bool has_children() { return waitpid(-1, nullptr, WNOHANG) >= 0; }
 
 TEST(ChildProcess, SendsNumbersTextsAndArraysOfAllSizes) {

@@ -23,10 +23,6 @@ using Clock = std::chrono::steady_clock;
 
 const ReadImageOptions kSeparate{.separate_process = true};
 
-std::size_t open_descriptors() {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
-}
-
 /// A process whose parent is this one, if any.
 std::optional<pid_t> child_of_this() {
   for (const auto& entry : fs::directory_iterator("/proc")) {
