@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Which tetrahedra of a 4D contour a time cuts, and into how many triangles: by the rule of tegl::slice
-// (runtime/src/cut/cutter.cpp), so that the numbers are the library's at every time, those of vertices included.
+// (runtime/src/cut/closed_cut.cpp), so that the numbers are the library's at every time, those of vertices included.
 //
 // Times are compared as whole numbers. A vertex's rank is the place of its time among all different ones; its key is
 // twice that, plus 1 if it counts as above a cut at its own time. A cut between two times, or at one, is then a
@@ -247,7 +247,7 @@ export class Cuts {
   }
 }
 
-/** The cut at a time of vertices; see runtime/src/cut/cutter.cpp for why it is as it is. */
+/** The cut at a time of vertices; see runtime/src/cut/closed_cut.cpp for why it is as it is. */
 class CutAtVertices {
   constructor(cuts, rank) {
     this.cuts = cuts;

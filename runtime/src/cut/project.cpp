@@ -6,8 +6,8 @@
 // Classifying tetrahedra as near or far would give the outline of the simplices: jagged, with a fold wherever the
 // diagonal of a nonplanar quadrilateral changes from one time to the next. Instead the normals at the vertices are
 // interpolated, as is usual for silhouettes of surfaces. The outline is then the zero set of a function that is linear
-// on each tetrahedron, that is, a cut with the function as a coordinate. cutter.cpp proves that the cut of a manifold
-// is a manifold.
+// on each tetrahedron, that is, a cut with the function as a coordinate. closed_cut.cpp proves that the cut of a
+// manifold is a manifold.
 //
 // Based on: A. Hertzmann and D. Zorin, Illustrating smooth surfaces, 2000 (outlines by interpolated normals);
 // M. Liversage, thesis, 1994, section 10.2.

@@ -25,7 +25,7 @@
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
-#include "cut/cutter.hpp"
+#include "cut/closed_cut.hpp"
 #include "mesh/validate.hpp"
 
 namespace tegl {

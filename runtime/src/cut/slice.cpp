@@ -8,7 +8,7 @@
 
 #include "base/progress.hpp"
 #include "base/workers.hpp"
-#include "cut/cutter.hpp"
+#include "cut/closed_cut.hpp"
 #include "mesh/validate.hpp"
 
 namespace tegl {

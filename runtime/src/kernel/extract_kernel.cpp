@@ -13,7 +13,7 @@
 
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
-#include "kernel/close.hpp"
+#include "kernel/border_caps.hpp"
 #include "kernel/extract_generate.hpp"
 #include "kernel/extract_progress.hpp"
 #include "kernel/generate_cubes.hpp"

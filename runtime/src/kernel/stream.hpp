@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "image/row_source.hpp"
-#include "kernel/close.hpp"
+#include "kernel/border_caps.hpp"
 #include "kernel/extract_kernel.hpp"
 #include "kernel/split_nonmanifold.hpp"
 #include "tegl/stream.hpp"

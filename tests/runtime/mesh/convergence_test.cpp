@@ -37,7 +37,7 @@ void expect_second_order(const Field& field, double half_width, std::size_t samp
   EXPECT_GT(order, 1.7) << "errors " << errors[0] << ' ' << errors[1] << ' ' << errors[2];
 }
 
-constexpr auto kMeasure = [](const auto& contour) { return measure(contour); };
+constexpr auto kMeasure = [](const auto& contour) { return test::measure(contour); };
 constexpr auto kContent = [](const auto& contour) { return enclosed_content(contour); };
 
 template <int N>

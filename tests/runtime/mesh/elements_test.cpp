@@ -55,7 +55,8 @@ void expect_elements_of_a_ball(std::size_t samples) {
     ASSERT_EQ(all.centroids.size(), contour.simplices.size());
     const ElementSum<N> sum = sum_of(all);
     error = sum.measure / ball.surface() - 1.0;
-    EXPECT_NEAR(sum.measure, measure(contour), 1e-9 * sum.measure);  // its roots of determinants have half the digits
+    EXPECT_NEAR(sum.measure, test::measure(contour),
+                1e-9 * sum.measure);  // its roots of determinants have half the digits
     EXPECT_LT(sum.closure_error(), 1e-13);
     double flux = 0;
     for (std::size_t e = 0; e < all.centroids.size(); ++e) flux += dot<N>(all.centroids[e], all.normals[e]);

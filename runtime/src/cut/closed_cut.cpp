@@ -33,7 +33,7 @@
 // the image along another axis whose vertices are all on. The cut from below is complete without them. The extraction
 // creates no such faces for layers of the last axis. For other axes, faces that may be of this kind are omitted; for
 // oblique hyperplanes, which are no layers, all are omitted.
-#include "cut/cutter.hpp"
+#include "cut/closed_cut.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Caps of a contour at the image border (see close.hpp). A border face of an N-dimensional image is an image of
+// Caps of a contour at the image border (see border_caps.hpp). A border face of an N-dimensional image is an image of
 // dimension N - 1. Its cap is the high set, built tile by tile from the region tables.
-#include "kernel/close.hpp"
+#include "kernel/border_caps.hpp"
 
 #include <utility>
 
