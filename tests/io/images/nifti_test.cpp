@@ -30,7 +30,7 @@ TEST(Nifti, ValuesAndSizesComeBackInOrder) {
 }
 
 template <class Stored, class Read>
-void expect_type(int code, const char* name, double start) {
+void expect_nifti_type(int code, const char* name, double start) {
   SCOPED_TRACE(name);
   TempDir dir;
   const auto values = counting<Stored>(2 * 3 * 4, start);
@@ -43,18 +43,18 @@ void expect_type(int code, const char* name, double start) {
 }
 
 TEST(Nifti, ReadsEveryNumericType) {
-  expect_type<std::uint8_t, std::uint8_t>(2, "uint8", 0);
-  expect_type<std::int16_t, std::int16_t>(4, "int16", -20);
-  expect_type<std::int32_t, std::int32_t>(8, "int32", -2e9);
-  expect_type<float, float>(16, "float", -0.25);
-  expect_type<double, double>(64, "double", 1e-3);
-  expect_type<std::int8_t, std::int8_t>(256, "int8", -20);
-  expect_type<std::uint16_t, std::uint16_t>(512, "uint16", 65000);
-  expect_type<std::uint32_t, std::int32_t>(768, "uint32", 2e9);
-  expect_type<std::uint32_t, double>(768, "uint32", 4e9);
-  expect_type<std::int64_t, std::int32_t>(1024, "int64", -2e9);
-  expect_type<std::int64_t, double>(1024, "int64", -4e12);
-  expect_type<std::uint64_t, double>(1280, "uint64", 4e12);
+  expect_nifti_type<std::uint8_t, std::uint8_t>(2, "uint8", 0);
+  expect_nifti_type<std::int16_t, std::int16_t>(4, "int16", -20);
+  expect_nifti_type<std::int32_t, std::int32_t>(8, "int32", -2e9);
+  expect_nifti_type<float, float>(16, "float", -0.25);
+  expect_nifti_type<double, double>(64, "double", 1e-3);
+  expect_nifti_type<std::int8_t, std::int8_t>(256, "int8", -20);
+  expect_nifti_type<std::uint16_t, std::uint16_t>(512, "uint16", 65000);
+  expect_nifti_type<std::uint32_t, std::int32_t>(768, "uint32", 2e9);
+  expect_nifti_type<std::uint32_t, double>(768, "uint32", 4e9);
+  expect_nifti_type<std::int64_t, std::int32_t>(1024, "int64", -2e9);
+  expect_nifti_type<std::int64_t, double>(1024, "int64", -4e12);
+  expect_nifti_type<std::uint64_t, double>(1280, "uint64", 4e12);
 }
 
 TEST(Nifti, SformWithShearIsExact) {

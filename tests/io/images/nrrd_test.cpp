@@ -6,7 +6,7 @@
 namespace tegl::test {
 namespace {
 
-std::string header(const std::string& lines) { return "NRRD0004\n" + lines; }
+std::string nrrd_header(const std::string& lines) { return "NRRD0004\n" + lines; }
 
 const std::string kSmall = "type: uint8\ndimension: 3\nsizes: 2 3 4\n";
 
@@ -26,12 +26,12 @@ TEST(Nrrd, EncodingsAllGiveTheSameValues) {
                                        {"ascii", text},
                                        {"hex", hex}}) {
     SCOPED_TRACE(encoding);
-    write_file(dir / "a.nrrd", header(lines + encoding + "\n\n" + data));
+    write_file(dir / "a.nrrd", nrrd_header(lines + encoding + "\n\n" + data));
     const auto [any, info] = read_image(dir / "a.nrrd");
     EXPECT_EQ((image_as<std::int16_t, 3>(any).values), values);
     EXPECT_EQ(info.format, "NRRD");
     EXPECT_EQ(info.stored_type, "int16");
-    write_file(dir / "b.nhdr", header(lines + encoding + "\ndata file: b.dat\n"));
+    write_file(dir / "b.nhdr", nrrd_header(lines + encoding + "\ndata file: b.dat\n"));
     write_file(dir / "b.dat", data);
     EXPECT_EQ((image_as<std::int16_t, 3>(read_image(dir / "b.nhdr").image).values), values);
   }
@@ -43,7 +43,7 @@ TEST(Nrrd, BigEndianAndWideTypes) {
   for (const std::uint64_t value : {1U, 2U, 3U, 4000000000U})
     for (int shift = 56; shift >= 0; shift -= 8) data += static_cast<char>(value >> shift);
   write_file(dir / "a.nrrd",
-             header("type: unsigned long long\ndimension: 2\nsizes: 2 2\nendian: big\nencoding: raw\n\n" + data));
+             nrrd_header("type: unsigned long long\ndimension: 2\nsizes: 2 2\nendian: big\nencoding: raw\n\n" + data));
   const auto [any, info] = read_image(dir / "a.nrrd");
   EXPECT_THAT((image_as<double, 2>(any).values), testing::ElementsAre(1, 2, 3, 4000000000.0));
   EXPECT_EQ(info.stored_type, "uint64");
@@ -51,7 +51,7 @@ TEST(Nrrd, BigEndianAndWideTypes) {
 
 TEST(Nrrd, SpacingsMinimaLabelsAndUnits) {
   TempDir dir;
-  write_file(dir / "a.nrrd", header("# comment\n" + kSmall +
+  write_file(dir / "a.nrrd", nrrd_header("# comment\n" + kSmall +
                                     "spacings: 0.5 2 NaN\naxis mins: 10 NaN 5\naxis maxs: NaN NaN 11\n"
                                     "labels: \"lon\" \"\" \"a \\\"quoted\\\" name\"\nunits: \"deg\" \"km\" \"\"\n"
                                     "centers: cell node node\nkey:=any value: with colons\nencoding: raw\n\n" +
@@ -69,7 +69,7 @@ TEST(Nrrd, SpacingsMinimaLabelsAndUnits) {
 TEST(Nrrd, SpaceDirectionsAreExactAndTurnedToLps) {
   TempDir dir;
   const auto read = [&](const std::string& space) {
-    write_file(dir / "a.nrrd", header(kSmall + "space: " + space +
+    write_file(dir / "a.nrrd", nrrd_header(kSmall + "space: " + space +
                                       "\nspace directions: (1,2,0) (0, 3,-1) (0.5,0,4)\nspace origin: (10,20,30)\n"
                                       "encoding: raw\n\n" +
                                       std::string(24, 'x')));
@@ -97,7 +97,7 @@ TEST(Nrrd, SpaceDirectionsAreExactAndTurnedToLps) {
 TEST(Nrrd, TimeBesideSpaceStaysDecoupled) {
   TempDir dir;
   write_file(dir / "a.nrrd",
-             header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nspace: LPS\nkinds: domain domain domain time\n"
+             nrrd_header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nspace: LPS\nkinds: domain domain domain time\n"
                     "space directions: (0,2,0) (2,0,0) (0,0,2) none\nspace origin: (1,1,1)\nspacings: NaN NaN NaN 0.5\n"
                     "units: \"\" \"\" \"\" \"s\"\nencoding: raw\n\n" +
                     std::string(24, 'x')));
@@ -118,9 +118,9 @@ TEST(Nrrd, ListOfImagesBecomesTheLastAxisWhereverItIs) {
   for (int i = 0; i < 24; ++i) last += static_cast<char>(i);
   const std::string space = "space: LPS\nspace origin: (0,0,0)\nencoding: raw\n";
   const std::string directions = "(1,0,0) (0,1,0) (0,0,1)";
-  write_file(dir / "a.nrrd", header("type: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: list domain domain domain\n" +
+  write_file(dir / "a.nrrd", nrrd_header("type: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: list domain domain domain\n" +
                                     space + "space directions: none " + directions + "\n\n" + first));
-  write_file(dir / "b.nrrd", header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nkinds: domain domain domain list\n" +
+  write_file(dir / "b.nrrd", nrrd_header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nkinds: domain domain domain list\n" +
                                     space + "space directions: " + directions + " none\n\n" + last));
   for (const char* name : {"a.nrrd", "b.nrrd"}) {
     SCOPED_TRACE(name);
@@ -135,11 +135,11 @@ TEST(Nrrd, SkipsLinesAndBytes) {
   TempDir dir;
   const std::string data = bytes_of(counting<std::uint8_t>(24));
   write_file(dir / "a.dat", "one\ntwo\n###" + data);
-  write_file(dir / "a.nhdr", header(kSmall + "encoding: raw\nline skip: 2\nbyte skip: 3\ndata file: a.dat\n"));
+  write_file(dir / "a.nhdr", nrrd_header(kSmall + "encoding: raw\nline skip: 2\nbyte skip: 3\ndata file: a.dat\n"));
   EXPECT_EQ((image_as<std::uint8_t, 3>(read_image(dir / "a.nhdr").image).values), counting<std::uint8_t>(24));
-  write_file(dir / "a.nhdr", header(kSmall + "encoding: raw\nbyte skip: -1\ndata file: a.dat\n"));
+  write_file(dir / "a.nhdr", nrrd_header(kSmall + "encoding: raw\nbyte skip: -1\ndata file: a.dat\n"));
   EXPECT_EQ((image_as<std::uint8_t, 3>(read_image(dir / "a.nhdr").image).values), counting<std::uint8_t>(24));
-  write_file(dir / "a.nhdr", header(kSmall + "encoding: raw\nline skip: 2\nbyte skip: 4\ndata file: a.dat\n"));
+  write_file(dir / "a.nhdr", nrrd_header(kSmall + "encoding: raw\nline skip: 2\nbyte skip: 4\ndata file: a.dat\n"));
   expect_error(ErrorCode::MalformedFile, {"a.dat", "23 bytes of data; expected 24"},
                [&] { read_image(dir / "a.nhdr"); });
 }
@@ -151,7 +151,7 @@ TEST(Nrrd, DataFilesOutsideOfTheFolderAreReadOnlyIfAllowed) {
   write_file(dir / "headers/below/b.raw", bytes_of(counting<std::uint8_t>(24)));
   const fs::path file = dir / "headers/a.nhdr";
   const auto write = [&](const std::string& name) {
-    write_file(file, header(kSmall + "encoding: raw\ndata file: " + name + "\n"));
+    write_file(file, nrrd_header(kSmall + "encoding: raw\ndata file: " + name + "\n"));
   };
   fs::create_directory_symlink(dir.path(), dir / "headers/up");
   for (const std::string& name : {std::string("../a.raw"), (dir / "a.raw").string(), std::string("up/a.raw")}) {
@@ -174,7 +174,7 @@ TEST(Nrrd, DataFilesOutsideOfTheFolderAreReadOnlyIfAllowed) {
 
 TEST(Nrrd, MissingDataFileIsNamed) {
   TempDir dir;
-  write_file(dir / "a.nhdr", header(kSmall + "encoding: raw\ndata file: nowhere.raw\n"));
+  write_file(dir / "a.nhdr", nrrd_header(kSmall + "encoding: raw\ndata file: nowhere.raw\n"));
   expect_error(ErrorCode::FileNotFound, {"nowhere.raw", "no such file"}, [&] { read_image(dir / "a.nhdr"); });
 }
 
@@ -184,7 +184,7 @@ TEST(Nrrd, ShortDataIsAnErrorNotZeros) {
   const std::string zipped = compressed(std::string(24, 'x'));
   const auto expect = [&](const std::string& encoding, const std::string& data, const std::string& part) {
     SCOPED_TRACE(encoding);
-    write_file(dir / "a.nrrd", header(kSmall + "encoding: " + encoding + "\n\n" + data));
+    write_file(dir / "a.nrrd", nrrd_header(kSmall + "encoding: " + encoding + "\n\n" + data));
     expect_unreadable(ErrorCode::MalformedFile, dir / "a.nrrd", {part});
   };
   expect("raw", std::string(23, 'x'), "23 bytes of data; expected 24 for 2 x 3 x 4 samples of type uint8");
@@ -199,7 +199,7 @@ TEST(Nrrd, BrokenHeadersAreNamed) {
   TempDir dir;
   const auto expect = [&](ErrorCode code, const std::string& lines, const std::string& part) {
     SCOPED_TRACE(lines);
-    write_file(dir / "a.nrrd", header(lines + "\n" + std::string(64, 'x')));
+    write_file(dir / "a.nrrd", nrrd_header(lines + "\n" + std::string(64, 'x')));
     expect_unreadable(code, dir / "a.nrrd", {part});
   };
   const auto bad = [&](const std::string& lines, const std::string& part) {
@@ -236,7 +236,7 @@ TEST(Nrrd, BrokenHeadersAreNamed) {
   expect(ErrorCode::UnsupportedData, "type: uint8\ndimension: 5\nsizes: 2 2 2 2 2\nencoding: raw\n", "image of 5 axes");
   write_file(dir / "b.nrrd", "NRRD0009\n" + kSmall);
   expect_unreadable(ErrorCode::MalformedFile, dir / "b.nrrd", {"'NRRD0009'", "expected 'NRRD0001' to 'NRRD0005'"});
-  write_file(dir / "c.nhdr", header(kSmall + "encoding: raw"));
+  write_file(dir / "c.nhdr", nrrd_header(kSmall + "encoding: raw"));
   expect_unreadable(ErrorCode::MalformedFile, dir / "c.nhdr", {"neither a 'data file' nor data after the header"});
 }
 
