@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
       std::printf("%-6s %s field: %d component(s)\n", way.name, second ? "second" : "first", int(report.components));
       as_expected = as_expected && report.components == way.expected[second] && report.bad_links == 0;
       if (argc > 1)
-        tegl::write_mesh(tegl::to_mesh(contour),
+        tegl::write_mesh(contour,
                          std::filesystem::path(argv[1]) / (std::string(way.name) + (second ? "_2.ply" : "_1.ply")));
     }
   return as_expected ? 0 : 1;

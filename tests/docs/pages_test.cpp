@@ -77,7 +77,7 @@ TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
   tegl::SimplifyOptions<3> fewer;
   fewer.ratio = 0.1;  // vtkQuadricDecimation
   const tegl::Contour<3> small = tegl::simplify(surface, fewer).contour;
-  tegl::write_mesh(tegl::to_mesh(small), "small.ply");  // vtkPLYWriter
+  tegl::write_mesh(small, "small.ply");  // vtkPLYWriter
   // [/vtk_filters]
   EXPECT_NEAR(volume, ball_volume(), 0.03 * ball_volume());  // the spacings' product is 1
   EXPECT_EQ(parts.size(), 1u);

@@ -69,5 +69,7 @@ struct ValueRange {
   double max = 0;
 };
 ValueRange value_range(const AnyImage& image);
+/// Whether some sample is at or above the isovalue, and some sample is below it. Reads samples until both are found.
+bool has_both_sides(const AnyImage& image, double isovalue);
 
 }  // namespace tegl::cli

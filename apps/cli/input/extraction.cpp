@@ -172,13 +172,13 @@ void require_contour(const ReadImageResult& input, double isovalue, bool allow_e
     }
   };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
-  if (allow_empty) return;
+  if (allow_empty || has_both_sides(input.image, isovalue)) return;
   const ValueRange range = value_range(input.image);
   if (is_outside(isovalue, range)) throw outside_error(isovalue, range, input.info.value_unit);
 }
 
 std::string remark_without_contour(const AnyImage& image, double isovalue) {
-  return is_outside(isovalue, value_range(image)) ? std::string() : remark_on_missing(isovalue);
+  return has_both_sides(image, isovalue) ? remark_on_missing(isovalue) : std::string();
 }
 
 std::string remark_on_missing(double isovalue) {

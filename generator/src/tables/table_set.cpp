@@ -58,6 +58,8 @@ TableSet make_table_set(const TableRequest& request) {
   set.dim = request.dim;
   set.command = request.command;
   const TileClasses classes = tile_classes(lattice.tile(request.dim));
+  // Burnside's lemma by cycle types, independent of the group's elements.
+  if (request.tile == TileKind::cube) require_burnside_count(classes.classes, request.dim, GroupKind::Full, false);
   set.group_order = classes.symmetries.size();
   set.orbits = classes.classes.representatives.size();
   // tables and regions of each triangulation

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -22,7 +23,7 @@ namespace tegl {
 /// samples, weighted by nearness (docs/normals.md); damps noise and takes ten times as long.
 enum class GradientKind { differences, sobel };
 
-/// Options of `extract`, `count` and the streamed functions.
+/// Options of all functions that extract contours: in memory, streamed, counted, as facets, slices or components.
 struct ExtractOptions {
   Triangulation triangulation = Triangulation::compact;      ///< how facets are divided into simplices
   Ambiguity ambiguity = Ambiguity::low;                      ///< how ambiguous faces are resolved
@@ -112,6 +113,12 @@ template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image,
                                                                                  std::span<const double> isovalues,
                                                                                  const ExtractOptions& options = {});
+/// The same for a list: `extract_several(image, {1.0, 2.0})`.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(
+    const Image<T, N>& image, std::initializer_list<double> isovalues, const ExtractOptions& options = {}) {
+  return extract_several<Real>(image, std::span<const double>(isovalues.begin(), isovalues.size()), options);
+}
 
 /// As `count`, with counts and times.
 template <Value T, int N>

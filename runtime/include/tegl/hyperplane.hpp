@@ -17,7 +17,7 @@ template <int N>
 requires DimensionBetween<N, 2, 4>
 struct Hyperplane {
   Vector<N> normal = unit_vector<N>(N - 1);  ///< of any non-zero length
-  double offset = 0.0;                       ///< its distance from 0, times the length of the normal
+  double offset = 0.0;                       ///< its signed distance from 0, times the length of the normal
 
   /// The hyperplane x_axis = at. Throws InvalidArgument for an axis other than 0 to N - 1.
   static Hyperplane across(int axis, double at);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <vector>
@@ -66,5 +67,12 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
                                                                          std::span<const double> at,
                                                                          const WorkOptions& work = {});
+/// The same for a list: `measure_cuts(contour, {1.0, 2.0})`.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
+                                                                         std::initializer_list<double> at,
+                                                                         const WorkOptions& work = {}) {
+  return measure_cuts(contour, std::span<const double>(at.begin(), at.size()), work);
+}
 
 }  // namespace tegl

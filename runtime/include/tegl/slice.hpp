@@ -3,6 +3,7 @@
 // Cuts of contours by hyperplanes: a 4D contour at a time t, or in any other hyperplane.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -36,15 +37,15 @@ namespace tegl {
 /// The cut of a closed manifold is a closed manifold with the same orientation. The cut of a manifold is a manifold. If
 /// merging vertices would pinch the cut, they stay separate at the same position.
 ///
-/// Across the last axis, at a sample's coordinate t = k, the cut is the contour of layer k of the image, bit by bit: the
-/// same vertices and the same oriented simplices, compared by the bits of their coordinates. Numbers, and the vertex
-/// that a simplex begins with, may differ. This holds for contours that `extract` makes with any options, also at the
-/// first and the last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the surface
-/// may lie flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps them out of
-/// the layer.) Conditions: the normal points in the axis's positive direction, Real has numbers between the coordinates
-/// of the layers, and a user's estimator returns the same for a face of the image and for this face of the layer. If
-/// samples are missing, the contour has only the part of the layer that belongs to tiles, and it may be triangulated
-/// differently.
+/// Across the last axis, at a sample's coordinate t = k, the cut is the contour of layer k of the image, bit by bit:
+/// the same vertices and the same oriented simplices, compared by the bits of their coordinates. Numbers, and the
+/// vertex that a simplex begins with, may differ. This holds for contours that `extract` makes with any options, also
+/// at the first and the last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the
+/// surface may lie flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps
+/// them out of the layer.) Conditions: the normal points in the axis's positive direction, Real has numbers between the
+/// coordinates of the layers, and a user's estimator returns the same for a face of the image and for this face of the
+/// layer. If samples are missing, the contour has only the part of the layer that belongs to tiles, and it may be
+/// triangulated differently.
 ///
 /// Across other axes, at a sample's coordinate, the cut is the contour of that layer if no sample equals the
 /// isovalue. If samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the
@@ -68,6 +69,13 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {});
+/// The same for a list: `slice_stack(contour, {Hyperplane<4>::across(3, 1.0), Hyperplane<4>::across(3, 2.0)})`.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+    const Contour<N, Real>& contour, std::type_identity_t<std::initializer_list<Hyperplane<N>>> hyperplanes,
+    const WorkOptions& work = {}) {
+  return slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes.begin(), hyperplanes.size()), work);
+}
 
 /// As `slice_image`, with counts and times of the extraction.
 template <Coordinate Real = float, Value T, int N>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All of the library except the file formats (tegl/io.hpp). A header of its own for each area compiles faster.
+// All of the library except the file formats (tegl/io.hpp), the views for Eigen (tegl/eigen.hpp) and the contours of
+// single cells (tegl/tile/). A header of its own for each area compiles faster.
 #pragma once
 
 #include "tegl/active_tiles.hpp"
@@ -33,5 +34,6 @@
 #include "tegl/tile_facets.hpp"
 #include "tegl/track.hpp"
 #include "tegl/values.hpp"
+#include "tegl/vector.hpp"
 #include "tegl/version.hpp"
 #include "tegl/work.hpp"

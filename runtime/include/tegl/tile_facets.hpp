@@ -23,7 +23,7 @@ requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsign
 
 /// Number of faces of the N-cube, including itself and its corners: 3^N.
 template <int N>
-inline constexpr std::size_t kFaceCount = 3 * kFaceCount<N - 1>;
+requires(N >= 0) inline constexpr std::size_t kFaceCount = 3 * kFaceCount<N - 1>;
 /// A point has one face: itself.
 template <>
 inline constexpr std::size_t kFaceCount<0> = 1;

@@ -134,7 +134,7 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 /// parts of moving surfaces; N = 3: parts of moving lines.
 ///
 /// The result is exactly the Reeb graph of the last coordinate t on the contour. Between two events, each segment is
-/// one component of `slice(contour, t)` for every t; events are vertices of the contour, at their own t. A vertex can
+/// one component of the slice at t for every t; events are vertices of the contour, at their own t. A vertex can
 /// be an event only if the lower or the upper part of its link is not connected. Vertices of equal t are processed in
 /// order of their numbers. Segments of zero duration are merged into one event, which may then have several parts
 /// before and after it; its vertex is the lowest one. Boundary vertices get no special treatment; the contour need not

@@ -20,8 +20,8 @@ template <class T>
 using ValueVector = std::vector<T, UninitialisedAllocator<T, ValueMemory>>;
 }  // namespace detail
 
-/// Samples in one contiguous block of memory, with the functions of a std::vector. Converts from a std::vector without
-/// a copy. New samples are 0.
+/// Samples in one contiguous block of memory, with the most used functions of a std::vector. Converts from a
+/// std::vector without a copy. New samples are 0.
 template <class T>
 class Values {
  public:

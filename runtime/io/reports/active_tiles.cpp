@@ -57,6 +57,7 @@ auto with_file(const fs::path& path, const Work& work) {
 }  // namespace
 
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void write_active_tiles(const ActiveTiles<N>& active, const fs::path& path) {
   write_complete_file(path, [&](const PendingPath& file) {
     FileSink sink(file);
@@ -66,8 +67,8 @@ void write_active_tiles(const ActiveTiles<N>& active, const fs::path& path) {
 }
 
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> read_active_tiles(const fs::path& path, const Image<T, N>& image,
-                                                  const ActiveTilesOptions& options) {
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> read_active_tiles(
+    const fs::path& path, const Image<T, N>& image, const ActiveTilesOptions& options) {
   return with_file(path, [&](ByteSource& source) { return load_active_tiles(source, image, options); });
 }
 

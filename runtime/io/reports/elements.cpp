@@ -198,7 +198,8 @@ void write_hdf5(const Elements<N>& elements, const PendingPath& pending, const E
 }  // namespace
 
 template <int N>
-std::vector<std::string> element_columns(const Elements<N>& elements, const ElementFileOptions& options) {
+requires DimensionBetween<N, 2, 5> std::vector<std::string> element_columns(const Elements<N>& elements,
+                                                                            const ElementFileOptions& options) {
   std::vector<std::string> columns;
   for (const char* prefix : {"", "dsigma_"})
     for (const int axis : order_of<N>(options)) columns.push_back(prefix + name_of_axis(elements, axis));
@@ -209,6 +210,7 @@ std::vector<std::string> element_columns(const Elements<N>& elements, const Elem
 }
 
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void write_elements(const Elements<N>& elements, const fs::path& path, const ElementFileOptions& options) {
   const std::string extension = lower(path.extension().string());
   const bool is_text = extension == ".dat" || extension == ".txt";

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
     const tegl::ReadImageResult file = tegl::read_image(argv[1]);
     const auto& image = std::get<tegl::OwnedImage<float, 4>>(std::get<tegl::AnyImageN<4>>(file.image));
     const auto cut = tegl::slice_image(image.view(), 20.0, tegl::Hyperplane<4>::across(3, 7.3));
-    tegl::write_mesh(tegl::to_mesh(cut), argv[2]);
+    tegl::write_mesh(cut, argv[2]);
     std::printf("%s: %zu triangles\n", argv[2], cut.simplices.size());
     return cut.simplices.empty() ? 1 : 0;
   } catch (const std::exception& error) {

@@ -85,7 +85,7 @@ TYPED_TEST(ObjOf, VerticesAtOnePlaceStayApart) {
   for (std::size_t i = 0; i < places.size(); i += 3) sorted.push_back({places[i], places[i + 1], places[i + 2]});
   std::sort(sorted.begin(), sorted.end());
   ASSERT_TRUE(std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) << "no ties, nothing is shown";
-  write_mesh(to_mesh(contour), dir / "a.obj");
+  write_mesh(contour, dir / "a.obj");
   const Contour<3, double> again = to_contour<3>(read_mesh(dir / "a.obj"));
   const MeshReport report = expect_closed_manifold(again);
   EXPECT_EQ(report.vertices, contour.vertices.size());

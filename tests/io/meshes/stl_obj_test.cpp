@@ -66,7 +66,7 @@ TYPED_TEST(StlAndObj, ComeBackAsTheSameClosedManifold) {
 TYPED_TEST(StlAndObj, ObjHasTheDigitsThatItTakes) {
   TempDir dir;
   const Contour<3, TypeParam> contour = closed_noise<TypeParam>(5);
-  write_mesh(to_mesh(contour), dir / "a.obj");
+  write_mesh(contour, dir / "a.obj");
   std::istringstream lines(read_file(dir / "a.obj"));
   std::vector<TypeParam> positions, normals;
   std::size_t faces = 0;
@@ -137,7 +137,7 @@ TEST(Obj, LinesComeBackAsLines) {
   ExtractOptions options;
   options.normals = true;
   const Contour<2, float> contour = extract<float>(image.view(), 0.0, options);
-  write_mesh(to_mesh(contour), dir / "a.obj");
+  write_mesh(contour, dir / "a.obj");
   const Contour<2, double> again = to_contour<2>(read_mesh(dir / "a.obj"));
   ASSERT_EQ(again.simplices.size(), contour.simplices.size());
   for (std::size_t s = 0; s < again.simplices.size(); ++s)

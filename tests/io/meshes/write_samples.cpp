@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
     tegl::write_mesh(contour4, folder / "contour4_float.vtkhdf");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.vtkhdf");
     for (const char* const name : {"noise.ply", "noise.stl", "noise.obj"})
-      tegl::write_mesh(tegl::to_mesh(closed_noise()), folder / name);
+      tegl::write_mesh(closed_noise(), folder / name);
     tegl::write_mesh(lines, folder / "lines.obj");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.stl");
     tegl::write_facets(facets_of_plane<2>(), folder / "segments.vtu");

@@ -164,7 +164,7 @@ TEST_F(ProgressGaps, OfReadingFilesAreShort) {
   for (const auto& [name, share] : files) {
     SCOPED_TRACE(name);
     const auto path = std::filesystem::path(testing::TempDir()) / name;
-    write_mesh(to_mesh(surface), path);
+    write_mesh(surface, path);
     ProgressProbe probe;
     for (int attempt = 0; attempt < 3 && (attempt == 0 || probe.longest_share() > share); ++attempt) {
       probe.watch([&](const Progress& progress) { read_mesh(path, {.work = {.progress = progress}}); });

@@ -16,13 +16,14 @@ inline constexpr const char* kIndexExtension = ".tindex";
 /// Writes an index to a temporary name beside the target and renames it at the end, so there is never a partial file.
 /// Errors: WriteFailed, InvalidArgument (see ActiveTiles::save).
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void write_active_tiles(const ActiveTiles<N>& active, const std::filesystem::path& path);
 
 /// Reads an index and verifies that it belongs to the image. Errors, naming the file: FileNotFound, and those of
 /// load_active_tiles.
 template <Value T, int N>
-std::unique_ptr<ActiveTiles<N>> read_active_tiles(const std::filesystem::path& path, const Image<T, N>& image,
-                                                  const ActiveTilesOptions& options = {});
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> read_active_tiles(
+    const std::filesystem::path& path, const Image<T, N>& image, const ActiveTilesOptions& options = {});
 
 /// Reads the header of an index file. Errors, naming the file: FileNotFound, MalformedFile, UnsupportedFormat.
 ActiveTilesHead read_active_tiles_head(const std::filesystem::path& path);

@@ -45,12 +45,14 @@ struct ElementFileOptions {
 /// Written to a temporary name beside the target and renamed at the end, so there is never a partial file. Errors:
 /// UnsupportedFormat (the extension), WriteFailed, Cancelled. Memory: a few MiB. N = 2, 3, 4, 5.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void write_elements(const Elements<N>& elements, const std::filesystem::path& path,
                     const ElementFileOptions& options = {});
 
 /// The column names of the text format, such as t x y z dsigma_t dsigma_x dsigma_y dsigma_z T. Axes without a name are
 /// x, y, z, t (and u in 5D); attributes of several numbers become NAME_0, NAME_1 ...; blanks become '_'.
 template <int N>
-std::vector<std::string> element_columns(const Elements<N>& elements, const ElementFileOptions& options = {});
+requires DimensionBetween<N, 2, 5> std::vector<std::string> element_columns(const Elements<N>& elements,
+                                                                            const ElementFileOptions& options = {});
 
 }  // namespace tegl

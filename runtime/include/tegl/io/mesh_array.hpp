@@ -94,9 +94,15 @@ class MeshArray {
     refresh();
   }
   /// The numbers as a Buffer; copies rows that were taken over.
-  [[nodiscard]] const Buffer<T>& numbers() {
+  [[nodiscard]] const Buffer<T>& numbers() & {
     change([](Buffer<T>&) {});
     return std::get<Buffer<T>>(held_);
+  }
+  [[nodiscard]] Buffer<T> numbers() && {  ///< becomes empty
+    change([](Buffer<T>&) {});
+    Buffer<T> result = std::move(std::get<Buffer<T>>(held_));
+    clear();
+    return result;
   }
 
   friend bool operator==(const MeshArray& a, const MeshArray& b) {  ///< number by number

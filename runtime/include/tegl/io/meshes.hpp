@@ -82,6 +82,12 @@ struct MeshView {
   /// All of the contour; `isovalue` is not set.
   template <int N, Coordinate Real>
   requires DimensionBetween<N, 2, 4> MeshView(const Contour<N, Real>& contour);
+  /// Deleted: the view of a temporary would dangle.
+  MeshView(const Mesh&& mesh) = delete;
+  /// Deleted: the view of a temporary would dangle.
+  template <int N, Coordinate Real>
+  requires DimensionBetween<N, 2, 4> MeshView(const Contour<N, Real>&& contour)
+  = delete;
 };
 
 /// Converts a contour to a mesh with names, units, normals and attributes; `single_precision` is set for Real = float.
@@ -128,6 +134,16 @@ const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 /// InvalidArgument (an inconsistent mesh), UnsupportedData (.gltf, .stl: coordinates or attributes beyond float; .obj:
 /// not finite), TooLarge (.glb beyond 4 GiB, .stl beyond 2^32 - 1 triangles), WriteFailed, Cancelled.
 void write_mesh(const MeshView& mesh, const std::filesystem::path& path, const WriteOptions& options = {});
+/// As above, also for temporaries.
+inline void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteOptions& options = {}) {
+  write_mesh(MeshView(mesh), path, options);
+}
+/// As above, also for temporaries.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+void write_mesh(const Contour<N, Real>& contour, const std::filesystem::path& path, const WriteOptions& options = {}) {
+  write_mesh(MeshView(contour), path, options);
+}
 
 /// Options of read_mesh.
 struct ReadMeshOptions {
