@@ -93,6 +93,24 @@ TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
   EXPECT_EQ(tegl::read_mesh("small.ply").simplices.size(), 3 * small.simplices.size());
 }
 
+TEST(Cpp, OptionsOfWork) {
+  const std::vector<float> values = volume_at(0);
+  const tegl::Image<float, 3> image(values.data(), tegl::Grid<3>::unit({kSize, kSize, kSize}));
+  const double isovalue = 0;
+  // [work]
+  const tegl::WorkOptions work = {.threads = 2, .progress = [](double fraction) { return fraction < 2; }};
+  const tegl::Contour<3> surface = tegl::extract(image, isovalue, {.close = true, .work = work});
+  const tegl::MeshReport report = tegl::check(surface, work);
+  const auto [simpler, stats] = tegl::simplify(surface, tegl::SimplifyOptions<3>{.ratio = 0.5, .work = work});
+  const std::vector<tegl::Contour<3>> nested = tegl::extract_several(image, {isovalue, isovalue + 1});
+  // [/work]
+  EXPECT_EQ(report.bad_links, 0u);
+  EXPECT_EQ(stats.simplices_before, surface.simplices.size());
+  EXPECT_LE(2 * simpler.simplices.size(), surface.simplices.size() + 1);
+  ASSERT_EQ(nested.size(), 2u);
+  EXPECT_FALSE(nested[1].simplices.empty());
+}
+
 TEST(ComingFromNumpy, TheLastAxisOfAnArrayIsTheFirstOfAnImage) {
   const std::size_t planes = 3, rows = 4, columns = 5;
   std::vector<float> values(planes * rows * columns);
