@@ -72,8 +72,8 @@ py::dict sum_any(const AnyElements& elements) {
       elements.elements);
 }
 
-void write_any(const AnyElements& elements, const std::string& path, const std::string& axes,
-               const std::string& components, bool header, const py::object& progress) {
+void write_any_elements(const AnyElements& elements, const std::string& path, const std::string& axes,
+                        const std::string& components, bool header, const py::object& progress) {
   Call call(progress);
   ElementFileOptions options;
   options.axes =
@@ -108,8 +108,8 @@ void bind_elements(py::module_& m) {
   m.def("elements", &elements_any, py::arg("contour"), py::arg("grid"), py::arg("threads"), py::arg("progress"),
         doc::elements);
   m.def("sum_of", &sum_any, py::arg("elements"), doc::ElementSum);
-  m.def("write_elements", &write_any, py::arg("elements"), py::arg("path"), py::arg("axes"), py::arg("components"),
-        py::arg("header"), py::arg("progress"), doc::write_elements);
+  m.def("write_elements", &write_any_elements, py::arg("elements"), py::arg("path"), py::arg("axes"),
+        py::arg("components"), py::arg("header"), py::arg("progress"), doc::write_elements);
 }
 
 }  // namespace tegl::python

@@ -114,7 +114,7 @@ AnyImage make_image(const py::array& array, const std::vector<AxisArgument>& axe
 }
 
 template <class Real>
-AnyContour contour_of(const AnyImage& image, double level, const ExtractOptions& options) {
+AnyContour contour_of_image(const AnyImage& image, double level, const ExtractOptions& options) {
   return visit_image(image, [&](const auto& view) -> AnyContour {
     return {extract<Real>(view, level, options), level};
   });
@@ -126,8 +126,8 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
   return call.run([&] {
-    auto result = std::make_unique<AnyContour>(is_double ? contour_of<double>(image, level, options)
-                                                         : contour_of<float>(image, level, options));
+    auto result = std::make_unique<AnyContour>(is_double ? contour_of_image<double>(image, level, options)
+                                                         : contour_of_image<float>(image, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });

@@ -89,8 +89,8 @@ std::unique_ptr<AnyIndex> load(const std::string& path, const AnyImage& image, u
   });
 }
 
-std::unique_ptr<AnyContour> contour_of(const AnyIndex& index, double level, bool is_double, const py::dict& arguments,
-                                       const py::object& progress) {
+std::unique_ptr<AnyContour> contour_of_index(const AnyIndex& index, double level, bool is_double,
+                                             const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
@@ -155,7 +155,7 @@ void bind_index(py::module_& m) {
   py::class_<AnyIndex>(m, "Index", doc::ActiveTiles)
       .def_property_readonly("method", &AnyIndex::method)
       .def_property_readonly("memory", &AnyIndex::memory, "Memory of the index in bytes, without the image.")
-      .def("contour", &contour_of, py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"))
+      .def("contour", &contour_of_index, py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"))
       .def("find", &find, py::arg("level"), "The numbers of the active tiles, ascending.")
       .def("save", &save, py::arg("path"), doc::write_active_tiles);
   // The index refers to the image's array, so it keeps the image alive.

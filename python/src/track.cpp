@@ -124,7 +124,7 @@ py::object simplex_segments_of(const py::object& self) {
   return read_only(graph.simplex_segments.data(), {static_cast<py::ssize_t>(graph.simplex_segments.size())}, self);
 }
 
-void write_any(const TrackGraph& graph, const std::string& path, const std::string& title) {
+void write_any_track(const TrackGraph& graph, const std::string& path, const std::string& title) {
   const py::gil_scoped_release release;
   const FileLock lock;
   TrackPicture picture;
@@ -147,7 +147,7 @@ void bind_track(py::module_& m) {
         py::arg("last"), py::arg("handles"), py::arg("label_simplices"), py::arg("threads"), py::arg("progress"),
         doc::track);
   m.def("even_times", &even_times, py::arg("first"), py::arg("last"), py::arg("count"), doc::even_times);
-  m.def("write_track", &write_any, py::arg("graph"), py::arg("path"), py::arg("title"), doc::write_track);
+  m.def("write_track", &write_any_track, py::arg("graph"), py::arg("path"), py::arg("title"), doc::write_track);
 }
 
 }  // namespace tegl::python
