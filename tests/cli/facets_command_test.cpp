@@ -107,7 +107,7 @@ TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
 
 TEST_F(FacetsCommand, TriangulatesPolygonsEachInItsOwnWay) {
   const std::string image = write("noise.nrrd", nrrd_bytes(noise({14, 15, 16}, 4)));
-  std::vector<MeshArray<Index>> different;
+  std::vector<MeshArray<tegl::Index>> different;
   const nlohmann::json compact = contour({image, "--iso", "128", "-o", path("compact.ply")});
   for (const char* method : {"fan", "zigzag", "halving-chord", "halving-kink"}) {
     const nlohmann::json report =

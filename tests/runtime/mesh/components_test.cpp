@@ -293,7 +293,7 @@ TEST(Components, RepeatingAVertexConnectAllTheSame) {
 TEST(Components, WrongArgumentsAreNamed) {
   auto contour = noise_contour<3>(6, 1, false);
   const ComponentLabels labels = label_components(contour);
-  expect_error(ErrorCode::InvalidArgument, "1 components",
+  expect_error(ErrorCode::InvalidArgument, "1 choices of components",
                [&] { select_components(contour, labels, std::vector<bool>(1)); });
   ComponentLabels other = labels;
   other.simplices.pop_back();
