@@ -269,10 +269,10 @@ def test_a_level_outside_of_the_values_is_an_error_that_names_them():
     assert said(lambda: tegl.slice(VOLUME, above, at=2)) == f"level is {above}; {cut}"
     assert said(lambda: tegl.slice(VOLUME, above, at=[2, 3])) == f"level is {above}; {cut}"
     assert said(lambda: tegl.slice(VOLUME, above, normal=(1, 1, 0), offset=5)) == f"level is {above}; {expected}"
-    assert "above 0.1 and up to 0.3 K, the lowest" in said(lambda: tegl.Image(
+    assert "above 0.1 and up to 0.3 K, the minimum and" in said(lambda: tegl.Image(
         np.array([[0.1, 0.3]] * 2, np.float32), (np.arange(2.0), np.arange(2.0)), ("", ""), ("", ""), None, 0, "", "K", "", "", (),
         "", ("unknown",) * 2, (np.arange(2.0), np.arange(2.0))).contour(9)), "in as few digits as there are"
-    assert "up to 200, the lowest" in said(lambda: tegl.contour(np.array([[7, 200], [9, 8]], np.uint8), 300))
+    assert "up to 200, the minimum and" in said(lambda: tegl.contour(np.array([[7, 200], [9, 8]], np.uint8), 300))
     assert len(contour(level=float(most)).simplices) > 0, "the highest sample is at the level"
     for level in (above, below):
         assert len(contour(level=level, allow_empty=True).simplices) == 0
@@ -281,7 +281,7 @@ def test_a_level_outside_of_the_values_is_an_error_that_names_them():
         assert len(tegl.slice(VOLUME, level, at=2, allow_empty=True).simplices) == 0
         assert INDEX.active_tiles(level).shape == (0, 3)
     assert len(contour(level=below, close=True).simplices) > 0, "what is high everywhere is closed at the border"
-    assert " K, the lowest and the highest" in said(lambda: tegl.contour(hourly(), 99))
+    assert " K, the minimum and maximum" in said(lambda: tegl.contour(hourly(), 99))
 
 
 def test_a_level_is_outside_of_values_that_are_all_alike_or_missing():

@@ -218,7 +218,7 @@ def test_other_fields_are_sampled_at_the_vertices(moving_balls):
     cut = contour.slice(1.25)
     assert cut.vertex_attributes["height"] == pytest.approx(1.25 + (cut.vertices / (1, 2, 3)) @ [2, 1, -1])
     assert "height" in contour.elements().attributes
-    with pytest.raises(ValueError, match="attribute 'height' already"):
+    with pytest.raises(ValueError, match="already has an attribute 'height'"):
         contour.sample(z, "height", spacing=(1, 1, 2, 3))
     with pytest.raises(ValueError, match="3 axes; expected 4"):
         contour.sample(z[0], "other")

@@ -99,7 +99,7 @@ def test_the_names_of_options_are_the_librarys():
         tegl.contour(volume, 0.0, normals=kind)
     headers = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "runtime/include/tegl"
     for name, header, enumeration in (("EventKind", "track.hpp", "TrackEventKind"), ("SimplifyEnd", "simplify.hpp", "SimplifyEnd"),
-                                      ("AxisDirection", "io.hpp", "AxisDirection")):
+                                      ("AxisDirection", "io/images.hpp", "AxisDirection")):
         text = (headers / header).read_text(encoding="utf-8")
         values = re.search(r"enum class %s[^{]*\{(.*?)\};" % enumeration, text, re.DOTALL).group(1)
         values = re.sub(r"///.*", "", values)
