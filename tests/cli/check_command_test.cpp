@@ -57,7 +57,7 @@ TEST_F(Check, OfASurfaceWithABorderIsFineUnlessClosednessIsRequired) {
   EXPECT_EQ(run.json()["boundary_simplices"], 3);
   const RunResult required = run_tegl({"check", file, "--require", "closed"});
   EXPECT_EQ(required.exit, 1);
-  EXPECT_THAT(required.out, HasSubstr("not closed"));
+  EXPECT_THAT(required.out, HasSubstr("has a border"));
   EXPECT_EQ(run_tegl({"check", save(octahedron()), "--require", "closed,nondegenerate"}).exit, 0);
 }
 

@@ -63,7 +63,7 @@ TEST_F(Outputs, ThatAreOneFileAreRefused) {
 }
 
 TEST_F(Outputs, OfTracksAppearTogetherWithTheirTables) {
-  const std::string late(240, 'g');
+  const std::string late(250, 'g');
   write("g.json", "what was there before");
   const auto before = files();
   const RunResult run =

@@ -295,7 +295,7 @@ TEST(Mesh, AttributesThatContradictTheMeshAreRefused) {
     for (const char* name : {"a.ply", "a.glb", "a.vtkhdf"})
       expect_error(ErrorCode::InvalidArgument, {name, part}, [&] { write_mesh(mesh, dir / name); });
   };
-  refused({{"", "", 1, {1, 2, 3}}}, "attribute of vertices by the name ''");
+  refused({{"", "", 1, {1, 2, 3}}}, "attribute of vertices with the name ''");
   refused({{"a", "", 1, {1, 2, 3}}, {"a", "", 1, {1, 2, 3}}}, "with the name 'a'; expected different names");
   refused({{"a", "", 1, {1, 2}}}, "attribute 'a' of 2 numbers, 1 for each of 3 vertices; expected 3");
   refused({{"a", "", 0, {}}}, "expected a width of 1 or more");
