@@ -99,7 +99,7 @@ job_count() {
   fi
   local cores by_memory
   cores=$(nproc)
-  by_memory=$(awk '/^MemAvailable:/ { n = int($2 / 1200000); print n < 1 ? 1 : n }' /proc/meminfo)
+  by_memory=$(awk '/^MemAvailable:/ { n = int($2 / 2200000); print n < 1 ? 1 : n }' /proc/meminfo)
   echo $((cores < by_memory ? cores : by_memory))
 }
 
