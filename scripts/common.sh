@@ -90,7 +90,7 @@ unknown_packages() {
   done
 }
 
-# The number of compilers to run at a time: one per core, but at most one per 1.2 GB of memory, which is what the
+# The number of compilers to run at a time: one per core, but at most one per 2.2 GB of memory, which is what the
 # largest sources need. JOBS overrides it.
 job_count() {
   if [[ -n ${JOBS:-} ]]; then
