@@ -250,8 +250,8 @@ requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> choose_tiles(
 /// As `extract` with an index, with counts and times.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options,
-                                                                          const ActiveTiles<N>& active);
+                                                                          const ActiveTiles<N>& active,
+                                                                          const ExtractOptions& options = {});
 
 /// As `extract` without an index: the same contour, byte by byte. Reads the samples only in rows with active tiles, and
 /// about one sample for every 32 other rows, so the time is proportional to the active rows. The index is trusted: only
@@ -261,9 +261,9 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
 /// index of an image of other sizes or value type, or for `close` with an index that is not complete.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
-                                                            const ExtractOptions& options,
-                                                            const ActiveTiles<N>& active) {
-  return extract_with_stats<Real>(image, isovalue, options, active).contour;
+                                                            const ActiveTiles<N>& active,
+                                                            const ExtractOptions& options = {}) {
+  return extract_with_stats<Real>(image, isovalue, active, options).contour;
 }
 
 }  // namespace tegl

@@ -27,8 +27,8 @@ void require_index_of(const Image<T, N>& image, const ActiveTiles<N>& active) {
 
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options,
-                                                                          const ActiveTiles<N>& active) {
+                                                                          const ActiveTiles<N>& active,
+                                                                          const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   require_index_of(image, active);
   const bool missing = active.image().any_missing;
@@ -54,8 +54,8 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
 }
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                       \
-  template Extraction<N, Real> extract_with_stats<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
-                                                              const ActiveTiles<N>&);
+  template Extraction<N, Real> extract_with_stats<Real, T, N>(const Image<T, N>&, double, const ActiveTiles<N>&, \
+                                                              const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

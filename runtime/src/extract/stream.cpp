@@ -60,8 +60,8 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
 
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
-                                                                  const ExtractOptions& options,
-                                                                  ContourSink<N, Real>& sink) {
+                                                                  ContourSink<N, Real>& sink,
+                                                                  const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   detail::LayerRing<T, N> ring(layers);
   detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
@@ -72,8 +72,8 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T,
 }
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                                               \
-  template ExtractedSize extract_streamed<Real, T, N>(LayerReader<T, N>&, double, const ExtractOptions&, \
-                                                      ContourSink<N, Real>&);
+  template ExtractedSize extract_streamed<Real, T, N>(LayerReader<T, N>&, double, ContourSink<N, Real>&, \
+                                                      const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -51,7 +51,7 @@ TEST_F(OutOfMemory, LeavesNoHalfWrittenStream) {
       for (std::size_t i = 0; i < 300; ++i) to[i] = static_cast<float>((i * 7 + k * 11) % 13);
     });
     ContourFile<3, float> file(path, grid);
-    extract_streamed<float>(layers, 5.5, options, file);
+    extract_streamed<float>(layers, 5.5, file, options);
     file.commit();
   });
 }

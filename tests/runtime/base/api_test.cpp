@@ -180,7 +180,7 @@ concept FacetsExtracted = requires(const I& image) {
 };
 template <class I, int N>
 concept ExtractedByIndex = requires(const I& image, const ActiveTiles<N>& active) {
-  extract(image, 0.0, {}, active);
+  extract(image, 0.0, active);
 };
 template <class I, int N>
 concept ExtractedInto = requires(const I& image, const ContourRoom<N, float>& room) {
@@ -188,11 +188,11 @@ concept ExtractedInto = requires(const I& image, const ContourRoom<N, float>& ro
 };
 template <class L, int N>
 concept Streamed = requires(L& layers, ContourSink<N, float>& sink) {
-  extract_streamed(layers, 0.0, {}, sink);
+  extract_streamed(layers, 0.0, sink);
 };
 template <class L, int N>
 concept SeveralStreamed = requires(L& layers, std::span<const StreamedContour<N, float>> contours) {
-  extract_streamed_several(layers, contours, {});
+  extract_streamed_several(layers, contours);
 };
 template <class C>
 concept BecomesMesh = requires(const C& c) {

@@ -78,7 +78,7 @@ std::uint64_t streamed(const OwnedImage<float, N>& image, const ExtractOptions& 
   FunctionLayers<float, N> layers(
       image.grid, [&](std::size_t k, float* to) { std::copy_n(image.values.data() + k * layer, layer, to); });
   DigestSink<N> sink;
-  extract_streamed<float>(layers, 0.5, options, sink);
+  extract_streamed<float>(layers, 0.5, sink, options);
   return sink.sum;
 }
 

@@ -146,10 +146,10 @@ TEST(Streamed, IsTheContourInMemoryIn4d) {
 
 TEST(Streamed, ThroughThePublicFunction) {
   const auto image = noise<float, 4>({9, 8, 7, 6}, 3);
-  const auto contour = extract<float>(image.view(), noise_isovalue<float>(), {});
+  const auto contour = extract<float>(image.view(), noise_isovalue<float>());
   ImageLayers<float, 4> layers(image);
   Collector<4, float> collector;
-  const auto [size, stats] = extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector);
+  const auto [size, stats] = extract_streamed<float>(layers, noise_isovalue<float>(), collector);
   expect_equal(collector, contour);
   EXPECT_EQ(size.simplices, contour.simplices.size());
   EXPECT_EQ(stats.tiles, 8u * 7 * 6 * 5);
@@ -166,7 +166,7 @@ TEST(Streamed, HasTheNormalsOfTheWholeImage) {
     ASSERT_EQ(contour.normals.size(), contour.vertices.size());
     ImageLayers<float, 3> layers(image);
     Collector<3, float> collector;
-    extract_streamed<float>(layers, noise_isovalue<float>(), options, collector);
+    extract_streamed<float>(layers, noise_isovalue<float>(), collector, options);
     expect_equal(collector, contour);
   }
 }
@@ -183,7 +183,7 @@ TEST(Streamed, NormalsForASinkThatTakesNoneAreAnError) {
   ExtractOptions options;
   options.normals = true;
   try {
-    extract_streamed<float>(layers, noise_isovalue<float>(), options, sink);
+    extract_streamed<float>(layers, noise_isovalue<float>(), sink, options);
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
@@ -194,7 +194,7 @@ TEST(Streamed, WithoutTilesIsEmpty) {
   const auto image = noise<float, 3>({9, 1, 7}, 3);
   ImageLayers<float, 3> layers(image);
   Collector<3, float> collector;
-  EXPECT_EQ(extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector).size.vertices, 0u);
+  EXPECT_EQ(extract_streamed<float>(layers, noise_isovalue<float>(), collector).size.vertices, 0u);
 }
 
 /// Vertex numbers beyond 2^32 without that many vertices: the sink starts at a large number.
@@ -227,7 +227,7 @@ TEST(Streamed, ErrorsOfTheReaderReachTheCaller) {
     std::copy_n(image.values.begin() + static_cast<std::ptrdiff_t>(81 * k), 81, to);
   });
   Collector<3, float> collector;
-  EXPECT_THROW(extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector), Error);
+  EXPECT_THROW(extract_streamed<float>(layers, noise_isovalue<float>(), collector), Error);
 }
 
 TEST(Streamed, CanBeCancelled) {
@@ -238,7 +238,7 @@ TEST(Streamed, CanBeCancelled) {
   int calls = 0;
   options.work.progress = [&](double) { return ++calls < 4; };
   try {
-    extract_streamed<float>(layers, noise_isovalue<float>(), options, collector);
+    extract_streamed<float>(layers, noise_isovalue<float>(), collector, options);
     FAIL() << "was not cancelled";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);
