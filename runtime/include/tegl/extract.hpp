@@ -78,8 +78,9 @@ struct ExtractedSize {
 
 /// As `extract`, with counts and times.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                     const ExtractOptions& options = {});
 
 /// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
@@ -100,8 +101,8 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const 
 /// of it there. Up to 256 MiB of built tiles and faces are cached, whatever the number of threads; the tiles of two
 /// slabs are held in memory besides. With `close`, a 5D contour may have simplices of zero size at the border.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
-                                                            const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {}) {
   return extract_with_stats<Real>(image, isovalue, options).contour;
 }
 
@@ -110,27 +111,30 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> extract(const Image<T, N>& i
 /// order and may repeat. Errors: those of `extract`, before any contour if an isovalue is not finite. Time: that of
 /// `extract` for each isovalue; an index (tegl/active_tiles.hpp) saves reading the samples each time.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image,
-                                                                                 std::span<const double> isovalues,
-                                                                                 const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image, std::span<const double> isovalues,
+                                                            const ExtractOptions& options = {});
 /// The same for a list: `extract_several(image, {1.0, 2.0})`.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(
-    const Image<T, N>& image, std::initializer_list<double> isovalues, const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image,
+                                                            std::initializer_list<double> isovalues,
+                                                            const ExtractOptions& options = {}) {
   return extract_several<Real>(image, std::span<const double>(isovalues.begin(), isovalues.size()), options);
 }
 
 /// As `count`, with counts and times.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> ExtractedSize count_with_stats(const Image<T, N>& image, double isovalue,
-                                                                  const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] ExtractedSize count_with_stats(const Image<T, N>& image, double isovalue,
+                                             const ExtractOptions& options = {});
 
 /// Counts the vertices and simplices that `extract` would make with these options, exactly. Takes little memory, and
 /// less time than `extract` because nothing is written; with `close` or missing values everything except writing is
 /// done. Errors: those of `extract` except TooLarge.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> ContourSize count(const Image<T, N>& image, double isovalue,
-                                                     const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {}) {
   return count_with_stats(image, isovalue, options).size;
 }
 

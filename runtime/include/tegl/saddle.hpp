@@ -38,9 +38,10 @@ struct CubeDecision {
 
 namespace detail {
 /// The public functions, with values as doubles; every value type converts exactly.
-bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
+[[nodiscard]] bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
 /// `signature`: bit v is set if corner v is high.
-CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
+[[nodiscard]] CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue,
+                                       unsigned signature) noexcept;
 /// The test for a connection inside a cube, by entry of tables::kTile3Resolved (the signature with its squares
 /// decided): a pair of diagonal edges, if there is one, and for some entries one of each sign.
 struct CubeJoin {
@@ -48,21 +49,21 @@ struct CubeJoin {
   bool high = false;                      ///< for one pair: whether it joins high corners
   std::array<std::uint8_t, 8> corners{};  ///< for one pair: the lower and upper end of each of its edges A, C, B, D
 };
-const std::array<CubeJoin, 656>& cube_joins() noexcept;
+[[nodiscard]] const std::array<CubeJoin, 656>& cube_joins() noexcept;
 /// The centre choice of a cube with this entry.
-tile::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
+[[nodiscard]] tile::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
 /// Without the floating-point filter, for tests: all signs by exact arithmetic.
-bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept;
-CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept;
+[[nodiscard]] bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept;
+[[nodiscard]] CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept;
 
-inline unsigned signature_of(const std::array<double, 8>& values, double isovalue) noexcept {
+[[nodiscard]] inline unsigned signature_of(const std::array<double, 8>& values, double isovalue) noexcept {
   unsigned signature = 0;
   for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(values[v] >= isovalue) << v;
   return signature;
 }
 
 template <Value T, std::size_t kCorners>
-std::array<double, kCorners> as_doubles(std::span<const T, kCorners> values) noexcept {
+[[nodiscard]] std::array<double, kCorners> as_doubles(std::span<const T, kCorners> values) noexcept {
   std::array<double, kCorners> result;
   std::transform(values.begin(), values.end(), result.begin(), [](T value) { return static_cast<double>(value); });
   return result;
@@ -75,7 +76,7 @@ std::array<double, kCorners> as_doubles(std::span<const T, kCorners> values) noe
 /// allocation, thread-safe. O(1): 3 ns; if rounding could decide, 20 ns for integers of few bits and at most about a
 /// microsecond otherwise.
 template <Value T>
-bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept {
+[[nodiscard]] bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept {
   return detail::square_is_high(detail::as_doubles(values), isovalue);
 }
 
@@ -84,14 +85,14 @@ bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept {
 /// is `separate`. Infinite values, NaN and errors: as square_is_high; cost: 20 ns, 80 ns and some microseconds in the
 /// respective cases.
 template <Value T>
-CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept {
+[[nodiscard]] CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept {
   const std::array<double, 8> doubles = detail::as_doubles(values);
   return detail::decide_cube(doubles, isovalue, detail::signature_of(doubles, isovalue));
 }
 
 /// The choice for the inside of a cube only.
 template <Value T>
-tile::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept {
+[[nodiscard]] tile::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept {
   return decide_cube<T>(values, isovalue).centre;
 }
 

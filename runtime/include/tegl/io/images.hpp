@@ -89,7 +89,7 @@ struct ReadImageOptions {
 /// that is not monotone), InvalidArgument (a variable or a fixed index for a format without names; a fixed dimension or
 /// index that the variable does not have), TooLarge, Cancelled. Memory: up to three times the values; a damaged file
 /// takes no more than its bytes can hold.
-ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
+[[nodiscard]] ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// A variable that is readable as an image.
 struct ImageVariable {
@@ -103,7 +103,7 @@ struct ImageVariable {
 /// Lists the values for ReadImageOptions::variable: the variables of a netCDF file, or the series of DICOM (with the
 /// description as long_name). Empty for other formats, whose files hold one unnamed image. Variables of more than 4
 /// axes are only readable with ReadImageOptions::fixed. Reads no values. Errors: those of read_image.
-std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
-                                                const ReadImageOptions& options = {});
+[[nodiscard]] std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
+                                                              const ReadImageOptions& options = {});
 
 }  // namespace tegl

@@ -41,7 +41,7 @@ struct OpenLayersResult {
 /// last one starts a new pass. Errors: those of read_image, here or in read() (faults in compressed samples are found
 /// when they are read); UnsupportedData for a netCDF file that is gzipped as a whole, and for an NRRD list of images
 /// whose axis is not the last one in the file.
-OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
+[[nodiscard]] OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// The layout of a headerless raw file: contiguous values, axis 0 fastest.
 struct RawLayout {
@@ -58,6 +58,6 @@ struct RawLayout {
 /// Opens a headerless raw file to be read layer by layer. Errors: FileNotFound; InvalidArgument (the layout: an invalid
 /// size, spacing or origin, or lists of another length than `sizes`); MalformedFile if the file is shorter than the
 /// layout requires.
-OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
+[[nodiscard]] OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace tegl
