@@ -67,7 +67,7 @@ TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
   tegl::Grid<3> grid;
   for (int a = 0; a < 3; ++a) grid.axes[a] = tegl::Axis::uniform(dimensions[a], origin[a], spacing[a]);
   tegl::ExtractOptions options;
-  options.normals = true;  // ComputeNormalsOn
+  options.normals = tegl::Normals::differences;  // ComputeNormalsOn
   const tegl::Contour<3> surface = tegl::extract(tegl::Image<float, 3>(scalars, grid), value, options);
   // [/vtk]
   // [vtk_filters]

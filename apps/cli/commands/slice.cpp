@@ -376,7 +376,7 @@ class SliceCommand final : public Command {
     } catch (const EmptyResult&) {
       return {};
     }
-    const bool normals = options_.library_options().normals;
+    const bool normals = options_.library_options().normals != Normals::none;
     for (ContourResult& result : results) {
       if (*result.cut->across != kLast) return {};
       const auto layers = options_.single_precision() ? layers_of_cut<float, T, N>(grid, result.cut->value, normals)

@@ -37,16 +37,17 @@ requires DimensionBetween<N, 2, 4>
                                                                           NormalWeights weights = NormalWeights::angle,
                                                                           const WorkOptions& work = {});
 
-/// The normal of every vertex from an image, #V x N, as `extract` with ExtractOptions::normals computes it. Works for
+/// The normal of every vertex from an image, #V x N, as `extract` computes it with the same kind. Works for
 /// any contour in the image's world coordinates, such as a loaded or a simplified one. The gradients at the samples of
 /// the vertex's cell are interpolated multilinearly, on the side of the contour's `direction`, and scaled to length 1.
 /// 0 if the gradient is zero and outside of the grid (by more than a thousandth of a step). N = 2, 3, 4.
-/// Errors: Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994, sections 8.2.6 to 8.2.15.
+/// Errors: InvalidArgument (Normals::none); Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994,
+/// sections 8.2.6 to 8.2.15.
 template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Buffer<typename Contour<N, Real>::Vertex> gradient_normals(const Image<T, N>& image,
                                                                          const Contour<N, Real>& contour,
-                                                                         GradientKind kind = GradientKind::differences,
+                                                                         Normals kind = Normals::differences,
                                                                          const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -31,7 +31,8 @@ class ContourSink {
 
   /// Receives the next vertices. The first vertex has number 0.
   virtual void add_vertices(std::span<const Vertex> vertices) = 0;
-  /// With ExtractOptions::normals: receives the normals of the vertices just added. By default throws InvalidArgument.
+  /// If ExtractOptions::normals is not `none`: receives the normals of the vertices just added. By default throws
+  /// InvalidArgument.
   virtual void add_normals(std::span<const Vertex> /*normals*/) {
     throw Error(ErrorCode::InvalidArgument, "normals for a sink that takes none; expected one with add_normals");
   }

@@ -151,7 +151,7 @@ Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& 
 ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progress) {
   ExtractOptions inside = options;
   inside.epsilon = 0.25;
-  inside.normals = false;
+  inside.normals = Normals::none;
   inside.work.progress = progress;
   return inside;
 }

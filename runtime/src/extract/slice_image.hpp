@@ -87,7 +87,7 @@ std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis,
 /// These layers are contoured too.
 inline std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size,
                                                            const ExtractOptions& options) {
-  std::size_t beside = options.normals ? 1 : 0;
+  std::size_t beside = options.normals != Normals::none ? 1 : 0;
   if (options.ambiguity == Ambiguity::custom) beside = std::max(beside, std::min(options.estimator.reach, size));
   const std::size_t first = layers.first - std::min(layers.first, beside);
   return {first, std::min(size, layers.first + layers.second + beside) - first};
@@ -162,11 +162,11 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
 
 }  // namespace tegl
 
-#define TEGL_INSTANTIATE_SLICE(T, N, Real)                                           \
+#define TEGL_INSTANTIATE_SLICE(T, N, Real)                                         \
   template tegl::Extraction<N - 1, Real> tegl::slice_image_with_stats<Real, T, N>( \
       const Image<T, N>&, double, const Hyperplane<N>&, const ExtractOptions&);
 #define TEGL_INSTANTIATE_SLICE_IMAGE(T) \
-  TEGL_INSTANTIATE_SLICE(T, 3, float)     \
-  TEGL_INSTANTIATE_SLICE(T, 3, double)    \
-  TEGL_INSTANTIATE_SLICE(T, 4, float)     \
+  TEGL_INSTANTIATE_SLICE(T, 3, float)   \
+  TEGL_INSTANTIATE_SLICE(T, 3, double)  \
+  TEGL_INSTANTIATE_SLICE(T, 4, float)   \
   TEGL_INSTANTIATE_SLICE(T, 4, double)

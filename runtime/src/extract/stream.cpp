@@ -65,7 +65,7 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T,
   detail::check_arguments(isovalue, options);
   detail::LayerRing<T, N> ring(layers);
   detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
-  detail::StreamOutput<N, Real> output(sink, options.normals);
+  detail::StreamOutput<N, Real> output(sink, options.normals != Normals::none);
   const ExtractStats stats = detail::extract_to<N, Real>(source, layers.grid(), detail::generated_tables<N>(options),
                                                          options, detail::streaming_plan(layers.grid()), output);
   return {output.size(), stats};

@@ -216,7 +216,7 @@ TYPED_TEST(Estimators, GiveClosedManifoldsOnNoise) {
         options.triangulation = triangulation;
         options.close = close;
         const auto contour = extract(image.view(), noise_isovalue<typename TypeParam::Value>(), options);
-        EXPECT_EQ(contour.normals.size(), options.normals ? contour.vertices.size() : 0);
+        EXPECT_EQ(contour.normals.size(), options.normals != Normals::none ? contour.vertices.size() : 0);
         if (close)
           expect_closed_manifold(contour);
         else
@@ -460,7 +460,7 @@ TEST(BarycentricContoursOf4dImages, AreTheSameFromEveryEntryPoint) {
       options.triangulation = Triangulation::barycentric;
       options.close = close;
       options.work.threads = 1;
-      options.normals = true;
+      options.normals = Normals::differences;
       const auto contour = extract(image.view(), 0.5, options);
       options.work.threads = 4;
       expect_same_bytes(extract(image.view(), 0.5, options), contour);
@@ -515,7 +515,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
       for (const bool close : {false, true}) {
         SCOPED_TRACE(std::string(name_of(ambiguity)) + (close ? ", closed" : "") + (missing > 0 ? ", missing" : ""));
         ExtractOptions options = barycentric_by(ambiguity, close);
-        options.normals = true;
+        options.normals = Normals::differences;
         const auto contour = extract(image.view(), 0.5, options);
         if (missing > 0 || !close)
           expect_oriented_manifold(contour);

@@ -352,7 +352,7 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
   [[maybe_unused]] const ExtractOptions extraction[] = {{.triangulation = Triangulation::barycentric},
                                                         {.ambiguity = Ambiguity::mean},
                                                         {.close = true},
-                                                        {.normals = true},
+                                                        {.normals = Normals::differences},
                                                         {.work = {.threads = 1}},
                                                         {.work = {.progress = progress}}};
   [[maybe_unused]] const Estimator estimators[] = {{.choose = {}}, {.reach = 1}};

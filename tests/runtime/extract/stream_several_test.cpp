@@ -103,7 +103,7 @@ TEST_F(StreamSeveral, GivesEachContourOfAPassOfItsOwnAndReadsOnce) {
     std::fill(reads_.begin(), reads_.end(), 0);
     ExtractOptions options;
     options.close = close;
-    options.normals = true;
+    options.normals = Normals::differences;
     auto several = contours({5, 2, 8, 99});
     auto source = layers();
     const auto extracted = extract_streamed_several<double>(source, several, options);
@@ -245,7 +245,7 @@ template <class Real, Value T, int N>
 void expect_each_equals_its_own(const Image<T, N>& image, const std::vector<double>& isovalues) {
   ExtractOptions options;
   options.close = N < 5;
-  options.normals = true;
+  options.normals = Normals::differences;
   options.work.threads = 2;
   const auto several = extract_several<Real>(image, isovalues, options);
   ASSERT_EQ(several.size(), isovalues.size());

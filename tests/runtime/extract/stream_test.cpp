@@ -97,7 +97,7 @@ std::size_t expect_streamed(const OwnedImage<T, N>& image, const ExtractOptions&
     detail::LayerRing<T, N> ring(layers);
     detail::LayerSource<T, N> source(ring, noise_isovalue<T>(), options.epsilon);
     Collector<N, Real> collector;
-    detail::StreamOutput<N, Real> output(collector, options.normals);
+    detail::StreamOutput<N, Real> output(collector, options.normals != Normals::none);
     const detail::ExtractPlan plan{
         .max_vertices = ~std::uint64_t{0}, .batch = batch, .keeps_tiles = batch != 2 && batch != 100};
     detail::extract_to<N, Real>(source, image.grid, detail::generated_tables<N>(options), options, plan, output);
@@ -123,7 +123,7 @@ void expect_streamed_in_all_ways(const std::array<std::size_t, N>& sizes) {
         options.triangulation = triangulation;
         options.ambiguity = seed % 2 == 0 ? Ambiguity::low : Ambiguity::high;
         options.work.threads = 1 + static_cast<unsigned>(seed % 3);
-        options.normals = seed % 4 < 2;
+        options.normals = seed % 4 < 2 ? Normals::differences : Normals::none;
         replaced += expect_streamed<Real>(holey_noise<T, N>(sizes, seed++, missing), options);
       }
   if (std::is_floating_point_v<T> && N > 2) {
@@ -159,7 +159,7 @@ TEST(Streamed, ThroughThePublicFunction) {
 TEST(Streamed, HasTheNormalsOfTheWholeImage) {
   for (const bool close : {false, true}) {
     ExtractOptions options;
-    options.normals = true;
+    options.normals = Normals::differences;
     options.close = close;
     const auto image = holey_noise<float, 3>({90, 70, 40}, 11, close ? 0 : 1);
     const auto contour = extract<float>(image.view(), noise_isovalue<float>(), options);
@@ -181,7 +181,7 @@ TEST(Streamed, NormalsForASinkThatTakesNoneAreAnError) {
   ImageLayers<float, 3> layers(image);
   Plain sink;
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   try {
     extract_streamed<float>(layers, noise_isovalue<float>(), sink, options);
     FAIL() << "no error";
