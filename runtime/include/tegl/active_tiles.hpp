@@ -16,6 +16,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/value_type.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -112,7 +113,7 @@ template <int N>
 requires DimensionBetween<N, 2, 5>
 struct IndexedImage {
   std::array<std::size_t, N> sizes{};  ///< number of samples by axis
-  std::string value_type = {};         ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  ValueType value_type{};              ///< of the samples
   std::uint64_t digest = 0;            ///< hash of sizes, type and the bits of all values
   bool any_missing = false;            ///< whether any value is NaN
 
@@ -150,7 +151,7 @@ struct ActiveTilesHead {
   std::uint32_t version = 0;                      ///< version of the format
   ActiveMethod method = ActiveMethod::full_scan;  ///< how tiles are found
   std::vector<std::uint64_t> sizes = {};          ///< of the image: 2 to 5 axes, axis 0 first
-  std::string value_type = {};                    ///< as in IndexedImage
+  ValueType value_type{};                         ///< as in IndexedImage
   std::uint64_t digest = 0;                       ///< as in IndexedImage
   bool any_missing = false;                       ///< as in IndexedImage
 };

@@ -126,9 +126,9 @@ RawGrid get_grid(Unpacker& unpacker) {
 }
 
 void put_info(Packer& packer, const ImageInfo& info) {
-  for (const auto* text :
-       {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame, &info.stored_type})
+  for (const auto* text : {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame})
     packer.text(*text);
+  packer.text(info.stored_type ? name_of(*info.stored_type) : "");
   put_texts(packer, info.variables);
   put_list(packer, info.axis_directions, [&](AxisDirection direction) { put_direction(packer, direction); });
   put_texts(packer, info.remarks);
@@ -136,9 +136,9 @@ void put_info(Packer& packer, const ImageInfo& info) {
 
 ImageInfo get_info(Unpacker& unpacker) {
   ImageInfo info;
-  for (auto* text :
-       {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame, &info.stored_type})
+  for (auto* text : {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame})
     *text = unpacker.text();
+  info.stored_type = parse_value_type(unpacker.text());
   get_texts(unpacker, info.variables);
   get_list(unpacker, info.axis_directions, [&] { return get_direction(unpacker); });
   get_texts(unpacker, info.remarks);

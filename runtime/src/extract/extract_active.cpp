@@ -16,11 +16,11 @@ namespace {
 
 template <Value T, int N>
 void require_index_of(const Image<T, N>& image, const ActiveTiles<N>& active) {
-  const std::string_view type = detail::value_type_name<T>();
-  if (active.image().sizes == image.grid().sizes() && active.image().value_type == type) return;
-  throw Error(ErrorCode::InvalidArgument, fmt::format("an index of an image of {} {}; expected one of {} {}",
-                                                      fmt::join(active.image().sizes, " x "), active.image().value_type,
-                                                      fmt::join(image.grid().sizes(), " x "), type));
+  if (active.image().sizes == image.grid().sizes() && active.image().value_type == kValueType<T>) return;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("an index of an image of {} {}; expected one of {} {}", fmt::join(active.image().sizes, " x "),
+                  name_of(active.image().value_type), fmt::join(image.grid().sizes(), " x "), name_of(kValueType<T>)));
 }
 
 }  // namespace

@@ -334,7 +334,7 @@ TEST_F(Series, OfRawValuesIsReadByTheLayoutOfOneFile) {
     add("f" + std::to_string(k) + ".raw", "head" + bytes_of(values));
   }
   SeriesOptions options;
-  options.raw = RawLayout{{2, 3, 4}, "float", 4, false};
+  options.raw = RawLayout{{2, 3, 4}, ValueType::float32, 4, false};
   const ReadImageResult read = read_series(files_, options);
   EXPECT_EQ((image_as<float, 4>(read.image).values[24 + 5]), 105);
   expect_layers_of(read.image, open_series(files_, options).layers);

@@ -372,7 +372,7 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
                                                    {.compression = Compression::none}};
   [[maybe_unused]] const ReadMeshOptions mesh_reading[] = {{.work = {.progress = progress}},
                                                            {.separate_process = true}};
-  [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = "float"}, {.big_endian = true}};
+  [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = ValueType::float32}, {.big_endian = true}};
   [[maybe_unused]] const Projection projections[] = {{.direction = {1, 0, 0, 0}}, {.eye_distance = 1}};
   [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = {1, 0, 0, 0}}, {.offset = 1}};
   [[maybe_unused]] const tile::Resolution resolution[] = {{.choices = {}}, {.alternative = tile::Alternative::high}};

@@ -299,7 +299,7 @@ TEST_P(ActiveTilesFile, HasAHeadThatCanBeReadAlone) {
   const ActiveTilesHead head = read_active_tiles_head(file);
   EXPECT_EQ(head.method, GetParam());
   EXPECT_EQ(head.sizes, (std::vector<std::uint64_t>{11, 7, 6}));
-  EXPECT_EQ(head.value_type, "float");
+  EXPECT_EQ(head.value_type, ValueType::float32);
   EXPECT_TRUE(head.any_missing);
   EXPECT_EQ(head.digest, identify(image_.view()).digest);
 }

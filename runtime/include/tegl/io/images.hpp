@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "tegl/image.hpp"
+#include "tegl/value_type.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -36,7 +38,7 @@ struct ImageInfo {
   std::string value_unit = {};                      ///< such as "degC"; may be empty
   std::string value_name = {};                      ///< long name; may be empty
   std::string world_frame = {};                     ///< such as "RAS", "LPS"; empty if unknown
-  std::string stored_type = {};                     ///< value type in the file, before any conversion
+  std::optional<ValueType> stored_type = {};        ///< value type in the file, before any conversion
   std::vector<AxisDirection> axis_directions = {};  ///< netCDF: one per axis of the image; else empty
   std::vector<std::string> remarks = {};            ///< DICOM: skipped files, uneven slice distances; else empty
 };
