@@ -336,12 +336,6 @@ static_assert(!HasEigenView<Matrix<3>> && !HasEigenView<const Matrix<3>>);
 static_assert(std::constructible_from<Scrubber<4, float>, const Contour<4>&>);
 static_assert(!std::constructible_from<Scrubber<4, float>, Contour<4>&&>);
 static_assert(!std::constructible_from<Scrubber<4, float>, const Contour<4>&&>);
-template <class Around>
-concept FaceOf = std::constructible_from < AmbiguousFace,
-        std::span<const std::size_t>,
-unsigned, std::span<const double>, double, Around > ;
-static_assert(FaceOf<const AmbiguousFace::Surroundings&> && FaceOf<AmbiguousFace::Surroundings&>);
-static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousFace::Surroundings&&>);
 
 // --- Options: aggregates with any single field initialised by name, without a warning (-Wextra includes
 // -Wmissing-field-initializers). Tested for the first field and one in the middle, as fields after it would cause the
