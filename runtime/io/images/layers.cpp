@@ -13,7 +13,6 @@
 #include "base/raw_image.hpp"
 #include "base/sample_reader.hpp"
 #include "images/images.hpp"
-#include "process/separate_reading.hpp"
 
 namespace tegl {
 
@@ -157,12 +156,28 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
   }
 }
 
+LayersOfFiles io_detail::open_reporting(const fs::path& path, const Progress& progress, bool separate,
+                                        const std::function<LayersOfFiles(const Progress&)>& open) {
+  const auto open_quietly_after = [&](const Progress& reported) {
+    const auto current = std::make_shared<Progress>(reported);
+    LayersOfFiles opened = open([current](double fraction) { return !*current || (*current)(fraction); });
+    *current = nullptr;
+    return opened;
+  };
+  tick(progress, 0.0, path);
+  LayersOfFiles opened = separate ? open_separately(path, progress, open_quietly_after) : open_quietly_after(progress);
+  tick(progress, 1.0, path);
+  return opened;
+}
+
 OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
-  ReadImageOptions silent = options;  // opening is fast, and a child process must not call the caller's functions
-  silent.work.progress = nullptr;
-  const auto open = [&] { return LayersOfFiles{open_any_layers(path, silent), {path}}; };
+  const auto open = [&](const Progress& progress) {
+    ReadImageOptions own = options;
+    own.work.progress = progress;
+    return LayersOfFiles{open_any_layers(path, own), {path}};
+  };
   const bool separate = options.separate_process && needs_separate_process(path);
-  return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
+  return to_open_layers(std::move(open_reporting(path, options.work.progress, separate, open).layers), path);
 }
 
 RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {

@@ -257,12 +257,13 @@ auto unpack(ChildProcess& child, Package& package, const Get& get) {
 /// Layers read by a child, several per request.
 class SeparateLayers {
  public:
-  SeparateLayers(fs::path path, const std::function<LayersOfFiles()>& open)
-      : path_(std::move(path)), child_(path_, [&](const ParentLink& parent) { serve(open(), parent); }) {}
+  SeparateLayers(fs::path path, const std::function<LayersOfFiles(const Progress&)>& open)
+      : path_(std::move(path)),
+        child_(path_, [&](const ParentLink& parent) { serve(open(parent.progress()), parent); }) {}
 
   /// Receives grid, metadata and files; reads no values.
-  LayersOfFiles describe() {
-    Package package = child_.receive({});
+  LayersOfFiles describe(const Progress& progress) {
+    Package package = child_.receive(progress);
     LayersOfFiles opened = unpack(child_, package, [&](Unpacker& unpacker) {
       LayersOfFiles result;
       result.layers.grid = get_grid(unpacker);
@@ -428,9 +429,10 @@ std::vector<ImageVariable> read_separately(const fs::path& path,
   });
 }
 
-LayersOfFiles open_separately(const fs::path& path, const std::function<LayersOfFiles()>& open) {
+LayersOfFiles open_separately(const fs::path& path, const Progress& progress,
+                              const std::function<LayersOfFiles(const Progress&)>& open) {
   const auto source = std::make_shared<SeparateLayers>(path, open);
-  LayersOfFiles opened = source->describe();
+  LayersOfFiles opened = source->describe(progress);
   opened.layers.look = [source](std::size_t first, std::size_t count) { return source->look(first, count); };
   opened.layers.read = [source](std::size_t first, std::size_t count) {
     if (count == 0) return source->type();

@@ -201,6 +201,7 @@ concept BecomesMesh = requires(const C& c) {
 template <int N>
 concept FromMesh = requires(const Mesh& mesh) {
   to_contour<N>(mesh);
+  to_contour<N>(Mesh(mesh));
 };
 template <int N>
 concept HasTileFacets = requires {

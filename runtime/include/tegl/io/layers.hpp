@@ -41,7 +41,8 @@ struct OpenLayersResult {
 /// of NIfTI, NRRD and MetaImage are read in one pass if layers are requested in ascending order; a layer before the
 /// last one starts a new pass. Errors: those of read_image, here or in read() (faults in compressed samples are found
 /// when they are read); UnsupportedData for a netCDF file that is gzipped as a whole, and for an NRRD list of images
-/// whose axis is not the last one in the file.
+/// whose axis is not the last one in the file. Progress is called while the file is opened, once for each file of a
+/// DICOM folder, and not while layers are read.
 [[nodiscard]] OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// The layout of a headerless raw file: contiguous values, axis 0 fastest.

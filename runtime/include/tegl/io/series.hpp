@@ -33,7 +33,7 @@ struct SeriesOptions {
   std::string unit = {};
   SeriesOrder order = SeriesOrder::given;  ///< order of the files
   std::optional<RawLayout> raw = {};       ///< layout of each file, for headerless raw files
-  WorkOptions work = {};                   ///< progress of read_series, over all files; one thread reads
+  WorkOptions work = {};                   ///< progress over all files; one thread reads
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
@@ -70,7 +70,8 @@ struct OpenSeriesResult : OpenLayersResult {
 
 /// Opens a series to be read layer by layer, one file per layer, for images larger than memory. Values as in
 /// open_layers (uint32, int64 and uint64 as double). Memory: one file. Errors: those of read_series, immediately; and
-/// in read() if a file has changed since. A single file is opened by open_layers or open_raw_layers.
+/// in read() if a file has changed since. Progress is called once for each file that is opened, and not while layers
+/// are read. A single file is opened by open_layers or open_raw_layers.
 [[nodiscard]] OpenSeriesResult open_series(std::span<const std::filesystem::path> files,
                                            const SeriesOptions& options = {});
 
