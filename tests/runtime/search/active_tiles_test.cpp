@@ -2,6 +2,7 @@
 //
 // Indexes of active tiles find the tiles of the definition at every relevant isovalue, for every method, dimension and
 // value type; and loading restores them exactly or fails.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -178,6 +179,25 @@ TEST(ActiveTiles, AreTheSameForAnyNumberOfThreads) {
     build_active_tiles(image.view(), method, {.work = {.threads = 4}})->save(many);
     EXPECT_EQ(one.content, many.content) << active_method_name(method);
   }
+}
+
+TEST(ActiveTiles, OfIndexesThatNeedNoImageDoNotDependOnItsValues) {
+  auto image = noise<float, 3>(8, 21);
+  std::set<ActiveMethod> need_values;
+  for (const auto& index : all_indexes(image.view())) {
+    const std::vector<TileNumber> expected = index->find(0.5);
+    ASSERT_FALSE(expected.empty());
+    if (index->needs_image()) {
+      need_values.insert(index->method());
+      continue;
+    }
+    const auto values = image.values;
+    std::fill(image.values.begin(), image.values.end(), 0.0F);
+    EXPECT_EQ(index->find(0.5), expected) << active_method_name(index->method());
+    std::copy(values.begin(), values.end(), image.values.begin());
+  }
+  EXPECT_EQ(need_values,
+            (std::set<ActiveMethod>{ActiveMethod::full_scan, ActiveMethod::min_max_tree, ActiveMethod::seed_set}));
 }
 
 TEST(ActiveTiles, ChosenOnesAreThoseAndNotComplete) {
