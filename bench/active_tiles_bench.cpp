@@ -85,8 +85,8 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
       contours += query.extract_seconds;
       done.push_back(query);
       if (csv != nullptr)
-        fmt::print(csv, "{},{},{},{},{},{}\n", name, active_method_name(method), query.isovalue, query.active,
-                   query.seconds, query.extract_seconds);
+        fmt::print(csv, "{},{},{},{},{},{}\n", name, name_of(method), query.isovalue, query.active, query.seconds,
+                   query.extract_seconds);
     }
     std::vector<double> active, seconds;
     for (const Query& query : done) {
@@ -99,7 +99,7 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
     fmt::print(
         "| {} | {:.3f} | {:.2f} MB | {:.2f} | {:.0f} MB | {:.3f} ms | {:.3f} ms + {:.2f} ns k | {:.3f} | {:.3f} "
         "| {:.2f} |\n",
-        active_method_name(method), build, bytes / 1e6, bytes / static_cast<double>(index->grid().count()),
+        name_of(method), build, bytes / 1e6, bytes / static_cast<double>(index->grid().count()),
         static_cast<double>(peak) / 1e6, 1e3 * done[done.size() / 2].seconds, 1e3 * fit.start, 1e9 * fit.each,
         fit.explained, contours, contours / plain);
     std::fflush(stdout);

@@ -177,7 +177,7 @@ void add_tiles() {
         const std::uint64_t key = random_signature ? random() & 0xffffffffU : signature;
         signs.resize(random_signs ? 243 : 0);
         for (auto& sign : signs) sign = static_cast<tile::Choice>(random() % 3);
-        benchmark::DoNotOptimize(tile_facets<N>(key, signs));
+        benchmark::DoNotOptimize(tile_facets<N>(key, {.choices = signs}));
       }
     })->Unit(benchmark::kMillisecond);
   };

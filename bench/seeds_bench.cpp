@@ -95,9 +95,8 @@ void measure_scaling(const std::string& name, const Image<T, N>& image, const Ar
   for_each_search(image, arguments, [&](const Search& search) {
     const auto tiles = static_cast<double>(search.found.stats.tiles);
     fmt::print("| `{}` | {} | `{}` | {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", name,
-               neighbourhood_name(search.options.neighbourhood), seed_method_name(search.options.method),
-               search.found.stats.tiles, search.found.tiles.size(), search.seconds, 1e6 * search.seconds / tiles,
-               search.peak_bytes / tiles);
+               name_of(search.options.neighbourhood), name_of(search.options.method), search.found.stats.tiles,
+               search.found.tiles.size(), search.seconds, 1e6 * search.seconds / tiles, search.peak_bytes / tiles);
   });
 }
 
@@ -107,8 +106,8 @@ void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
       "| neighbourhood | method | seeds | bound | seconds | most memory while found |\n|---|---|---|---|---|---|\n");
   for_each_search(image, arguments, [&](const Search& search) {
     const SeedSetStats& stats = search.found.stats;
-    fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", neighbourhood_name(search.options.neighbourhood),
-               seed_method_name(search.options.method),
+    fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", name_of(search.options.neighbourhood),
+               name_of(search.options.method),
                count_seeds(image, search.options, arguments.orders, search.found.tiles.size()),
                stats.lower_bound > 0 ? fmt::format("{}", stats.lower_bound)
                : stats.reduced       ? fmt::format("{}, at some isovalues", seed_lower_bound(image, search.options))

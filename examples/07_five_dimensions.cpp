@@ -43,9 +43,9 @@ int main() {
   // A single tile: two opposite corners of a 5-cube, kept separate, or joined because its centre is high.
   const std::uint64_t opposite = std::uint64_t{1} << 31 | 1;
   std::vector<tegl::tile::Choice> signs(tegl::kFaceCount<5>);
-  const std::size_t apart = tegl::tile_facets<5>(opposite, signs).facets.size();
+  const std::size_t apart = tegl::tile_facets<5>(opposite, {.choices = signs}).facets.size();
   signs[tegl::face_number<5>(0, 0b11111)] = tegl::tile::Choice::high;
-  const std::size_t joined = tegl::tile_facets<5>(opposite, signs).facets.size();
+  const std::size_t joined = tegl::tile_facets<5>(opposite, {.choices = signs}).facets.size();
   std::printf("two opposite corners of a tile: %zu pieces of contour, or %zu\n", apart, joined);
 
   // The boundary of a solid ring that is thick in four directions: a circle times a 3-sphere.

@@ -36,7 +36,7 @@ int main() {
   options.times = tegl::even_times(0, kSteps - 1, 10);  // times at which the components are measured
   const tegl::TrackGraph graph = tegl::track(contour, options);
   for (const tegl::TrackEvent& event : graph.events)
-    std::printf("t = %5.2f: %s, %zu -> %zu parts\n", event.time, tegl::event_name(event.kind), event.in.size(),
+    std::printf("t = %5.2f: %s, %zu -> %zu parts\n", event.time, tegl::name_of(event.kind).data(), event.in.size(),
                 event.out.size());
   for (const tegl::TrackSegment& segment : graph.segments)
     for (const tegl::TrackSample& sample : segment.samples)

@@ -39,7 +39,7 @@ class IndexOf final : public AnyIndex {
     return {extract<float>(image_, level, *tiles_, options), level};
   }
   [[nodiscard]] std::vector<TileNumber> find(double level) const override { return tiles_->find(level); }
-  [[nodiscard]] std::string method() const override { return std::string(active_method_name(tiles_->method())); }
+  [[nodiscard]] std::string method() const override { return std::string(name_of(tiles_->method())); }
   [[nodiscard]] std::size_t memory() const override { return tiles_->memory_bytes(); }
   void save(const std::string& path) const override { write_active_tiles(*tiles_, path); }
 
@@ -62,7 +62,7 @@ std::unique_ptr<AnyIndex> index_of(const AnyImage& image, const Make& make) {
 
 std::vector<std::pair<const char*, ActiveMethod>> method_names() {
   std::vector<std::pair<const char*, ActiveMethod>> result;
-  for (const ActiveMethod method : active_methods()) result.emplace_back(active_method_name(method).data(), method);
+  for (const ActiveMethod method : active_methods()) result.emplace_back(name_of(method).data(), method);
   return result;
 }
 

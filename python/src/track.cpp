@@ -44,7 +44,7 @@ py::list events_of(const TrackGraph& graph) {
   py::list result;
   for (const TrackEvent& event : graph.events) {
     py::dict one;
-    put(one, "kind", std::string(event_name(event.kind)));
+    put(one, "kind", std::string(name_of(event.kind)));
     put(one, "time", event.time);
     put(one, "place", place_of(graph, event.place));
     put(one, "vertex", event.vertex);

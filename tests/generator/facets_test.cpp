@@ -233,7 +233,7 @@ TEST(Certificate, AChordInAFaceOfTheTileIsRefused) {
     for (std::size_t k = 1; k + 1 < cycle.size(); ++k)
       simplices.push_back({cycle[apex], cycle[(apex + k) % 7], cycle[(apex + k + 1) % 7]});
     const Fault fault = certify(builder, 61, contour);
-    EXPECT_TRUE(fault == Fault::none || fault == Fault::in_tile_boundary) << fault_name(fault);
+    EXPECT_TRUE(fault == Fault::none || fault == Fault::in_tile_boundary) << name_of(fault);
     refused += fault == Fault::in_tile_boundary ? 1 : 0;
   }
   EXPECT_GT(refused, 0);

@@ -105,7 +105,7 @@ Error error_of(Work&& work) {
 template <class Work>
 void expect_error(ErrorCode code, const std::vector<std::string>& parts, Work&& work) {
   const Error error = error_of(work);
-  EXPECT_EQ(error.code(), code) << error_name(error.code()) << ": " << error.what();
+  EXPECT_EQ(error.code(), code) << name_of(error.code()) << ": " << error.what();
   for (const std::string& part : parts) EXPECT_THAT(error.what(), testing::HasSubstr(part));
 }
 

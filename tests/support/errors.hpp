@@ -16,7 +16,7 @@ template <class Work>
 void expect_error(ErrorCode code, const std::string& part, const Work& work) {
   try {
     work();
-    ADD_FAILURE() << "no error; expected " << error_name(code) << " with '" << part << "'";
+    ADD_FAILURE() << "no error; expected " << name_of(code) << " with '" << part << "'";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), code) << error.what();
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();

@@ -271,7 +271,7 @@ Fault Certifier::certify(const FaceLattice& lattice, const TileFacets& tile) { r
 
 Fault certify(const FaceLattice& lattice, const TileFacets& tile) { return Certifier().certify(lattice, tile); }
 
-const char* fault_name(Fault fault) noexcept {
+std::string_view name_of(Fault fault) noexcept {
   switch (fault) {
     case Fault::none:
       return "none";

@@ -79,7 +79,7 @@ class IndexCommand final : public Command {
       : Command(program, "index", "Build an index of an image's active tiles, for contours at many isovalues",
                 "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder)", Files::image) {
     std::vector<std::string> names;
-    for (const ActiveMethod method : active_methods()) names.emplace_back(active_method_name(method));
+    for (const ActiveMethod method : active_methods()) names.emplace_back(name_of(method));
     app()
         .add_option("-o,--output", output_, "the index; default: the name of FILE followed by .tindex")
         ->type_name("FILE");
@@ -88,7 +88,7 @@ class IndexCommand final : public Command {
         ->check(CLI::IsMember(names))
         ->capture_default_str();
     std::vector<std::string> seeds;
-    for (const SeedMethod method : seed_methods()) seeds.emplace_back(seed_method_name(method));
+    for (const SeedMethod method : seed_methods()) seeds.emplace_back(name_of(method));
     app()
         .add_option("--seeds", seeds_, "with --method seed-set: method that selects the seeds (docs/seed-sets.md)")
         ->check(CLI::IsMember(seeds))
@@ -115,8 +115,7 @@ class IndexCommand final : public Command {
     result.method = method_;
     // validate options and files
     require_inputs();
-    if (method_ != active_method_name(ActiveMethod::seed_set) &&
-        (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
+    if (method_ != name_of(ActiveMethod::seed_set) && (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--seeds and --scan-order are for --method seed-set; the method is {}", method_));
     if (!is_index_file(result.output))
@@ -150,12 +149,12 @@ class IndexCommand final : public Command {
   void build(const Owned& owned, ProgressBar& bar, IndexResult& result) const {
     Stopwatch watch;
     const std::vector<ActiveMethod> methods = active_methods();
-    const ActiveMethod method = *std::find_if(methods.begin(), methods.end(),
-                                              [&](ActiveMethod each) { return active_method_name(each) == method_; });
+    const ActiveMethod method =
+        *std::find_if(methods.begin(), methods.end(), [&](ActiveMethod each) { return name_of(each) == method_; });
     const std::vector<SeedMethod> seeds = seed_methods();
     ActiveTilesOptions options{.work = {threads_, bar.stage("build")}};
     options.seed_method =
-        *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return seed_method_name(each) == seeds_; });
+        *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return name_of(each) == seeds_; });
     options.scan_order = scan_order_;
     const auto index = build_active_tiles(owned.view(), method, options);
     result.tiles = index->grid().count();
@@ -169,8 +168,8 @@ class IndexCommand final : public Command {
   }
 
   std::string output_;
-  std::string method_{active_method_name(ActiveMethod::span_space)};
-  std::string seeds_{seed_method_name(SeedMethod::cover)};
+  std::string method_{name_of(ActiveMethod::span_space)};
+  std::string seeds_{name_of(SeedMethod::cover)};
   std::vector<int> scan_order_;
   unsigned threads_ = 0;
 };
@@ -189,7 +188,7 @@ std::string index_info(const Console& console, const std::filesystem::path& path
     document["input"] = path.string();
     document["format"] = "tindex";
     document["version"] = head.version;
-    document["method"] = active_method_name(head.method);
+    document["method"] = name_of(head.method);
     document["image"] = {{"sizes", head.sizes},
                          {"type", name_of(head.value_type)},
                          {"digest", fmt::format("{:016x}", head.digest)},
@@ -198,7 +197,7 @@ std::string index_info(const Console& console, const std::filesystem::path& path
     return dump(document);
   }
   std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: index of active tiles", path.string())));
-  text += report_line("method", active_method_name(head.method));
+  text += report_line("method", name_of(head.method));
   text += report_line("image", fmt::format("{} {}{}", fmt::join(head.sizes, " x "), name_of(head.value_type),
                                            head.any_missing ? ", some missing" : ""));
   text += report_line("digest", fmt::format("{:016x}", head.digest));

@@ -82,7 +82,7 @@ std::vector<std::pair<std::string, std::size_t>> kinds_of(const TrackGraph& grap
     const auto kind = static_cast<TrackEventKind>(k);
     const auto count = std::count_if(graph.events.begin(), graph.events.end(),
                                      [&](const TrackEvent& event) { return event.kind == kind; });
-    if (count > 0) counts.emplace_back(event_name(kind), static_cast<std::size_t>(count));
+    if (count > 0) counts.emplace_back(name_of(kind), static_cast<std::size_t>(count));
   }
   return counts;
 }
@@ -311,8 +311,8 @@ class TrackCommand final : public ContourInputCommand {
       const Track& track = graph.tracks[order[i]];
       const TrackEvent& start = graph.events[graph.segments[track.segments.front()].from];
       const TrackEvent& end = graph.events[graph.segments[track.segments.back()].to];
-      std::string line = fmt::format("{}: {} at {} = {}, {} at {}", track.number, event_name(start.kind), axis,
-                                     number(track.start), event_name(end.kind), number(track.end));
+      std::string line = fmt::format("{}: {} at {} = {}, {} at {}", track.number, name_of(start.kind), axis,
+                                     number(track.start), name_of(end.kind), number(track.end));
       if (const double largest = largest_measure(graph, track); largest > 0) {
         line += fmt::format(", {} up to {}", kMeasures[static_cast<std::size_t>(last - 1)],
                             last > 1 ? with_unit(number(largest), unit) : number(largest));

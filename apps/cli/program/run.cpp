@@ -79,7 +79,7 @@ ExitCode run(Command& command, const Streams& streams) {
     // If a signal arrived, it is the reason, whatever error the cancelled stage had.
     if (tegl::cli::InterruptHandler::requested()) {
       exit = ExitCode::Cancelled;
-      code = tegl::error_name(tegl::ErrorCode::Cancelled);
+      code = tegl::name_of(tegl::ErrorCode::Cancelled);
       message = kCancelled;
     }
     streams.err.write(text(exit, code, message));
@@ -88,7 +88,7 @@ ExitCode run(Command& command, const Streams& streams) {
   // Removes a progress bar, or the demo's picture, from the terminal.
   const std::string cleared = streams.err.moves_its_cursor() ? "\r\x1b[0m\x1b[K\x1b[?25h" : "";
   const tegl::cli::InterruptHandler handler(
-      cleared + text(ExitCode::Cancelled, tegl::error_name(tegl::ErrorCode::Cancelled), kCancelled));
+      cleared + text(ExitCode::Cancelled, tegl::name_of(tegl::ErrorCode::Cancelled), kCancelled));
   try {
     const tegl::cli::ThreadLimit threads(command.threads_wanted());
     const ExitCode exit = command.run(streams);
@@ -100,7 +100,7 @@ ExitCode run(Command& command, const Streams& streams) {
   } catch (const tegl::cli::BrokenPipe&) {
     tegl::cli::end_by_signal(SIGPIPE);
   } catch (const tegl::Error& error) {
-    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), message_of(error, command));
+    return fail(tegl::cli::exit_code(error.code()), tegl::name_of(error.code()), message_of(error, command));
   } catch (const tegl::cli::EmptyResult& error) {
     return fail(ExitCode::Nothing, "EmptyResult", with_file(error.what(), command));
   } catch (const std::bad_alloc&) {
@@ -195,7 +195,7 @@ std::optional<ExitCode> write_reference(const CLI::App& program, int argc, char*
                           : tegl::cli::completion_script(program, words[1]));
     return ExitCode::Ok;
   } catch (const tegl::Error& error) {
-    return report(streams, false, tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), error.what());
+    return report(streams, false, tegl::cli::exit_code(error.code()), tegl::name_of(error.code()), error.what());
   }
 }
 

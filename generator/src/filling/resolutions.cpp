@@ -32,7 +32,7 @@ std::string text_of(const FaceLattice& lattice, Signature signature, const tile:
   for (std::size_t f = 0; f < resolution.choices.size(); ++f)
     if (lattice.faces()[f].dim >= 2) choices += "slh"[static_cast<std::size_t>(resolution.choices[f])];
   return fmt::format("signature {}, faces resolved {} (s separate, l low, h high), {} alternative: {}", signature,
-                     choices, resolution.alternative == Alternative::low ? "low" : "high", tile::fault_name(fault));
+                     choices, resolution.alternative == Alternative::low ? "low" : "high", tile::name_of(fault));
 }
 
 /// State of one thread: a certifier and its sums.

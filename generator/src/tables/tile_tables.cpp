@@ -238,7 +238,7 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder, const
     contours[s] = builder.build(s);
     if (const tile::Fault fault = certifier.certify(s, contours[s]); fault != tile::Fault::none)
       throw Error(ErrorCode::CertificateFailed,
-                  fmt::format("signature {} of the {}-tile: {}", s, builder.dim(), tile::fault_name(fault)));
+                  fmt::format("signature {} of the {}-tile: {}", s, builder.dim(), tile::name_of(fault)));
   };
   in_parallel(
       count, kChunk, 0, [&] { return TableCertifier(builder); }, build, [](const TableCertifier&) {});

@@ -29,11 +29,11 @@ template <int N>
 requires DimensionBetween<N, 2, 5>
 class TileGrid {
  public:
-  using Index = std::array<std::size_t, N>;  ///< index of a tile's lowest corner, or sizes, by axis
+  using GridIndex = std::array<std::size_t, N>;  ///< index of a tile's lowest corner, or sizes, by axis
 
   TileGrid() = default;
   /// The tiles of an image of `samples`. An axis of one sample or none leaves no tiles.
-  explicit TileGrid(const Index& samples) noexcept {
+  explicit TileGrid(const GridIndex& samples) noexcept {
     count_ = 1;
     for (int a = 0; a < N; ++a) {
       sizes_[a] = samples[a] > 0 ? samples[a] - 1 : 0;
@@ -50,14 +50,14 @@ class TileGrid {
   [[nodiscard]] std::size_t rows() const noexcept { return count_ == 0 ? 0 : count_ / sizes_[0]; }
 
   /// The number of a tile, given its lowest corner.
-  [[nodiscard]] TileNumber number(const Index& index) const noexcept {
+  [[nodiscard]] TileNumber number(const GridIndex& index) const noexcept {
     TileNumber number = 0;
     for (int a = 0; a < N; ++a) number += index[a] * strides_[a];
     return number;
   }
   /// The index of a tile's lowest corner. Precondition: number < count().
-  [[nodiscard]] Index index(TileNumber number) const noexcept {
-    Index index;
+  [[nodiscard]] GridIndex index(TileNumber number) const noexcept {
+    GridIndex index;
     for (int a = 0; a < N; ++a, number /= sizes_[a - 1]) index[a] = number % sizes_[a];
     return index;
   }
@@ -65,7 +65,7 @@ class TileGrid {
   [[nodiscard]] std::size_t row(TileNumber number) const noexcept { return number / sizes_[0]; }
 
  private:
-  Index sizes_{};
+  GridIndex sizes_{};
   std::array<TileNumber, N> strides_{};
   TileNumber count_ = 0;
 };
@@ -104,7 +104,7 @@ enum class ActiveMethod : std::uint8_t {
   seed_set,       ///< propagates from a few seed tiles (tegl/seed_set.hpp); reads values around active tiles
 };
 /// "full-scan", "interval-tree", ...
-[[nodiscard]] std::string_view active_method_name(ActiveMethod method) noexcept;
+[[nodiscard]] std::string_view name_of(ActiveMethod method) noexcept;
 /// All methods, in the order of the enumeration.
 [[nodiscard]] std::vector<ActiveMethod> active_methods();
 

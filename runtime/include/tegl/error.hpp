@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace tegl {
 
@@ -23,8 +24,8 @@ enum class ErrorCode {
   Cancelled,          ///< the progress callback returned false
 };
 
-/// The name of a code as in the enumeration, for messages and JSON.
-[[nodiscard]] const char* error_name(ErrorCode code) noexcept;
+/// The name of a code as in the enumeration, for messages and JSON. A 0 character follows it.
+[[nodiscard]] std::string_view name_of(ErrorCode code) noexcept;
 
 /// The exception type of the library. `what()` contains the actual and the expected value. If memory runs out,
 /// std::bad_alloc is thrown instead; the library stays usable and leaves no partial file.

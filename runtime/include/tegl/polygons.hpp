@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,16 @@ enum class PolygonTriangulation {
   halving_kink,   ///< Method 3: recursive halving by the chord with the smallest bend (8.1.9, 8.1.14)
   barycentric,    ///< Method 4: the barycentre is joined to all points; triangles stay (8.1.18, 8.1.23)
 };
+
+namespace detail {
+/// The number of coordinates of the points of a container; 0 if these are no std::array<double, N>.
+template <class Point>
+inline constexpr int kCoordinates = 0;
+template <std::size_t N>
+inline constexpr int kCoordinates<std::array<double, N>> = static_cast<int>(N);
+template <class Points>
+inline constexpr int kPointDim = kCoordinates<std::ranges::range_value_t<Points>>;
+}  // namespace detail
 
 /// Two points of a polygon, by number.
 using Chord = std::array<Index, 2>;
@@ -51,11 +62,29 @@ requires DimensionBetween<N, 2, 4>
                                                                     PolygonTriangulation method,
                                                                     std::span<const Chord> forbidden = {});
 
+/// The same for a container of points, which gives N: `triangulate_polygon(points, PolygonTriangulation::fan)`.
+template <std::ranges::contiguous_range Points>
+requires DimensionBetween < detail::kPointDim<Points>,
+2, 4 > [[nodiscard]] std::vector<std::array<Index, 3>> triangulate_polygon(const Points& points,
+                                                                           PolygonTriangulation method,
+                                                                           std::span<const Chord> forbidden = {}) {
+  constexpr int kDim = detail::kPointDim<Points>;
+  return triangulate_polygon<kDim>(std::span<const std::array<double, kDim>>(points), method, forbidden);
+}
+
 /// The mean of the midpoints of a polygon's edges, weighted by edge length; if all points coincide, that point.
 /// `points`: at least one.
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::array<double, N> polygon_barycentre(std::span<const std::array<double, N>> points);
+
+/// The same for a container of points, which gives N.
+template <std::ranges::contiguous_range Points>
+requires DimensionBetween < detail::kPointDim<Points>,
+2, 4 > [[nodiscard]] std::array<double, detail::kPointDim<Points>> polygon_barycentre(const Points& points) {
+  constexpr int kDim = detail::kPointDim<Points>;
+  return polygon_barycentre<kDim>(std::span<const std::array<double, kDim>>(points));
+}
 
 /// Triangulates the polygons of a 3D contour. The result is a manifold with every method: chords between two points of
 /// one square of the grid are forbidden, as the cube on the other side might use them too.

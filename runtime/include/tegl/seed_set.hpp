@@ -22,7 +22,7 @@ enum class Neighbourhood : std::uint8_t {
   all,              ///< F+E+V: all 3^N - 1 tiles that share at least a corner
 };
 /// "faces", "faces-and-edges", "all".
-[[nodiscard]] std::string_view neighbourhood_name(Neighbourhood neighbourhood) noexcept;
+[[nodiscard]] std::string_view name_of(Neighbourhood neighbourhood) noexcept;
 
 /// Methods to find seeds. All except `cover` come from the literature; docs/seed-sets.md compares their sizes.
 enum class SeedMethod : std::uint8_t {
@@ -35,7 +35,7 @@ enum class SeedMethod : std::uint8_t {
   climbing,  ///< the same authors: tiles not covered by earlier neighbours, in an order that grows from seeds
 };
 /// "cover", "whole1", ...
-[[nodiscard]] std::string_view seed_method_name(SeedMethod method) noexcept;
+[[nodiscard]] std::string_view name_of(SeedMethod method) noexcept;
 /// All methods, in the order of the enumeration.
 [[nodiscard]] std::vector<SeedMethod> seed_methods();
 

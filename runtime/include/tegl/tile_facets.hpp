@@ -6,18 +6,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "tegl/dimensions.hpp"
 #include "tegl/tile/facets.hpp"
 
 namespace tegl {
 
-/// The number of a face of the N-cube, as used by `signs` and tile::Vertex::face: faces are ordered by dimension,
-/// then by the ascending numbers of their corners. Corner v has coordinate v >> a & 1 on axis a. The face has the
-/// corners `base | s` for all subsets s of the bits of `axes` (theory's numbering), and as many dimensions as `axes`
-/// has bits. Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1) after the
-/// first call.
+/// The number of a face of the N-cube, as used by tile::Resolution and tile::Vertex::face: faces are ordered by
+/// dimension, then by the ascending numbers of their corners. Corner v has coordinate v >> a & 1 on axis a. The face
+/// has the corners `base | s` for all subsets s of the bits of `axes` (theory's numbering), and as many dimensions as
+/// `axes` has bits. Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1) after
+/// the first call.
 template <int N>
 requires DimensionBetween<N, 2, 6>
 [[nodiscard]] std::size_t face_number(unsigned base, unsigned axes);
@@ -32,24 +31,24 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// Constructs the contour of the tile whose high corners are the bits of `signature` (bit v: corner v), in the tile's
 /// frame.
 ///
-/// `signs` has an entry for each of the 3^N faces, by face_number, or is empty: all `separate`. It selects how a face
-/// of two or more dimensions is filled if that is ambiguous:
+/// `resolution.choices` has an entry for each of the 3^N faces, by face_number, or is empty: all `separate`. It selects
+/// how a face of two or more dimensions is filled if that is ambiguous:
 /// - separate: every part of the contour on the face's boundary that is a sphere gets its own cone. Other cases are
-///   filled as `otherwise` says: a square with two diagonally opposite high corners, which has no centre to decide, and
-///   in 4D and higher a part that is not a sphere.
+///   filled as `resolution.alternative` says: a square with two diagonally opposite high corners, which has no centre
+///   to decide, and in 4D and higher a part that is not a sphere.
 /// - low, high: the sign of the face's centre. The contour is a copy of the boundary regions of the other sign, moved
 ///   inwards, so all regions of the centre's sign are connected in the face. In a square with two diagonally opposite
 ///   high corners, `low` separates them and `high` joins them; in a cube with two opposite high corners and a high
 ///   centre, a tunnel joins them.
 ///
 /// Entries for corners, edges, and faces that the contour does not pass are ignored. Tiles that share a face agree in
-/// it, corner by corner and simplex by simplex, if they have the same signs for it and for its own faces.
+/// it, corner by corner and simplex by simplex, if they have the same choices for it and for its own faces.
 ///
 /// Vertices of the result are identified by the face that they lie in and their number there. Simplices have N vertices
 /// and are oriented so that the simplex followed by a normal towards the high side is positive.
 ///
-/// Throws InvalidArgument for a signature with bits beyond the 2^N corners, and for a number of signs other than 0 and
-/// 3^N; TooLarge for a tile of more than 65 535 vertices (none is known). Thread-safe. N = 2 ... 6.
+/// Throws InvalidArgument for a signature with bits beyond the 2^N corners, and for a number of choices other than 0
+/// and 3^N; TooLarge for a tile of more than 65 535 vertices (none is known). Thread-safe. N = 2 ... 6.
 ///
 /// Time: microseconds in 2D, about 0.1 ms in 3D and 4D, up to 10 ms in 5D, seconds in 6D; docs/cost.md has measured
 /// times of 5D. Up to 4D most of it is the setup of a builder.
@@ -58,7 +57,6 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// share.
 template <int N>
 requires DimensionBetween<N, 2, 6>
-[[nodiscard]] tile::TileFacets tile_facets(std::uint64_t signature, std::span<const tile::Choice> signs = {},
-                                           tile::Alternative otherwise = tile::Alternative::low);
+[[nodiscard]] tile::TileFacets tile_facets(std::uint64_t signature, const tile::Resolution& resolution = {});
 
 }  // namespace tegl

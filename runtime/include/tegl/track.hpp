@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tegl/contour.hpp"
@@ -29,8 +30,8 @@ enum class TrackEventKind {
   exchange,  ///< n -> m, both more than 1
 };
 
-/// The name of a kind, as in the enumeration: "merge".
-[[nodiscard]] const char* event_name(TrackEventKind kind) noexcept;
+/// The name of a kind, as in the enumeration: "merge". A 0 character follows it.
+[[nodiscard]] std::string_view name_of(TrackEventKind kind) noexcept;
 
 /// An event: parts appear, merge, split or vanish.
 struct TrackEvent {

@@ -335,7 +335,7 @@ class Drawing {
     const double row = main == kNone ? rows_of(event).front() : y(main);
     std::string place;
     for (int a = 0; a + 1 < graph_.space_dim; ++a) place += fmt::format("{}{:.6g}", a == 0 ? "" : ", ", event.place[a]);
-    text_ += fmt::format("<g><title>{} at {:.6g}, place {}</title>{}</g>\n", event_name(event.kind), event.time, place,
+    text_ += fmt::format("<g><title>{} at {:.6g}, place {}</title>{}</g>\n", name_of(event.kind), event.time, place,
                          mark(event.kind, x(event.time), row));
   }
 
@@ -351,7 +351,7 @@ class Drawing {
       const auto kind = static_cast<TrackEventKind>(k);
       if (std::any_of(graph_.events.begin(), graph_.events.end(),
                       [&](const auto& event) { return event.kind == kind; }))
-        entry(mark(kind, at, row), event_name(kind));
+        entry(mark(kind, at, row), name_of(kind));
     }
     if (!graph_.handles.empty()) entry(handle_mark(at, row), "handle opens or closes");
   }

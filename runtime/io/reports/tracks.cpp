@@ -38,7 +38,7 @@ Json axes_json(const TrackGraph& graph) {
 Json event_json(const TrackGraph& graph, std::size_t number) {
   const TrackEvent& event = graph.events[number];
   return {{"event", number},
-          {"kind", event_name(event.kind)},
+          {"kind", name_of(event.kind)},
           {"time", event.time},
           {"place", coordinates(graph, event.place)},
           {"vertex", event.vertex},
@@ -140,7 +140,7 @@ std::string track_dot(const TrackGraph& graph) {
   for (std::size_t e = 0; e < graph.events.size(); ++e) {
     const TrackEvent& event = graph.events[e];
     const char* const shape = event.in.empty() || event.out.empty() ? "ellipse" : "box";
-    text += fmt::format("  e{} [shape = {}, label = \"{}\\n{:.6g}\"];\n", e, shape, event_name(event.kind), event.time);
+    text += fmt::format("  e{} [shape = {}, label = \"{}\\n{:.6g}\"];\n", e, shape, name_of(event.kind), event.time);
   }
   for (std::size_t s = 0; s < graph.segments.size(); ++s) {
     const TrackSegment& segment = graph.segments[s];
@@ -154,7 +154,7 @@ std::string track_events_csv(const TrackGraph& graph) {
   std::string text = fmt::format("event,kind,time{},vertex,at_border,in,out,euler_change\n", axis_columns(graph, ""));
   for (std::size_t e = 0; e < graph.events.size(); ++e) {
     const TrackEvent& event = graph.events[e];
-    text += fmt::format("{},{},{}{},{},{},{},{},{}\n", e, event_name(event.kind), event.time,
+    text += fmt::format("{},{},{}{},{},{},{},{},{}\n", e, name_of(event.kind), event.time,
                         axis_fields(graph, event.place), event.vertex, event.at_border ? 1 : 0,
                         fmt::join(event.in, " "), fmt::join(event.out, " "), event.euler_change);
   }

@@ -142,11 +142,6 @@ bool is_mean_high(std::span<const double> values, double isovalue) noexcept {
   return is_near_mean_high(values, isovalue);
 }
 
-const char* name_of(Ambiguity ambiguity) noexcept {
-  constexpr std::array<const char*, 5> kNames{"low", "high", "mean", "saddle", "custom"};
-  return kNames[static_cast<std::size_t>(ambiguity)];
-}
-
 template <int N>
 FaceEstimator<N>::FaceEstimator(const CornerValues<N>& source, const Index& sizes, const ExtractOptions& options,
                                 PartOfImage part)

@@ -26,9 +26,6 @@ constexpr bool is_estimated(Ambiguity ambiguity) noexcept {
   return ambiguity != Ambiguity::low && ambiguity != Ambiguity::high;
 }
 
-/// Name of the option's value, for messages.
-const char* name_of(Ambiguity ambiguity) noexcept;
-
 /// Position of the extracted image in a whole image: samples from `first` on along `axis`, all samples along the other
 /// axes. (Along the last axis, sources have this information.)
 struct PartOfImage {

@@ -5,7 +5,7 @@
 
 namespace tegl {
 
-const char* error_name(ErrorCode code) noexcept {
+std::string_view name_of(ErrorCode code) noexcept {
   switch (code) {
     case ErrorCode::InvalidArgument:
       return "InvalidArgument";

@@ -14,7 +14,7 @@ namespace {
 
 /// Number of a sample's row in its layer, from its index on axes 1 ... N - 2.
 template <int N>
-std::size_t row_of(const typename TileGrid<N>::Index& index, const std::array<std::size_t, N>& samples) noexcept {
+std::size_t row_of(const typename TileGrid<N>::GridIndex& index, const std::array<std::size_t, N>& samples) noexcept {
   std::size_t row = 0;
   for (int a = N - 2; a > 0; --a) row = row * samples[a] + index[a];
   return row;

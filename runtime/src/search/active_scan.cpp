@@ -79,7 +79,7 @@ class FullScan final : public tegl::ActiveTiles<N> {
   void find_in_row(std::size_t k, std::size_t row, const std::array<LayerBits, 2>& bits,
                    std::vector<TileNumber>& found) const {
     constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
-    typename TileGrid<N>::Index index = shape_.index_of(row);
+    typename TileGrid<N>::GridIndex index = shape_.index_of(row);
     if (!shape_.has_cells(index, kMiddle)) return;
     index[N - 1] = k;
     const TileNumber first = this->grid().number(index);

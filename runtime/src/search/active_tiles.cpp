@@ -74,9 +74,7 @@ void require_finite(double isovalue) {
 
 }  // namespace
 
-std::string_view active_method_name(ActiveMethod method) noexcept {
-  return kMethodNames[static_cast<std::size_t>(method)];
-}
+std::string_view name_of(ActiveMethod method) noexcept { return kMethodNames[static_cast<std::size_t>(method)]; }
 
 std::vector<ActiveMethod> active_methods() {
   std::vector<ActiveMethod> methods;
@@ -159,7 +157,7 @@ void write_magic(IndexWriter& to, ActiveMethod method, int dim) {
   to.value(kIndexMagic);
   to.value(kIndexByteOrder);
   to.value(kIndexVersion);
-  to.text(active_method_name(method));
+  to.text(name_of(method));
   to.value(static_cast<std::uint32_t>(dim));
 }
 

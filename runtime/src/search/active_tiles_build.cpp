@@ -46,7 +46,7 @@ IndexedImage<N> known_of(const Image<T, N>& image) {
 
 /// Whether a corner of a tile is NaN.
 template <Value T, int N>
-bool has_missing_corner(const Image<T, N>& image, const typename TileGrid<N>::Index& lowest) noexcept {
+bool has_missing_corner(const Image<T, N>& image, const typename TileGrid<N>::GridIndex& lowest) noexcept {
   if constexpr (std::is_floating_point_v<T>)
     for (unsigned corner = 0; corner < 1u << N; ++corner) {
       auto index = lowest;

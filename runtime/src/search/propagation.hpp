@@ -42,7 +42,7 @@ class TileFlood {
                                                Neighbourhood neighbourhood) const;
 
  private:
-  using Index = typename TileGrid<N>::Index;
+  using Index = typename TileGrid<N>::GridIndex;
   struct Move {
     std::array<std::int8_t, N> along;
     std::ptrdiff_t distance;  ///< in tile numbers

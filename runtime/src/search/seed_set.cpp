@@ -178,10 +178,10 @@ SeedSet to_seed_set(const detail::RangeMap<detail::KeyOf<T>>& map, const SeedSet
 
 }  // namespace
 
-std::string_view neighbourhood_name(Neighbourhood neighbourhood) noexcept {
+std::string_view name_of(Neighbourhood neighbourhood) noexcept {
   return kNeighbourhoodNames[static_cast<std::size_t>(neighbourhood)];
 }
-std::string_view seed_method_name(SeedMethod method) noexcept { return kMethodNames[static_cast<std::size_t>(method)]; }
+std::string_view name_of(SeedMethod method) noexcept { return kMethodNames[static_cast<std::size_t>(method)]; }
 std::vector<SeedMethod> seed_methods() {
   std::vector<SeedMethod> methods;
   for (std::size_t i = 0; i < kMethodNames.size(); ++i) methods.push_back(static_cast<SeedMethod>(i));

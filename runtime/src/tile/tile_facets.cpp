@@ -29,23 +29,22 @@ requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsign
 
 template <int N>
 requires DimensionBetween<N, 2, 6> tile::TileFacets tile_facets(std::uint64_t signature,
-                                                                std::span<const tile::Choice> signs,
-                                                                tile::Alternative otherwise) {
+                                                                const tile::Resolution& resolution) {
   constexpr std::uint64_t kCorners = ~std::uint64_t{0} >> (64 - (1 << N));
   if ((signature & ~kCorners) != 0)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("signature {:#x} of a {}D tile; expected at most {:#x}", signature, N, kCorners));
-  if (!signs.empty() && signs.size() != kFaceCount<N>)
+  const std::size_t choices = resolution.choices.size();
+  if (choices != 0 && choices != kFaceCount<N>)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} signs for the faces of a {}D tile; expected 0 or {}", signs.size(), N, kFaceCount<N>));
-  return detail::too_large_as_error([&] {
-    return tile::build_facets(cube_faces<N>().lattice(), signature, {.choices = signs, .alternative = otherwise});
-  });
+                fmt::format("{} choices for the faces of a {}D tile; expected 0 or {}", choices, N, kFaceCount<N>));
+  return detail::too_large_as_error(
+      [&] { return tile::build_facets(cube_faces<N>().lattice(), signature, resolution); });
 }
 
 #define TEGL_INSTANTIATE(N)                                          \
   template std::size_t face_number<N>(unsigned base, unsigned axes); \
-  template tile::TileFacets tile_facets<N>(std::uint64_t, std::span<const tile::Choice>, tile::Alternative);
+  template tile::TileFacets tile_facets<N>(std::uint64_t, const tile::Resolution&);
 TEGL_INSTANTIATE(2)
 TEGL_INSTANTIATE(3)
 TEGL_INSTANTIATE(4)

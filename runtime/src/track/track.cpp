@@ -254,7 +254,7 @@ void keep_only(std::vector<T>& list, const std::vector<Index>& numbers) {
 
 }  // namespace
 
-const char* event_name(TrackEventKind kind) noexcept {
+std::string_view name_of(TrackEventKind kind) noexcept {
   constexpr std::array kNames{"begin", "birth", "enter", "end", "death", "leave", "merge", "split", "exchange"};
   return kNames[static_cast<std::size_t>(kind)];
 }

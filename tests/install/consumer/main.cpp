@@ -16,7 +16,7 @@ bool tunnel_is_sound() {
   using namespace tegl::tile;
   std::vector<Choice> signs(tegl::kFaceCount<3>);
   signs[tegl::face_number<3>(0, 7)] = Choice::high;
-  const TileFacets tile = tegl::tile_facets<3>(0b10000001, signs);
+  const TileFacets tile = tegl::tile_facets<3>(0b10000001, {.choices = signs});
   Simplices tunnel = tile.facets.at(0).simplices;
   for (Simplex& s : tunnel) sort_vertices(s);
   const FaceLattice cube = FaceLattice::cube(3);

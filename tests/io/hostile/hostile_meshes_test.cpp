@@ -40,7 +40,7 @@ void expect_refused(const fs::path& path, ErrorCode code, const std::vector<std:
   const ChildResult result = in_limited_child([&] { read(path); });
   EXPECT_EQ(result.signal, 0);
   ASSERT_TRUE(result.code) << "no tegl::Error: '" << result.message << "'";
-  EXPECT_EQ(*result.code, code) << error_name(*result.code) << ": " << result.message;
+  EXPECT_EQ(*result.code, code) << name_of(*result.code) << ": " << result.message;
   for (const std::string& part : parts) EXPECT_THAT(result.message, testing::HasSubstr(part));
   EXPECT_THAT(result.message, testing::HasSubstr(path.filename().string()));
   EXPECT_LT(result.message.size(), 2000U);

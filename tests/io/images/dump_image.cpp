@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     try {
       return std::string(argv[2]) == "layers" ? layers(files, options) : whole(files, options);
     } catch (const tegl::Error& error) {
-      return {{"error", tegl::error_name(error.code())}, {"message", without_layers(error.what())}};
+      return {{"error", tegl::name_of(error.code())}, {"message", without_layers(error.what())}};
     }
   };
   const json result = read(false);

@@ -126,7 +126,7 @@ void expect_active(const std::vector<std::unique_ptr<ActiveTiles<N>>>& indexes, 
   for (const TileNumber tile : expected)
     ASSERT_TRUE(plain.least[tile] < isovalue && isovalue <= plain.greatest[tile]) << "tile " << tile;
   for (const auto& index : indexes)
-    ASSERT_EQ(index->find(isovalue), expected) << active_method_name(index->method()) << " at " << isovalue;
+    ASSERT_EQ(index->find(isovalue), expected) << name_of(index->method()) << " at " << isovalue;
 }
 
 template <Value T, int N>
@@ -161,7 +161,7 @@ void expect_same_contours(const OwnedImage<T, N>& image) {
       const auto expected = extract<float>(view, isovalues[i]);
       const auto contour = extract<float>(view, isovalues[i], *index);
       EXPECT_TRUE(same(contour.vertices, expected.vertices) && same(contour.simplices, expected.simplices))
-          << active_method_name(method) << " at " << isovalues[i];
+          << name_of(method) << " at " << isovalues[i];
     }
   }
 }
@@ -243,7 +243,7 @@ TEST_F(IndexFile, ThatIsCutOrChangedAnywhereIsNoticedWithoutTheImage) {
         std::string changed = bytes;
         changed[end] = static_cast<char>(changed[end] ^ 4);
         std::ofstream(path("changed.tindex"), std::ios::binary) << changed;
-        EXPECT_THROW(check_active_tiles(path("changed.tindex")), Error) << active_method_name(method) << " at " << end;
+        EXPECT_THROW(check_active_tiles(path("changed.tindex")), Error) << name_of(method) << " at " << end;
       }
       std::ofstream(path("whole.tindex"), std::ios::binary | std::ios::app) << 'a';
       expect_error(ErrorCode::MalformedFile, "after its end", [&] { check_active_tiles(path("whole.tindex")); });

@@ -67,10 +67,10 @@ TEST_P(SeedSetOfFile, HasTheSizesThatTheDocumentationGives) {
     const SeedSet set = seeds(SeedMethod::cover, kNeighbourhoods[i]);
     const SeedSetStats& stats = set.stats;
     const std::size_t found = set.tiles.size();
-    EXPECT_EQ(stats.whole1, GetParam().whole1[i]) << neighbourhood_name(kNeighbourhoods[i]);
-    EXPECT_LE(found, GetParam().cover[i]) << neighbourhood_name(kNeighbourhoods[i]);
+    EXPECT_EQ(stats.whole1, GetParam().whole1[i]) << name_of(kNeighbourhoods[i]);
+    EXPECT_LE(found, GetParam().cover[i]) << name_of(kNeighbourhoods[i]);
     EXPECT_LE(stats.lower_bound, found);
-    EXPECT_LE(found, stats.lower_bound + GetParam().bound_off) << neighbourhood_name(kNeighbourhoods[i]);
+    EXPECT_LE(found, stats.lower_bound + GetParam().bound_off) << name_of(kNeighbourhoods[i]);
   }
 }
 
@@ -124,7 +124,7 @@ TEST_P(SeedSetOfFile, ReachesAllActiveTiles) {
       }
       std::size_t expected = 0;
       for (TileNumber tile = 0; tile < grid.count(); ++tile) expected += active(tile) ? 1 : 0;
-      ASSERT_EQ(reached.size(), expected) << "at " << isovalue << ", " << neighbourhood_name(kNeighbourhoods[i]);
+      ASSERT_EQ(reached.size(), expected) << "at " << isovalue << ", " << name_of(kNeighbourhoods[i]);
     }
   }
 }

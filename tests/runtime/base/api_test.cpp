@@ -211,7 +211,9 @@ concept HasTileFacets = requires {
 template <int N>
 concept PolygonsTriangulated = requires(std::span<const std::array<double, N>> points) {
   triangulate_polygon<N>(points, PolygonTriangulation::fan);
+  triangulate_polygon(points, PolygonTriangulation::fan);
   polygon_barycentre<N>(points);
+  polygon_barycentre(points);
 };
 template <int N>
 concept HasBorderPlanes = requires(const Grid<N>& grid) {

@@ -50,8 +50,7 @@ void expect_same(const OwnedImage<T, N>& image, const std::vector<double>& isova
           options.close = close;
           options.normals = !close ? Normals::differences : Normals::none;
           options.work.threads = close ? 1 : 3;
-          SCOPED_TRACE(std::string(active_method_name(method)) + ", " + describe(options) + ", at " +
-                       std::to_string(isovalue));
+          SCOPED_TRACE(std::string(name_of(method)) + ", " + describe(options) + ", at " + std::to_string(isovalue));
           const auto expected = extract_with_stats<Real>(image.view(), isovalue, options);
           const auto found = extract_with_stats<Real>(image.view(), isovalue, *index, options);
           ASSERT_TRUE(same_bytes(found.contour, expected.contour));

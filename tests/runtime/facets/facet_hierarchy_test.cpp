@@ -299,9 +299,9 @@ TEST(FacetsOf4d, AreThoseThatTheBuilderOfTilesFinds) {
       ExtractOptions options;
       options.ambiguity = ambiguity;
       const auto facets = extract_facets<float>(view_of(tile_image(signature)), 0.5, options);
-      auto expected =
-          tile_facets<4>(signature, {}, ambiguity == Ambiguity::low ? tile::Alternative::low : tile::Alternative::high)
-              .sigma_euler;
+      auto expected = tile_facets<4>(signature, {.alternative = ambiguity == Ambiguity::low ? tile::Alternative::low
+                                                                                            : tile::Alternative::high})
+                          .sigma_euler;
       std::vector<int> eulers;
       for (std::size_t f = 0; f < facets.count(3); ++f) eulers.push_back(2 * facet_euler(facets, 3, f));
       std::sort(expected.begin(), expected.end());
@@ -354,7 +354,7 @@ TEST(FacetsOf4d, ResolvedInAnyWayAreThoseThatTheBuilderOfTilesFinds) {
     for (tile::Choice& sign : signs) sign = static_cast<tile::Choice>(random_below(bits, 3));
     const auto hierarchy = extract_facets<float>(view_of(tile_image(signature)), 0.5, options);
     std::vector<int> expected, eulers;
-    for (const tile::Facet& facet : tile_facets<4>(signature, signs).facets)
+    for (const tile::Facet& facet : tile_facets<4>(signature, {.choices = signs}).facets)
       for (const int euler : parts_of(facet)) expected.push_back(euler);
     for (std::size_t f = 0; f < hierarchy.count(3); ++f) eulers.push_back(facet_euler(hierarchy, 3, f));
     std::sort(expected.begin(), expected.end());

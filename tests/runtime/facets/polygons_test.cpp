@@ -30,7 +30,7 @@ constexpr std::array<PolygonTriangulation, 5> kMethods = {
     PolygonTriangulation::halving_kink, PolygonTriangulation::barycentric};
 
 Triangles triangles_of(const Points& points, PolygonTriangulation method, std::span<const Chord> forbidden = {}) {
-  return triangulate_polygon<3>(points, method, forbidden);
+  return triangulate_polygon(points, method, forbidden);
 }
 
 /// A circle of points with random displacements.
@@ -172,7 +172,7 @@ TEST(Polygons, HaveNoForbiddenChords) {
 TEST(Polygons, HaveABarycentreThatDoesNotDependOnHowTheirEdgesAreDivided) {
   const Points square = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
   const Points divided = {{0, 0, 0}, {0.1, 0, 0}, {0.7, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
-  const auto centre = polygon_barycentre<3>(square), same = polygon_barycentre<3>(divided);
+  const auto centre = polygon_barycentre(square), same = polygon_barycentre(divided);
   EXPECT_NEAR(centre[0], 1.0, 1e-15);
   EXPECT_NEAR(centre[1], 0.5, 1e-15);
   EXPECT_NEAR(same[0], 1.0, 1e-15);

@@ -197,7 +197,7 @@ TEST(ExtractTiles, TilesIn4dHaveTheContoursOfTheTablesWhereAllIsConed) {
     std::uint64_t signature = 0;
     for (unsigned v = 0; v < 16; ++v) signature |= std::uint64_t{image.values[v] >= 0.5F} << v;
     const auto sides = [&](tile::Alternative otherwise) {
-      const auto tile = tile_facets<4>(signature, {}, otherwise);
+      const auto tile = tile_facets<4>(signature, {.alternative = otherwise});
       return std::any_of(tile.facets.begin(), tile.facets.end(),
                          [](const auto& facet) { return facet.filling == tile::Filling::side; });
     };

@@ -57,7 +57,7 @@ void expect_right(const OwnedImage<T, N>& image, const std::vector<double>& isov
   for (const double isovalue : isovalues) {
     const std::vector<TileNumber> expected = plain.active(isovalue);
     for (const auto& index : indexes) {
-      SCOPED_TRACE(std::string(active_method_name(index->method())) + " at " + std::to_string(isovalue));
+      SCOPED_TRACE(std::string(name_of(index->method())) + " at " + std::to_string(isovalue));
       ASSERT_EQ(index->find(isovalue), expected);
       expect_rows_of(*index, isovalue, expected);
     }
@@ -177,7 +177,7 @@ TEST(ActiveTiles, AreTheSameForAnyNumberOfThreads) {
     MemoryFile one, many;
     build_active_tiles(image.view(), method, {.work = {.threads = 1}})->save(one);
     build_active_tiles(image.view(), method, {.work = {.threads = 4}})->save(many);
-    EXPECT_EQ(one.content, many.content) << active_method_name(method);
+    EXPECT_EQ(one.content, many.content) << name_of(method);
   }
 }
 
@@ -193,7 +193,7 @@ TEST(ActiveTiles, OfIndexesThatNeedNoImageDoNotDependOnItsValues) {
     }
     const auto values = image.values;
     std::fill(image.values.begin(), image.values.end(), 0.0F);
-    EXPECT_EQ(index->find(0.5), expected) << active_method_name(index->method());
+    EXPECT_EQ(index->find(0.5), expected) << name_of(index->method());
     std::copy(values.begin(), values.end(), image.values.begin());
   }
   EXPECT_EQ(need_values,
@@ -247,7 +247,7 @@ class ActiveTilesFile : public ::testing::TestWithParam<ActiveMethod> {
   }();
 };
 INSTANTIATE_TEST_SUITE_P(AllMethods, ActiveTilesFile, ::testing::ValuesIn(active_methods()), [](const auto& tested) {
-  std::string name(active_method_name(tested.param));
+  std::string name(name_of(tested.param));
   std::erase(name, '-');
   return name;
 });

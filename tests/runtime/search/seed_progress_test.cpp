@@ -58,7 +58,7 @@ void expect_of_seeds(const OwnedImage<T, N>& image, const std::vector<SeedMethod
     options.neighbourhood = neighbourhood;
     options.work.threads = 1;
     for (const SeedMethod method : methods) {
-      SCOPED_TRACE(std::string(seed_method_name(method)) + ", " + std::string(neighbourhood_name(neighbourhood)));
+      SCOPED_TRACE(std::string(name_of(method)) + ", " + std::string(name_of(neighbourhood)));
       options.method = method;
       expect_rising_progress([&](const Progress& progress) {
         options.work.progress = progress;
@@ -67,7 +67,7 @@ void expect_of_seeds(const OwnedImage<T, N>& image, const std::vector<SeedMethod
       options.work.progress = {};
       EXPECT_EQ(find_seeds(image.view(), options).stats.reduced, reduced && method == SeedMethod::cover);
     }
-    SCOPED_TRACE("bound, " + std::string(neighbourhood_name(neighbourhood)));
+    SCOPED_TRACE("bound, " + std::string(name_of(neighbourhood)));
     expect_rising_progress([&](const Progress& progress) {
       options.work.progress = progress;
       seed_lower_bound(image.view(), options);
@@ -101,7 +101,7 @@ TEST(SeedProgress, OfIndexesRisesToTheEnd) {
   const auto bytes = noise<std::uint8_t, 3>({30, 29, 28}, 7);
   const auto reals = noise<float, 3>({42, 41, 40}, 8);
   for (const ActiveMethod method : active_methods()) {
-    SCOPED_TRACE(active_method_name(method));
+    SCOPED_TRACE(name_of(method));
     const auto build = [&](const auto& image) {
       return [&image, method](const Progress& progress) {
         ActiveTilesOptions options;

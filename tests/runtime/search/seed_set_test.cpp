@@ -116,7 +116,7 @@ void expect_seed_sets(const OwnedImage<T, N>& image, std::size_t isovalues) {
     const std::uint64_t bound = seed_lower_bound(image.view(), options);
     std::size_t smallest = 0;
     for (const SeedMethod method : seed_methods()) {
-      SCOPED_TRACE(std::string(seed_method_name(method)) + ", " + std::string(neighbourhood_name(neighbourhood)));
+      SCOPED_TRACE(std::string(name_of(method)) + ", " + std::string(name_of(neighbourhood)));
       options.method = method;
       const SeedSet set = find_seeds(image.view(), options);
       EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
@@ -248,7 +248,7 @@ TEST(SeedSet, InEveryScanOrderMeetsAllComponents) {
       options.method = method;
       options.scan_order = order;
       const SeedSet set = find_seeds(image.view(), options);
-      EXPECT_EQ(all.missed_by(set.tiles), 0u) << seed_method_name(method);
+      EXPECT_EQ(all.missed_by(set.tiles), 0u) << name_of(method);
       if (method == SeedMethod::cover) {
         EXPECT_EQ(set.tiles, find_seeds(image.view()).tiles);
         for (std::size_t i = 0; i < set.tiles.size(); ++i) {
@@ -311,9 +311,9 @@ TEST(SeedSet, OfAnImageWithoutActiveTilesIsEmpty) {
   for (const SeedMethod method : seed_methods()) {
     SeedSetOptions options;
     options.method = method;
-    EXPECT_TRUE(find_seeds(constant.view(), options).tiles.empty()) << seed_method_name(method);
-    EXPECT_TRUE(find_seeds(missing.view(), options).tiles.empty()) << seed_method_name(method);
-    EXPECT_TRUE(find_seeds(flat.view(), options).tiles.empty()) << seed_method_name(method);
+    EXPECT_TRUE(find_seeds(constant.view(), options).tiles.empty()) << name_of(method);
+    EXPECT_TRUE(find_seeds(missing.view(), options).tiles.empty()) << name_of(method);
+    EXPECT_TRUE(find_seeds(flat.view(), options).tiles.empty()) << name_of(method);
   }
   EXPECT_EQ(seed_lower_bound(constant.view()), 0u);
 }
@@ -350,7 +350,7 @@ TEST(SeedSet, StopsWhenTold) {
     options.work.progress = [](double fraction) { return fraction < 0.11; };
     try {
       find_seeds(image.view(), options);
-      ADD_FAILURE() << seed_method_name(method);
+      ADD_FAILURE() << name_of(method);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::Cancelled);
     }

@@ -353,7 +353,7 @@ class ResolvedTiles : public ::testing::Test {
     const tile::TileFacets tile = as_built_(key, view, triangulation);
     note_genera(tile, genera_);
     const tile::Fault fault = certifier_.certify(as_built_.lattice(), tile);
-    ASSERT_EQ(fault, tile::Fault::none) << tile::fault_name(fault) << " signature " << key.signature << " squares "
+    ASSERT_EQ(fault, tile::Fault::none) << tile::name_of(fault) << " signature " << key.signature << " squares "
                                         << key.squares << " low " << int{key.low_cubes} << " high "
                                         << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
   }

@@ -18,7 +18,7 @@ using tile::Choice;
 
 template <int N>
 tile::Fault certified(std::uint64_t signature, std::span<const Choice> signs = {}) {
-  return tile::certify(tile::FaceLattice::cube(N), tile_facets<N>(signature, signs));
+  return tile::certify(tile::FaceLattice::cube(N), tile_facets<N>(signature, {.choices = signs}));
 }
 
 std::size_t simplex_count(const tile::TileFacets& tile) {
@@ -40,7 +40,7 @@ TEST(TileFacets, FacesAreNumberedByTheirBaseAndAxes) {
 TEST(TileFacets, ASquareIsCutOrJoinedByTheSignOfItsCentre) {
   std::vector<Choice> signs(kFaceCount<2>);
   signs.back() = Choice::high;
-  const auto joined = tile_facets<2>(0b0110, signs), cut = tile_facets<2>(0b0110);
+  const auto joined = tile_facets<2>(0b0110, {.choices = signs}), cut = tile_facets<2>(0b0110);
   EXPECT_EQ(joined.facets.size(), 2u);
   EXPECT_EQ(cut.facets.size(), 2u);
   // The edges have numbers 4 to 7: along x below, along y left, along y right, along x above. Corner 1 is cut off
@@ -66,9 +66,9 @@ TEST(TileFacets, ASquareIsCutOrJoinedByTheSignOfItsCentre) {
 
 TEST(TileFacets, AHighCentreOfACubeJoinsOppositeCornersByATunnel) {
   std::vector<Choice> signs(kFaceCount<3>);
-  EXPECT_EQ(tile_facets<3>(0b10000001, signs).facets.size(), 2u);
+  EXPECT_EQ(tile_facets<3>(0b10000001, {.choices = signs}).facets.size(), 2u);
   signs[face_number<3>(0, 7)] = Choice::high;
-  const auto tunnel = tile_facets<3>(0b10000001, signs);
+  const auto tunnel = tile_facets<3>(0b10000001, {.choices = signs});
   ASSERT_EQ(tunnel.facets.size(), 1u);
   EXPECT_EQ(tile::euler_characteristic([&] {
               tile::Simplices simplices = tunnel.facets[0].simplices;
@@ -102,12 +102,12 @@ TEST(TileFacets, ACornerOfA6dTileIsCutOffByASimplex) {
 TEST(TileFacets, WrongArgumentsAreErrors) {
   EXPECT_THROW(tile_facets<3>(256), Error);
   const std::vector<Choice> few(26);
-  EXPECT_THROW(tile_facets<3>(1, few), Error);
+  EXPECT_THROW(tile_facets<3>(1, {.choices = few}), Error);
   try {
-    tile_facets<3>(1, few);
+    tile_facets<3>(1, {.choices = few});
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
-    EXPECT_NE(std::string(error.what()).find("26 signs"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("26 choices"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("27"), std::string::npos) << error.what();
   }
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "tegl/tile/facets.hpp"
 
@@ -24,7 +25,7 @@ enum class Fault : std::uint8_t {
 };
 
 /// The enumerator's name in words, for messages.
-[[nodiscard]] const char* fault_name(Fault fault) noexcept;
+[[nodiscard]] std::string_view name_of(Fault fault) noexcept;
 
 /// Checks tiles one after the other and reuses its memory. Not thread-safe: one thread at a time.
 class Certifier {
