@@ -80,12 +80,10 @@ std::unique_ptr<AnyIndex> build(const AnyImage& image, const std::string& method
 std::unique_ptr<AnyIndex> load(const std::string& path, const AnyImage& image, unsigned threads,
                                const py::object& progress) {
   Call call(progress);
-  ActiveTilesOptions options;
-  options.work.threads = threads;
-  options.work.progress = call.progress();
+  const WorkOptions work{threads, call.progress()};
   return call.run([&] {
-    const FileLock lock(options.work.progress);
-    return index_of(image, [&](const auto& view) { return read_active_tiles(path, view, options); });
+    const FileLock lock(work.progress);
+    return index_of(image, [&](const auto& view) { return read_active_tiles(path, view, work); });
   });
 }
 

@@ -348,7 +348,7 @@ class ContourCommand final : public Command {
     const auto of_owned = [&](const auto& owned) {
       Stopwatch watch;
       const auto view = owned.view();
-      const auto active = read_active_tiles(index_, view, {.work = {options.work.threads, bar.stage("index")}});
+      const auto active = read_active_tiles(index_, view, {options.work.threads, bar.stage("index")});
       results.front().seconds.read += watch.lap();
       for (ContourResult& result : results) {
         options.work.progress = bar.stage("contour");

@@ -198,9 +198,9 @@ class ActiveTiles {
   /// A superset of the rows that have active tiles: the rows that an extraction reads.
   [[nodiscard]] TileRowSet find_rows(double isovalue) const;
 
-  /// Writes the index; `load_active_tiles` reads it. docs/file-formats.md describes the format. Errors: those of the
-  /// sink; InvalidArgument for an index that cannot be saved (`choose_tiles`).
-  void save(ByteSink& to) const;
+  /// Writes the index; `load_active_tiles` reads it. docs/file-formats.md describes the format. One thread. Errors:
+  /// those of the sink; InvalidArgument for an index that cannot be saved (`choose_tiles`); Cancelled.
+  void save(ByteSink& to, const WorkOptions& work = {}) const;
 
  protected:
   /// For derived classes.
@@ -224,13 +224,14 @@ enum class SeedMethod : std::uint8_t;  // tegl/seed_set.hpp
 struct ActiveTilesOptions {
   WorkOptions work = {};  ///< number of threads and progress
   /// Only for `seed_set`, as in SeedSetOptions: the method to find seeds (`cover` by default) and the scan order.
-  /// Neighbours are tiles that share a face.
+  /// Neighbours are tiles that share a face. InvalidArgument if one of them is set for another method.
   SeedMethod seed_method{};
   std::vector<int> scan_order = {};  ///< all axes, fastest first
 };
 
 /// Builds an index. Time and temporary memory are about linear in the number of tiles. Errors: Cancelled; TooLarge for
-/// an interval tree or a span space of more than 2^32 tiles; those of find_seeds.
+/// an interval tree or a span space of more than 2^32 tiles; InvalidArgument for options of seed_set with another
+/// method; those of find_seeds.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
@@ -242,7 +243,7 @@ requires DimensionBetween<N, 2, 5>
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
-                                                                const ActiveTilesOptions& options = {});
+                                                                const WorkOptions& work = {});
 
 /// A fixed set of tiles, independent of the isovalue, to contour a part of an image with `extract`. They should include
 /// all tiles of a component of the contour; otherwise the contour is open where they end. Tiles with a missing corner

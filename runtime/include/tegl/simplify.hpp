@@ -61,11 +61,11 @@ struct SimplifyOptions {
   /// the contour whose bound is too large is simplified again with a smaller error. 0 leaves the contour unchanged.
   /// Must not be less than the error that the contour has from an earlier simplification.
   std::optional<double> max_error = {};
-  /// facets: maximum curvature (1 / radius) of removed facets.
+  /// Only for `facets`, InvalidArgument for other methods: maximum curvature (1 / radius) of removed facets.
   double max_curvature = std::numeric_limits<double>::infinity();
   SimplifyBorder border = SimplifyBorder::fixed;  ///< treatment of an open contour's boundary
   /// Vertices in one of these hyperplanes stay in it; vertices in several stay in all. At most 20. Sides of the
-  /// contour's bounding box that contain whole simplices or parts of the boundary are added.
+  /// contour's bounding box that contain whole simplices or parts of the boundary are added. `fast` ignores them.
   std::vector<Hyperplane<N>> planes = {};
   /// Coordinates are multiplied by these factors before distances and curvatures are computed, to make axes of
   /// different units comparable (a month and a degree).
@@ -74,7 +74,7 @@ struct SimplifyOptions {
   /// With count or ratio only, the smallest maximum error that reaches the count is searched for, usually in 5 to 35
   /// rounds, at most 171 (except with `fast`). Without bounds there is one round, with up to 40 times the error.
   bool measure = true;
-  /// fast: accept non-manifold results.
+  /// Only for `fast`, InvalidArgument for other methods: accept non-manifold results.
   bool allow_nonmanifold = false;
   WorkOptions work = {};  ///< threads (for the bounds only) and progress
 };

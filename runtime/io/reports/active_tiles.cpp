@@ -58,18 +58,19 @@ auto with_file(const fs::path& path, const Work& work) {
 
 template <int N>
 requires DimensionBetween<N, 2, 5>
-void write_active_tiles(const ActiveTiles<N>& active, const fs::path& path) {
+void write_active_tiles(const ActiveTiles<N>& active, const fs::path& path, const WorkOptions& work) {
   write_complete_file(path, [&](const PendingPath& file) {
     FileSink sink(file);
-    active.save(sink);
+    active.save(sink, work);
     sink.close();
   });
 }
 
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> read_active_tiles(
-    const fs::path& path, const Image<T, N>& image, const ActiveTilesOptions& options) {
-  return with_file(path, [&](ByteSource& source) { return load_active_tiles(source, image, options); });
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> read_active_tiles(const fs::path& path,
+                                                                                     const Image<T, N>& image,
+                                                                                     const WorkOptions& work) {
+  return with_file(path, [&](ByteSource& source) { return load_active_tiles(source, image, work); });
 }
 
 ActiveTilesHead read_active_tiles_head(const fs::path& path) {
@@ -82,15 +83,15 @@ ActiveTilesHead check_active_tiles(const fs::path& path) {
 
 #define TEGL_INSTANTIATE_ONE(T, N)                                                                      \
   template std::unique_ptr<ActiveTiles<N>> read_active_tiles<T, N>(const fs::path&, const Image<T, N>&, \
-                                                                   const ActiveTilesOptions&);
-#define TEGL_INSTANTIATE(N)                                                    \
-  template void write_active_tiles<N>(const ActiveTiles<N>&, const fs::path&); \
-  TEGL_INSTANTIATE_ONE(std::uint8_t, N)                                        \
-  TEGL_INSTANTIATE_ONE(std::int8_t, N)                                         \
-  TEGL_INSTANTIATE_ONE(std::uint16_t, N)                                       \
-  TEGL_INSTANTIATE_ONE(std::int16_t, N)                                        \
-  TEGL_INSTANTIATE_ONE(std::int32_t, N)                                        \
-  TEGL_INSTANTIATE_ONE(float, N)                                               \
+                                                                   const WorkOptions&);
+#define TEGL_INSTANTIATE(N)                                                                        \
+  template void write_active_tiles<N>(const ActiveTiles<N>&, const fs::path&, const WorkOptions&); \
+  TEGL_INSTANTIATE_ONE(std::uint8_t, N)                                                            \
+  TEGL_INSTANTIATE_ONE(std::int8_t, N)                                                             \
+  TEGL_INSTANTIATE_ONE(std::uint16_t, N)                                                           \
+  TEGL_INSTANTIATE_ONE(std::int16_t, N)                                                            \
+  TEGL_INSTANTIATE_ONE(std::int32_t, N)                                                            \
+  TEGL_INSTANTIATE_ONE(float, N)                                                                   \
   TEGL_INSTANTIATE_ONE(double, N)
 TEGL_INSTANTIATE(2)
 TEGL_INSTANTIATE(3)

@@ -142,10 +142,10 @@ void ActiveTiles<N>::collect_rows(double isovalue, TileRowSet& rows) const {
 
 template <int N>
 requires DimensionBetween<N, 2, 5>
-void ActiveTiles<N>::save(ByteSink& to) const {
+void ActiveTiles<N>::save(ByteSink& to, const WorkOptions& work) const {
   if (!is_complete())
     throw Error(ErrorCode::InvalidArgument, "chosen tiles cannot be saved; expected an index of all active tiles");
-  detail::IndexWriter writer(to);
+  detail::IndexWriter writer(to, work.progress, memory_bytes());
   detail::write_head(writer, method(), image_);
   write(writer);
   writer.finish();

@@ -12,12 +12,25 @@
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "search/active_tiles_methods.hpp"
+#include "tegl/seed_set.hpp"
 
 namespace tegl {
 
 namespace {
 constexpr double kIdentifyShare = 0.2;  ///< fraction of the progress
+
+/// Throws InvalidArgument if an option is set that the method ignores.
+void require_used(ActiveMethod method, const ActiveTilesOptions& options) {
+  if (method == ActiveMethod::seed_set) return;
+  const auto refuse = [&](const char* option) {
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} for the method {}; it is only for seed-set", option, name_of(method)));
+  };
+  if (options.seed_method != SeedMethod::cover) refuse("seed_method");
+  if (!options.scan_order.empty()) refuse("scan_order");
 }
+
+}  // namespace
 
 namespace detail {
 
@@ -131,6 +144,7 @@ requires DimensionBetween<N, 2, 5> IndexedImage<N> identify(const Image<T, N>& i
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> build_active_tiles(
     const Image<T, N>& image, ActiveMethod method, const ActiveTilesOptions& options) {
+  require_used(method, options);
   // A full scan builds nothing, so identification is all of its progress; other methods read the values several times
   // more.
   const double identified = method == ActiveMethod::full_scan ? 1.0 : kIdentifyShare;
@@ -163,18 +177,18 @@ requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> build_active_
 }
 
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> load_active_tiles(
-    ByteSource& from, const Image<T, N>& image, const ActiveTilesOptions& options) {
+requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from,
+                                                                                     const Image<T, N>& image,
+                                                                                     const WorkOptions& work) {
   // compare sizes and type first: computing the digest reads all values
   detail::IndexReader reader(from);
   const ActiveTilesHead head = detail::read_head(reader);
   IndexedImage<N> identity = detail::known_of(image);
   detail::require_same_image(head, identity.sizes, identity.value_type, head.digest);
   constexpr double kReadShare = 0.5;
-  identity = identify(image, {options.work.threads, detail::part_of(options.work.progress, 0, kReadShare)});
+  identity = identify(image, {work.threads, detail::part_of(work.progress, 0, kReadShare)});
   detail::require_same_image(head, identity.sizes, identity.value_type, identity.digest);
-  ActiveTilesOptions rest = options;
-  rest.work.progress = detail::part_of(options.work.progress, kReadShare, 1);
+  const ActiveTilesOptions rest{.work = {work.threads, detail::part_of(work.progress, kReadShare, 1)}};
   const detail::IndexTask<T, N> task{image, identity, rest};
   task.tell(0);
   detail::ActiveTilesPtr<N> result;
@@ -221,7 +235,7 @@ requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> choose_tiles(
   template std::unique_ptr<ActiveTiles<N>> build_active_tiles<T, N>(const Image<T, N>&, ActiveMethod, \
                                                                     const ActiveTilesOptions&);       \
   template std::unique_ptr<ActiveTiles<N>> load_active_tiles<T, N>(ByteSource&, const Image<T, N>&,   \
-                                                                   const ActiveTilesOptions&);        \
+                                                                   const WorkOptions&);               \
   template std::unique_ptr<ActiveTiles<N>> choose_tiles<T, N>(const Image<T, N>&, std::vector<TileNumber>);
 #include "base/instantiate.hpp"
 

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "base/progress.hpp"
+
 namespace tegl::detail {
 
 namespace {
@@ -48,8 +50,11 @@ std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed
 
 void IndexWriter::bytes(const void* data, std::size_t bytes) {
   if (bytes == 0) return;
+  tell(progress_, std::min(1.0, static_cast<double>(written_) / static_cast<double>(expected_)),
+       "writing of the index cancelled by the progress callback");
   sum_ = hash_bytes(data, bytes, sum_);
   to_.write(data, bytes);
+  written_ += bytes;
 }
 
 void IndexWriter::text(std::string_view text) {
@@ -60,6 +65,7 @@ void IndexWriter::text(std::string_view text) {
 void IndexWriter::finish() {
   const std::uint64_t sum = sum_;
   to_.write(&sum, sizeof(sum));
+  tell(progress_, 1.0);
 }
 
 void IndexReader::bytes(void* data, std::size_t bytes, const char* what) {

@@ -27,7 +27,9 @@ inline constexpr std::size_t kPieceElements = std::size_t{1} << 22;
 /// Writes an index, piece by piece.
 class IndexWriter {
  public:
-  explicit IndexWriter(ByteSink& to) : to_(to) {}
+  /// `expected`: about how many bytes will be written, for progress, which is reported with each piece.
+  IndexWriter(ByteSink& to, const Progress& progress, std::size_t expected)
+      : to_(to), progress_(progress), expected_(std::max<std::size_t>(expected, 1)) {}
 
   template <class V>
   void value(const V& value) {
@@ -50,6 +52,9 @@ class IndexWriter {
   void bytes(const void* data, std::size_t bytes);
 
   ByteSink& to_;
+  const Progress& progress_;
+  std::size_t expected_;
+  std::size_t written_ = 0;
   std::uint64_t sum_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
@@ -29,6 +30,10 @@ void require_options(const SimplifyOptions<N>& options) {
     fail(fmt::format("the largest error is {}; expected 0 or more", *options.max_error));
   if (!(options.max_curvature >= 0.0))
     fail(fmt::format("the largest curvature is {}; expected 0 or more", options.max_curvature));
+  if (options.method != SimplifyMethod::facets && options.max_curvature != std::numeric_limits<double>::infinity())
+    fail(fmt::format("max_curvature is {} for another method than facets; expected no limit", options.max_curvature));
+  if (options.method != SimplifyMethod::fast && options.allow_nonmanifold)
+    fail("allow_nonmanifold for another method than fast; expected false");
   if (options.planes.size() > kMostPlanes)
     fail(fmt::format("{} hyperplanes; expected at most {}", options.planes.size(), kMostPlanes));
   for (const double scale : options.scale)

@@ -16,6 +16,7 @@
 #include "active.hpp"
 #include "fields.hpp"
 #include "tegl/active_tiles.hpp"
+#include "tegl/seed_set.hpp"
 
 namespace tegl::test {
 namespace {
@@ -322,6 +323,41 @@ TEST_P(ActiveTilesFile, HasAHeadThatCanBeReadAlone) {
   EXPECT_EQ(head.value_type, ValueType::float32);
   EXPECT_TRUE(head.any_missing);
   EXPECT_EQ(head.digest, identify(image_.view()).digest);
+}
+
+TEST_P(ActiveTilesFile, SavingReportsProgressAndCanBeCancelled) {
+  const auto index = build_active_tiles(image_.view(), GetParam());
+  MemoryFile file;
+  std::vector<double> fractions;
+  index->save(file, {.progress = [&](double fraction) {
+                fractions.push_back(fraction);
+                return true;
+              }});
+  EXPECT_EQ(file.content, content_);
+  EXPECT_GT(fractions.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.back(), 1.0);
+  try {
+    index->save(file, {.progress = [](double) { return false; }});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+  }
+}
+
+TEST_P(ActiveTilesFile, OptionsOfSeedSetsAreRefusedForOtherMethods) {
+  const auto refused = [&](const ActiveTilesOptions& options, const char* name) {
+    try {
+      build_active_tiles(image_.view(), GetParam(), options);
+      EXPECT_EQ(GetParam(), ActiveMethod::seed_set) << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+      EXPECT_NE(GetParam(), ActiveMethod::seed_set) << name;
+      EXPECT_THAT(error.what(), HasSubstr(name));
+    }
+  };
+  refused({.seed_method = SeedMethod::sweeping}, "seed_method");
+  refused({.scan_order = {1, 0, 2}}, "scan_order");
 }
 
 TEST_P(ActiveTilesFile, BuildingCanBeCancelled) {

@@ -473,6 +473,11 @@ TEST(SimplifyErrors, NameWhatIsWrong) {
   options.max_curvature = -2.0;
   expect_error(ErrorCode::InvalidArgument, "-2", [&] { simplify(contour, options); });
   options.max_curvature = 1.0;
+  expect_error(ErrorCode::InvalidArgument, "max_curvature is 1", [&] { simplify(contour, options); });
+  options.max_curvature = SimplifyOptions<3>().max_curvature;
+  options.allow_nonmanifold = true;
+  expect_error(ErrorCode::InvalidArgument, "allow_nonmanifold", [&] { simplify(contour, options); });
+  options.allow_nonmanifold = false;
 
   auto broken = contour;
   broken.simplices.push_back({0, 1, 1});
