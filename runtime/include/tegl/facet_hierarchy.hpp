@@ -15,6 +15,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 
@@ -102,8 +103,9 @@ struct FacetHierarchy {
   /// Deleted: the span would refer to a temporary.
   std::span<const std::int8_t> up_signs(int k, std::size_t f) const&& = delete;
 
-  /// Computes the lists of `up` from those of `down`. O(size). Call it again after changes.
-  void connect_up();
+  /// Computes the lists of `up` from those of `down`. O(size). Call it again after changes. One thread. Errors:
+  /// Cancelled; then the lists of `up` are undefined.
+  void connect_up(const WorkOptions& work = {});
 
   /// The points of facet f of dimension k, each once. Segment: start, end. Polygon: in order along its orientation.
   /// Polyhedron: ascending.
@@ -167,9 +169,9 @@ struct FacetReport {
   bool operator==(const FacetReport&) const = default;  ///< member by member
 };
 
-/// Checks all facets. O(size).
+/// Checks all facets. O(size). One thread. Errors: Cancelled.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
-[[nodiscard]] FacetReport check(const FacetHierarchy<N, Real>& facets);
+[[nodiscard]] FacetReport check(const FacetHierarchy<N, Real>& facets, const WorkOptions& work = {});
 
 }  // namespace tegl

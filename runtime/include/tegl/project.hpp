@@ -39,9 +39,10 @@ struct ProjectedContour {
 /// tetrahedron, and 1 if it leaves it or is tangent: along t, -1 means arriving and 1 leaving. Attributes of the
 /// contour with these names are replaced. Throws InvalidArgument if the direction is 0 or not finite, the distance is
 /// negative or not finite, a coordinate is not finite, a vertex number is out of range, or attributes or normals are of
-/// another number. O(#V + #S).
+/// another number; Cancelled. O(#V + #S). One thread.
 template <Coordinate Real>
-[[nodiscard]] ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {});
+[[nodiscard]] ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {},
+                                             const WorkOptions& work = {});
 
 /// The outline (silhouette) of the projection: where the line of sight is tangent to the contour. For the contour of a
 /// moving object along t, this is the surface swept by it: the envelope of all positions, inner folds included, with

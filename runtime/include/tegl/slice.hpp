@@ -55,11 +55,12 @@ namespace tegl {
 ///
 /// Quadrilaterals are split by the shorter diagonal. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
-/// attributes or normals of another number). If the hyperplane is beyond the contour, the cut is empty. O(#S + #V)
-/// time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. Thread-safe.
+/// attributes or normals of another number), Cancelled. If the hyperplane is beyond the contour, the cut is empty.
+/// O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. One thread. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4>
-[[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
+[[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,
+                                         const WorkOptions& work = {});
 
 /// Cuts a contour by several hyperplanes, in any order. Each cut equals `slice` by its hyperplane bit by bit.
 /// Hyperplanes with equal normals are cut in one pass over the contour; as many cuts are made at a time as there are

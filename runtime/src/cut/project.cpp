@@ -87,7 +87,7 @@ bool is_far(const View<Real>& view, const std::array<Index, 4>& simplex, bool fl
 }
 
 template <class Real>
-View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection) {
+View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection, const Progress& progress) {
   check_projection(projection);
   detail::require_sound(contour);
   const HyperplaneFamily<4> family(projection.direction);
@@ -95,13 +95,16 @@ View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection
   const Eigen::Vector4d up = as_eigen(frame.up);
   View<Real> view;
   view.is_right_handed = frame.is_right_handed;
-  for (const auto& vertex : contour.vertices) {
-    std::array<double, 4> x;
-    std::copy(vertex.begin(), vertex.end(), x.begin());
-    const std::array<double, 3> y = family.within(x);
-    view.points.emplace_back(y[0], y[1], y[2]);
-    view.heights.push_back(family.is_across_axis() ? family.height(vertex) : up.dot(Eigen::Vector4d(x.data())));
-  }
+  detail::in_parts(contour.vertices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const auto& vertex = contour.vertices[v];
+      std::array<double, 4> x;
+      std::copy(vertex.begin(), vertex.end(), x.begin());
+      const std::array<double, 3> y = family.within(x);
+      view.points.emplace_back(y[0], y[1], y[2]);
+      view.heights.push_back(family.is_across_axis() ? family.height(vertex) : up.dot(Eigen::Vector4d(x.data())));
+    }
+  });
   draw_towards_middle(view, projection.eye_distance);
   return view;
 }
@@ -197,8 +200,8 @@ std::vector<double> along_sight(const Contour<4, Real>& contour, const Projectio
 }  // namespace
 
 template <Coordinate Real>
-ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection) {
-  const View<Real> view = view_of(contour, projection);
+ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
+  const View<Real> view = view_of(contour, projection, detail::part_of(work.progress, 0.0, 0.4));
   ProjectedContour<Real> result;
   for (const Eigen::Vector3d& point : view.points)
     result.vertices.push_back({static_cast<Real>(point[0]), static_cast<Real>(point[1]), static_cast<Real>(point[2])});
@@ -209,7 +212,11 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
   result.simplex_attributes = contour.simplex_attributes;
   Attribute side{"side", "", 1, {}};
   const bool flip = view.is_right_handed == (contour.direction == GradientDirection::ascent);
-  for (const auto& simplex : contour.simplices) side.values.push_back(is_far(view, simplex, flip) ? 1.0 : -1.0);
+  detail::in_parts(contour.simplices.size(), detail::part_of(work.progress, 0.4, 1.0),
+                   [&](std::size_t from, std::size_t to) {
+                     for (std::size_t s = from; s < to; ++s)
+                       side.values.push_back(is_far(view, contour.simplices[s], flip) ? 1.0 : -1.0);
+                   });
   replace(result.simplex_attributes, std::move(side));
   return result;
 }
@@ -217,7 +224,7 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
 template <Coordinate Real>
 Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
   detail::tell(work.progress, 0.0, kCancelledProject);
-  const View<Real> view = view_of(contour, projection);
+  const View<Real> view = view_of(contour, projection, detail::part_of(work.progress, 0.0, 0.3));
   detail::tell(work.progress, 0.3, kCancelledProject);
   const std::vector<double> sides = along_sight(contour, projection, view);
   detail::tell(work.progress, 0.6, kCancelledProject);
@@ -249,8 +256,8 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   return result;
 }
 
-template ProjectedContour<float> project(const Contour<4, float>&, const Projection&);
-template ProjectedContour<double> project(const Contour<4, double>&, const Projection&);
+template ProjectedContour<float> project(const Contour<4, float>&, const Projection&, const WorkOptions&);
+template ProjectedContour<double> project(const Contour<4, double>&, const Projection&, const WorkOptions&);
 template Contour<3, float> outline(const Contour<4, float>&, const Projection&, const WorkOptions&);
 template Contour<3, double> outline(const Contour<4, double>&, const Projection&, const WorkOptions&);
 

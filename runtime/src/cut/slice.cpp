@@ -18,20 +18,25 @@ using detail::HyperplaneFamily;
 
 /// The simplices that touch the level, ascending.
 template <int N, class Real>
-std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
-                                      double level) {
+std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
+                                      const Progress& progress) {
   enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on: counts as both
   std::vector<unsigned char> sides(contour.vertices.size());
-  for (std::size_t v = 0; v < sides.size(); ++v) {
-    const double height = family.height(contour.vertices[v]);
-    sides[v] = height < level ? kBelow : height > level ? kAbove : kOn;
-  }
+  detail::in_parts(sides.size(), detail::part_of(progress, 0.0, 0.5), [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const double height = family.height(contour.vertices[v]);
+      sides[v] = height < level ? kBelow : height > level ? kAbove : kOn;
+    }
+  });
   std::vector<Index> touching;
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
-    unsigned met = 0;
-    for (const Index v : contour.simplices[s]) met |= sides[v];
-    if (met == kOn) touching.push_back(static_cast<Index>(s));
-  }
+  detail::in_parts(contour.simplices.size(), detail::part_of(progress, 0.5, 1.0),
+                   [&](std::size_t from, std::size_t to) {
+                     for (std::size_t s = from; s < to; ++s) {
+                       unsigned met = 0;
+                       for (const Index v : contour.simplices[s]) met |= sides[v];
+                       if (met == kOn) touching.push_back(static_cast<Index>(s));
+                     }
+                   });
   return touching;
 }
 
@@ -98,11 +103,16 @@ constexpr const char* kCancelledSlice = "cuts cancelled";
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
-                                                              const Hyperplane<N>& hyperplane) {
+                                                              const Hyperplane<N>& hyperplane,
+                                                              const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
   detail::require_sound(contour);
   const double level = family.template level<Real>(hyperplane.offset);
-  return detail::cut_simplices(contour, family, level, touching_simplices(contour, family, level));
+  const Progress finding = detail::part_of(work.progress, 0.0, 0.8);
+  Contour<N - 1, Real> cut =
+      detail::cut_simplices(contour, family, level, touching_simplices(contour, family, level, finding));
+  detail::tell(work.progress, 1.0, kCancelledSlice);
+  return cut;
 }
 
 template <int N, Coordinate Real>
@@ -139,7 +149,7 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
 }
 
 #define TEGL_INSTANTIATE_SLICE(N, Real)                                                                           \
-  template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&);                             \
+  template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&, const WorkOptions&);         \
   template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, std::span<const Hyperplane<N>>, \
                                                          const WorkOptions&);
 TEGL_INSTANTIATE_SLICE(3, float)

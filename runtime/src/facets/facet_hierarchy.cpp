@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/progress.hpp"
 #include "facets/facet_extraction.hpp"
 #include "image/row_source.hpp"
 #include "kernel/extract_kernel.hpp"
@@ -17,8 +18,9 @@ namespace tegl {
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
-void FacetHierarchy<N, Real>::connect_up() {
+void FacetHierarchy<N, Real>::connect_up(const WorkOptions& work) {
   for (int k = 0; k + 1 < N; ++k) {
+    const Progress progress = detail::part_of(work.progress, k / (N - 1.0), (k + 1) / (N - 1.0));
     Level& level = levels[k];
     const Level& above = levels[k + 1];
     level.up_first.assign(count(k) + 1, 0);
@@ -26,12 +28,14 @@ void FacetHierarchy<N, Real>::connect_up() {
     std::partial_sum(level.up_first.begin(), level.up_first.end(), level.up_first.begin());
     level.up.resize(above.down.size());
     level.up_signs.resize(above.down.size());
-    for (std::size_t g = 0; g < count(k + 1); ++g)
-      for (Index e = above.down_first[g]; e < above.down_first[g + 1]; ++e) {
-        const Index at = level.up_first[above.down[e]]++;
-        level.up[at] = static_cast<Index>(g);
-        level.up_signs[at] = above.down_signs[e];
-      }
+    detail::in_parts(count(k + 1), progress, [&](std::size_t from, std::size_t to) {
+      for (std::size_t g = from; g < to; ++g)
+        for (Index e = above.down_first[g]; e < above.down_first[g + 1]; ++e) {
+          const Index at = level.up_first[above.down[e]]++;
+          level.up[at] = static_cast<Index>(g);
+          level.up_signs[at] = above.down_signs[e];
+        }
+    });
     // Filling moved each offset to the next one: shift them back.
     std::copy_backward(level.up_first.begin(), level.up_first.end() - 1, level.up_first.end());
     level.up_first.front() = 0;
@@ -122,7 +126,7 @@ void check_ridges(const FacetHierarchy<N, Real>& facets, FacetReport& report) {
 }  // namespace
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Real>& facets) {
+requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Real>& facets, const WorkOptions& work) {
   FacetReport report;
   std::vector<std::pair<Index, int>> sum;
   detail::DisjointSets components;
@@ -131,7 +135,8 @@ requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Rea
   for (int k = 0; k < N; ++k) {
     report.facets[k] = facets.count(k);
     const int sign = k % 2 == 0 ? 1 : -1;
-    for (std::size_t f = 0; f < facets.count(k); ++f) {
+    const Progress progress = detail::part_of(work.progress, static_cast<double>(k) / N, (k + 1.0) / N);
+    const auto check_one = [&](std::size_t f) {
       const int euler = facet_euler(facets, k, f);
       report.euler += sign * euler;
       if (euler == 0) ++report.tori;
@@ -143,7 +148,10 @@ requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Rea
       if (k == 3)
         for (const Index polygon : facets.down(3, f))
           if (components.join(a_point(facets, facets.down(3, f)[0]), a_point(facets, polygon))) --report.components;
-    }
+    };
+    detail::in_parts(facets.count(k), progress, [&](std::size_t from, std::size_t to) {
+      for (std::size_t f = from; f < to; ++f) check_one(f);
+    });
   }
   check_ridges(facets, report);
   return report;
@@ -160,7 +168,7 @@ requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const 
 #define TEGL_INSTANTIATE(N, Real)                                                      \
   template struct FacetHierarchy<N, Real>;                                             \
   template int facet_euler<N, Real>(const FacetHierarchy<N, Real>&, int, std::size_t); \
-  template FacetReport check<N, Real>(const FacetHierarchy<N, Real>&);
+  template FacetReport check<N, Real>(const FacetHierarchy<N, Real>&, const WorkOptions&);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

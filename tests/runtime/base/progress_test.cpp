@@ -18,6 +18,8 @@
 
 #include "fields.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/facet_hierarchy.hpp"
+#include "tegl/project.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream.hpp"
 
@@ -213,6 +215,40 @@ TEST(Progress, NorAreEstimators) {
 }
 
 #endif
+
+/// Operations on contours and facets that run on one thread: progress begins at 0, ascends to 1 and can cancel at each
+/// call.
+void expect_progress(const std::function<void(const WorkOptions&)>& operation) {
+  std::vector<double> fractions;
+  operation({.progress = [&](double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  }});
+  ASSERT_GE(fractions.size(), 4u);
+  EXPECT_EQ(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  for (std::size_t last = 1; last <= fractions.size(); ++last) {
+    std::size_t seen = 0;
+    try {
+      operation({.progress = [&](double) { return ++seen < last; }});
+      ADD_FAILURE() << "not cancelled by call " << last;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::Cancelled) << error.what();
+    }
+    EXPECT_EQ(seen, last);
+  }
+}
+
+TEST(Progress, OfOperationsOnOneThread) {
+  const auto image = noise<float, 4>(6, 3);
+  const auto contour = extract<float>(image.view(), 0.5);
+  expect_progress([&](const WorkOptions& work) { slice(contour, Hyperplane<4>::across(3, 2.5), work); });
+  expect_progress([&](const WorkOptions& work) { project(contour, {}, work); });
+  auto facets = extract_facets<float>(image.view(), 0.5);
+  expect_progress([&](const WorkOptions& work) { facets.connect_up(work); });
+  expect_progress([&](const WorkOptions& work) { check(facets, work); });
+}
 
 }  // namespace
 }  // namespace tegl::test
