@@ -250,17 +250,16 @@ void measure_field(const std::string& name, const Arguments& arguments) {
 }
 
 /// The elements of `all` whose names are in an option's comma-separated list.
-template <class Each, class Name>
-std::vector<Each> choose(const std::string& option, const std::string& list, const std::vector<Each>& all,
-                         const Name& name) {
+template <class Each>
+std::vector<Each> choose(const std::string& option, const std::string& list, const std::vector<Each>& all) {
   std::vector<Each> chosen;
   for (std::size_t from = 0; from <= list.size();) {
     const std::size_t to = std::min(list.find(',', from), list.size());
     const std::string one = list.substr(from, to - from);
-    const auto at = std::find_if(all.begin(), all.end(), [&](Each each) { return name(each) == one; });
+    const auto at = std::find_if(all.begin(), all.end(), [&](Each each) { return name_of(each) == one; });
     if (at == all.end()) {
       std::string names;
-      for (const Each each : all) names += (names.empty() ? "" : ", ") + std::string(name(each));
+      for (const Each each : all) names += (names.empty() ? "" : ", ") + std::string(name_of(each));
       throw Error(ErrorCode::InvalidArgument, fmt::format("{}: '{}'; expected one or more of {}", option, one, names));
     }
     chosen.push_back(*at);
@@ -280,11 +279,10 @@ int run(int argc, char** argv) {
     const std::string argument = argv[i];
     const bool more = i + 1 < argc;
     if (argument == "--methods" && more)
-      arguments.methods = choose(argument, argv[++i], seed_methods(), seed_method_name);
+      arguments.methods = choose(argument, argv[++i], seed_methods());
     else if (argument == "--neighbourhoods" && more)
       arguments.neighbourhoods = choose<Neighbourhood>(
-          argument, argv[++i], {Neighbourhood::faces, Neighbourhood::faces_and_edges, Neighbourhood::all},
-          neighbourhood_name);
+          argument, argv[++i], {Neighbourhood::faces, Neighbourhood::faces_and_edges, Neighbourhood::all});
     else if (argument == "--orders")
       arguments.orders = true;
     else if (argument == "--picks" && more)

@@ -23,7 +23,6 @@ namespace tegl::gen {
 namespace {
 
 using tile::Fault;
-using tile::fault_name;
 
 constexpr Triangulation kBothTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
 
