@@ -109,17 +109,6 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
   }
 }
 
-/// Whether a cut across an axis needs only the layers beside it.
-bool is_apart(const AnyImage& image, int axis) {
-  const auto of_owned = [&](const auto& owned) {
-    bool apart = true;
-    for (int a = 0; a < static_cast<int>(owned.grid.axes.size()); ++a)
-      apart = apart && (a == axis || (owned.grid.linear[axis][a] == 0.0 && owned.grid.linear[a][axis] == 0.0));
-    return apart;
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
-}
-
 /// An empty cut, outside of an image, with names and units of its axes.
 template <int N, class Real>
 Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
@@ -140,6 +129,11 @@ auto visit_image(const AnyImage& image, const F& f) {
 template <Value T, int N, class F>
 auto visit_image(const LayerImage<T, N>& image, const F& f) {
   return f(image);
+}
+
+/// Whether a cut across an axis needs only the layers beside it.
+bool is_separate(const AnyImage& image, int axis) {
+  return visit_image(image, [axis](const auto& owned) { return owned.grid.is_separate(axis); });
 }
 
 template <class Real, class Source>
@@ -332,7 +326,7 @@ class SliceCommand final : public Command {
             const std::unique_ptr<LayerReader<T, N>>& layers) -> std::optional<std::vector<ContourResult>> {
       if (std::is_same_v<T, double> && may_be_whole_numbers(input.info)) return std::nullopt;
       if constexpr (N >= 3) {
-        std::vector<LayersOfCut> needed;
+        std::vector<LayerRange> needed;
         std::vector<ContourResult> results = plan<T>(layers->grid(), cuts, needed);
         if (results.empty()) return std::nullopt;
         require_cuts(N, "image");
@@ -360,11 +354,11 @@ class SliceCommand final : public Command {
   /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis,
   /// or are not valid.
   template <Value T, int N>
-  std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayersOfCut>& needed) {
+  std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayerRange>& needed) {
     constexpr int kLast = N - 1;
     const AnyImage header = without_samples<T, N>(grid);
     if (std::any_of(grid.axes.begin(), grid.axes.end(), [](const Axis& axis) { return axis.size() < 2; }) ||
-        !is_apart(header, kLast) || !LayerImage<T, N>::fits_address_space(grid))
+        !grid.is_separate(kLast) || !LayerImage<T, N>::fits_address_space(grid))
       return {};
     std::vector<ContourResult> results;
     try {
@@ -376,13 +370,15 @@ class SliceCommand final : public Command {
     } catch (const EmptyResult&) {
       return {};
     }
-    const bool normals = options_.library_options().normals;
+    const ExtractOptions options = options_.library_options();
     for (ContourResult& result : results) {
       if (*result.cut->across != kLast) return {};
-      const auto layers = options_.single_precision() ? layers_of_cut<float, T, N>(grid, result.cut->value, normals)
-                                                      : layers_of_cut<double, T, N>(grid, result.cut->value, normals);
-      if (!layers && !result.cut->is_outside) return {};
-      needed.push_back(layers.value_or(LayersOfCut{}));
+      if (result.cut->is_outside)
+        needed.emplace_back();
+      else if (options_.single_precision())
+        needed.push_back(layers_of_cut<float>(grid, kLast, result.cut->value, options));
+      else
+        needed.push_back(layers_of_cut<double>(grid, kLast, result.cut->value, options));
       result.image_dim = N;
     }
     return results;
@@ -390,8 +386,8 @@ class SliceCommand final : public Command {
 
   /// Reads the layers that cuts need, in ascending order.
   template <Value T, int N>
-  static void read_layers(LayerImage<T, N>& image, std::vector<LayersOfCut> needed, const Progress& progress) {
-    std::ranges::sort(needed, {}, &LayersOfCut::first);
+  static void read_layers(LayerImage<T, N>& image, std::vector<LayerRange> needed, const Progress& progress) {
+    std::ranges::sort(needed, {}, &LayerRange::first);
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!progress(static_cast<double>(i) / static_cast<double>(needed.size())))
         InterruptHandler::throw_if_requested();
@@ -428,7 +424,7 @@ class SliceCommand final : public Command {
       result.isovalue = isovalue;
       result.image_dim = image_dim(input.image);
       result.seconds.read = read_seconds;
-      if (result.cut->across && is_apart(input.image, *result.cut->across)) {
+      if (result.cut->across && is_separate(input.image, *result.cut->across)) {
         cut_slab(input.image, result, bar);
         continue;
       }

@@ -3,6 +3,7 @@
 // Cuts of contours by hyperplanes: a 4D contour at a time t, or in any other hyperplane.
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <span>
 #include <type_traits>
@@ -105,5 +106,18 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(
     const ExtractOptions& options = {}) {
   return slice_image_with_stats<Real>(image, isovalue, hyperplane, options).contour;
 }
+
+/// Layers of an image along an axis.
+struct LayerRange {
+  std::size_t first = 0;  ///< the first layer
+  std::size_t end = 0;    ///< one past the last layer
+};
+
+/// The layers along `axis` that `slice_image<Real>` reads for the cut across it at the world coordinate `at`, so that
+/// the samples of other layers need not be in memory. Errors: InvalidArgument if `at` is outside of the image, or if
+/// the world map mixes the axis with others. O(n) time for an axis of n samples.
+template <Coordinate Real = float, int N>
+requires DimensionBetween<N, 3, 4> LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at,
+                                                            const ExtractOptions& options = {});
 
 }  // namespace tegl
