@@ -117,7 +117,7 @@ struct LayerRange {
 /// the samples of other layers need not be in memory. Errors: InvalidArgument if `at` is outside of the image, or if
 /// the world map mixes the axis with others. O(n) time for an axis of n samples.
 template <Coordinate Real = float, int N>
-requires DimensionBetween<N, 3, 4> LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at,
-                                                            const ExtractOptions& options = {});
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at, const ExtractOptions& options = {});
 
 }  // namespace tegl
