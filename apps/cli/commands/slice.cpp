@@ -402,7 +402,7 @@ class SliceCommand final : public Command {
       if (!progress(fraction)) InterruptHandler::throw_if_requested();
     });
     const double isovalue = options_.isovalue();
-    if (is_outside(isovalue, image.range())) throw outside_error(isovalue, image.range(), info.value_unit);
+    if (!image.range().has_both_sides(isovalue)) throw outside_error(isovalue, image.range(), info.value_unit);
   }
 
   std::vector<ContourResult> cut_whole_image(std::vector<Cut> cuts, ProgressBar& bar) {
