@@ -309,8 +309,8 @@ class SliceCommand final : public Command {
     return cut_whole_image(cuts, bar);
   }
 
-  /// Cuts an image across its last axis, of which it reads only the layers that the cuts need. Nullopt, also for
-  /// errors, if the whole image has to be read.
+  /// Cuts an image across its last axis, of which it reads only the layers that the cuts need. Nullopt if the whole
+  /// image has to be read. Wrong cuts and cuts outside of the image are errors before any sample is read.
   std::optional<std::vector<ContourResult>> cut_layers(const std::vector<Cut>& cuts, ProgressBar& bar) {
     const double isovalue = options_.isovalue();
     Stopwatch watch;
@@ -324,12 +324,11 @@ class SliceCommand final : public Command {
     const auto of_layers =
         [&]<Value T, int N>(
             const std::unique_ptr<LayerReader<T, N>>& layers) -> std::optional<std::vector<ContourResult>> {
-      if (std::is_same_v<T, double> && may_be_whole_numbers(input.info)) return std::nullopt;
+      require_cuts(N, "image");
       if constexpr (N >= 3) {
         std::vector<LayerRange> needed;
         std::vector<ContourResult> results = plan<T>(layers->grid(), cuts, needed);
-        if (results.empty()) return std::nullopt;
-        require_cuts(N, "image");
+        if (results.empty() || (std::is_same_v<T, double> && may_be_whole_numbers(input.info))) return std::nullopt;
         for (ContourResult& result : results) {
           result.isovalue = isovalue;
           result.variable = input.info.variable;
@@ -351,25 +350,17 @@ class SliceCommand final : public Command {
     return std::visit([&](const auto& any) { return std::visit(of_layers, any); }, input.layers);
   }
 
-  /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis,
-  /// or are not valid.
+  /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis.
+  /// Throws for cuts that are wrong or outside of the image.
   template <Value T, int N>
   std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayerRange>& needed) {
     constexpr int kLast = N - 1;
-    const AnyImage header = without_samples<T, N>(grid);
+    const CutSpace space = space_of(without_samples<T, N>(grid));
+    factors_ = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(cuts, space);
     if (std::any_of(grid.axes.begin(), grid.axes.end(), [](const Axis& axis) { return axis.size() < 2; }) ||
         !grid.is_separate(kLast) || !LayerImage<T, N>::fits_address_space(grid))
       return {};
-    std::vector<ContourResult> results;
-    try {
-      const CutSpace space = space_of(header);
-      factors_ = parse_scale(scale_, space);
-      results = results_for(cuts, space);
-    } catch (const Error&) {
-      return {};
-    } catch (const EmptyResult&) {
-      return {};
-    }
     const ExtractOptions options = options_.library_options();
     for (ContourResult& result : results) {
       if (*result.cut->across != kLast) return {};
@@ -410,10 +401,10 @@ class SliceCommand final : public Command {
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
     require_cuts(image_dim(input.image), "image");
-    require_contour(input, isovalue, options_.allows_empty());
     const CutSpace space = space_of(input.image);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
+    require_contour(input, isovalue, options_.allows_empty());
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
     std::vector<std::size_t> places;
