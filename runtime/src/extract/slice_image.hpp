@@ -17,7 +17,7 @@
 #include "ambiguity/moved_estimator.hpp"
 #include "extract/layers_of_cut.hpp"
 #include "image/row_source.hpp"
-#include "kernel/tableless.hpp"
+#include "kernel/extract_in_memory.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl::detail {
