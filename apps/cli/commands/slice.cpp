@@ -386,7 +386,8 @@ class SliceCommand final : public Command {
     }
   }
 
-  /// As require_contour, which has the whole image: reads further layers only if those of the cuts are all on one side.
+  /// As require_contour, for an image that is not read as a whole: reads further layers only if all samples of the
+  /// layers of the cuts are on one side of the isovalue.
   template <Value T, int N>
   void require_both_sides(LayerImage<T, N>& image, const ImageInfo& info, const Progress& progress) const {
     image.complete_range([&](double fraction) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An image of which only the layers are read that cuts across its last axis need.
+// An image of which a program reads only the layers that cuts across its last axis need.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +40,7 @@ class LayerImage {
     }
   }
   /// Reads other layers for the range of values, without keeping them, until there are samples on both sides of the
-  /// isovalue or all are read. Calls tell(fraction) before each.
+  /// isovalue or all are read. Calls tell with the fraction that is done before each layer.
   template <class Tell>
   void complete_range(const Tell& tell) {
     std::vector<T> layer(layers_.layer_size());

@@ -64,7 +64,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, R
 
 /// Cuts a contour by several hyperplanes, in any order. Each cut equals `slice` by its hyperplane bit by bit.
 /// Hyperplanes with equal normals are cut in one pass over the contour; as many cuts are made at a time as there are
-/// threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
+/// threads. Errors: as `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
 /// cuts; 8 #V bytes plus the memory of all cuts.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
@@ -87,7 +87,7 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
 /// Cuts the contour of an image by a hyperplane in world coordinates, without the whole contour if the normal is a
 /// multiple of an axis: then only the slab of tiles that the hyperplane passes is read, or, at a sample's coordinate,
 /// the two slabs that meet there (for normals across another axis than the last, also the adjacent layers). Otherwise
-/// the cut is that of the whole contour.
+/// the whole contour is cut.
 ///
 /// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
 /// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
@@ -97,7 +97,7 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
 /// the closed contour.
 ///
 /// An image with one sample along the axis has no tiles, hence an empty cut, at its only valid coordinate. Errors:
-/// those of `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
+/// as `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
 /// the world map mixes the axis with others, so that its layers are not across it. Cost: that of extracting one or two
 /// slabs, independent of the length of the axis; for oblique hyperplanes, that of `extract` and `slice`.
 template <Coordinate Real = float, Value T, int N>

@@ -35,7 +35,7 @@ class Values : public detail::HeldArray<T, std::vector<T>, detail::ValueVector<T
   template <std::input_iterator It>
   Values(It first, It last) : Values(std::vector<T>(first, last)) {}  ///< copies a range
 
-  /// These functions are those of std::vector. They invalidate pointers to samples.
+  /// These functions work as in a std::vector. They invalidate pointers to samples.
   void resize(std::size_t count, T value = T()) {
     change([&](auto& held) { held.resize(count, value); });
   }

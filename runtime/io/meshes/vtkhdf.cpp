@@ -197,7 +197,7 @@ class Reader {
     if (std::isfinite(isovalue)) mesh_.isovalue = isovalue;
   }
 
-  /// The arrays of a group with one row per vertex or simplex; those of the writer first and in its order.
+  /// The arrays of a group with one row per vertex or simplex: first the arrays of VtkhdfWriter, in its order.
   [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
                                                   const std::set<std::string>& taken) {
     std::vector<Attribute> result;

@@ -247,8 +247,8 @@ static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* pl
 
 namespace {
 
-/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and the table's counts by those of
-/// the variants. N < 4.
+/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
+/// N < 4.
 template <int N>
 class TileResolver {
  public:

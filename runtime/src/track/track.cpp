@@ -44,7 +44,7 @@ void require_sound(const Contour<N, Real>& contour) {
   detail::require_finite(contour);
 }
 
-/// Builds the result, with conversion from the sweep's numbers to those of the result.
+/// Builds the result and converts the sweep's numbers to the numbers of the result.
 template <int N, class Real>
 class Builder {
  public:

@@ -36,7 +36,7 @@ class MeshArray : public detail::HeldNumbers<T> {
   MeshArray(std::initializer_list<T> numbers) : MeshArray(Buffer<T>(numbers)) {}  ///< copies the numbers
   explicit MeshArray(std::size_t count, T number = T()) : MeshArray(Buffer<T>(count, number)) {}  ///< equal numbers
 
-  /// These functions are those of std::vector. They invalidate pointers, and copy rows that were taken over.
+  /// These functions work as in a std::vector. They invalidate pointers, and copy rows that were taken over.
   /// New numbers are uninitialised, as in a Buffer.
   void resize(std::size_t count) {
     change([&](Buffer<T>& numbers) { numbers.resize(count); });
