@@ -469,7 +469,7 @@ class SliceCommand final : public Command {
     refuse_image_options(files(), given, images(),
                          "only --at, --plane, --scale, --threads, --allow-empty and --output");
     Stopwatch watch;
-    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), options_.allows_empty());
+    Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), options_.allows_empty());
     require_cuts(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
     factors_ = parse_scale(scale_, space);
@@ -480,9 +480,9 @@ class SliceCommand final : public Command {
       result.isovalue = mesh.isovalue;
     }
     if (mesh.space_dim == 4)
-      cut_contour_of(to_contour<4>(mesh), factors_, options_, results, bar);
+      cut_contour_of(to_contour<4>(std::move(mesh)), factors_, options_, results, bar);
     else
-      cut_contour_of(to_contour<3>(mesh), factors_, options_, results, bar);
+      cut_contour_of(to_contour<3>(std::move(mesh)), factors_, options_, results, bar);
     return results;
   }
 

@@ -115,8 +115,9 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
                                              : Ambiguity::saddle;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
-  options.normals = normals_ == "gradient" || normals_ == "sobel";
-  options.gradient = normals_ == "sobel" ? GradientKind::sobel : GradientKind::differences;
+  options.normals = normals_ == "gradient" ? Normals::differences
+                    : normals_ == "sobel"  ? Normals::sobel
+                                           : Normals::none;
   options.work.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
 #include <vector>
 
 #include "input/ranged_layers.hpp"
@@ -76,8 +75,15 @@ class LayerImage {
 /// Whether read_image may give other values than layers of type double: integers of 32 or 64 bits in the file, which
 /// become int32 there if all of them fit.
 inline bool may_be_whole_numbers(const ImageInfo& info) {
-  const std::string_view type = info.stored_type;
-  return type.find("int") != std::string_view::npos && (type.ends_with("32") || type.ends_with("64"));
+  switch (info.stored_type.value_or(ValueType::float64)) {
+    case ValueType::int32:
+    case ValueType::uint32:
+    case ValueType::int64:
+    case ValueType::uint64:
+      return true;
+    default:
+      return false;
+  }
 }
 
 }  // namespace tegl::cli

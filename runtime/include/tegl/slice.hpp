@@ -59,20 +59,22 @@ namespace tegl {
 /// attributes or normals of another number). If the hyperplane is beyond the contour, the cut is empty. O(#S + #V)
 /// time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
-                                                              const Hyperplane<N>& hyperplane);
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
 
 /// Cuts a contour by several hyperplanes, in any order. Each cut equals `slice` by its hyperplane bit by bit.
 /// Hyperplanes with equal normals are cut in one pass over the contour; as many cuts are made at a time as there are
 /// threads. Errors: as `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
 /// cuts; 8 #V bytes plus the memory of all cuts.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {});
 /// The same for a list: `slice_stack(contour, {Hyperplane<4>::across(3, 1.0), Hyperplane<4>::across(3, 2.0)})`.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::initializer_list<Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {}) {
   return slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes.begin(), hyperplanes.size()), work);
@@ -80,9 +82,10 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
 
 /// As `slice_image`, with counts and times of the extraction.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stats(
-    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
-    const ExtractOptions& options = {});
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] Extraction<N - 1, Real> slice_image_with_stats(const Image<T, N>& image, double isovalue,
+                                                             const std::type_identity_t<Hyperplane<N>>& hyperplane,
+                                                             const ExtractOptions& options = {});
 
 /// Cuts the contour of an image by a hyperplane in world coordinates, without the whole contour if the normal is a
 /// multiple of an axis: then only the slab of tiles that the hyperplane passes is read, or, at a sample's coordinate,
@@ -101,9 +104,10 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
 /// the world map mixes the axis with others, so that its layers are not across it. Cost: that of extracting one or two
 /// slabs, independent of the length of the axis; for oblique hyperplanes, that of `extract` and `slice`.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(
-    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
-    const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
+                                               const std::type_identity_t<Hyperplane<N>>& hyperplane,
+                                               const ExtractOptions& options = {}) {
   return slice_image_with_stats<Real>(image, isovalue, hyperplane, options).contour;
 }
 

@@ -51,7 +51,7 @@ LayerRange layers_around(const Grid<N>& grid, int axis, double at) {
 
 /// Adds the layers beside the slabs that gradients and custom estimators need.
 inline LayerRange with_neighbours(LayerRange layers, std::size_t size, const ExtractOptions& options) {
-  std::size_t beside = options.normals ? 1 : 0;
+  std::size_t beside = options.normals != Normals::none ? 1 : 0;
   if (options.ambiguity == Ambiguity::custom) beside = std::max(beside, std::min(options.estimator.reach, size));
   return {layers.first - std::min(layers.first, beside), std::min(size, layers.end + beside)};
 }

@@ -312,7 +312,7 @@ TEST(SliceImage, ReadsOnlyTheLayersOfTheCut) {
   const auto whole = test::noise<float, 4>(Grid<4>::unit({6, 6, 6, 6}), 38);
   ExtractOptions options;
   options.work.threads = 1;
-  for (const bool normals : {false, true})
+  for (const Normals normals : {Normals::none, Normals::differences, Normals::sobel})
     for (const int axis : {0, 3})
       for (const double at : {0.0, 2.0, 2.25, 5.0}) {
         options.normals = normals;

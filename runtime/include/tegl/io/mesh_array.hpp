@@ -76,6 +76,20 @@ class MeshArray : public detail::HeldNumbers<T> {
     clear();
     return result;
   }
+  /// The numbers as rows of Width; numbers that do not fill a row are left out. Does not copy rows of this width that
+  /// were taken over.
+  template <std::size_t Width>
+  requires(Width >= 2 && Width <= 4) [[nodiscard]] Buffer<std::array<T, Width>> rows() && {  ///< becomes empty
+    Buffer<std::array<T, Width>> result;
+    if (auto* const held = this->template held_as<Buffer<std::array<T, Width>>>()) {
+      result = std::move(*held);
+    } else {
+      result.resize(this->size() / Width);
+      for (std::size_t i = 0; i < result.size() * Width; ++i) result[i / Width][i % Width] = (*this)[i];
+    }
+    clear();
+    return result;
+  }
 
   friend bool operator==(const MeshArray& a, const MeshArray& b) {  ///< number by number
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
