@@ -81,7 +81,7 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
       std::vector<TileNumber> tiles;
       Query query{isovalue, 0, least_seconds([&] { tiles = index->find(isovalue); }), 0};
       query.active = static_cast<double>(tiles.size());
-      query.extract_seconds = least_seconds([&] { extract<float>(image, isovalue, options, *index); });
+      query.extract_seconds = least_seconds([&] { extract<float>(image, isovalue, *index, options); });
       contours += query.extract_seconds;
       done.push_back(query);
       if (csv != nullptr)

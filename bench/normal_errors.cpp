@@ -18,7 +18,7 @@
 
 namespace {
 
-using tegl::GradientKind;
+using tegl::Normals;
 using tegl::NormalWeights;
 
 /// A grid with `samples` samples along every axis over [-1.35, 1.35], slightly off centre to avoid symmetry.
@@ -99,12 +99,11 @@ void print_errors(const std::string& grid, std::size_t samples, double noise) {
     std::printf("%d,%s,%zu,%g,%s,%.4g\n", N, grid.c_str(), samples, noise, kind, error);
   };
   tegl::ExtractOptions options;
-  options.normals = true;
   tegl::Contour<N, double> contour;
-  for (const GradientKind kind : {GradientKind::sobel, GradientKind::differences}) {
-    options.gradient = kind;
+  for (const Normals kind : {Normals::sobel, Normals::differences}) {
+    options.normals = kind;
     contour = tegl::extract<double>(image.view(), 0.0, options);
-    print(kind == GradientKind::sobel ? "sobel" : "differences", error_at_vertices<N>(contour, contour.normals));
+    print(kind == Normals::sobel ? "sobel" : "differences", error_at_vertices<N>(contour, contour.normals));
   }
   print("angle", error_at_vertices<N>(contour, tegl::geometric_normals(contour, NormalWeights::angle)));
   print("area", error_at_vertices<N>(contour, tegl::geometric_normals(contour, NormalWeights::area)));

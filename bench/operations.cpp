@@ -206,7 +206,7 @@ std::vector<Operation> operations_on(Subject<T>& subject) {
                     return counted(extract<double>(subject.image, subject.isovalue, options).simplices.size(),
                                    "tetrahedra");
                   }});
-  options.normals = true;
+  options.normals = tegl::Normals::differences;
   list.push_back({"`extract` with gradient normals", [&, options] {
                     return counted(extract<double>(subject.image, subject.isovalue, options).normals.size(), "normals");
                   }});

@@ -21,7 +21,7 @@ inline constexpr bool kHasThreads = Threaded<ExtractOptions>;
 /// The library has an option for normals at vertices.
 template <class Options>
 concept WithNormals = requires(Options options) {
-  options.normals = true;
+  options.normals = tegl::Normals::differences;
 };
 inline constexpr bool kHasNormals = WithNormals<ExtractOptions>;
 
@@ -29,7 +29,7 @@ inline constexpr bool kHasNormals = WithNormals<ExtractOptions>;
 template <class Options = ExtractOptions>
 Options with_normals(Options options, bool normals) {
   if constexpr (WithNormals<Options>)
-    options.normals = normals;
+    options.normals = normals ? tegl::Normals::differences : tegl::Normals::none;
   else if (normals)
     throw Error(ErrorCode::InvalidArgument, "the library has no normals");
   return options;

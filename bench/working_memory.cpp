@@ -16,7 +16,7 @@ template <int N>
 double per_cent(const OwnedImage<float, N>& image, Triangulation triangulation, bool normals, unsigned threads) {
   ExtractOptions options;
   options.triangulation = triangulation;
-  options.normals = normals;
+  options.normals = normals ? tegl::Normals::differences : tegl::Normals::none;
   options.work.threads = threads;
   const auto bytes = static_cast<double>(test::bytes_beside(image, 0.0, options));
   return 100.0 * bytes / static_cast<double>(image.values.size() * sizeof(float));

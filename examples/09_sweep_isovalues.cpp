@@ -27,13 +27,13 @@ int main() {
   const auto index = tegl::build_active_tiles(image, tegl::ActiveMethod::span_space);
   for (double isovalue = 10.5; isovalue < 120; isovalue += 10) {
     const std::vector<tegl::TileNumber> tiles = index->find(isovalue);  // or only which tiles it passes
-    const tegl::Contour<3> contour = tegl::extract(image, isovalue, {}, *index);
+    const tegl::Contour<3> contour = tegl::extract(image, isovalue, *index);
     std::printf("at %5.1f: %zu tiles, %zu triangles\n", isovalue, tiles.size(), contour.simplices.size());
   }
   // [/sweep]
 
   // The contour equals the one without an index, byte by byte.
-  const auto with = tegl::extract(image, 60.0, {}, *index);
+  const auto with = tegl::extract(image, 60.0, *index);
   const auto without = tegl::extract(image, 60.0);
   return with.vertices == without.vertices && with.simplices == without.simplices ? 0 : 1;
 }

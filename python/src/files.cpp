@@ -146,7 +146,7 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside
                                      const py::object& progress) {
   Call call(progress);
   const Progress tell = call.progress();
-  const Mesh mesh = call.run([&] {
+  Mesh mesh = call.run([&] {
     const FileLock lock(tell);
     ReadMeshOptions options;
     options.work.progress = tell;
@@ -156,16 +156,16 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside
   });
   const py::gil_scoped_release release;
   auto result = std::make_unique<AnyContour>();
+  result->isovalue = mesh.isovalue;
   if (mesh.dim == 1)
-    result->contour = to_contour<2>(mesh);
+    result->contour = to_contour<2>(std::move(mesh));
   else if (mesh.dim == 2)
-    result->contour = to_contour<3>(mesh);
+    result->contour = to_contour<3>(std::move(mesh));
   else if (mesh.dim == 3)
-    result->contour = to_contour<4>(mesh);
+    result->contour = to_contour<4>(std::move(mesh));
   else
     throw Error(ErrorCode::UnsupportedData,
                 fmt::format("{} holds {}-simplices; expected segments, triangles or tetrahedra", path, mesh.dim));
-  result->isovalue = mesh.isovalue;
   return result;
 }
 

@@ -35,8 +35,8 @@ class IndexOf final : public AnyIndex {
       : image_(std::move(image)), tiles_(std::move(tiles)) {}
 
   [[nodiscard]] AnyContour contour(double level, bool is_double, const ExtractOptions& options) const override {
-    if (is_double) return {extract<double>(image_, level, options, *tiles_), level};
-    return {extract<float>(image_, level, options, *tiles_), level};
+    if (is_double) return {extract<double>(image_, level, *tiles_, options), level};
+    return {extract<float>(image_, level, *tiles_, options), level};
   }
   [[nodiscard]] std::vector<TileNumber> find(double level) const override { return tiles_->find(level); }
   [[nodiscard]] std::string method() const override { return std::string(active_method_name(tiles_->method())); }

@@ -181,7 +181,7 @@ std::unique_ptr<AnyContour> extract_masked(const AnyImage& image, const py::arra
         return call.run([&] {
           const auto tiles = choose_tiles(view, MaskedTiles<T>(view, chosen, level).find());
           auto result = std::make_unique<AnyContour>();
-          *result = {extract<float>(view, level, options, *tiles), level};
+          *result = {extract<float>(view, level, *tiles, options), level};
           return result;
         });
       },

@@ -88,8 +88,7 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
       {{"low", Ambiguity::low}, {"high", Ambiguity::high}, {"mean", Ambiguity::mean}, {"saddle", Ambiguity::saddle}});
   result.direction = named<GradientDirection>("direction", text("direction"), gradient_directions());
   const std::string normals = text("normals");
-  result.normals = normals == "gradient" || normals == "sobel";
-  result.gradient = normals == "sobel" ? GradientKind::sobel : GradientKind::differences;
+  result.normals = normals == "gradient" ? Normals::differences : normals == "sobel" ? Normals::sobel : Normals::none;
   result.close = py::cast<bool>(arguments["close"]);
   result.epsilon = py::cast<double>(arguments["epsilon"]);
   result.work.threads = py::cast<unsigned>(arguments["threads"]);

@@ -67,7 +67,7 @@ TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
   tegl::Grid<3> grid;
   for (int a = 0; a < 3; ++a) grid.axes[a] = tegl::Axis::uniform(dimensions[a], origin[a], spacing[a]);
   tegl::ExtractOptions options;
-  options.normals = true;  // ComputeNormalsOn
+  options.normals = tegl::Normals::differences;  // ComputeNormalsOn
   const tegl::Contour<3> surface = tegl::extract(tegl::Image<float, 3>(scalars, grid), value, options);
   // [/vtk]
   // [vtk_filters]
@@ -175,7 +175,7 @@ TEST(Guides, ASeriesOfVolumesIsReadLayerByLayer) {
   const tegl::Grid<4> grid = tegl::Grid<4>::unit({20, 20, 20, 9});  // time is the last axis
   tegl::FunctionLayers<float, 4> layers(grid, [&](std::size_t k, float* to) { read_volume(k, to); });
   tegl::ContourFile<4, float> file("film.vtkhdf", grid);
-  tegl::extract_streamed(layers, 0.0, {}, file);
+  tegl::extract_streamed(layers, 0.0, file);
   file.commit();
   // [/series]
   const auto whole = tegl::extract(tegl::Image<float, 4>(all.data(), grid), 0.0);

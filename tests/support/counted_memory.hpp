@@ -62,7 +62,7 @@ std::size_t bytes_beside(const OwnedImage<T, N>& image, double isovalue, const E
   const ContourSize size = count(image.view(), isovalue, options);
   std::vector<std::array<float, N>> vertices(size.vertices);
   std::vector<std::array<Index, N>> simplices(size.simplices);
-  std::vector<std::array<float, N>> normals(options.normals ? size.vertices : 0);
+  std::vector<std::array<float, N>> normals(options.normals != Normals::none ? size.vertices : 0);
   const ContourRoom<N, float> room{vertices, simplices, normals};
   extract_into(image.view(), isovalue, room, options);  // creates threads and tables
   const std::size_t before = counted_memory::live_bytes;

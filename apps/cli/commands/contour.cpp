@@ -357,8 +357,8 @@ class ContourCommand final : public Command {
           return with_additions(std::move(extraction.contour), options.work.threads, bar);
         };
         result.mesh = options_.single_precision()
-                          ? keep(extract_with_stats<float>(view, *result.isovalue, options, *active))
-                          : keep(extract_with_stats<double>(view, *result.isovalue, options, *active));
+                          ? keep(extract_with_stats<float>(view, *result.isovalue, *active, options))
+                          : keep(extract_with_stats<double>(view, *result.isovalue, *active, options));
       }
     };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);

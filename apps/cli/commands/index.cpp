@@ -191,7 +191,7 @@ std::string index_info(const Console& console, const std::filesystem::path& path
     document["version"] = head.version;
     document["method"] = active_method_name(head.method);
     document["image"] = {{"sizes", head.sizes},
-                         {"type", head.value_type},
+                         {"type", name_of(head.value_type)},
                          {"digest", fmt::format("{:016x}", head.digest)},
                          {"any_missing", head.any_missing}};
     document["bytes"] = bytes;
@@ -199,7 +199,7 @@ std::string index_info(const Console& console, const std::filesystem::path& path
   }
   std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: index of active tiles", path.string())));
   text += report_line("method", active_method_name(head.method));
-  text += report_line("image", fmt::format("{} {}{}", fmt::join(head.sizes, " x "), head.value_type,
+  text += report_line("image", fmt::format("{} {}{}", fmt::join(head.sizes, " x "), name_of(head.value_type),
                                            head.any_missing ? ", some missing" : ""));
   text += report_line("digest", fmt::format("{:016x}", head.digest));
   return text + report_line("size", fmt::format("{}, version {}", byte_size(bytes), head.version));

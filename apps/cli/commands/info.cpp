@@ -30,27 +30,10 @@ constexpr std::size_t kJsonBins = 256;
 constexpr std::size_t kTextBins = 16;
 constexpr std::size_t kMostAxes = 4;
 
-template <class T>
-constexpr const char* kTypeName = "";
-template <>
-constexpr const char* kTypeName<std::uint8_t> = "uint8";
-template <>
-constexpr const char* kTypeName<std::int8_t> = "int8";
-template <>
-constexpr const char* kTypeName<std::uint16_t> = "uint16";
-template <>
-constexpr const char* kTypeName<std::int16_t> = "int16";
-template <>
-constexpr const char* kTypeName<std::int32_t> = "int32";
-template <>
-constexpr const char* kTypeName<float> = "float";
-template <>
-constexpr const char* kTypeName<double> = "double";
-
 /// The contents of a report, independent of the image's type and dimension.
 struct Description {
   ImageInfo info;
-  std::string value_type;
+  ValueType value_type{};
   std::vector<Axis> axes;
   std::vector<std::vector<double>> linear;  ///< empty if there is no world map
   std::vector<double> offset;
@@ -61,7 +44,7 @@ struct Description {
 
 template <class T, int N>
 void describe_grid(const OwnedImage<T, N>& image, Description& description) {
-  description.value_type = kTypeName<T>;
+  description.value_type = kValueType<T>;
   description.axes.assign(image.grid.axes.begin(), image.grid.axes.end());
   if (!image.grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
@@ -135,8 +118,8 @@ Json to_json(const Description& description, const InputFiles& input) {
   json["value_name"] = info.value_name;
   json["value_unit"] = info.value_unit;
   json["remarks"] = info.remarks;
-  json["stored_type"] = info.stored_type;
-  json["value_type"] = description.value_type;
+  json["stored_type"] = info.stored_type ? name_of(*info.stored_type) : "";
+  json["value_type"] = name_of(description.value_type);
   json["image_dim"] = description.axes.size();
   Json& axes = json["axes"] = Json::array();
   for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
@@ -270,9 +253,10 @@ std::string to_text(const Console& console, const Description& description, cons
     text += report_line(i == 0 ? "axes" : "", axis_text(description, i));
   }
   text += world_text(description);
-  text += report_line("type", info.stored_type.empty() || info.stored_type == description.value_type
-                                  ? description.value_type
-                                  : fmt::format("{}, read as {}", info.stored_type, description.value_type));
+  const ValueType stored = info.stored_type.value_or(description.value_type);
+  text += report_line("type", stored == description.value_type
+                                  ? std::string(name_of(stored))
+                                  : fmt::format("{}, read as {}", name_of(stored), name_of(description.value_type)));
   text += values_text(console, description);
   return text + fmt::format("\n  {:<12} read {:.3f} + statistics {:.3f}\n", "seconds", description.read_seconds,
                             description.statistics_seconds);

@@ -64,12 +64,12 @@ Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options,
   return mesh;
 }
 
-AnyContour to_any_contour(const Mesh& mesh) {
+AnyContour to_any_contour(Mesh&& mesh) {
   // Some formats return segments of a planar mesh with a third coordinate, 0.
   const int dim = mesh.dim == 1 ? 2 : mesh.space_dim;
-  if (dim == 2) return to_contour<2>(mesh);
-  if (dim == 3) return to_contour<3>(mesh);
-  return to_contour<4>(mesh);
+  if (dim == 2) return to_contour<2>(std::move(mesh));
+  if (dim == 3) return to_contour<3>(std::move(mesh));
+  return to_contour<4>(std::move(mesh));
 }
 
 MeshSize ContourInput::size() const {
@@ -161,9 +161,9 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
     refuse_image_options(files(), given, images(), "no option for images except --threads");
-    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), allows_empty());
-    result.contour = to_any_contour(mesh);
+    Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), allows_empty());
     result.isovalue = mesh.isovalue;
+    result.contour = to_any_contour(std::move(mesh));
     result.seconds.read = watch.lap();
     return result;
   }

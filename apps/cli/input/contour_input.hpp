@@ -22,7 +22,7 @@ using AnyContour = std::variant<Contour<2, double>, Contour<3, double>, Contour<
 
 /// Converts a mesh to a contour. Throws UnsupportedData unless its simplices are segments in the plane, triangles in
 /// space or tetrahedra in 4-space.
-AnyContour to_any_contour(const Mesh& mesh);
+AnyContour to_any_contour(Mesh&& mesh);
 
 /// Reads a mesh with finite coordinates. Throws MalformedFile if a coordinate is infinite or NaN, and errors of
 /// `read_mesh`.

@@ -195,7 +195,8 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
 }
 
 RawLayout ImageOptions::raw_layout() const {
-  RawLayout layout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_, {}, {}, {}, {}};
+  RawLayout layout{
+      parse_sizes(raw_), parse_value_type(raw_type_).value(), raw_offset_, raw_big_endian_, {}, {}, {}, {}};
   const std::size_t axes = layout.sizes.size();
   const auto require_axes = [&](const char* option, const std::string& text, std::size_t count) {
     if (count != axes)

@@ -16,6 +16,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/value_type.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -103,16 +104,16 @@ enum class ActiveMethod : std::uint8_t {
   seed_set,       ///< propagates from a few seed tiles (tegl/seed_set.hpp); reads values around active tiles
 };
 /// "full-scan", "interval-tree", ...
-std::string_view active_method_name(ActiveMethod method) noexcept;
+[[nodiscard]] std::string_view active_method_name(ActiveMethod method) noexcept;
 /// All methods, in the order of the enumeration.
-std::vector<ActiveMethod> active_methods();
+[[nodiscard]] std::vector<ActiveMethod> active_methods();
 
 /// A fingerprint of the image that an index was built for.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 struct IndexedImage {
   std::array<std::size_t, N> sizes{};  ///< number of samples by axis
-  std::string value_type = {};         ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  ValueType value_type{};              ///< of the samples
   std::uint64_t digest = 0;            ///< hash of sizes, type and the bits of all values
   bool any_missing = false;            ///< whether any value is NaN
 
@@ -121,7 +122,8 @@ struct IndexedImage {
 
 /// Computes the fingerprint of an image. Reads all values, at memory speed. Errors: Cancelled.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> IndexedImage<N> identify(const Image<T, N>& image, const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] IndexedImage<N> identify(const Image<T, N>& image, const WorkOptions& work = {});
 
 /// A destination for saved indexes: a sequence of bytes. Its exceptions reach the caller.
 class ByteSink {
@@ -149,12 +151,12 @@ struct ActiveTilesHead {
   std::uint32_t version = 0;                      ///< version of the format
   ActiveMethod method = ActiveMethod::full_scan;  ///< how tiles are found
   std::vector<std::uint64_t> sizes = {};          ///< of the image: 2 to 5 axes, axis 0 first
-  std::string value_type = {};                    ///< as in IndexedImage
+  ValueType value_type{};                         ///< as in IndexedImage
   std::uint64_t digest = 0;                       ///< as in IndexedImage
   bool any_missing = false;                       ///< as in IndexedImage
 };
 /// Reads the header of an index of any image. Errors: MalformedFile, UnsupportedFormat, as load_active_tiles.
-ActiveTilesHead read_active_tiles_head(ByteSource& from);
+[[nodiscard]] ActiveTilesHead read_active_tiles_head(ByteSource& from);
 
 /// Reads a whole index, verifies that it is complete and undamaged, and returns its header. Needs no image. Errors: as
 /// read_active_tiles_head; MalformedFile also for damaged or truncated data.
@@ -230,28 +232,30 @@ struct ActiveTilesOptions {
 /// Builds an index. Time and temporary memory are about linear in the number of tiles. Errors: Cancelled; TooLarge for
 /// an interval tree or a span space of more than 2^32 tiles; those of find_seeds.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> build_active_tiles(
-    const Image<T, N>& image, ActiveMethod method, const ActiveTilesOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
+                                                                 const ActiveTilesOptions& options = {});
 
 /// Loads a saved index and verifies that it belongs to the image, by sizes, value type and hash of the values. Errors:
 /// MalformedFile (not an index, damaged, or truncated), UnsupportedFormat (another version or byte order),
 /// InvalidArgument (an index of another image), Cancelled.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> load_active_tiles(
-    ByteSource& from, const Image<T, N>& image, const ActiveTilesOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
+                                                                const ActiveTilesOptions& options = {});
 
 /// A fixed set of tiles, independent of the isovalue, to contour a part of an image with `extract`. They should include
 /// all tiles of a component of the contour; otherwise the contour is open where they end. Tiles with a missing corner
 /// are left out. Errors: InvalidArgument unless the numbers are ascending and in range.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image,
-                                                                                std::vector<TileNumber> tiles);
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vector<TileNumber> tiles);
 
 /// As `extract` with an index, with counts and times.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options,
-                                                                          const ActiveTiles<N>& active);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                     const ActiveTiles<N>& active, const ExtractOptions& options = {});
 
 /// As `extract` without an index: the same contour, byte by byte. Reads the samples only in rows with active tiles, and
 /// about one sample for every 32 other rows, so the time is proportional to the active rows. The index is trusted: only
@@ -260,10 +264,10 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
 /// time. ExtractStats::find_seconds has the query time of the index. Errors: those of `extract`; InvalidArgument for an
 /// index of an image of other sizes or value type, or for `close` with an index that is not complete.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
-                                                            const ExtractOptions& options,
-                                                            const ActiveTiles<N>& active) {
-  return extract_with_stats<Real>(image, isovalue, options, active).contour;
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ActiveTiles<N>& active,
+                                       const ExtractOptions& options = {}) {
+  return extract_with_stats<Real>(image, isovalue, active, options).contour;
 }
 
 }  // namespace tegl

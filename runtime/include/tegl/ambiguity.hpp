@@ -34,29 +34,13 @@ namespace tegl {
 /// bits only, takes many times as long as with low.
 enum class Ambiguity { low, high, mean, saddle, custom };
 
+namespace detail {
+struct FaceSurroundings;
+}
+
 /// An ambiguous face of the image's grid, as passed to an estimator. Valid only during the call.
 class AmbiguousFace {
  public:
-  /// Reads the sample of `image` at `index`; used by `sample`.
-  using Reader = double (*)(const void* image, const std::ptrdiff_t* index);
-
-  /// Samples that a face can read. Filled by extractions. `origin` is the image index of local sample 0; `first` and
-  /// `end` bound the available samples along each axis, in local indices.
-  struct Surroundings {
-    const void* image = nullptr;             ///< passed to Reader
-    Reader read = nullptr;                   ///< reads one sample
-    std::array<std::ptrdiff_t, 5> origin{};  ///< by axis: image index of local sample 0
-    std::array<std::ptrdiff_t, 5> first{};   ///< by axis: first available sample, in local indices
-    std::array<std::ptrdiff_t, 5> end{};     ///< by axis: end of the available samples, in local indices
-  };
-  /// Used by extractions: a face by its first corner, its axes and the values of its corners. `values` and `around` are
-  /// not copied and must outlive the face.
-  AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
-                const Surroundings& around);
-  /// Deleted: `around` is kept by reference and must not be a temporary.
-  AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
-                const Surroundings&& around) = delete;
-
   /// Number of dimensions of the image.
   [[nodiscard]] int image_dim() const noexcept { return image_dim_; }
   [[nodiscard]] int dim() const noexcept { return dim_; }  ///< number of dimensions of the face, at least 2
@@ -76,12 +60,16 @@ class AmbiguousFace {
   [[nodiscard]] double sample(std::span<const std::ptrdiff_t> steps) const noexcept;
 
  private:
+  friend struct detail::FaceSurroundings;
+  AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
+                const detail::FaceSurroundings& around);
+
   int image_dim_, dim_;
   unsigned axes_;
   std::array<std::size_t, 5> base_{};
   std::span<const double> values_;
   double isovalue_;
-  const Surroundings* around_;
+  const detail::FaceSurroundings* around_;
 };
 
 /// A user-defined rule for ambiguous faces, based on their values and the samples around them.

@@ -43,11 +43,12 @@ struct MeshReport {
 ///
 /// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit), Cancelled.
 /// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input. One thread. Thread-safe.
-MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
-                 const WorkOptions& work = {});
+[[nodiscard]] MeshReport check(int d, std::span<const Index> simplices, int space_dim,
+                               std::span<const double> coordinates, const WorkOptions& work = {});
 
 /// Checks a contour: d = N - 1, space_dim = N; N = 2 to 5. Real: float or double.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& contour, const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] MeshReport check(const Contour<N, Real>& contour, const WorkOptions& work = {});
 
 }  // namespace tegl

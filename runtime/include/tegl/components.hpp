@@ -35,8 +35,8 @@ struct ComponentLabels {
 /// InvalidArgument (a vertex number out of range); Cancelled. Nearly O(#S + #V) time; 8 bytes per vertex and 4 per
 /// simplex. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> ComponentLabels label_components(const Contour<N, Real>& contour,
-                                                                    const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOptions& work = {});
 
 /// Measures of one component.
 template <int N>
@@ -65,26 +65,26 @@ struct Component {
 /// number out of range, a coordinate that is not finite, labels that do not fit); Cancelled. O(#S log s) time for s
 /// simplices around a vertex; 4 N bytes per simplex and 8 per vertex. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Contour<N, Real>& contour,
-                                                                        const ComponentLabels& labels,
-                                                                        const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                                   const WorkOptions& work = {});
 
 /// One contour per component, in the order of the labels. Vertices and simplices keep their order; normals, attributes,
 /// names and units are kept. Vertices without simplices are left out. Errors: InvalidArgument (a vertex number out of
 /// range, labels that do not fit, attributes or normals of another number); Cancelled. O(#S + #V). One thread.
 /// Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour,
-                                                                                  const ComponentLabels& labels,
-                                                                                  const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour,
+                                                             const ComponentLabels& labels,
+                                                             const WorkOptions& work = {});
 
 /// The contour of the components with keep[label], otherwise as `split_components`. Errors: as there, and
 /// InvalidArgument if the size of `keep` is not the number of components.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Contour<N, Real>& contour,
-                                                                      const ComponentLabels& labels,
-                                                                      const std::vector<bool>& keep,
-                                                                      const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                                 const std::vector<bool>& keep, const WorkOptions& work = {});
 
 /// Returns the contour with the labels as attribute "component" of the vertices and of the simplices; attributes of
 /// this name are replaced. Vertices without simplices get -1. Move the contour in to avoid a copy. Errors: those of

@@ -50,7 +50,8 @@ struct Deviation {
 /// finite), Cancelled. Time: about O(S log S) for contours that are close to each other. Memory: about 300 bytes for
 /// each simplex of both.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
-                                                       const DeviationOptions<N>& options = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
+                                  const DeviationOptions<N>& options = {});
 
 }  // namespace tegl

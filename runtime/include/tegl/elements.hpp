@@ -40,7 +40,8 @@ struct Elements {
 /// vertex number out of range, a coordinate that is not finite, attributes or normals of another number); Cancelled.
 /// O(#S) time and memory. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& work = {});
 
 /// One element for each connected part of the contour in a tile of the grid: simplices of a tile that share vertices
 /// become one element. It has the sum of their normals and measures, and the mean of their centroids and attributes,
@@ -52,8 +53,9 @@ requires DimensionBetween<N, 2, 5> Elements<N> elements(const Contour<N, Real>& 
 /// `grid`: the grid of the image that the contour was extracted from. Errors: those of `elements`; InvalidArgument if a
 /// simplex lies outside of the grid. O(#S log #S) time.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid,
-                                                                const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid,
+                                           const WorkOptions& work = {});
 
 /// Sums over elements, compensated: exact to the last bits for any number and order.
 template <int N>
@@ -69,6 +71,7 @@ struct ElementSum {
 
 /// Sums elements in their order, compensated. O(#E).
 template <int N>
-requires DimensionBetween<N, 2, 5> ElementSum<N> sum_of(const Elements<N>& elements);
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] ElementSum<N> sum_of(const Elements<N>& elements);
 
 }  // namespace tegl

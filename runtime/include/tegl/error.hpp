@@ -24,7 +24,7 @@ enum class ErrorCode {
 };
 
 /// The name of a code as in the enumeration, for messages and JSON.
-const char* error_name(ErrorCode code) noexcept;
+[[nodiscard]] const char* error_name(ErrorCode code) noexcept;
 
 /// The exception type of the library. `what()` contains the actual and the expected value. If memory runs out,
 /// std::bad_alloc is thrown instead; the library stays usable and leaves no partial file.

@@ -18,10 +18,10 @@
 
 namespace tegl {
 
-/// How the gradient at a sample is computed, from which normals follow. differences: the mean of the forward and the
-/// backward difference quotient. sobel: a mean of these over the sample's own line and the neighbouring lines of
-/// samples, weighted by nearness (docs/normals.md); damps noise and takes ten times as long.
-enum class GradientKind { differences, sobel };
+/// Whether normals are computed from the image, and how the gradient at a sample is computed for them. differences: the
+/// mean of the forward and the backward difference quotient. sobel: a mean of these over the sample's own line and the
+/// neighbouring lines of samples, weighted by nearness (docs/normals.md); damps noise and takes ten times as long.
+enum class Normals { none, differences, sobel };
 
 /// Options of all functions that extract contours: in memory, streamed, counted, as facets, slices or components.
 struct ExtractOptions {
@@ -36,13 +36,11 @@ struct ExtractOptions {
   /// sample that equals the isovalue gives simplices of zero size. With any value, four vertices of a compact 4D tile
   /// may be coplanar.
   double epsilon = 0.0;
-  /// Computes vertex normals: along the image's gradient, on the side of `direction`; of length 1, or 0 if the gradient
-  /// is zero. The gradient at a sample follows `gradient`; at the image border and next to missing values one-sided
-  /// differences are used. It is interpolated between samples, linearly along edges. Normals have the precision of the
-  /// vertex type. If a 4D contour is separated next to missing values, a vertex added midway between two others gets
-  /// the mean of their normals, of length 1.
-  bool normals = false;
-  GradientKind gradient = GradientKind::differences;  ///< how the gradient of normals is computed
+  /// Vertex normals: along the image's gradient, on the side of `direction`; of length 1, or 0 if the gradient is zero.
+  /// At the image border and next to missing values, gradients are one-sided differences. They are interpolated between
+  /// samples, linearly along edges. Normals have the precision of the vertex type. If a 4D contour is separated next to
+  /// missing values, a vertex added midway between two others gets the mean of their normals, of length 1.
+  Normals normals = Normals::none;
   /// Number of threads and progress. More threads than the machine has count as all of the machine. The progress
   /// callback is called only by the thread that called the extraction, at least once for each slab (the tiles between
   /// two layers of the last axis) and several times within large slabs. Fractions never decrease. The number of calls
@@ -78,8 +76,9 @@ struct ExtractedSize {
 
 /// As `extract`, with counts and times.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
+                                                     const ExtractOptions& options = {});
 
 /// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
@@ -100,8 +99,8 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const 
 /// of it there. Up to 256 MiB of built tiles and faces are cached, whatever the number of threads; the tiles of two
 /// slabs are held in memory besides. With `close`, a 5D contour may have simplices of zero size at the border.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
-                                                            const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {}) {
   return extract_with_stats<Real>(image, isovalue, options).contour;
 }
 
@@ -110,27 +109,30 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> extract(const Image<T, N>& i
 /// order and may repeat. Errors: those of `extract`, before any contour if an isovalue is not finite. Time: that of
 /// `extract` for each isovalue; an index (tegl/active_tiles.hpp) saves reading the samples each time.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image,
-                                                                                 std::span<const double> isovalues,
-                                                                                 const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image, std::span<const double> isovalues,
+                                                            const ExtractOptions& options = {});
 /// The same for a list: `extract_several(image, {1.0, 2.0})`.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> extract_several(
-    const Image<T, N>& image, std::initializer_list<double> isovalues, const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Contour<N, Real>> extract_several(const Image<T, N>& image,
+                                                            std::initializer_list<double> isovalues,
+                                                            const ExtractOptions& options = {}) {
   return extract_several<Real>(image, std::span<const double>(isovalues.begin(), isovalues.size()), options);
 }
 
 /// As `count`, with counts and times.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> ExtractedSize count_with_stats(const Image<T, N>& image, double isovalue,
-                                                                  const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] ExtractedSize count_with_stats(const Image<T, N>& image, double isovalue,
+                                             const ExtractOptions& options = {});
 
 /// Counts the vertices and simplices that `extract` would make with these options, exactly. Takes little memory, and
 /// less time than `extract` because nothing is written; with `close` or missing values everything except writing is
 /// done. Errors: those of `extract` except TooLarge.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> ContourSize count(const Image<T, N>& image, double isovalue,
-                                                     const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {}) {
   return count_with_stats(image, isovalue, options).size;
 }
 
@@ -144,7 +146,7 @@ requires DimensionBetween<N, 2, 4>
 struct ContourRoom {
   std::span<std::array<Real, N>> vertices = {};  ///< #V x N; at least ContourSize::vertices rows, see `count`
   std::span<std::array<I, N>> simplices = {};    ///< #S x N; at least ContourSize::simplices rows
-  std::span<std::array<Real, N>> normals = {};   ///< #V x N; used only with ExtractOptions::normals
+  std::span<std::array<Real, N>> normals = {};   ///< #V x N; used only if ExtractOptions::normals is not `none`
 };
 
 /// As `extract`, but writes to the caller's memory and returns the contour's size. `room` must hold at least that many

@@ -141,15 +141,16 @@ struct FacetHierarchy {
 /// sample, 240 per row along axis 0 and 4 per facet; half of that in 3D, a fifth in 2D; twice as much for closed
 /// contours. If ambiguities are resolved from the data, 100 more per row and 2 per face of two dimensions or more.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
+                                                     const ExtractOptions& options = {});
 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus. For a polyhedron it
 /// is half the Euler characteristic of its boundary: each handle subtracts 1, each boundary component after the first
 /// adds 1.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
-int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f);
+[[nodiscard]] int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f);
 
 /// Counts and faults of a facet hierarchy.
 struct FacetReport {
@@ -168,6 +169,7 @@ struct FacetReport {
 
 /// Checks all facets. O(size).
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Real>& facets);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] FacetReport check(const FacetHierarchy<N, Real>& facets);
 
 }  // namespace tegl

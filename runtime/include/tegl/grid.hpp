@@ -21,10 +21,10 @@ class Axis {
   Axis() = default;
 
   /// `size` samples at origin + i * step. Throws InvalidGrid for size 0, a zero or non-finite step.
-  static Axis uniform(std::size_t size, double origin = 0.0, double step = 1.0);
+  [[nodiscard]] static Axis uniform(std::size_t size, double origin = 0.0, double step = 1.0);
 
   /// Samples at the given coordinates. Throws InvalidGrid unless they are finite and strictly monotone.
-  static Axis rectilinear(std::vector<double> coordinates);
+  [[nodiscard]] static Axis rectilinear(std::vector<double> coordinates);
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }                ///< number of samples
   [[nodiscard]] bool is_uniform() const noexcept { return coordinates_.empty(); }  ///< whether all steps are equal
@@ -62,7 +62,7 @@ struct Grid {
   Vector<N> offset = {};             ///< its translation
 
   /// A uniform grid with origin 0 and step 1.
-  static Grid unit(const std::array<std::size_t, N>& sizes) {
+  [[nodiscard]] static Grid unit(const std::array<std::size_t, N>& sizes) {
     Grid grid;
     for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a]);
     return grid;
@@ -75,6 +75,13 @@ struct Grid {
   }
   /// True unless `linear` is the identity and `offset` is zero.
   [[nodiscard]] bool has_world_map() const { return linear != identity<N>() || offset != Vector<N>{}; }
+  /// Whether the world map keeps an axis separate, so that its layers are across it: row and column `axis` of `linear`
+  /// are zero except for their common element, which is not.
+  [[nodiscard]] bool is_separate(int axis) const {
+    for (int a = 0; a < N; ++a)
+      if (a != axis && (linear[axis][a] != 0.0 || linear[a][axis] != 0.0)) return false;
+    return linear[axis][axis] != 0.0;
+  }
 };
 
 }  // namespace tegl

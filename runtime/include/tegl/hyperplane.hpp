@@ -20,7 +20,7 @@ struct Hyperplane {
   double offset = 0.0;                       ///< its signed distance from 0, times the length of the normal
 
   /// The hyperplane x_axis = at. Throws InvalidArgument for an axis other than 0 to N - 1.
-  static Hyperplane across(int axis, double at);
+  [[nodiscard]] static Hyperplane across(int axis, double at);
 };
 
 /// Orthonormal coordinates in a hyperplane: y is the point origin + y_0 axes[0] + ... + y_{N-2} axes[N - 2].
@@ -64,7 +64,8 @@ struct HyperplaneFrame {
 /// (mm and s), call `scale_axes` first to define how they compare. N = 2, 3, 4. Throws InvalidArgument if the normal is
 /// 0 or not finite, or the offset is not finite.
 template <int N>
-requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
 
 /// The contour with the coordinates along each axis multiplied by a positive factor. Normals become those of the scaled
 /// contour; names, units, attributes and simplices are unchanged. Pass the contour by std::move to scale it without a

@@ -39,7 +39,8 @@ struct Measures {
 /// InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S log s) time for s
 /// simplices around a vertex, 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work = {});
 
 /// Measures of one cut "last coordinate = at".
 struct CutMeasures {
@@ -64,14 +65,14 @@ struct CutMeasures {
 /// log s + h) time for h pairs of a simplex and its cut; memory as `measure`, plus up to 64 MiB, or 64 bytes for each
 /// value. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
-                                                                         std::span<const double> at,
-                                                                         const WorkOptions& work = {});
+requires DimensionBetween<N, 3, 5>
+[[nodiscard]] std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
+                                                    const WorkOptions& work = {});
 /// The same for a list: `measure_cuts(contour, {1.0, 2.0})`.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
-                                                                         std::initializer_list<double> at,
-                                                                         const WorkOptions& work = {}) {
+requires DimensionBetween<N, 3, 5>
+[[nodiscard]] std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::initializer_list<double> at,
+                                                    const WorkOptions& work = {}) {
   return measure_cuts(contour, std::span<const double>(at.begin(), at.size()), work);
 }
 

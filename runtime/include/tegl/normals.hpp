@@ -18,8 +18,9 @@ enum class NormalWeights { area, angle, equal };
 /// 2, 3, 4. Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S) time; thread-safe. Source: M.
 /// Liversage, thesis, 1994, section 8.2.4.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> flat_normals(
-    const Contour<N, Real>& contour, const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& contour,
+                                                                     const WorkOptions& work = {});
 
 /// The unit normal of every vertex from its simplices, #V x N, as in Contour::normals: their weighted mean unit normal;
 /// 0 if that vanishes and for vertices without simplices. Simplices of zero size have no weight. Needs no image and
@@ -31,17 +32,22 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> fla
 /// and C. A. Wuethrich, "Computing Vertex Normals from Polygonal Facets", 1998; solid angles: A. van Oosterom and J.
 /// Strackee, "The Solid Angle of a Plane Triangle", 1983.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
-    const Contour<N, Real>& contour, NormalWeights weights = NormalWeights::angle, const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Real>& contour,
+                                                                          NormalWeights weights = NormalWeights::angle,
+                                                                          const WorkOptions& work = {});
 
-/// The normal of every vertex from an image, #V x N, as `extract` with ExtractOptions::normals computes it. Works for
+/// The normal of every vertex from an image, #V x N, as `extract` computes it with the same kind. Works for
 /// any contour in the image's world coordinates, such as a loaded or a simplified one. The gradients at the samples of
 /// the vertex's cell are interpolated multilinearly, on the side of the contour's `direction`, and scaled to length 1.
 /// 0 if the gradient is zero and outside of the grid (by more than a thousandth of a step). N = 2, 3, 4.
-/// Errors: Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994, sections 8.2.6 to 8.2.15.
+/// Errors: InvalidArgument (Normals::none); Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994,
+/// sections 8.2.6 to 8.2.15.
 template <Value T, int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
-    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind = GradientKind::differences,
-    const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Buffer<typename Contour<N, Real>::Vertex> gradient_normals(const Image<T, N>& image,
+                                                                         const Contour<N, Real>& contour,
+                                                                         Normals kind = Normals::differences,
+                                                                         const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -48,8 +48,9 @@ struct PickedComponent {
 /// the whole contour is extracted and the component selected from it. Errors: those of `extract`; InvalidArgument for a
 /// point outside of the image. Real: float or double. Source: propagation after Bajaj, Pascucci, Schikore 1996.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
-    const Image<T, N>& image, double isovalue, const std::type_identity_t<std::array<double, N>>& point,
-    const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] PickedComponent<N, Real> extract_component(const Image<T, N>& image, double isovalue,
+                                                         const std::type_identity_t<std::array<double, N>>& point,
+                                                         const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -46,14 +46,16 @@ using Chord = std::array<Index, 2>;
 /// Errors: InvalidArgument for fewer than 3 points, or for numbers in `forbidden` out of range. O(#points) for fan and
 /// zigzag, O(#points log #points) for halving; with forbidden chords a higher power, intended for small polygons.
 template <int N>
-requires DimensionBetween<N, 2, 4> std::vector<std::array<Index, 3>> triangulate_polygon(
-    std::span<const std::array<double, N>> points, PolygonTriangulation method, std::span<const Chord> forbidden = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::vector<std::array<Index, 3>> triangulate_polygon(std::span<const std::array<double, N>> points,
+                                                                    PolygonTriangulation method,
+                                                                    std::span<const Chord> forbidden = {});
 
 /// The mean of the midpoints of a polygon's edges, weighted by edge length; if all points coincide, that point.
 /// `points`: at least one.
 template <int N>
-requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
-    std::span<const std::array<double, N>> points);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::array<double, N> polygon_barycentre(std::span<const std::array<double, N>> points);
 
 /// Triangulates the polygons of a 3D contour. The result is a manifold with every method: chords between two points of
 /// one square of the grid are forbidden, as the cube on the other side might use them too.
@@ -61,7 +63,7 @@ requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
 /// The points of `facets` keep their numbers. Barycentres come last, with the mean of their polygon's normals if there
 /// are normals. Triangles come polygon by polygon. Errors: TooLarge, Cancelled. O(size).
 template <Coordinate Real>
-Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
-                             const WorkOptions& work = {});
+[[nodiscard]] Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
+                                           const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -41,7 +41,7 @@ struct ProjectedContour {
 /// negative or not finite, a coordinate is not finite, a vertex number is out of range, or attributes or normals are of
 /// another number. O(#V + #S).
 template <Coordinate Real>
-ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {});
+[[nodiscard]] ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {});
 
 /// The outline (silhouette) of the projection: where the line of sight is tangent to the contour. For the contour of a
 /// moving object along t, this is the surface swept by it: the envelope of all positions, inner folds included, with
@@ -57,7 +57,7 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
 /// Vertices get the contour's attributes and the height, as in `project`; triangles get the attributes of their
 /// tetrahedron. Errors: those of `project`; Cancelled. O(#V + #S) time and memory. One thread.
 template <Coordinate Real>
-Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection = {},
-                         const WorkOptions& work = {});
+[[nodiscard]] Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection = {},
+                                       const WorkOptions& work = {});
 
 }  // namespace tegl

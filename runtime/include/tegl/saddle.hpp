@@ -13,8 +13,6 @@
 // correctness, 2013 (the list of cases). The decision in the cube, by planes across it, is ours: see saddle.cpp.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -36,63 +34,23 @@ struct CubeDecision {
   bool operator==(const CubeDecision&) const = default;  ///< member by member
 };
 
-namespace detail {
-/// The public functions, with values as doubles; every value type converts exactly.
-bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
-/// `signature`: bit v is set if corner v is high.
-CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
-/// The test for a connection inside a cube, by entry of tables::kTile3Resolved (the signature with its squares
-/// decided): a pair of diagonal edges, if there is one, and for some entries one of each sign.
-struct CubeJoin {
-  std::uint8_t pairs = 0;                 ///< number of pairs; with 0 the centre is `separate`
-  bool high = false;                      ///< for one pair: whether it joins high corners
-  std::array<std::uint8_t, 8> corners{};  ///< for one pair: the lower and upper end of each of its edges A, C, B, D
-};
-const std::array<CubeJoin, 656>& cube_joins() noexcept;
-/// The centre choice of a cube with this entry.
-tile::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
-/// Without the floating-point filter, for tests: all signs by exact arithmetic.
-bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept;
-CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept;
-
-inline unsigned signature_of(const std::array<double, 8>& values, double isovalue) noexcept {
-  unsigned signature = 0;
-  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(values[v] >= isovalue) << v;
-  return signature;
-}
-
-template <Value T, std::size_t kCorners>
-std::array<double, kCorners> as_doubles(std::span<const T, kCorners> values) noexcept {
-  std::array<double, kCorners> result;
-  std::transform(values.begin(), values.end(), result.begin(), [](T value) { return static_cast<double>(value); });
-  return result;
-}
-}  // namespace detail
-
 /// Whether the bilinear interpolant joins the high corners of an ambiguous square: whether its value at the saddle is
 /// at least the isovalue. Corner v has coordinates v & 1 and v >> 1; mirrored or rotated squares give the same result.
 /// The result is meaningless for unambiguous squares. Infinite values count as +-2^1024, NaN as -2^1024. No errors, no
 /// allocation, thread-safe. O(1): 3 ns; if rounding could decide, 20 ns for integers of few bits and at most about a
 /// microsecond otherwise.
 template <Value T>
-bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept {
-  return detail::square_is_high(detail::as_doubles(values), isovalue);
-}
+[[nodiscard]] bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept;
 
 /// How the trilinear interpolant resolves the ambiguous squares and the inside of a cube. Corner v has coordinate v >>
 /// a & 1 on axis a. Squares are decided by square_is_high. A cube without contour, or with one connected piece of it,
 /// is `separate`. Infinite values, NaN and errors: as square_is_high; cost: 20 ns, 80 ns and some microseconds in the
 /// respective cases.
 template <Value T>
-CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept {
-  const std::array<double, 8> doubles = detail::as_doubles(values);
-  return detail::decide_cube(doubles, isovalue, detail::signature_of(doubles, isovalue));
-}
+[[nodiscard]] CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept;
 
 /// The choice for the inside of a cube only.
 template <Value T>
-tile::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept {
-  return decide_cube<T>(values, isovalue).centre;
-}
+[[nodiscard]] tile::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept;
 
 }  // namespace tegl

@@ -25,8 +25,8 @@ namespace tegl {
 ///
 /// Errors: Cancelled. Time: O(#V 2^N), plus a search along rectilinear axes. Memory: #V doubles. Thread-safe.
 template <Value T, int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour,
-                                                    std::string name, std::string unit = {},
-                                                    const WorkOptions& work = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour, std::string name,
+                               std::string unit = {}, const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -22,7 +22,7 @@ enum class Neighbourhood : std::uint8_t {
   all,              ///< F+E+V: all 3^N - 1 tiles that share at least a corner
 };
 /// "faces", "faces-and-edges", "all".
-std::string_view neighbourhood_name(Neighbourhood neighbourhood) noexcept;
+[[nodiscard]] std::string_view neighbourhood_name(Neighbourhood neighbourhood) noexcept;
 
 /// Methods to find seeds. All except `cover` come from the literature; docs/seed-sets.md compares their sizes.
 enum class SeedMethod : std::uint8_t {
@@ -35,9 +35,9 @@ enum class SeedMethod : std::uint8_t {
   climbing,  ///< the same authors: tiles not covered by earlier neighbours, in an order that grows from seeds
 };
 /// "cover", "whole1", ...
-std::string_view seed_method_name(SeedMethod method) noexcept;
+[[nodiscard]] std::string_view seed_method_name(SeedMethod method) noexcept;
 /// All methods, in the order of the enumeration.
-std::vector<SeedMethod> seed_methods();
+[[nodiscard]] std::vector<SeedMethod> seed_methods();
 
 /// Options of find_seeds.
 struct SeedSetOptions {
@@ -78,13 +78,14 @@ struct SeedSet {
 /// similar ranges. Errors: TooLarge for 2^32 tiles or more, InvalidArgument for a scan order that is not a permutation
 /// of the axes, Cancelled. Deterministic.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options = {});
 
 /// A lower bound of the size of any seed set with this neighbourhood: a number of components of active tiles, possibly
 /// at different isovalues, no two of which share a tile. It is found greedily, and in images with too many candidate
 /// tiles at a sample of isovalues only: a larger bound may exist. Errors: as find_seeds.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::uint64_t seed_lower_bound(const Image<T, N>& image,
-                                                                  const SeedSetOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options = {});
 
 }  // namespace tegl

@@ -45,7 +45,8 @@ enum class SimplifyBorder {
 /// The 2 N hyperplanes of an image's border, for SimplifyOptions::planes: they keep caps (ExtractOptions::close) in the
 /// border, also if the grid has a world map.
 template <int N>
-requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
 
 /// Options of `simplify`. At least one of `count`, `ratio` and `max_error` is required (or, for facets,
 /// `max_curvature`); simplification ends at the first one that is reached. A count that is reachable within max_error
@@ -144,16 +145,17 @@ struct Simplification {
 /// those without bounds), with both as many as for each. If no round keeps max_error, the result is the original
 /// contour and SimplifyStats::end reports it. Memory: about 200 bytes per simplex.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contour<N, Real>& contour,
-                                                                    const SimplifyOptions<N>& options);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Simplification<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options);
 
 /// A `scale` for a contour whose axes have different units: for an axis whose unit differs from the first axis's, the
 /// mean extents of simplices along the two axes become equal. All other axes, and axes without extent, keep the factor
 /// 1. N = 2, 3, 4; Real: float or double. O(S).
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::array<double, N> automatic_scale(const Contour<N, Real>& contour);
 
 /// Whether SimplifyMethod::fast is available.
-bool has_fast_simplify() noexcept;
+[[nodiscard]] bool has_fast_simplify() noexcept;
 
 }  // namespace tegl

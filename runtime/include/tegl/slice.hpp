@@ -3,6 +3,7 @@
 // Cuts of contours by hyperplanes: a 4D contour at a time t, or in any other hyperplane.
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <span>
 #include <type_traits>
@@ -58,20 +59,22 @@ namespace tegl {
 /// attributes or normals of another number). If the hyperplane is beyond the contour, the cut is empty. O(#S + #V)
 /// time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
-                                                              const Hyperplane<N>& hyperplane);
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
 
 /// Cuts a contour by several hyperplanes, in any order. Each cut equals `slice` by its hyperplane bit by bit.
 /// Hyperplanes with equal normals are cut in one pass over the contour; as many cuts are made at a time as there are
-/// threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
+/// threads. Errors: as `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
 /// cuts; 8 #V bytes plus the memory of all cuts.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {});
 /// The same for a list: `slice_stack(contour, {Hyperplane<4>::across(3, 1.0), Hyperplane<4>::across(3, 2.0)})`.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::initializer_list<Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {}) {
   return slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes.begin(), hyperplanes.size()), work);
@@ -79,14 +82,15 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
 
 /// As `slice_image`, with counts and times of the extraction.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stats(
-    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
-    const ExtractOptions& options = {});
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] Extraction<N - 1, Real> slice_image_with_stats(const Image<T, N>& image, double isovalue,
+                                                             const std::type_identity_t<Hyperplane<N>>& hyperplane,
+                                                             const ExtractOptions& options = {});
 
 /// Cuts the contour of an image by a hyperplane in world coordinates, without the whole contour if the normal is a
 /// multiple of an axis: then only the slab of tiles that the hyperplane passes is read, or, at a sample's coordinate,
 /// the two slabs that meet there (for normals across another axis than the last, also the adjacent layers). Otherwise
-/// the cut is that of the whole contour.
+/// the whole contour is cut.
 ///
 /// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
 /// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
@@ -96,14 +100,28 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
 /// the closed contour.
 ///
 /// An image with one sample along the axis has no tiles, hence an empty cut, at its only valid coordinate. Errors:
-/// those of `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
+/// as `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
 /// the world map mixes the axis with others, so that its layers are not across it. Cost: that of extracting one or two
 /// slabs, independent of the length of the axis; for oblique hyperplanes, that of `extract` and `slice`.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(
-    const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
-    const ExtractOptions& options = {}) {
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
+                                               const std::type_identity_t<Hyperplane<N>>& hyperplane,
+                                               const ExtractOptions& options = {}) {
   return slice_image_with_stats<Real>(image, isovalue, hyperplane, options).contour;
 }
+
+/// Layers of an image along an axis.
+struct LayerRange {
+  std::size_t first = 0;  ///< the first layer
+  std::size_t end = 0;    ///< one past the last layer
+};
+
+/// The layers along `axis` that `slice_image<Real>` reads for the cut across it at the world coordinate `at`, so that
+/// the samples of other layers need not be in memory. Errors: InvalidArgument if `at` is outside of the image, or if
+/// the world map mixes the axis with others. O(n) time for an axis of n samples.
+template <Coordinate Real = float, int N>
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at, const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -31,7 +31,8 @@ class ContourSink {
 
   /// Receives the next vertices. The first vertex has number 0.
   virtual void add_vertices(std::span<const Vertex> vertices) = 0;
-  /// With ExtractOptions::normals: receives the normals of the vertices just added. By default throws InvalidArgument.
+  /// If ExtractOptions::normals is not `none`: receives the normals of the vertices just added. By default throws
+  /// InvalidArgument.
   virtual void add_normals(std::span<const Vertex> /*normals*/) {
     throw Error(ErrorCode::InvalidArgument, "normals for a sink that takes none; expected one with add_normals");
   }
@@ -48,8 +49,8 @@ class ContourSink {
 /// contour at the image border. Errors: those of `extract` except TooLarge, and exceptions of the reader and the sink.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
-                                                                  const ExtractOptions& options,
-                                                                  ContourSink<N, Real>& sink);
+                                                                  ContourSink<N, Real>& sink,
+                                                                  const ExtractOptions& options = {});
 
 /// One of the contours of extract_streamed_several: its isovalue and the sink that receives it.
 template <int N, Coordinate Real>
@@ -69,6 +70,6 @@ struct StreamedContour {
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_several(
     LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
-    const ExtractOptions& options);
+    const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -33,6 +33,7 @@
 #include "tegl/stream.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tegl/track.hpp"
+#include "tegl/value_type.hpp"
 #include "tegl/values.hpp"
 #include "tegl/vector.hpp"
 #include "tegl/version.hpp"

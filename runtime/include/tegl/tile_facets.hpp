@@ -19,7 +19,8 @@ namespace tegl {
 /// has bits. Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1) after the
 /// first call.
 template <int N>
-requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsigned axes);
+requires DimensionBetween<N, 2, 6>
+[[nodiscard]] std::size_t face_number(unsigned base, unsigned axes);
 
 /// Number of faces of the N-cube, including itself and its corners: 3^N.
 template <int N>
@@ -56,8 +57,8 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// For many tiles use one tile::FacetBuilder of tile::FaceLattice::cube(N) per thread: it keeps the data that tiles
 /// share.
 template <int N>
-requires DimensionBetween<N, 2, 6> tile::TileFacets tile_facets(std::uint64_t signature,
-                                                                std::span<const tile::Choice> signs = {},
-                                                                tile::Alternative otherwise = tile::Alternative::low);
+requires DimensionBetween<N, 2, 6>
+[[nodiscard]] tile::TileFacets tile_facets(std::uint64_t signature, std::span<const tile::Choice> signs = {},
+                                           tile::Alternative otherwise = tile::Alternative::low);
 
 }  // namespace tegl

@@ -30,7 +30,7 @@ enum class TrackEventKind {
 };
 
 /// The name of a kind, as in the enumeration: "merge".
-const char* event_name(TrackEventKind kind) noexcept;
+[[nodiscard]] const char* event_name(TrackEventKind kind) noexcept;
 
 /// An event: parts appear, merge, split or vanish.
 struct TrackEvent {
@@ -128,7 +128,7 @@ struct TrackOptions {
 };
 
 /// The midpoints of `count` equal intervals of [first, last].
-std::vector<double> even_times(double first, double last, std::size_t count);
+[[nodiscard]] std::vector<double> even_times(double first, double last, std::size_t count);
 
 /// Follows the parts (connected components) of the cuts {last coordinate = t} of a contour for increasing t. N = 4:
 /// parts of moving surfaces; N = 3: parts of moving lines.
@@ -162,11 +162,12 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (a sweep that maintains the components of the cut);
 /// M. Liversage, thesis, 1994, §10.2.9 to §10.2.11 (uses of cuts at any time).
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
 
 /// The graph of the tracks with `keep[track]` only, in the same order; `Track::number` keeps their original numbers.
 /// Events keep their kind, their change and those of their segments that remain; events without segments are dropped.
 /// Errors: InvalidArgument (the length of `keep`).
-TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep);
+[[nodiscard]] TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep);
 
 }  // namespace tegl

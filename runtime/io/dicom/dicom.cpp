@@ -535,7 +535,7 @@ ImageInfo info_of(const Volume& volume) {
   info.format = "DICOM";
   info.value_unit = first.value_unit;
   info.value_name = first.description;
-  info.stored_type = first.type;
+  info.stored_type = parse_value_type(first.type);
   return info;
 }
 

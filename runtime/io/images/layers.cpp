@@ -13,7 +13,6 @@
 #include "base/raw_image.hpp"
 #include "base/sample_reader.hpp"
 #include "images/images.hpp"
-#include "process/separate_reading.hpp"
 
 namespace tegl {
 
@@ -101,15 +100,6 @@ AnyLayersN<N> with_dimension(RawLayers&& source, const fs::path& path) {
       source.read(0, 0));
 }
 
-std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
-  constexpr std::array<std::string_view, 7> kNames = {"uint8", "int8", "uint16", "int16", "int32", "float", "double"};
-  const auto* const found = std::ranges::find(kNames, layout.type);
-  if (found == kNames.end())
-    fail(ErrorCode::InvalidArgument, path, "values of type '{}'; expected one of {}", layout.type,
-         fmt::join(kNames, ", "));
-  return *found;
-}
-
 /// The item of an axis in a list of a layout; `other` if the list is empty.
 template <class Item>
 const Item& item_of(const std::vector<Item>& items, std::size_t axis, const Item& other) {
@@ -166,17 +156,35 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
   }
 }
 
+LayersOfFiles io_detail::open_reporting(const fs::path& path, const Progress& progress, bool separate,
+                                        const std::function<LayersOfFiles(const Progress&)>& open) {
+  const auto open_quietly_after = [&](const Progress& reported) {
+    const auto current = std::make_shared<Progress>(reported);
+    LayersOfFiles opened = open([current](double fraction) { return !*current || (*current)(fraction); });
+    *current = nullptr;
+    return opened;
+  };
+  tick(progress, 0.0, path);
+  LayersOfFiles opened = separate ? open_separately(path, progress, open_quietly_after) : open_quietly_after(progress);
+  tick(progress, 1.0, path);
+  return opened;
+}
+
 OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
-  ReadImageOptions silent = options;  // opening is fast, and a child process must not call the caller's functions
-  silent.work.progress = nullptr;
-  const auto open = [&] { return LayersOfFiles{open_any_layers(path, silent), {path}}; };
+  const auto open = [&](const Progress& progress) {
+    ReadImageOptions own = options;
+    own.work.progress = progress;
+    return LayersOfFiles{open_any_layers(path, own), {path}};
+  };
   const bool separate = options.separate_process && needs_separate_process(path);
-  return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
+  return to_open_layers(std::move(open_reporting(path, options.work.progress, separate, open).layers), path);
 }
 
 RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   require_readable_file(path);
-  const std::string_view type = stored_name(layout, path);
+  if (layout.type > ValueType::float64)
+    fail(ErrorCode::InvalidArgument, path,
+         "values of type '{}'; expected uint8, int8, uint16, int16, int32, float or double", name_of(layout.type));
   RawLayers source;
   source.grid.axes = raw_axes(layout, path);
   if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
@@ -190,7 +198,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   StoredSamples samples;
   samples.path = path;
   samples.offset = layout.offset;
-  samples.type = type;
+  samples.type = name_of(layout.type);
   samples.sizes.assign(layout.sizes.begin(), layout.sizes.end());
   samples.swapped = layout.big_endian != (std::endian::native == std::endian::big);
   source.read = [reader = std::make_shared<SampleReader>(std::move(samples)), per_layer](std::size_t first,
@@ -198,7 +206,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
     return reader->read(first * per_layer, count * per_layer, {});
   };
   source.info.format = "raw";
-  source.info.stored_type = type;
+  source.info.stored_type = layout.type;
   return source;
 }
 

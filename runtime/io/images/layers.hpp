@@ -4,14 +4,21 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "base/raw_layers.hpp"
+#include "process/separate_reading.hpp"
 #include "tegl/io/layers.hpp"
 
 namespace tegl::io_detail {
 
 /// Converts to layers of the library's value types and dimensions.
 OpenLayersResult to_open_layers(RawLayers&& source, const std::filesystem::path& path);
+
+/// Opens files by `open`, in a child process or in this one. Progress is reported until the files are open and not by
+/// the readers of their layers, although these may keep a copy of the callback that `open` takes.
+LayersOfFiles open_reporting(const std::filesystem::path& path, const Progress& progress, bool separate,
+                             const std::function<LayersOfFiles(const Progress&)>& open);
 
 /// Opens a headerless raw file.
 RawLayers open_raw(const std::filesystem::path& path, const RawLayout& layout);

@@ -269,7 +269,7 @@ StoredImage open_metaimage(const fs::path& path, bool allow_outside_paths) {
   StoredImage image;
   image.grid = make_grid(fields, header, path);
   image.info.format = "MetaImage";
-  image.info.stored_type = header.type.name;
+  image.info.stored_type = parse_value_type(header.type.name);
   // frame and units
   const std::string anatomy = fields.first_of({"AnatomicalOrientation"});
   const bool anatomical = !anatomy.empty() && anatomy.find('?') == std::string::npos;

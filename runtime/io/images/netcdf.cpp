@@ -399,7 +399,7 @@ Found find_variable(const NcFile& file, const ReadImageOptions& options) {
   info.value_unit = file.text(variable, "units");
   info.value_name = file.text(variable, "long_name");
   if (info.value_name.empty()) info.value_name = file.text(variable, "standard_name");
-  info.stored_type = nc_type_name(variable.type);
+  info.stored_type = parse_value_type(nc_type_name(variable.type));
   return {variable, slab, info};
 }
 

@@ -316,7 +316,7 @@ StoredImage open_nifti(const fs::path& path) {
   samples.swapped = header.swapped;
   image.grid = make_grid(header, header_path);
   image.info.format = "NIfTI";
-  image.info.stored_type = header.type.name;
+  image.info.stored_type = parse_value_type(header.type.name);
   if (header.sform_code > 0 || header.qform_code > 0) image.info.world_frame = "RAS";
   const Scaling scaling{header.slope, header.intercept};
   if (!scaling.is_plain()) image.convert = [scaling](ValueArray&& values) { return scaling.apply(values); };

@@ -519,7 +519,7 @@ StoredImage open_nrrd(const fs::path& path, bool allow_outside_paths) {
   StoredImage image;
   image.grid = make_grid(text.fields, header, image.info.world_frame, path);
   image.info.format = "NRRD";
-  image.info.stored_type = header.type.name;
+  image.info.stored_type = parse_value_type(header.type.name);
   image.info.value_unit = optional_field(text.fields, "sampleunits");
   std::erase(image.info.value_unit, '"');
   image.info.value_name = optional_field(text.fields, "content");

@@ -327,7 +327,8 @@ ImageOfFiles read_files(std::span<const fs::path> files, const SeriesOptions& op
 
 LayersOfFiles open_files(std::span<const fs::path> files, const SeriesOptions& options) {
   if (files.size() > 1) return open_several(files, options);
-  return {options.raw ? open_raw(files[0], *options.raw) : open_any_layers(files[0], member_options(options, {})),
+  return {options.raw ? open_raw(files[0], *options.raw)
+                      : open_any_layers(files[0], member_options(options, options.work.progress)),
           {files[0]}};
 }
 
@@ -356,10 +357,12 @@ ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOption
 
 OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
-  SeriesOptions silent = options;  // the caller reads the layers and reports progress itself
-  silent.work.progress = nullptr;
-  const auto open = [&] { return open_files(files, silent); };
-  LayersOfFiles opened = is_read_separately(files, options) ? open_separately(files[0], open) : open();
+  const auto open = [&](const Progress& progress) {
+    SeriesOptions own = options;
+    own.work.progress = progress;
+    return open_files(files, own);
+  };
+  LayersOfFiles opened = open_reporting(files[0], options.work.progress, is_read_separately(files, options), open);
   return {to_open_layers(std::move(opened.layers), files[0]), std::move(opened.files)};
 }
 

@@ -146,6 +146,50 @@ Mesh mesh_of(AnyContour&& contour) {
   return mesh;
 }
 
+/// Throws UnsupportedData unless a mesh is an N-dimensional contour, or one of segments in the plane z = 0 for N = 2.
+template <int N>
+void require_contour(const Mesh& mesh) {
+  const bool planar = N == 2 && mesh.dim == 1 && mesh.space_dim == 3;
+  if (mesh.dim != N - 1 || (mesh.space_dim != N && !planar))
+    throw Error(ErrorCode::UnsupportedData,
+                fmt::format("mesh of {}-simplices in {}-space; expected {}-simplices in {}-space", mesh.dim,
+                            mesh.space_dim, N - 1, N));
+  for (std::size_t i = 2; i < mesh.coordinates.size() && planar; i += 3)
+    if (mesh.coordinates[i] != 0.0)
+      throw Error(ErrorCode::UnsupportedData,
+                  fmt::format("segments in space, vertex {} with z = {}; expected z = 0", i / 3, mesh.coordinates[i]));
+}
+
+/// The first Width of each `stride` numbers, as rows; of a temporary in the same memory if it holds such rows.
+template <std::size_t Width, class Numbers>
+auto rows_of(Numbers&& numbers, std::size_t stride) {
+  using T = std::remove_cvref_t<Numbers>::value_type;
+  if constexpr (!std::is_lvalue_reference_v<Numbers>)
+    if (stride == Width) return std::move(numbers).template rows<Width>();
+  Buffer<std::array<T, Width>> rows(numbers.size() / stride);
+  for (std::size_t v = 0; v < rows.size(); ++v)
+    for (std::size_t a = 0; a < Width; ++a) rows[v][a] = numbers[v * stride + a];
+  return rows;
+}
+
+/// The contour of a mesh, which is a temporary (its memory is taken over) or not.
+template <int N, class AnyMesh>
+Contour<N, double> contour_of(AnyMesh&& mesh) {
+  require_contour<N>(mesh);
+  const auto n = static_cast<std::size_t>(mesh.space_dim);
+  Contour<N, double> contour;
+  contour.vertices = rows_of<N>(std::forward<AnyMesh>(mesh).coordinates, n);
+  contour.normals = rows_of<N>(std::forward<AnyMesh>(mesh).normals, n);
+  contour.simplices = rows_of<N>(std::forward<AnyMesh>(mesh).simplices, N);
+  for (int a = 0; a < N; ++a) {
+    contour.axis_names[static_cast<std::size_t>(a)] = axis_text(mesh.axis_names, a);
+    contour.axis_units[static_cast<std::size_t>(a)] = axis_text(mesh.axis_units, a);
+  }
+  contour.vertex_attributes = std::forward<AnyMesh>(mesh).vertex_attributes;
+  contour.simplex_attributes = std::forward<AnyMesh>(mesh).simplex_attributes;
+  return contour;
+}
+
 }  // namespace
 
 MeshView::MeshView(const Mesh& mesh)
@@ -181,36 +225,10 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Mesh to_mesh(Contour<N, Real>&& contour) { return mesh_of(std::move(contour)); }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh) {
-  const bool planar = N == 2 && mesh.dim == 1 && mesh.space_dim == 3;
-  if (mesh.dim != N - 1 || (mesh.space_dim != N && !planar))
-    throw Error(ErrorCode::UnsupportedData,
-                fmt::format("mesh of {}-simplices in {}-space; expected {}-simplices in {}-space", mesh.dim,
-                            mesh.space_dim, N - 1, N));
-  const auto n = static_cast<std::size_t>(mesh.space_dim);
-  Contour<N, double> contour;
-  const auto copy = [n](const MeshArray<double>& from, auto& rows) {
-    rows.resize(from.size() / n);
-    for (std::size_t v = 0; v < rows.size(); ++v)
-      for (std::size_t a = 0; a < N; ++a) rows[v][a] = from[v * n + a];
-  };
-  copy(mesh.coordinates, contour.vertices);
-  copy(mesh.normals, contour.normals);
-  for (std::size_t v = 0; v < contour.vertices.size() && planar; ++v)
-    if (mesh.coordinates[v * n + 2] != 0.0)
-      throw Error(ErrorCode::UnsupportedData, fmt::format("segments in space, vertex {} with z = {}; expected z = 0", v,
-                                                          mesh.coordinates[v * n + 2]));
-  contour.simplices.resize(simplex_count(mesh));
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
-    for (std::size_t c = 0; c < N; ++c) contour.simplices[s][c] = mesh.simplices[s * N + c];
-  for (int a = 0; a < N; ++a) {
-    contour.axis_names[static_cast<std::size_t>(a)] = axis_text(mesh.axis_names, a);
-    contour.axis_units[static_cast<std::size_t>(a)] = axis_text(mesh.axis_units, a);
-  }
-  contour.vertex_attributes = mesh.vertex_attributes;
-  contour.simplex_attributes = mesh.simplex_attributes;
-  return contour;
-}
+requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh) { return contour_of<N>(mesh); }
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(Mesh&& mesh) { return contour_of<N>(std::move(mesh)); }
 
 std::span<const MeshFileFormat> mesh_file_formats() noexcept { return kFormats; }
 
@@ -260,7 +278,10 @@ TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
 #undef TEGL_INSTANTIATE
 template Contour<2, double> to_contour<2>(const Mesh&);
+template Contour<2, double> to_contour<2>(Mesh&&);
 template Contour<3, double> to_contour<3>(const Mesh&);
+template Contour<3, double> to_contour<3>(Mesh&&);
 template Contour<4, double> to_contour<4>(const Mesh&);
+template Contour<4, double> to_contour<4>(Mesh&&);
 
 }  // namespace tegl

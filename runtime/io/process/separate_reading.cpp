@@ -126,9 +126,9 @@ RawGrid get_grid(Unpacker& unpacker) {
 }
 
 void put_info(Packer& packer, const ImageInfo& info) {
-  for (const auto* text :
-       {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame, &info.stored_type})
+  for (const auto* text : {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame})
     packer.text(*text);
+  packer.text(info.stored_type ? name_of(*info.stored_type) : "");
   put_texts(packer, info.variables);
   put_list(packer, info.axis_directions, [&](AxisDirection direction) { put_direction(packer, direction); });
   put_texts(packer, info.remarks);
@@ -136,9 +136,9 @@ void put_info(Packer& packer, const ImageInfo& info) {
 
 ImageInfo get_info(Unpacker& unpacker) {
   ImageInfo info;
-  for (auto* text :
-       {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame, &info.stored_type})
+  for (auto* text : {&info.format, &info.variable, &info.value_unit, &info.value_name, &info.world_frame})
     *text = unpacker.text();
+  info.stored_type = parse_value_type(unpacker.text());
   get_texts(unpacker, info.variables);
   get_list(unpacker, info.axis_directions, [&] { return get_direction(unpacker); });
   get_texts(unpacker, info.remarks);
@@ -257,12 +257,13 @@ auto unpack(ChildProcess& child, Package& package, const Get& get) {
 /// Layers read by a child, several per request.
 class SeparateLayers {
  public:
-  SeparateLayers(fs::path path, const std::function<LayersOfFiles()>& open)
-      : path_(std::move(path)), child_(path_, [&](const ParentLink& parent) { serve(open(), parent); }) {}
+  SeparateLayers(fs::path path, const std::function<LayersOfFiles(const Progress&)>& open)
+      : path_(std::move(path)),
+        child_(path_, [&](const ParentLink& parent) { serve(open(parent.progress()), parent); }) {}
 
   /// Receives grid, metadata and files; reads no values.
-  LayersOfFiles describe() {
-    Package package = child_.receive({});
+  LayersOfFiles describe(const Progress& progress) {
+    Package package = child_.receive(progress);
     LayersOfFiles opened = unpack(child_, package, [&](Unpacker& unpacker) {
       LayersOfFiles result;
       result.layers.grid = get_grid(unpacker);
@@ -428,9 +429,10 @@ std::vector<ImageVariable> read_separately(const fs::path& path,
   });
 }
 
-LayersOfFiles open_separately(const fs::path& path, const std::function<LayersOfFiles()>& open) {
+LayersOfFiles open_separately(const fs::path& path, const Progress& progress,
+                              const std::function<LayersOfFiles(const Progress&)>& open) {
   const auto source = std::make_shared<SeparateLayers>(path, open);
-  LayersOfFiles opened = source->describe();
+  LayersOfFiles opened = source->describe(progress);
   opened.layers.look = [source](std::size_t first, std::size_t count) { return source->look(first, count); };
   opened.layers.read = [source](std::size_t first, std::size_t count) {
     if (count == 0) return source->type();

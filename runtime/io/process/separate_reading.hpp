@@ -37,7 +37,8 @@ Mesh read_separately(const std::filesystem::path& path, const Progress& progress
                      const std::function<Mesh(const Progress&)>& read);
 std::vector<ImageVariable> read_separately(const std::filesystem::path& path,
                                            const std::function<std::vector<ImageVariable>()>& read);
-/// Opens layers in a child, which reads them on request.
-LayersOfFiles open_separately(const std::filesystem::path& path, const std::function<LayersOfFiles()>& open);
+/// Opens layers in a child, which reads them on request. `progress` is called while `open` runs.
+LayersOfFiles open_separately(const std::filesystem::path& path, const Progress& progress,
+                              const std::function<LayersOfFiles(const Progress&)>& open);
 
 }  // namespace tegl::io_detail

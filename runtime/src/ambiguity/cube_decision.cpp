@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
-#include "tegl/saddle.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {

@@ -14,14 +14,14 @@
 
 #include <fmt/format.h>
 
+#include "ambiguity/saddle.hpp"
 #include "base/workers.hpp"
 #include "tegl/error.hpp"
-#include "tegl/saddle.hpp"
 
 namespace tegl {
 
 AmbiguousFace::AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values,
-                             double isovalue, const Surroundings& around)
+                             double isovalue, const detail::FaceSurroundings& around)
     : image_dim_(static_cast<int>(base.size())),
       dim_(std::popcount(axes)),
       axes_(axes),
@@ -188,7 +188,7 @@ template <int N>
 tile::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
   if (failed_.load(std::memory_order_relaxed)) return tile::Choice::separate;
   // Limited to the caller's reach: streamed images may have no other samples in memory.
-  AmbiguousFace::Surroundings near = around_;
+  FaceSurroundings near = around_;
   const auto reach = static_cast<std::ptrdiff_t>(std::min<std::size_t>(estimator_.reach, 1u << 30));
   for (unsigned a = 0; a < N; ++a) {
     const auto at = static_cast<std::ptrdiff_t>(base[a]);
@@ -196,7 +196,7 @@ tile::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span<c
     near.end[a] = std::min(near.end[a], at + static_cast<std::ptrdiff_t>(axes >> a & 1u) + reach + 1);
   }
   try {
-    const AmbiguousFace face(base, axes, values, isovalue_, near);
+    const AmbiguousFace face = near.face(base, axes, values, isovalue_);
     const tile::Choice choice = call_apart([&] { return estimator_.choose(face); });
     return choice <= tile::Choice::high ? choice : tile::Choice::separate;
   } catch (...) {

@@ -12,6 +12,7 @@
 #include <mutex>
 #include <span>
 
+#include "ambiguity/face_surroundings.hpp"
 #include "image/sample_source.hpp"
 #include "tegl/extract.hpp"
 
@@ -77,7 +78,7 @@ class FaceEstimator {
   const Estimator& estimator_;
   Triangulation triangulation_;
   double isovalue_;
-  AmbiguousFace::Surroundings around_;
+  FaceSurroundings around_;
   mutable std::atomic<bool> failed_ = false;
   mutable std::mutex mutex_;
   mutable std::exception_ptr error_;

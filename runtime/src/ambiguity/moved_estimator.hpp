@@ -11,7 +11,7 @@
 #include <functional>
 #include <span>
 
-#include "tegl/ambiguity.hpp"
+#include "ambiguity/face_surroundings.hpp"
 
 namespace tegl::detail {
 
@@ -48,14 +48,14 @@ class MovedFace {
     }
     // The moved face checks the estimator's reach and the image's border.
     constexpr auto kFar = static_cast<std::ptrdiff_t>(std::uint64_t{1} << 62);
-    AmbiguousFace::Surroundings around;
+    FaceSurroundings around;
     around.image = this;
     around.read = [](const void* face, const std::ptrdiff_t* index) {
       return static_cast<const MovedFace*>(face)->sample(index);
     };
     around.first.fill(-kFar);
     around.end.fill(kFar);
-    return choose(AmbiguousFace(base, axes, std::span(values).first(face_.values().size()), face_.isovalue(), around));
+    return choose(around.face(base, axes, std::span(values).first(face_.values().size()), face_.isovalue()));
   }
 
  private:

@@ -39,8 +39,9 @@
 //     u0 > 0,  u1 > 0,  m^2 >= 4 q0 q1,  A0 u1 + A1 u0 >= 0,  C0 u1 + C1 u0 >= 0,
 // where A0 and A1 are A at t = 0 and 1. For L, where A and C are the low diagonal:
 //     u0 > 0,  u1 > 0,  m^2 > 4 q0 q1,  A0 u1 + A1 u0 < 0,  C0 u1 + C1 u0 < 0.
-#include "tegl/saddle.hpp"
+#include "ambiguity/saddle.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <initializer_list>
@@ -476,3 +477,40 @@ CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double iso
 }
 
 }  // namespace tegl::detail
+
+namespace tegl {
+
+namespace {
+
+template <Value T, std::size_t kCorners>
+std::array<double, kCorners> as_doubles(std::span<const T, kCorners> values) noexcept {
+  std::array<double, kCorners> result;
+  std::transform(values.begin(), values.end(), result.begin(), [](T value) { return static_cast<double>(value); });
+  return result;
+}
+
+}  // namespace
+
+template <Value T>
+bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept {
+  return detail::square_is_high(as_doubles(values), isovalue);
+}
+
+template <Value T>
+CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept {
+  const std::array<double, 8> doubles = as_doubles(values);
+  return detail::decide_cube(doubles, isovalue, detail::signature_of(doubles, isovalue));
+}
+
+template <Value T>
+tile::Choice cube_choice(std::span<const T, 8> values, double isovalue) noexcept {
+  return decide_cube<T>(values, isovalue).centre;
+}
+
+#define TEGL_INSTANTIATE(T)                                                     \
+  template bool square_is_high<T>(std::span<const T, 4>, double) noexcept;      \
+  template CubeDecision decide_cube<T>(std::span<const T, 8>, double) noexcept; \
+  template tile::Choice cube_choice<T>(std::span<const T, 8>, double) noexcept;
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

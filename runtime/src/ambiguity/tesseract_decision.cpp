@@ -6,8 +6,8 @@
 #include <bit>
 #include <utility>
 
+#include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
-#include "tegl/saddle.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {

@@ -139,19 +139,19 @@ void name_axes(const Contour<4, Real>& contour, const Projection& projection, st
   }
 }
 
-using Normals = std::vector<Eigen::Vector4d>;
+using VertexNormals = std::vector<Eigen::Vector4d>;
 
 /// Vertices whose tetrahedra all have zero volume (this happens if samples equal the isovalue) get the sum of
 /// neighbouring normals.
 template <class Real>
-void fill_from_neighbours(const Contour<4, Real>& contour, Normals& normals) {
+void fill_from_neighbours(const Contour<4, Real>& contour, VertexNormals& normals) {
   double sum = 0.0;
   for (const Eigen::Vector4d& normal : normals) sum += normal.norm();
   constexpr double kNone = 1e-12;
   const double least = kNone * sum / std::max(1.0, static_cast<double>(normals.size()));
   constexpr int kMostRounds = 8;  // a vertex farther from all nonzero tetrahedra counts as edge-on
   for (int round = 0; round < kMostRounds; ++round) {
-    Normals more(normals.size(), Eigen::Vector4d::Zero());
+    VertexNormals more(normals.size(), Eigen::Vector4d::Zero());
     bool any = false;
     for (const auto& simplex : contour.simplices)
       for (const Index v : simplex) {
@@ -174,7 +174,7 @@ std::vector<double> along_sight(const Contour<4, Real>& contour, const Projectio
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
   const Eigen::Vector4d up = as_eigen(frame.up);
   const Eigen::Matrix<double, 4, 3> axes = as_eigen(frame.axes).transpose();
-  Normals normals(contour.vertices.size(), Eigen::Vector4d::Zero());
+  VertexNormals normals(contour.vertices.size(), Eigen::Vector4d::Zero());
   for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
     const auto normal = detail::normal_vector_of<4>(detail::corners_of(contour, s));
     for (const Index v : contour.simplices[s]) normals[v] += Eigen::Vector4d(normal.data());

@@ -6,7 +6,7 @@
 
 #include "base/stopwatch.hpp"
 #include "image/row_source.hpp"
-#include "kernel/tableless.hpp"
+#include "kernel/extract_in_memory.hpp"
 #include "kernel/tile_selection.hpp"
 #include "search/index_file.hpp"
 
@@ -16,19 +16,19 @@ namespace {
 
 template <Value T, int N>
 void require_index_of(const Image<T, N>& image, const ActiveTiles<N>& active) {
-  const std::string_view type = detail::value_type_name<T>();
-  if (active.image().sizes == image.grid().sizes() && active.image().value_type == type) return;
-  throw Error(ErrorCode::InvalidArgument, fmt::format("an index of an image of {} {}; expected one of {} {}",
-                                                      fmt::join(active.image().sizes, " x "), active.image().value_type,
-                                                      fmt::join(image.grid().sizes(), " x "), type));
+  if (active.image().sizes == image.grid().sizes() && active.image().value_type == kValueType<T>) return;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("an index of an image of {} {}; expected one of {} {}", fmt::join(active.image().sizes, " x "),
+                  name_of(active.image().value_type), fmt::join(image.grid().sizes(), " x "), name_of(kValueType<T>)));
 }
 
 }  // namespace
 
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options,
-                                                                          const ActiveTiles<N>& active) {
+                                                                          const ActiveTiles<N>& active,
+                                                                          const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   require_index_of(image, active);
   const bool missing = active.image().any_missing;
@@ -54,8 +54,8 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
 }
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                       \
-  template Extraction<N, Real> extract_with_stats<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
-                                                              const ActiveTiles<N>&);
+  template Extraction<N, Real> extract_with_stats<Real, T, N>(const Image<T, N>&, double, const ActiveTiles<N>&, \
+                                                              const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -161,7 +161,7 @@ ExtractedSize count_by_parts(const Image<T, N>& image, double isovalue, const Ex
   }
   ImageSource<T, N> source(image, isovalue, options.epsilon);
   NoSink<N, float> sink;
-  StreamOutput<N, float> output(sink, options.normals);
+  StreamOutput<N, float> output(sink, options.normals != Normals::none);
   const ExtractStats stats = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
   return {output.size(), stats};
 }
@@ -174,7 +174,7 @@ requires DimensionBetween<N, 2, 5> ExtractedSize count_with_stats(const Image<T,
                                                                   const ExtractOptions& asked) {
   detail::check_arguments(isovalue, asked);
   ExtractOptions options = asked;
-  options.normals = false;  // not counted: one per vertex
+  options.normals = Normals::none;  // not counted: one per vertex
   if constexpr (N > 4) {
     detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
     return detail::count_tiles<N>(source, image.grid(), options);
@@ -192,14 +192,14 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>&
   detail::ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  detail::MemoryOutput<N, Real, I> output(room, options.normals);
+  detail::MemoryOutput<N, Real, I> output(room, options.normals != Normals::none);
   ExtractedSize result;
   result.stats = detail::extract_to<N, Real>(source, image.grid(), tables, options, plan, output);
   result.size = output.size;
   if (output.any_missing) {
     detail::ImageSource<T, N> again(image, isovalue, options.epsilon);
     detail::MemorySink<N, Real, I> sink(room);
-    detail::StreamOutput<N, Real> parts(sink, options.normals);
+    detail::StreamOutput<N, Real> parts(sink, options.normals != Normals::none);
     result.stats = detail::extract_to<N, Real>(again, image.grid(), tables, options, plan, parts);
     result.size = parts.size();
   } else if constexpr (sizeof(I) == sizeof(Index)) {

@@ -14,7 +14,7 @@
 
 #include "base/progress.hpp"
 #include "image/locate.hpp"
-#include "kernel/tableless.hpp"
+#include "kernel/extract_in_memory.hpp"
 #include "search/propagation.hpp"
 #include "tegl/components.hpp"
 
@@ -151,7 +151,7 @@ Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& 
 ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progress) {
   ExtractOptions inside = options;
   inside.epsilon = 0.25;
-  inside.normals = false;
+  inside.normals = Normals::none;
   inside.work.progress = progress;
   return inside;
 }
@@ -262,7 +262,7 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
   std::sort(looked_at.begin(), looked_at.end());
   const auto contour_of = [&]<class R>(const Image<T, N>& of, const ExtractOptions& with, R) {
     if constexpr (N <= 4)
-      if (in_tiles) return extract<R>(of, isovalue, with, *choose_tiles(of, looked_at));
+      if (in_tiles) return extract<R>(of, isovalue, *choose_tiles(of, looked_at), with);
     return extract<R>(of, isovalue, with);
   };
   const auto allowed = [&](const ComponentLabels& labels, const Progress& progress) {

@@ -13,7 +13,6 @@
 
 #include "base/workers.hpp"
 #include "kernel/stream.hpp"
-#include "kernel/tableless.hpp"
 
 namespace tegl {
 
@@ -56,7 +55,7 @@ struct OneOfSeveral {
       : options(std::move(its_options)),
         source(std::move(its_source)),
         sink(its_sink, calls),
-        output(sink, options.normals),
+        output(sink, options.normals != Normals::none),
         extraction(detail::make_extraction<N, Real>(*source, grid, detail::generated_tables<N>(options), options,
                                                     detail::streaming_plan(grid), output)) {}
 

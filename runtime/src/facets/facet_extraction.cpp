@@ -101,7 +101,7 @@ class FacetExtraction {
         tables_(options.ambiguity),
         placement_(grid),
         workers_(options.work.threads, [this] { return FacetScratch(tables_); }) {
-    if (options.normals) placement_.want_normals(source, grid, options);
+    if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
     faces_.resize(2u << N);
     for (unsigned axes = 1; axes <= kAll; ++axes) add_kind({axes, false});
@@ -490,7 +490,7 @@ class FacetExtraction {
 
   void write_points() {
     facets_.vertices.resize(facets_.count(0));
-    if (options_.normals) facets_.normals.resize(facets_.count(0));
+    if (options_.normals != Normals::none) facets_.normals.resize(facets_.count(0));
     for_busy_rows([&](std::size_t row, FacetScratch& scratch) {
       for (const KnownKind& kind : kinds_) {
         if (kind.is_resolved_cube()) write_inner_points(kind, row);
@@ -513,7 +513,7 @@ class FacetExtraction {
       std::array<double, N> point;
       for (int a = 0; a < N; ++a) point[a] = placement_.sample(a, index[a]);
       facets_.vertices[vertex] = placement_.world(point);
-      if (options_.normals)
+      if (options_.normals != Normals::none)
         facets_.normals[vertex] = placement_.normals()->template in_cell<CellFrame<N, 0>>(index, {});
       ++vertex;
     });
@@ -544,7 +544,7 @@ class FacetExtraction {
         const TilePoint<3> point =
             mask_place<3>(tables::kTile3Resolved.masks[list.first_mask + own], std::identity(), edges, true);
         facets_.vertices[vertex] = placement_.template in_cell<CellFrame<N, Axes>>(index, point);
-        if (options_.normals)
+        if (options_.normals != Normals::none)
           facets_.normals[vertex] = placement_.normals()->template in_cell<CellFrame<N, Axes>>(index, point);
         ++vertex;
       }
@@ -584,7 +584,7 @@ class FacetExtraction {
     points.end = scratch.end.data();
     points.out = facets_.vertices.data() + here.first_facet[row];
     placement_.edges(index[N - 1], points);
-    if (!options_.normals) return;
+    if (options_.normals == Normals::none) return;
     // normals
     placement_.normals()->edges(index, axis, {scratch.rows.data(), scratch.at.data(), count}, scratch.alphas.data(),
                                 scratch.normals, facets_.normals.data() + here.first_facet[row], [&](std::size_t edge) {
@@ -631,14 +631,8 @@ FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& g
   return FacetExtraction<N, Real>(source, grid, options).run();
 }
 
-#define TEGL_INSTANTIATE(N, Real) \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
   template FacetHierarchy<N, Real> extract_facets<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -88,12 +88,13 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
                    return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
                  }),
         ahead_(workers_.count() > 1 && source.are_in_memory()),
-        batch_(plan.batch == 0 ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
-                                              EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals), ahead_)
-                               : std::min(plan.batch, shape_.layers() - 1)),
+        batch_(plan.batch == 0
+                   ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
+                                  EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals != Normals::none), ahead_)
+                   : std::min(plan.batch, shape_.layers() - 1)),
         layers_((ahead_ ? 2 : 1) * batch_ + 2),
         slabs_((ahead_ ? 2 : 1) * batch_ + 1) {
-    if (options.normals) placement_.want_normals(source, grid, options);
+    if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (options.close)
       caps_.emplace(source, shape_, tables_, counter_, placement_, estimator_.get(), inverted_,
                     against_tables(grid, options), plan.closed_axes);
@@ -104,7 +105,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     for (std::size_t k = 0; k + 1 < counted; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
     if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
     // Gradients read one layer before the current ones; custom estimators read as many as their reach.
-    source.keep(layers_.size() + std::max<std::size_t>(options.normals ? 1 : 0, 2 * reach_));
+    source.keep(layers_.size() + std::max<std::size_t>(options.normals != Normals::none ? 1 : 0, 2 * reach_));
   }
 
   bool prepare_batch() override {
@@ -622,12 +623,12 @@ Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid,
     contour.axis_units[a] = grid.axes[a].unit;
   }
   contour.direction = options.direction;
-  MemoryOutput<N, Real> output(contour, options.normals, plan.max_vertices);
+  MemoryOutput<N, Real> output(contour, options.normals != Normals::none, plan.max_vertices);
   result.stats = extract_to(source, grid, tables, options, plan, output);
   return result;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                                \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                                                       \
   template ExtractStats extract_to<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,                \
                                             const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
   template std::unique_ptr<SteppedExtraction<N, Real>> make_extraction<N, Real>(                                 \
@@ -635,12 +636,6 @@ Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid,
       ContourOutput<N, Real>&);                                                                                  \
   template Extraction<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,     \
                                                        const ExtractOptions&, const ExtractPlan&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

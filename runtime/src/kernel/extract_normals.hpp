@@ -48,7 +48,7 @@ class NormalWriter {
   using Vertex = std::array<Real, N>;
 
   /// `source` must outlive the writer.
-  NormalWriter(const SampleGradients<N>& source, const Grid<N>& grid, GradientDirection direction, GradientKind kind)
+  NormalWriter(const SampleGradients<N>& source, const Grid<N>& grid, GradientDirection direction, Normals kind)
       : source_(source),
         kind_(kind),
         steps_(steps_of(source, grid)),
@@ -75,7 +75,7 @@ class NormalWriter {
   template <class StartOf>
   void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
              Vertex* out, const StartOf& start_of) const noexcept {
-    if (kind_ != GradientKind::differences) {
+    if (kind_ != Normals::differences) {
       for (std::size_t i = 0; i < edges.count; ++i) out[i] = on_edge(start_of(i), axis, alphas[i]);
       return;
     }
@@ -167,7 +167,7 @@ class NormalWriter {
   }
 
   [[nodiscard]] std::array<double, N> gradient_at(const Index& index) const noexcept {
-    return kind_ == GradientKind::sobel ? source_.sobel(index, steps_) : source_.gradient(index, steps_);
+    return kind_ == Normals::sobel ? source_.sobel(index, steps_) : source_.gradient(index, steps_);
   }
 
   /// One normal on an edge, for any values.
@@ -225,7 +225,7 @@ class NormalWriter {
   }
 
   const SampleGradients<N>& source_;
-  GradientKind kind_;
+  Normals kind_;
   std::array<AxisSteps, N> steps_;
   Index sizes_;
   bool mapped_;

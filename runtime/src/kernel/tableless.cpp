@@ -64,7 +64,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         workers_(options.work.threads, [] { return Nothing{}; }),
         built_(cube_, options.ambiguity == Ambiguity::high ? tile::Alternative::high : tile::Alternative::low,
                tile_bytes, workers_.count()) {
-    if (options.normals) placement_.want_normals(source, grid, options);
+    if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) {
       estimator_.emplace(source, grid.sizes(), options, plan.part);
       choices_.emplace(cube_, *estimator_);
@@ -380,7 +380,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
                      const auto place = in_grid(kind, places(v));
                      const auto at = static_cast<Index>(ids[v] - static_cast<Index>(part_first_));
                      room_.vertices[at] = point(kind, base, place);
-                     if (options_.normals)
+                     if (options_.normals != Normals::none)
                        room_.normals[at] =
                            placement_.normals()->template in_cell<CellFrame<N, (1u << N) - 1>>(base, place);
                    }
@@ -531,14 +531,14 @@ Extraction<N, Real> extract_tiles(SampleSource<N>& source, const Grid<N>& grid, 
     result.contour.axis_units[a] = grid.axes[a].unit;
   }
   result.contour.direction = options.direction;
-  BuiltContour<N, Real> output(&result.contour, options.normals);
+  BuiltContour<N, Real> output(&result.contour, options.normals != Normals::none);
   result.stats = build_tiles(source, grid, options, output, tile_bytes, plan);
   return result;
 }
 
 template <int N>
 ExtractedSize count_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
-  BuiltContour<N, float> output(nullptr, options.normals);
+  BuiltContour<N, float> output(nullptr, options.normals != Normals::none);
   const ExtractStats stats = build_tiles(source, grid, options, output, kBuiltTileBytes, {});
   return {output.size, stats};
 }

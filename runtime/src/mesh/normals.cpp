@@ -141,7 +141,9 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
 
 template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
-    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind, const WorkOptions& work) {
+    const Image<T, N>& image, const Contour<N, Real>& contour, Normals kind, const WorkOptions& work) {
+  if (kind == Normals::none)
+    throw Error(ErrorCode::InvalidArgument, "Normals::none for gradient_normals; expected differences or sobel");
   const detail::ImageSource<T, N> source(image, 0.0, 0.0);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.vertices.size());
   interpolate_gradients(detail::NormalWriter<N, Real>(source, image.grid(), contour.direction, kind), image.grid(),
@@ -149,21 +151,15 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gra
   return result;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                               \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                                                      \
   template Buffer<Contour<N, Real>::Vertex> flat_normals<N, Real>(const Contour<N, Real>&, const WorkOptions&); \
   template Buffer<Contour<N, Real>::Vertex> geometric_normals<N, Real>(const Contour<N, Real>&, NormalWeights,  \
                                                                        const WorkOptions&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                            \
   template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&, \
-                                                                         GradientKind, const WorkOptions&);
+                                                                         Normals, const WorkOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -60,11 +60,10 @@ std::uint64_t high_half(std::uint64_t a, std::uint64_t b) noexcept {
 }
 
 /// Bytes of a value of the named type; throws MalformedFile if there is none.
-std::size_t bytes_of_value(std::string_view type) {
+std::size_t bytes_of_value(ValueType type) {
   std::size_t bytes = 0;
-  const auto compare = [&]<Value... T>() { ((bytes = detail::value_type_name<T>() == type ? sizeof(T) : bytes), ...); };
+  const auto compare = [&]<Value... T>() { ((bytes = kValueType<T> == type ? sizeof(T) : bytes), ...); };
   compare.operator()<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::int32_t, float, double>();
-  if (bytes == 0) detail::IndexReader::damaged(fmt::format("it is of values of type '{}'", type));
   return bytes;
 }
 
@@ -185,18 +184,21 @@ ActiveTilesHead read_head(IndexReader& from) {
   const auto dim = from.value<std::uint32_t>("dimension");
   if (dim < 2 || dim > 5) IndexReader::damaged(fmt::format("it is of dimension {}; expected 2 to 5", dim));
   for (std::uint32_t a = 0; a < dim; ++a) head.sizes.push_back(from.value<std::uint64_t>("sizes of the image"));
-  head.value_type = from.text(kLongName, "value type");
+  const std::string type_name = from.text(kLongName, "value type");
+  const std::optional<ValueType> type = parse_value_type(type_name);
+  if (!type || bytes_of_value(*type) == 0) IndexReader::damaged(fmt::format("it is of values of type '{}'", type_name));
+  head.value_type = *type;
   head.digest = from.value<std::uint64_t>("digest of the values");
   head.any_missing = from.value<std::uint8_t>("note of missing values") != 0;
   return head;
 }
 
-void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, std::string_view value_type,
+void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, ValueType value_type,
                         std::uint64_t digest) {
   if (!std::equal(head.sizes.begin(), head.sizes.end(), sizes.begin(), sizes.end()) || head.value_type != value_type)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the index is of an image of {} {}; expected the one of {} {}",
-                            fmt::join(head.sizes, " x "), head.value_type, fmt::join(sizes, " x "), value_type));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("the index is of an image of {} {}; expected the one of {} {}",
+                                                        fmt::join(head.sizes, " x "), name_of(head.value_type),
+                                                        fmt::join(sizes, " x "), name_of(value_type)));
   if (head.digest != digest)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("the index is of an image with other values: digest {:016x}; expected {:016x}", head.digest,

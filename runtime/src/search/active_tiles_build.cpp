@@ -41,7 +41,7 @@ std::uint64_t hash_row(const T* samples, std::ptrdiff_t stride, std::vector<T>& 
 
 template <int N, Value T>
 IndexedImage<N> known_of(const Image<T, N>& image) {
-  return {image.grid().sizes(), std::string(value_type_name<T>()), 0, false};
+  return {image.grid().sizes(), kValueType<T>, 0, false};
 }
 
 /// Whether a corner of a tile is NaN.
@@ -115,7 +115,8 @@ requires DimensionBetween<N, 2, 5> IndexedImage<N> identify(const Image<T, N>& i
                       });
   }
   // combine type, sizes and layers
-  result.digest = detail::hash_bytes(result.value_type.data(), result.value_type.size(), N);
+  const std::string_view type = name_of(result.value_type);
+  result.digest = detail::hash_bytes(type.data(), type.size(), N);
   for (const std::size_t size : sizes) {
     const std::uint64_t wide = size;
     result.digest = detail::hash_bytes(&wide, sizeof(wide), result.digest);

@@ -72,7 +72,7 @@ template <int N>
 void write_head(IndexWriter& to, ActiveMethod method, const IndexedImage<N>& image) {
   write_magic(to, method, N);
   for (const std::size_t size : image.sizes) to.value(std::uint64_t{size});
-  to.text(image.value_type);
+  to.text(name_of(image.value_type));
   to.value(image.digest);
   to.value(static_cast<std::uint8_t>(image.any_missing ? 1 : 0));
 }
@@ -81,7 +81,7 @@ void write_head(IndexWriter& to, ActiveMethod method, const IndexedImage<N>& ima
 ActiveTilesHead read_head(IndexReader& from);
 
 /// Throws InvalidArgument with the difference.
-void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, std::string_view value_type,
+void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, ValueType value_type,
                         std::uint64_t digest);
 
 }  // namespace tegl::detail

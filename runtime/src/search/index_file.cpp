@@ -46,20 +46,6 @@ std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed
   return hash ^ hash >> 31;
 }
 
-template <Value T>
-std::string_view value_type_name() noexcept {
-  if constexpr (std::is_same_v<T, std::uint8_t>) return "uint8";
-  if constexpr (std::is_same_v<T, std::int8_t>) return "int8";
-  if constexpr (std::is_same_v<T, std::uint16_t>) return "uint16";
-  if constexpr (std::is_same_v<T, std::int16_t>) return "int16";
-  if constexpr (std::is_same_v<T, std::int32_t>) return "int32";
-  if constexpr (std::is_same_v<T, float>) return "float";
-  return "double";
-}
-
-#define TEGL_INSTANTIATE(T) template std::string_view value_type_name<T>() noexcept;
-#include "base/instantiate.hpp"
-
 void IndexWriter::bytes(const void* data, std::size_t bytes) {
   if (bytes == 0) return;
   sum_ = hash_bytes(data, bytes, sum_);

@@ -20,10 +20,6 @@ namespace tegl::detail {
 /// A 64-bit hash, continued from `seed`. It detects any change within 8 bytes. It is not cryptographic.
 std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed) noexcept;
 
-/// Name of a value type, as in IndexedImage.
-template <Value T>
-std::string_view value_type_name() noexcept;
-
 /// Arrays are written and read in pieces of this many elements, each hashed from the hash before. So a truncated file
 /// does not make the reader allocate all that its counts claim.
 inline constexpr std::size_t kPieceElements = std::size_t{1} << 22;

@@ -5,14 +5,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "tegl/check.hpp"
-#include "tegl/extract.hpp"
-#include "tegl/slice.hpp"
+#include "tegl/tegl.hpp"
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/facets.hpp"
 #include "tegl/tile/tile_certifier.hpp"
-#include "tegl/tile_facets.hpp"
 
 /// A cube with two opposite high corners and a high centre: a tunnel, topologically a cylinder.
 bool tunnel_is_sound() {

@@ -182,14 +182,14 @@ TEST(Layers, OfRawValuesAreThoseOfTheFile) {
   for (std::size_t i = 0; i < bytes.size(); i += 2) std::swap(bytes[i], bytes[i + 1]);
   write_file(dir / "big.raw", bytes + "rest");
   const AnyImage any = AnyImageN<3>(image);
-  expect_layers_of(any, open_raw_layers(dir / "little.raw", {{3, 4, 5}, "int16", 6, false}).layers);
-  expect_layers_of(any, open_raw_layers(dir / "big.raw", {{3, 4, 5}, "int16", 0, true}).layers);
+  expect_layers_of(any, open_raw_layers(dir / "little.raw", {{3, 4, 5}, ValueType::int16, 6, false}).layers);
+  expect_layers_of(any, open_raw_layers(dir / "big.raw", {{3, 4, 5}, ValueType::int16, 0, true}).layers);
 }
 
 TEST(Layers, ThatCannotBeReadAreNamed) {
   TempDir dir;
   write_file(dir / "a.raw", std::string(100, 'x'));
-  OpenLayersResult opened = open_raw_layers(dir / "a.raw", {{10, 10}, "uint8"});
+  OpenLayersResult opened = open_raw_layers(dir / "a.raw", {{10, 10}, ValueType::uint8});
   fs::resize_file(dir / "a.raw", 75);
   auto& layers = *std::get<std::unique_ptr<LayerReader<std::uint8_t, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
   std::array<std::uint8_t, 10> row;
@@ -203,15 +203,16 @@ TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
   const auto error = [&](const RawLayout& layout) {
     return error_of([&] { open_raw_layers(dir / "values.raw", layout); });
   };
-  EXPECT_EQ(error({{10, 11}, "uint8"}).code(), ErrorCode::MalformedFile);
-  EXPECT_THAT(error({{10, 11}, "uint8"}).what(), AllOf(HasSubstr("100 bytes"), HasSubstr("110")));
-  EXPECT_EQ(error({{10, 10}, "uint8", 1}).code(), ErrorCode::MalformedFile);
-  EXPECT_EQ(error({{10, 10}, "uint8", ~std::uint64_t{0}}).code(), ErrorCode::MalformedFile);
-  EXPECT_EQ(error({{10, 0}, "uint8"}).code(), ErrorCode::InvalidArgument);
-  EXPECT_EQ(error({{100}, "uint8"}).code(), ErrorCode::InvalidArgument);
-  EXPECT_EQ(error({{2, 2, 5, 5, 1}, "uint8"}).code(), ErrorCode::InvalidArgument);
-  EXPECT_THAT(error({{5, 5}, "float16"}).what(), AllOf(HasSubstr("float16"), HasSubstr("uint16")));
-  RawLayout layout{{5, 5}, "uint8"};
+  EXPECT_EQ(error({{10, 11}, ValueType::uint8}).code(), ErrorCode::MalformedFile);
+  EXPECT_THAT(error({{10, 11}, ValueType::uint8}).what(), AllOf(HasSubstr("100 bytes"), HasSubstr("110")));
+  EXPECT_EQ(error({{10, 10}, ValueType::uint8, 1}).code(), ErrorCode::MalformedFile);
+  EXPECT_EQ(error({{10, 10}, ValueType::uint8, ~std::uint64_t{0}}).code(), ErrorCode::MalformedFile);
+  EXPECT_EQ(error({{10, 0}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
+  EXPECT_EQ(error({{100}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
+  EXPECT_EQ(error({{2, 2, 5, 5, 1}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
+  EXPECT_THAT(error({{5, 5}, ValueType::uint32}).what(), AllOf(HasSubstr("'uint32'"), HasSubstr("uint16")));
+  EXPECT_EQ(error({{5, 5}, ValueType::int64}).code(), ErrorCode::InvalidArgument);
+  RawLayout layout{{5, 5}, ValueType::uint8};
   layout.spacing = {1.0};
   EXPECT_THAT(error(layout).what(), HasSubstr("spacings of 1 axes, and sizes of 2"));
   layout.spacing = {1.0, 0.0};
@@ -230,7 +231,7 @@ TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
 TEST(Layers, OfRawValuesHaveTheAxesOfTheirLayout) {
   const TempDir dir;
   write_file(dir / "values.raw", std::string(100, 'x'));
-  RawLayout layout{{10, 10}, "uint8"};
+  RawLayout layout{{10, 10}, ValueType::uint8};
   layout.spacing = {0.5, -2.0};
   layout.origin = {3.0, 4.0};
   layout.axis_names = {"a", ""};

@@ -37,7 +37,7 @@ TEST(MetaImage, AttachedDetachedCompressedAndTextAreTheSame) {
     const auto [any, info] = read_image(dir / name);
     EXPECT_EQ((image_as<std::int16_t, 3>(any).values), values);
     EXPECT_EQ(info.format, "MetaImage");
-    EXPECT_EQ(info.stored_type, "int16");
+    EXPECT_EQ(info.stored_type, ValueType::int16);
     EXPECT_EQ(info.world_frame, "");
   }
 }
@@ -58,7 +58,7 @@ void expect_type(const std::string& keyword, const char* name) {
   write_file(dir / "a.mha", header(kBinary, keyword) + "LOCAL\n" + bytes_of(counting<Stored>(24, 3)));
   const auto [any, info] = read_image(dir / "a.mha");
   EXPECT_EQ((image_as<Read, 3>(any).values), counting<Read>(24, 3));
-  EXPECT_EQ(info.stored_type, name);
+  EXPECT_EQ(info.stored_type, parse_value_type(name));
 }
 
 TEST(MetaImage, ReadsEveryNumericType) {

@@ -59,7 +59,7 @@ void expect_standard(const fs::path& path) {
   EXPECT_THAT(info.variables, ElementsAre("temp"));
   EXPECT_EQ(info.value_unit, "degC");
   EXPECT_EQ(info.value_name, "sea water temperature");
-  EXPECT_EQ(info.stored_type, "float");
+  EXPECT_EQ(info.stored_type, ValueType::float32);
 }
 
 TEST(NetCdf, AllFormatsAndWholeFileCompressionReadTheSame) {
@@ -89,7 +89,7 @@ void expect_type(nc_type type, const char* name, double start, int format = NC_N
   }
   const auto [any, info] = read_image(dir / "a.nc");
   EXPECT_EQ((image_as<Read, 2>(any).values), counting<Read>(6, start));
-  EXPECT_EQ(info.stored_type, name);
+  EXPECT_EQ(info.stored_type, parse_value_type(name));
 }
 
 TEST(NetCdf, IntegersWithoutFillStayIntegers) {
@@ -130,7 +130,7 @@ TEST(NetCdf, PackedShortsBecomeFloatsWithNanForMissing) {
   });
   EXPECT_THAT((image_as<float, 2>(result.image).values),
               ElementsAre(10, 10.5F, NanSensitiveFloatEq(kNaN), 60, NanSensitiveFloatEq(kNaN), 11.5F));
-  EXPECT_EQ(result.info.stored_type, "int16");
+  EXPECT_EQ(result.info.stored_type, ValueType::int16);
 }
 
 TEST(NetCdf, ScaledIntegersOf32BitsBecomeDoubles) {

@@ -23,7 +23,7 @@ TEST(Nifti, ValuesAndSizesComeBackInOrder) {
   EXPECT_EQ(image.grid.sizes(), (std::array<std::size_t, 3>{3, 4, 5}));
   EXPECT_FALSE(image.grid.has_world_map());
   EXPECT_EQ(info.format, "NIfTI");
-  EXPECT_EQ(info.stored_type, "int16");
+  EXPECT_EQ(info.stored_type, ValueType::int16);
   EXPECT_EQ(info.world_frame, "");
   EXPECT_EQ(image.grid.axes[2].name, "z");
   EXPECT_EQ(image.grid.axes[2].unit, "");
@@ -39,7 +39,7 @@ void expect_nifti_type(int code, const char* name, double start) {
   const auto [any, info] = read_image(dir / "a.nii.gz");
   const auto image = image_as<Read, 3>(any);
   EXPECT_EQ(image.values, std::vector<Read>(values.begin(), values.end()));
-  EXPECT_EQ(info.stored_type, name);
+  EXPECT_EQ(info.stored_type, parse_value_type(name));
 }
 
 TEST(Nifti, ReadsEveryNumericType) {
@@ -120,7 +120,7 @@ TEST(Nifti, SlopeAndInterceptGiveFloats) {
   write_file(dir / "a.nii", NiftiHeader({2, 2, 2}, kInt16, 16).scaling(0.5F, -3).bytes() + bytes_of(values));
   const auto [any, info] = read_image(dir / "a.nii");
   EXPECT_THAT((image_as<float, 3>(any).values), testing::ElementsAre(-3, -2.5, -2, -1.5, -1, -0.5, 0, 0.5));
-  EXPECT_EQ(info.stored_type, "int16");
+  EXPECT_EQ(info.stored_type, ValueType::int16);
 }
 
 TEST(Nifti, MissingValuesStayMissing) {

@@ -30,7 +30,7 @@ TEST(Nrrd, EncodingsAllGiveTheSameValues) {
     const auto [any, info] = read_image(dir / "a.nrrd");
     EXPECT_EQ((image_as<std::int16_t, 3>(any).values), values);
     EXPECT_EQ(info.format, "NRRD");
-    EXPECT_EQ(info.stored_type, "int16");
+    EXPECT_EQ(info.stored_type, ValueType::int16);
     write_file(dir / "b.nhdr", nrrd_header(lines + encoding + "\ndata file: b.dat\n"));
     write_file(dir / "b.dat", data);
     EXPECT_EQ((image_as<std::int16_t, 3>(read_image(dir / "b.nhdr").image).values), values);
@@ -46,16 +46,16 @@ TEST(Nrrd, BigEndianAndWideTypes) {
              nrrd_header("type: unsigned long long\ndimension: 2\nsizes: 2 2\nendian: big\nencoding: raw\n\n" + data));
   const auto [any, info] = read_image(dir / "a.nrrd");
   EXPECT_THAT((image_as<double, 2>(any).values), testing::ElementsAre(1, 2, 3, 4000000000.0));
-  EXPECT_EQ(info.stored_type, "uint64");
+  EXPECT_EQ(info.stored_type, ValueType::uint64);
 }
 
 TEST(Nrrd, SpacingsMinimaLabelsAndUnits) {
   TempDir dir;
   write_file(dir / "a.nrrd", nrrd_header("# comment\n" + kSmall +
-                                    "spacings: 0.5 2 NaN\naxis mins: 10 NaN 5\naxis maxs: NaN NaN 11\n"
-                                    "labels: \"lon\" \"\" \"a \\\"quoted\\\" name\"\nunits: \"deg\" \"km\" \"\"\n"
-                                    "centers: cell node node\nkey:=any value: with colons\nencoding: raw\n\n" +
-                                    std::string(24, 'x')));
+                                         "spacings: 0.5 2 NaN\naxis mins: 10 NaN 5\naxis maxs: NaN NaN 11\n"
+                                         "labels: \"lon\" \"\" \"a \\\"quoted\\\" name\"\nunits: \"deg\" \"km\" \"\"\n"
+                                         "centers: cell node node\nkey:=any value: with colons\nencoding: raw\n\n" +
+                                         std::string(24, 'x')));
   const auto grid = image_as<std::uint8_t, 3>(read_image(dir / "a.nrrd").image).grid;
   EXPECT_FALSE(grid.has_world_map());
   EXPECT_EQ(world(grid, {0, 0, 0}), Eigen::Vector3d(10.25, 0, 5));
@@ -70,9 +70,9 @@ TEST(Nrrd, SpaceDirectionsAreExactAndTurnedToLps) {
   TempDir dir;
   const auto read = [&](const std::string& space) {
     write_file(dir / "a.nrrd", nrrd_header(kSmall + "space: " + space +
-                                      "\nspace directions: (1,2,0) (0, 3,-1) (0.5,0,4)\nspace origin: (10,20,30)\n"
-                                      "encoding: raw\n\n" +
-                                      std::string(24, 'x')));
+                                           "\nspace directions: (1,2,0) (0, 3,-1) (0.5,0,4)\nspace origin: (10,20,30)\n"
+                                           "encoding: raw\n\n" +
+                                           std::string(24, 'x')));
     return read_image(dir / "a.nrrd");
   };
   // Index (1, 2, 3): 1 (1,2,0) + 2 (0,3,-1) + 3 (0.5,0,4) + (10,20,30) = (12.5, 28, 40).
@@ -96,11 +96,12 @@ TEST(Nrrd, SpaceDirectionsAreExactAndTurnedToLps) {
 
 TEST(Nrrd, TimeBesideSpaceStaysDecoupled) {
   TempDir dir;
-  write_file(dir / "a.nrrd",
-             nrrd_header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nspace: LPS\nkinds: domain domain domain time\n"
-                    "space directions: (0,2,0) (2,0,0) (0,0,2) none\nspace origin: (1,1,1)\nspacings: NaN NaN NaN 0.5\n"
-                    "units: \"\" \"\" \"\" \"s\"\nencoding: raw\n\n" +
-                    std::string(24, 'x')));
+  write_file(
+      dir / "a.nrrd",
+      nrrd_header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nspace: LPS\nkinds: domain domain domain time\n"
+                  "space directions: (0,2,0) (2,0,0) (0,0,2) none\nspace origin: (1,1,1)\nspacings: NaN NaN NaN 0.5\n"
+                  "units: \"\" \"\" \"\" \"s\"\nencoding: raw\n\n" +
+                  std::string(24, 'x')));
   const auto grid = image_as<std::uint8_t, 4>(read_image(dir / "a.nrrd").image).grid;
   EXPECT_EQ(world(grid, {1, 0, 0, 2}), Eigen::Vector4d(1, 3, 1, 1));
   EXPECT_EQ(grid.axes[3].unit, "s");
@@ -118,10 +119,12 @@ TEST(Nrrd, ListOfImagesBecomesTheLastAxisWhereverItIs) {
   for (int i = 0; i < 24; ++i) last += static_cast<char>(i);
   const std::string space = "space: LPS\nspace origin: (0,0,0)\nencoding: raw\n";
   const std::string directions = "(1,0,0) (0,1,0) (0,0,1)";
-  write_file(dir / "a.nrrd", nrrd_header("type: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: list domain domain domain\n" +
-                                    space + "space directions: none " + directions + "\n\n" + first));
-  write_file(dir / "b.nrrd", nrrd_header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nkinds: domain domain domain list\n" +
-                                    space + "space directions: " + directions + " none\n\n" + last));
+  write_file(dir / "a.nrrd",
+             nrrd_header("type: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: list domain domain domain\n" + space +
+                         "space directions: none " + directions + "\n\n" + first));
+  write_file(dir / "b.nrrd",
+             nrrd_header("type: uint8\ndimension: 4\nsizes: 2 2 2 3\nkinds: domain domain domain list\n" + space +
+                         "space directions: " + directions + " none\n\n" + last));
   for (const char* name : {"a.nrrd", "b.nrrd"}) {
     SCOPED_TRACE(name);
     const auto image = image_as<std::uint8_t, 4>(read_image(dir / name).image);

@@ -69,6 +69,26 @@ TEST_F(Series, OfVolumesIsA4dImage) {
   expect_layers_of(read.image, open_series(files_).layers);
 }
 
+TEST_F(Series, ReportsProgressWhileItIsOpened) {
+  add_three();
+  std::vector<double> shares;
+  SeriesOptions options;
+  options.work.progress = [&](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  const OpenSeriesResult opened = open_series(files_, options);
+  EXPECT_GE(shares.size(), files_.size());
+  EXPECT_EQ(shares.back(), 1.0);
+  const std::size_t calls = shares.size();
+  expect_layers_of(read_series(files_).image, opened.layers);
+  EXPECT_EQ(shares.size(), calls);
+  options.work.progress = [](double) { return false; };
+  expect_error(ErrorCode::Cancelled, {"cancelled"}, [&] { open_series(files_, options); });
+  expect_error(ErrorCode::Cancelled, {"cancelled"},
+               [&] { open_layers(files_[0], {.work = {.progress = [](double) { return false; }}}); });
+}
+
 TEST_F(Series, OfPlanesIsA3dImage) {
   for (int k = 0; k < 5; ++k) add("slice_" + std::to_string(k) + ".nrrd", nrrd({4, 3}, 10 * k));
   SeriesOptions options;
@@ -334,7 +354,7 @@ TEST_F(Series, OfRawValuesIsReadByTheLayoutOfOneFile) {
     add("f" + std::to_string(k) + ".raw", "head" + bytes_of(values));
   }
   SeriesOptions options;
-  options.raw = RawLayout{{2, 3, 4}, "float", 4, false};
+  options.raw = RawLayout{{2, 3, 4}, ValueType::float32, 4, false};
   const ReadImageResult read = read_series(files_, options);
   EXPECT_EQ((image_as<float, 4>(read.image).values[24 + 5]), 105);
   expect_layers_of(read.image, open_series(files_, options).layers);

@@ -370,7 +370,8 @@ TEST(Mesh, ContoursBecomeMeshesAndBack) {
   contour.axis_units = {"mm", "mm", "mm"};
   contour.vertex_attributes = {{"age", "s", 1, {1, 2, 3}}};
   contour.simplex_attributes = {{"flow", "m", 2, {1, 2, 3, 4}}};
-  const auto back = to_contour<3>(to_mesh(contour));
+  const Mesh mesh = to_mesh(contour);
+  const auto back = to_contour<3>(mesh);
   EXPECT_EQ(back.vertices[2], (std::array<double, 3>{6, 7, 8.5}));
   EXPECT_TRUE(back.simplices == contour.simplices);
   ASSERT_EQ(back.normals.size(), 3U);
@@ -383,10 +384,33 @@ TEST(Mesh, ContoursBecomeMeshesAndBack) {
                [&] { to_contour<4>(to_mesh(contour)); });
 }
 
+TEST(Mesh, ContoursTakeTheMemoryOfAMeshOver) {
+  Contour<3, double> contour;
+  contour.vertices = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8.5}};
+  contour.simplices = {{0, 1, 2}, {2, 1, 0}};
+  contour.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+  contour.vertex_attributes = {{"age", "s", 1, {1, 2, 3}}};
+  const Contour<3, double> copy = contour;
+  const auto* const vertices = contour.vertices.data();
+  const auto* const simplices = contour.simplices.data();
+  Mesh mesh = to_mesh(std::move(contour));
+  // Numbers that a reader has put into the array are copied.
+  mesh.normals = Buffer<double>{1, 0, 0, 0, 1, 0, 0, 0, -1};
+  const double* const ages = mesh.vertex_attributes[0].values.data();
+  const auto back = to_contour<3>(std::move(mesh));
+  EXPECT_EQ(back.vertices.data(), vertices);
+  EXPECT_EQ(back.simplices.data(), simplices);
+  EXPECT_EQ(back.vertex_attributes[0].values.data(), ages);
+  EXPECT_TRUE(back.vertices == copy.vertices);
+  EXPECT_TRUE(back.simplices == copy.simplices);
+  EXPECT_TRUE(back.normals == copy.normals);
+}
+
 TEST(Mesh, PlanarSegmentsOfOtherProgramsAreTwoDimensionalContours) {
   Mesh mesh = random_mesh(1, 3, 4, 3, 5);
   for (std::size_t v = 0; v < 4; ++v) mesh.coordinates[3 * v + 2] = 0;
   EXPECT_EQ(to_contour<2>(mesh).vertices[1][0], mesh.coordinates[3]);
+  EXPECT_TRUE(to_contour<2>(Mesh(mesh)).vertices == to_contour<2>(mesh).vertices);
   mesh.coordinates[5] = 0.5;
   expect_error(ErrorCode::UnsupportedData, {"vertex 1 with z = 0.5"}, [&] { to_contour<2>(mesh); });
 }

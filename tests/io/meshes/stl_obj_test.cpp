@@ -25,7 +25,7 @@ Contour<3, Real> closed_noise(std::uint64_t seed, const std::array<double, 3>& s
     image.values.push_back((random() % 2 == 0 ? 1.0F : -1.0F) * static_cast<float>(1 + random() % 1000));
   ExtractOptions options;
   options.close = true;
-  options.normals = true;
+  options.normals = Normals::differences;
   return extract<Real>(image.view(), 0.0, options);
 }
 
@@ -135,7 +135,7 @@ TEST(Obj, LinesComeBackAsLines) {
     for (int x = 0; x < 30; ++x)
       image.values.push_back(static_cast<float>(100.3 - (x - 14) * (x - 14) - (y - 15) * (y - 15)));
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const Contour<2, float> contour = extract<float>(image.view(), 0.0, options);
   write_mesh(contour, dir / "a.obj");
   const Contour<2, double> again = to_contour<2>(read_mesh(dir / "a.obj"));

@@ -39,7 +39,7 @@ tegl::FacetHierarchy<N, Real> facets_of_plane() {
     image.values.push_back(value);
   }
   tegl::ExtractOptions options;
-  options.normals = true;
+  options.normals = tegl::Normals::differences;
   return tegl::extract_facets<Real>(image.view(), 0.0, options);
 }
 
@@ -51,7 +51,7 @@ tegl::Contour<3, double> closed_noise() {
     image.values.push_back((random() % 2 == 0 ? 1.0F : -1.0F) * static_cast<float>(1 + random() % 100));
   tegl::ExtractOptions options;
   options.close = true;
-  options.normals = true;
+  options.normals = tegl::Normals::differences;
   return tegl::extract<double>(image.view(), 0.0, options);
 }
 

@@ -45,13 +45,13 @@ TEST_F(OutOfMemory, LeavesNoHalfWrittenStream) {
   const Grid<3> grid = Grid<3>::unit({20, 15, 9});
   ExtractOptions options;
   options.work.threads = 1;
-  options.normals = true;
+  options.normals = Normals::differences;
   expect_whole_or_none("a.vtkhdf", [&](const fs::path& path) {
     FunctionLayers<float, 3> layers(grid, [](std::size_t k, float* to) {
       for (std::size_t i = 0; i < 300; ++i) to[i] = static_cast<float>((i * 7 + k * 11) % 13);
     });
     ContourFile<3, float> file(path, grid);
-    extract_streamed<float>(layers, 5.5, options, file);
+    extract_streamed<float>(layers, 5.5, file, options);
     file.commit();
   });
 }

@@ -213,9 +213,13 @@ TEST(SeparateReading, SeriesAreTheSame) {
   EXPECT_TRUE(last.has_value());
   EXPECT_EQ(there.files, here.files);
   EXPECT_EQ((image_as<float, 4>(there.image).values), (image_as<float, 4>(here.image).values));
+  last.reset();
   const OpenSeriesResult opened = open_series(files, options);
+  EXPECT_EQ(last, 1.0);
+  last.reset();
   EXPECT_EQ(opened.files, here.files);
   expect_layers_of(here.image, opened.layers);
+  EXPECT_FALSE(last.has_value());
 }
 
 TEST(SeparateReading, MeshesAreTheSame) {

@@ -159,7 +159,7 @@ void expect_same_contours(const OwnedImage<T, N>& image) {
     const auto index = build_active_tiles(view, method);
     for (std::size_t i = 1; i < isovalues.size(); i += 1 + isovalues.size() / 4) {
       const auto expected = extract<float>(view, isovalues[i]);
-      const auto contour = extract<float>(view, isovalues[i], {}, *index);
+      const auto contour = extract<float>(view, isovalues[i], *index);
       EXPECT_TRUE(same(contour.vertices, expected.vertices) && same(contour.simplices, expected.simplices))
           << active_method_name(method) << " at " << isovalues[i];
     }

@@ -100,6 +100,17 @@ TEST(TrackFiles, TablesAndGraphsHaveEverything) {
   for (const char* const arrow : {"e0 -> e1", "e1 -> e3", "e1 -> e2"}) EXPECT_THAT(dot, HasSubstr(arrow));
 }
 
+TEST(TrackFiles, AllTablesAreWrittenOrNone) {
+  const TempDir dir;
+  write_track_csv(fork(), dir / "fork");
+  EXPECT_EQ(read_file(dir / "fork-events.csv"), track_events_csv(fork()));
+  EXPECT_EQ(read_file(dir / "fork-segments.csv"), track_segments_csv(fork()));
+  EXPECT_EQ(read_file(dir / "fork-samples.csv"), track_samples_csv(fork()));
+  const auto none = dir / "none";
+  expect_error(ErrorCode::WriteFailed, {"none"}, [&] { write_track_csv(fork(), none / "fork"); });
+  EXPECT_FALSE(std::filesystem::exists(none));
+}
+
 TEST(TrackFiles, ThePictureShowsTheLongestTracks) {
   EXPECT_THAT(track_svg(fork()), HasSubstr("2 tracks"));
   EXPECT_THAT(track_svg(fork(), {.most_tracks = 1}), HasSubstr("the 1 longest of 2 tracks"));

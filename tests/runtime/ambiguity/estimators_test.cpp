@@ -216,7 +216,7 @@ TYPED_TEST(Estimators, GiveClosedManifoldsOnNoise) {
         options.triangulation = triangulation;
         options.close = close;
         const auto contour = extract(image.view(), noise_isovalue<typename TypeParam::Value>(), options);
-        EXPECT_EQ(contour.normals.size(), options.normals ? contour.vertices.size() : 0);
+        EXPECT_EQ(contour.normals.size(), options.normals != Normals::none ? contour.vertices.size() : 0);
         if (close)
           expect_closed_manifold(contour);
         else
@@ -268,13 +268,13 @@ TYPED_TEST(Estimators, GiveTheSameBytesFromEveryEntryPoint) {
       expect_same_bytes(into, contour);
       Collector<N, float> collector;
       auto layers = layers_of(image);
-      extract_streamed(layers, isovalue, options, collector);
+      extract_streamed(layers, isovalue, collector, options);
       expect_same_bytes(collector.contour, contour);
       const auto active = build_active_tiles(image.view(), ActiveMethod::interval_tree);
-      expect_same_bytes(extract(image.view(), isovalue, options, *active), contour);
+      expect_same_bytes(extract(image.view(), isovalue, *active, options), contour);
       MemoryFile file;
       active->save(file);
-      expect_same_bytes(extract(image.view(), isovalue, options, *load_active_tiles(file, image.view())), contour);
+      expect_same_bytes(extract(image.view(), isovalue, *load_active_tiles(file, image.view()), options), contour);
       if constexpr (N > 2)
         for (const double at : {0.3, 0.5}) {
           const double where = image.grid.axes[N - 1][1] + at * image.grid.axes[N - 1].step();
@@ -310,7 +310,7 @@ TYPED_TEST(Estimators, OfTheCallersSeeWhatIsAroundAFace) {
     expect_oriented_manifold(contour);
     Collector<N, float> collector;
     auto layers = layers_of(image);
-    extract_streamed(layers, isovalue, options, collector);
+    extract_streamed(layers, isovalue, collector, options);
     expect_same_bytes(collector.contour, contour);
     EXPECT_GT(around.asked, 0u);
     EXPECT_EQ(around.wrong, 0u);
@@ -460,11 +460,11 @@ TEST(BarycentricContoursOf4dImages, AreTheSameFromEveryEntryPoint) {
       options.triangulation = Triangulation::barycentric;
       options.close = close;
       options.work.threads = 1;
-      options.normals = true;
+      options.normals = Normals::differences;
       const auto contour = extract(image.view(), 0.5, options);
       options.work.threads = 4;
       expect_same_bytes(extract(image.view(), 0.5, options), contour);
-      expect_same_bytes(extract(image.view(), 0.5, options, *active), contour);
+      expect_same_bytes(extract(image.view(), 0.5, *active, options), contour);
       const ContourSize size = count(image.view(), 0.5, options);
       EXPECT_EQ(size.vertices, contour.vertices.size());
       EXPECT_EQ(size.simplices, contour.simplices.size());
@@ -515,7 +515,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
       for (const bool close : {false, true}) {
         SCOPED_TRACE(std::string(name_of(ambiguity)) + (close ? ", closed" : "") + (missing > 0 ? ", missing" : ""));
         ExtractOptions options = barycentric_by(ambiguity, close);
-        options.normals = true;
+        options.normals = Normals::differences;
         const auto contour = extract(image.view(), 0.5, options);
         if (missing > 0 || !close)
           expect_oriented_manifold(contour);
@@ -525,7 +525,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
           options.work.threads = threads;
           Collector<4, float> collector;
           auto layers = layers_of(image);
-          const ContourSize size = extract_streamed(layers, 0.5, options, collector).size;
+          const ContourSize size = extract_streamed(layers, 0.5, collector, options).size;
           expect_same_bytes(collector.contour, contour);
           EXPECT_EQ(size.vertices, contour.vertices.size());
           EXPECT_EQ(size.simplices, contour.simplices.size());
@@ -546,7 +546,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithAnEstimatorThatLooksFarther) 
     const auto contour = extract(image.view(), 0.5, options);
     Collector<4, float> collector;
     auto layers = layers_of(image);
-    extract_streamed(layers, 0.5, options, collector);
+    extract_streamed(layers, 0.5, collector, options);
     expect_same_bytes(collector.contour, contour);
     EXPECT_GT(around.asked, 0u);
     EXPECT_EQ(around.wrong, 0u);
@@ -582,10 +582,10 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnesNextToMissingVal
       };
       expect_alike(extract<double>(image.view(), 0.5, barycentric_options),
                    extract<double>(image.view(), 0.5, compact_options));
-      expect_alike(extract<double>(whole.view(), 0.5, barycentric_options, *chosen),
-                   extract<double>(whole.view(), 0.5, compact_options, *chosen));
-      expect_alike(extract<double>(image.view(), 0.5, barycentric_options, *holes),
-                   extract<double>(image.view(), 0.5, compact_options, *holes));
+      expect_alike(extract<double>(whole.view(), 0.5, *chosen, barycentric_options),
+                   extract<double>(whole.view(), 0.5, *chosen, compact_options));
+      expect_alike(extract<double>(image.view(), 0.5, *holes, barycentric_options),
+                   extract<double>(image.view(), 0.5, *holes, compact_options));
       expect_closed_up_to_missing_values<double>(image.view(), 0.5, barycentric_options);
     }
   }

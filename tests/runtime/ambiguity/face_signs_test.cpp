@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "ambiguity/face_estimator.hpp"
+#include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
-#include "tegl/saddle.hpp"
 #include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {

@@ -15,6 +15,7 @@
 #include <set>
 #include <vector>
 
+#include "ambiguity/saddle.hpp"
 #include "multilinear.hpp"
 #include "named_cells.hpp"
 #include "tegl/saddle.hpp"

@@ -180,7 +180,7 @@ concept FacetsExtracted = requires(const I& image) {
 };
 template <class I, int N>
 concept ExtractedByIndex = requires(const I& image, const ActiveTiles<N>& active) {
-  extract(image, 0.0, {}, active);
+  extract(image, 0.0, active);
 };
 template <class I, int N>
 concept ExtractedInto = requires(const I& image, const ContourRoom<N, float>& room) {
@@ -188,11 +188,11 @@ concept ExtractedInto = requires(const I& image, const ContourRoom<N, float>& ro
 };
 template <class L, int N>
 concept Streamed = requires(L& layers, ContourSink<N, float>& sink) {
-  extract_streamed(layers, 0.0, {}, sink);
+  extract_streamed(layers, 0.0, sink);
 };
 template <class L, int N>
 concept SeveralStreamed = requires(L& layers, std::span<const StreamedContour<N, float>> contours) {
-  extract_streamed_several(layers, contours, {});
+  extract_streamed_several(layers, contours);
 };
 template <class C>
 concept BecomesMesh = requires(const C& c) {
@@ -201,6 +201,7 @@ concept BecomesMesh = requires(const C& c) {
 template <int N>
 concept FromMesh = requires(const Mesh& mesh) {
   to_contour<N>(mesh);
+  to_contour<N>(Mesh(mesh));
 };
 template <int N>
 concept HasTileFacets = requires {
@@ -336,12 +337,6 @@ static_assert(!HasEigenView<Matrix<3>> && !HasEigenView<const Matrix<3>>);
 static_assert(std::constructible_from<Scrubber<4, float>, const Contour<4>&>);
 static_assert(!std::constructible_from<Scrubber<4, float>, Contour<4>&&>);
 static_assert(!std::constructible_from<Scrubber<4, float>, const Contour<4>&&>);
-template <class Around>
-concept FaceOf = std::constructible_from < AmbiguousFace,
-        std::span<const std::size_t>,
-unsigned, std::span<const double>, double, Around > ;
-static_assert(FaceOf<const AmbiguousFace::Surroundings&> && FaceOf<AmbiguousFace::Surroundings&>);
-static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousFace::Surroundings&&>);
 
 // --- Options: aggregates with any single field initialised by name, without a warning (-Wextra includes
 // -Wmissing-field-initializers). Tested for the first field and one in the middle, as fields after it would cause the
@@ -352,7 +347,7 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
   [[maybe_unused]] const ExtractOptions extraction[] = {{.triangulation = Triangulation::barycentric},
                                                         {.ambiguity = Ambiguity::mean},
                                                         {.close = true},
-                                                        {.normals = true},
+                                                        {.normals = Normals::differences},
                                                         {.work = {.threads = 1}},
                                                         {.work = {.progress = progress}}};
   [[maybe_unused]] const Estimator estimators[] = {{.choose = {}}, {.reach = 1}};
@@ -372,7 +367,7 @@ static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousF
                                                    {.compression = Compression::none}};
   [[maybe_unused]] const ReadMeshOptions mesh_reading[] = {{.work = {.progress = progress}},
                                                            {.separate_process = true}};
-  [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = "float"}, {.big_endian = true}};
+  [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = ValueType::float32}, {.big_endian = true}};
   [[maybe_unused]] const Projection projections[] = {{.direction = {1, 0, 0, 0}}, {.eye_distance = 1}};
   [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = {1, 0, 0, 0}}, {.offset = 1}};
   [[maybe_unused]] const tile::Resolution resolution[] = {{.choices = {}}, {.alternative = tile::Alternative::high}};

@@ -65,7 +65,7 @@ template <int N>
 std::uint64_t extracted_into(const OwnedImage<float, N>& image, const ExtractOptions& options) {
   const ContourSize size = count(image.view(), 0.5, options);
   std::vector<std::array<float, N>> vertices(size.vertices);
-  std::vector<std::array<float, N>> normals(options.normals ? size.vertices : 0);
+  std::vector<std::array<float, N>> normals(options.normals != Normals::none ? size.vertices : 0);
   std::vector<std::array<std::uint64_t, N>> simplices(size.simplices);
   extract_into(image.view(), 0.5, ContourRoom<N, float, std::uint64_t>{vertices, simplices, normals}, options);
   return digest(normals, digest(simplices, digest(vertices, 1)));
@@ -78,7 +78,7 @@ std::uint64_t streamed(const OwnedImage<float, N>& image, const ExtractOptions& 
   FunctionLayers<float, N> layers(
       image.grid, [&](std::size_t k, float* to) { std::copy_n(image.values.data() + k * layer, layer, to); });
   DigestSink<N> sink;
-  extract_streamed<float>(layers, 0.5, options, sink);
+  extract_streamed<float>(layers, 0.5, sink, options);
   return sink.sum;
 }
 
@@ -91,7 +91,7 @@ void expect_all_ways_survive(const std::array<std::size_t, N>& sizes, unsigned t
     const auto image = layered<N>(sizes, missing);
     ExtractOptions options;
     options.work.threads = threads;
-    options.normals = missing == 0.0;
+    options.normals = missing == 0.0 ? Normals::differences : Normals::none;
     options.close = missing != 0.0;
     options.triangulation = missing == 0.0 ? Triangulation::compact : Triangulation::barycentric;
     // Threads keep memory of their own.
@@ -134,7 +134,7 @@ TEST(OutOfMemory, IsSurvivedIn5d) {
                                              [](const Point<5>& x) { return 0.25 - x[0] - x[1] - x[2] - x[3] - x[4]; });
   ExtractOptions options;
   options.work.threads = 1;
-  options.normals = true;
+  options.normals = Normals::differences;
   EXPECT_GT(expect_survives(
                 "extract", [&] { return digest(extract<float>(corner.view(), 0.0, options)); }, true),
             20);
@@ -154,7 +154,7 @@ TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
   const auto image = layered<3>({50, 50, 40}, 0.0);
   ExtractOptions options;
   options.work.threads = 1;
-  options.normals = true;
+  options.normals = Normals::differences;
   const std::int64_t before = memory.mapped_bytes;
   {
     const auto contour = extract<float>(image.view(), 0.5, options);

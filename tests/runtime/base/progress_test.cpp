@@ -62,7 +62,7 @@ std::vector<Way> ways(const OwnedImage<float, N>& image) {
                         std::copy_n(image.values.data() + k * layer, layer, to);
                       });
                       NoSink<N> sink;
-                      extract_streamed<float>(layers, 0.5, options, sink);
+                      extract_streamed<float>(layers, 0.5, sink, options);
                     }});
   if constexpr (N > 2)
     result.push_back({"slice_image", 2, [&](const ExtractOptions& options) {

@@ -143,7 +143,7 @@ TEST(HyperplaneFrame, RefusesNormalsAndOffsetsThatAreNone) {
 TEST(SliceByHyperplane, AcrossTheLastAxisIsTheSameBitByBit) {
   const auto image = test::noise<float, 4>(6, 2);
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const auto whole = extract(image.view(), 0.5, options);
   std::mt19937_64 bits(3);
   for (int i = 0; i < 40; ++i) {
@@ -268,7 +268,7 @@ TEST(SliceByHyperplane, ThroughVerticesIsAClosedManifoldWhereTheContourIs) {
 
 TEST(SliceByHyperplane, OfABallIsABallThatFacesOutwards) {
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const auto image = test::sample_field<double>(test::centred_grid<4>(25, 1.0), test::Ball<4>{{}, 0.8});
   auto whole = extract<double>(image.view(), 0.0, options);
   std::mt19937_64 bits(7);
@@ -407,7 +407,7 @@ TEST(SliceStack, TellsItsProgressAndStops) {
 
 TEST(ScaleAxes, StretchesPointsAndTurnsNormals) {
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const auto image = test::sample_field<double>(test::centred_grid<3>(25, 1.0), test::Ball<3>{{}, 0.8});
   auto contour = extract<double>(image.view(), 0.0, options);
   const auto before = contour;
@@ -465,7 +465,7 @@ TEST(SliceImageAcross, IsTheCutOfTheWholeContour) {
   ExtractOptions options;
   expect_direct_is_whole<float>(image.view(), 0.5, options);
   expect_direct_is_whole<double>(volume.view(), -0.5, options);
-  options.normals = true;
+  options.normals = Normals::differences;
   expect_direct_is_whole<float>(image.view(), 0.5, options);
   expect_direct_is_whole<double>(volume.view(), -0.5, options);
 }

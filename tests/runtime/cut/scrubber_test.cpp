@@ -29,7 +29,7 @@ void expect_same_cut(const Scrubber<N, Real>& scrubber, const Contour<N, Real>& 
 
 TEST(Scrubber, CutsAsSliceDoesAtAThousandTimes) {
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const auto image = test::noise<float, 4>(6, 1);
   const auto contour = extract(image.view(), 0.5, options);
   const Scrubber<4, float> scrubber(contour);

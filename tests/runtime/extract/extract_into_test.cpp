@@ -43,7 +43,9 @@ void expect_same(const Image<T, N>& image, double isovalue, const ExtractOptions
   EXPECT_EQ(simplices.back(), simplex);
   EXPECT_EQ(normals.back(), vertex);
   for (std::size_t v = 0; v < size.vertices; ++v)
-    ASSERT_EQ(std::memcmp(&normals[v], options.normals ? &contour.normals[v] : &vertex, sizeof vertex), 0) << v;
+    ASSERT_EQ(std::memcmp(&normals[v], options.normals != Normals::none ? &contour.normals[v] : &vertex, sizeof vertex),
+              0)
+        << v;
   for (std::size_t v = 0; v < size.vertices; ++v)
     ASSERT_EQ(std::memcmp(&vertices[v], &contour.vertices[v], sizeof vertex), 0) << "vertex " << v;
   for (std::size_t s = 0; s < size.simplices; ++s)
@@ -55,7 +57,7 @@ void expect_same_in_all_variants(const std::array<std::size_t, N>& sizes, std::u
   for (ExtractOptions options : variants())
     for (const bool close : {false, true}) {
       options.close = close;
-      options.normals = seed % 8 < 4;
+      options.normals = seed % 8 < 4 ? Normals::differences : Normals::none;
       SCOPED_TRACE(describe(options));
       const auto image = noise<float, N>(sizes, seed++);
       expect_same<std::uint32_t, float>(image.view(), 0.5, options);
@@ -95,7 +97,7 @@ TEST(ExtractInto, SaysHowMuchRoomIsMissing) {
 
 TEST(ExtractInto, SaysHowMuchRoomForNormalsIsMissing) {
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   for (const double missing : {0.0, 0.05}) {
     const auto image = noise_with_missing<float, 3>(Grid<3>::unit({12, 12, 12}), 5, missing);
     const ContourSize size = count(image.view(), 0.5, options);

@@ -118,7 +118,7 @@ TEST(Pick, OfNoiseIsAComponentOfTheWhole) {
 TEST(Pick, WithAnyOptionsIsAComponentOfTheWhole) {
   ExtractOptions options;
   options.ambiguity = Ambiguity::high;
-  options.normals = true;
+  options.normals = Normals::differences;
   options.direction = GradientDirection::ascent;
   expect_picks(noise<float, 3>({12, 11, 10}, 5), 0.1, options, 20);
   options.triangulation = Triangulation::barycentric;

@@ -103,7 +103,7 @@ TEST_F(StreamSeveral, GivesEachContourOfAPassOfItsOwnAndReadsOnce) {
     std::fill(reads_.begin(), reads_.end(), 0);
     ExtractOptions options;
     options.close = close;
-    options.normals = true;
+    options.normals = Normals::differences;
     auto several = contours({5, 2, 8, 99});
     auto source = layers();
     const auto extracted = extract_streamed_several<double>(source, several, options);
@@ -112,7 +112,7 @@ TEST_F(StreamSeveral, GivesEachContourOfAPassOfItsOwnAndReadsOnce) {
     for (std::size_t i = 0; i < several.size(); ++i) {
       KeepingSink alone(inside_);
       auto again = layers();
-      const auto [size, stats] = extract_streamed<double>(again, several[i].isovalue, options, alone);
+      const auto [size, stats] = extract_streamed<double>(again, several[i].isovalue, alone, options);
       EXPECT_EQ(extracted[i].size, size);
       EXPECT_EQ(extracted[i].stats.active_tiles, stats.active_tiles);
       EXPECT_EQ(sinks_[i]->vertices, alone.vertices);
@@ -131,7 +131,7 @@ TEST_F(StreamSeveral, EndsWithTheErrorOfWhoeverFails) {
     sinks_[failing]->fails_at = 500;
     auto source = layers();
     try {
-      extract_streamed_several<double>(source, several, {});
+      extract_streamed_several<double>(source, several);
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::WriteFailed) << error.what();
@@ -146,7 +146,7 @@ TEST_F(StreamSeveral, EndsWithTheErrorOfTheReader) {
     std::copy_n(values_.begin(), kSize * kSize, to);
   });
   try {
-    extract_streamed_several<double>(broken, several, {});
+    extract_streamed_several<double>(broken, several);
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::MalformedFile) << error.what();
@@ -222,7 +222,7 @@ TEST_F(StreamSeveral, TellsAProgressThatDoesNotFall) {
 TEST_F(StreamSeveral, OfAnImageWithoutTilesIsEmpty) {
   auto several = contours({5, 2});
   Layers flat(Grid<3>::unit({4, 4, 1}), [](std::size_t, float* to) { std::fill_n(to, 16, 5.0F); });
-  const auto extracted = extract_streamed_several<double>(flat, several, {});
+  const auto extracted = extract_streamed_several<double>(flat, several);
   EXPECT_EQ(extracted[1].size.simplices, 0U);
   EXPECT_EQ(extracted[1].stats.tiles, 0U);
 }
@@ -231,8 +231,8 @@ TEST_F(StreamSeveral, RefusesAContourWithoutASink) {
   auto several = contours({5, 2});
   several[1].sink = nullptr;
   auto source = layers();
-  EXPECT_THROW(extract_streamed_several<double>(source, several, {}), Error);
-  EXPECT_TRUE(extract_streamed_several<double>(source, {}, {}).empty());
+  EXPECT_THROW(extract_streamed_several<double>(source, several), Error);
+  EXPECT_TRUE(extract_streamed_several<double>(source, {}).empty());
   EXPECT_THAT(reads_, testing::Each(0));
 }
 
@@ -245,7 +245,7 @@ template <class Real, Value T, int N>
 void expect_each_equals_its_own(const Image<T, N>& image, const std::vector<double>& isovalues) {
   ExtractOptions options;
   options.close = N < 5;
-  options.normals = true;
+  options.normals = Normals::differences;
   options.work.threads = 2;
   const auto several = extract_several<Real>(image, isovalues, options);
   ASSERT_EQ(several.size(), isovalues.size());

@@ -97,7 +97,7 @@ std::size_t expect_streamed(const OwnedImage<T, N>& image, const ExtractOptions&
     detail::LayerRing<T, N> ring(layers);
     detail::LayerSource<T, N> source(ring, noise_isovalue<T>(), options.epsilon);
     Collector<N, Real> collector;
-    detail::StreamOutput<N, Real> output(collector, options.normals);
+    detail::StreamOutput<N, Real> output(collector, options.normals != Normals::none);
     const detail::ExtractPlan plan{
         .max_vertices = ~std::uint64_t{0}, .batch = batch, .keeps_tiles = batch != 2 && batch != 100};
     detail::extract_to<N, Real>(source, image.grid, detail::generated_tables<N>(options), options, plan, output);
@@ -123,7 +123,7 @@ void expect_streamed_in_all_ways(const std::array<std::size_t, N>& sizes) {
         options.triangulation = triangulation;
         options.ambiguity = seed % 2 == 0 ? Ambiguity::low : Ambiguity::high;
         options.work.threads = 1 + static_cast<unsigned>(seed % 3);
-        options.normals = seed % 4 < 2;
+        options.normals = seed % 4 < 2 ? Normals::differences : Normals::none;
         replaced += expect_streamed<Real>(holey_noise<T, N>(sizes, seed++, missing), options);
       }
   if (std::is_floating_point_v<T> && N > 2) {
@@ -146,10 +146,10 @@ TEST(Streamed, IsTheContourInMemoryIn4d) {
 
 TEST(Streamed, ThroughThePublicFunction) {
   const auto image = noise<float, 4>({9, 8, 7, 6}, 3);
-  const auto contour = extract<float>(image.view(), noise_isovalue<float>(), {});
+  const auto contour = extract<float>(image.view(), noise_isovalue<float>());
   ImageLayers<float, 4> layers(image);
   Collector<4, float> collector;
-  const auto [size, stats] = extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector);
+  const auto [size, stats] = extract_streamed<float>(layers, noise_isovalue<float>(), collector);
   expect_equal(collector, contour);
   EXPECT_EQ(size.simplices, contour.simplices.size());
   EXPECT_EQ(stats.tiles, 8u * 7 * 6 * 5);
@@ -159,14 +159,14 @@ TEST(Streamed, ThroughThePublicFunction) {
 TEST(Streamed, HasTheNormalsOfTheWholeImage) {
   for (const bool close : {false, true}) {
     ExtractOptions options;
-    options.normals = true;
+    options.normals = Normals::differences;
     options.close = close;
     const auto image = holey_noise<float, 3>({90, 70, 40}, 11, close ? 0 : 1);
     const auto contour = extract<float>(image.view(), noise_isovalue<float>(), options);
     ASSERT_EQ(contour.normals.size(), contour.vertices.size());
     ImageLayers<float, 3> layers(image);
     Collector<3, float> collector;
-    extract_streamed<float>(layers, noise_isovalue<float>(), options, collector);
+    extract_streamed<float>(layers, noise_isovalue<float>(), collector, options);
     expect_equal(collector, contour);
   }
 }
@@ -181,9 +181,9 @@ TEST(Streamed, NormalsForASinkThatTakesNoneAreAnError) {
   ImageLayers<float, 3> layers(image);
   Plain sink;
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   try {
-    extract_streamed<float>(layers, noise_isovalue<float>(), options, sink);
+    extract_streamed<float>(layers, noise_isovalue<float>(), sink, options);
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
@@ -194,7 +194,7 @@ TEST(Streamed, WithoutTilesIsEmpty) {
   const auto image = noise<float, 3>({9, 1, 7}, 3);
   ImageLayers<float, 3> layers(image);
   Collector<3, float> collector;
-  EXPECT_EQ(extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector).size.vertices, 0u);
+  EXPECT_EQ(extract_streamed<float>(layers, noise_isovalue<float>(), collector).size.vertices, 0u);
 }
 
 /// Vertex numbers beyond 2^32 without that many vertices: the sink starts at a large number.
@@ -227,7 +227,7 @@ TEST(Streamed, ErrorsOfTheReaderReachTheCaller) {
     std::copy_n(image.values.begin() + static_cast<std::ptrdiff_t>(81 * k), 81, to);
   });
   Collector<3, float> collector;
-  EXPECT_THROW(extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector), Error);
+  EXPECT_THROW(extract_streamed<float>(layers, noise_isovalue<float>(), collector), Error);
 }
 
 TEST(Streamed, CanBeCancelled) {
@@ -238,7 +238,7 @@ TEST(Streamed, CanBeCancelled) {
   int calls = 0;
   options.work.progress = [&](double) { return ++calls < 4; };
   try {
-    extract_streamed<float>(layers, noise_isovalue<float>(), options, collector);
+    extract_streamed<float>(layers, noise_isovalue<float>(), collector, options);
     FAIL() << "was not cancelled";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);

@@ -189,7 +189,7 @@ TYPED_TEST(Facets, HavePointsAndNormalsBitByBitWhereTheContourHasThem) {
     if (options.close) continue;
     const double epsilon = options.ambiguity == Ambiguity::high ? 0.0 : 0.1;
     SCOPED_TRACE(describe(options));
-    options.normals = true;
+    options.normals = Normals::differences;
     options.epsilon = epsilon;
     const auto facets = extract_facets<float>(image.view(), 128.0, options);
     const auto contour = extract<float>(image.view(), 128.0, options);

@@ -263,7 +263,7 @@ TEST(ContoursFromPolygons, OfNoiseAreManifoldsWithMissingValuesAndWithout) {
     for (const NamedOptions& way : all_estimators()) {
       SCOPED_TRACE(way.name);
       ExtractOptions options = way.options;
-      options.normals = true;
+      options.normals = Normals::differences;
       const auto facets = extract_facets<double>(image.view(), 0.5, options);
       options.triangulation = Triangulation::barycentric;
       const auto barycentric = extract<double>(image.view(), 0.5, options);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Image views: strides, parts, and invalid arguments.
+// Image views: strides, parts, and invalid arguments; names of value types.
 #include "tegl/image.hpp"
 
 #include <limits>
 #include <numeric>
 
 #include <gtest/gtest.h>
+
+#include "tegl/value_type.hpp"
 
 namespace tegl {
 namespace {
@@ -59,6 +61,20 @@ TEST(Image, RejectsNullEmptyAxesAndSingularMaps) {
   EXPECT_EQ(code_of(&value, grid), ErrorCode::InvalidGrid);
   grid.linear[1][1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(code_of(&value, grid), ErrorCode::InvalidGrid);
+}
+
+TEST(ValueType, NamesAreReadBack) {
+  for (int i = 0; i < 10; ++i) {
+    const auto type = static_cast<ValueType>(i);
+    EXPECT_EQ(parse_value_type(name_of(type)), type) << name_of(type);
+  }
+  EXPECT_EQ(name_of(kValueType<std::uint8_t>), "uint8");
+  EXPECT_EQ(name_of(kValueType<std::int32_t>), "int32");
+  EXPECT_EQ(name_of(kValueType<float>), "float");
+  EXPECT_EQ(name_of(kValueType<double>), "double");
+  EXPECT_EQ(name_of(ValueType::uint64), "uint64");
+  EXPECT_EQ(parse_value_type("float16"), std::nullopt);
+  EXPECT_EQ(parse_value_type(""), std::nullopt);
 }
 
 }  // namespace

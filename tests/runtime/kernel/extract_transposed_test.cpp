@@ -45,7 +45,7 @@ struct Elsewhere {
 template <class T, int N>
 void expect_same_in_any_order(const OwnedImage<T, N>& image, double isovalue) {
   ExtractOptions plain;
-  plain.normals = true;
+  plain.normals = Normals::differences;
   ExtractOptions saddle;
   saddle.ambiguity = Ambiguity::saddle;
   saddle.close = true;

@@ -40,9 +40,8 @@ double largest_difference(const Buffer<std::array<Real, N>>& a, const Buffer<std
   return largest;
 }
 
-ExtractOptions with(GradientKind kind, ExtractOptions options = {}) {
-  options.normals = true;
-  options.gradient = kind;
+ExtractOptions with(Normals kind, ExtractOptions options = {}) {
+  options.normals = kind;
   return options;
 }
 
@@ -84,7 +83,7 @@ void expect_printed_kernel(std::size_t samples) {
   const auto image = noise<double, N>(samples, 4);
   ExtractOptions options;
   options.epsilon = 0.01;
-  const auto contour = extract<double>(image.view(), 0.5, with(GradientKind::sobel, options));
+  const auto contour = extract<double>(image.view(), 0.5, with(Normals::sobel, options));
   std::size_t compared = 0;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
     std::array<std::size_t, N> low{}, high{};
@@ -150,7 +149,7 @@ void expect_exact_slopes() {
       image.values[i] = std::numeric_limits<double>::quiet_NaN();
     for (ExtractOptions options : variants()) {
       options.close = !missing;
-      const auto contour = extract<double>(image.view(), isovalue, with(GradientKind::sobel, options));
+      const auto contour = extract<double>(image.view(), isovalue, with(Normals::sobel, options));
       ASSERT_GT(contour.vertices.size(), 5u);
       const Eigen::Matrix<double, N, 1> expected = -(as_eigen(grid.linear).inverse().transpose() * slope).normalized();
       for (const auto& normal : contour.normals)
@@ -167,7 +166,7 @@ TEST(Sobel, OfALinearFieldIsExactOnGridsOfAnyKindToTheBorder) {
 
 TEST(Sobel, IsTheSameForAnyNumberOfThreadsAndForCutsFromTheImage) {
   const auto image = noise<float, 4>({9, 8, 7, 6}, 17);
-  ExtractOptions one = with(GradientKind::sobel), many = one;
+  ExtractOptions one = with(Normals::sobel), many = one;
   one.work.threads = 1;
   many.work.threads = 4;
   const auto contour = extract<float>(image.view(), 0.5, one);
@@ -187,7 +186,7 @@ TEST(Sobel, OfSteepFieldsAndInfiniteSamplesIsANumber) {
   auto image = noise<double, 3>(8, 9);
   for (std::size_t i = 0; i < image.values.size(); i += 7) image.values[i] = std::numeric_limits<double>::max();
   for (std::size_t i = 3; i < image.values.size(); i += 11) image.values[i] = -std::numeric_limits<double>::infinity();
-  const auto contour = extract<double>(image.view(), 0.5, with(GradientKind::sobel));
+  const auto contour = extract<double>(image.view(), 0.5, with(Normals::sobel));
   ASSERT_GT(contour.normals.size(), 100u);
   for (const auto& normal : contour.normals) {
     const double size = length<3, double>(normal);
@@ -200,7 +199,7 @@ TEST(Sobel, OfSteepFieldsAndInfiniteSamplesIsANumber) {
 template <int N, class Real>
 void expect_gradients_of_the_extraction(const Grid<N>& grid, double missing, double tolerance) {
   const auto image = noise_with_missing<float, N>(grid, 5, missing);
-  for (const GradientKind kind : {GradientKind::differences, GradientKind::sobel})
+  for (const Normals kind : {Normals::differences, Normals::sobel})
     for (const auto direction : {GradientDirection::descent, GradientDirection::ascent}) {
       ExtractOptions options = with(kind);
       options.direction = direction;
@@ -220,6 +219,17 @@ TEST(GradientNormals, AreThoseOfTheExtraction) {
   expect_gradients_of_the_extraction<3, float>(Grid<3>::unit({9, 8, 7}), 0.0, 2e-2);
   expect_gradients_of_the_extraction<3, double>(odd_grid<3>(), 0.0, 1e-7);
   expect_gradients_of_the_extraction<4, double>(odd_grid<4>(), 0.0, 1e-7);
+}
+
+TEST(GradientNormals, RefuseTheKindNone) {
+  const auto image = noise<float, 2>(4, 1);
+  const auto contour = extract<float>(image.view(), 0.5);
+  try {
+    gradient_normals(image.view(), contour, Normals::none);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+  }
 }
 
 TEST(GradientNormals, AreZeroOutsideOfTheImage) {
@@ -366,7 +376,7 @@ TEST(GeometricNormals, StopWhereProgressSaysSo) {
   const WorkOptions stop{.threads = 0, .progress = [](double) { return false; }};
   EXPECT_THROW(geometric_normals(contour, NormalWeights::area, stop), Error);
   EXPECT_THROW(flat_normals(contour, stop), Error);
-  EXPECT_THROW(gradient_normals(image.view(), contour, GradientKind::sobel, stop), Error);
+  EXPECT_THROW(gradient_normals(image.view(), contour, Normals::sobel, stop), Error);
 }
 
 // ---- how exact ----
@@ -430,9 +440,9 @@ void expect_orders(std::size_t samples) {
     double errors[2][2], geometric[2];
     for (int level = 0; level < 2; ++level) {
       const auto image = ball_in_world<N>(grid_of<N>(expected.grid, level == 0 ? samples : 2 * samples - 1));
-      for (const GradientKind kind : {GradientKind::differences, GradientKind::sobel}) {
+      for (const Normals kind : {Normals::differences, Normals::sobel}) {
         const auto contour = extract<double>(image.view(), 0.0, with(kind));
-        errors[kind == GradientKind::sobel ? 1 : 0][level] = angular_error<N>(contour, contour.normals);
+        errors[kind == Normals::sobel ? 1 : 0][level] = angular_error<N>(contour, contour.normals);
         geometric[level] = angular_error<N>(contour, geometric_normals(contour));
       }
     }
@@ -467,7 +477,7 @@ void expect_damped_noise(std::size_t samples, double factor) {
                                        [](const Point<N>& x) { return x[0]; });
   const auto random = noise<double, N>(samples, 12);
   for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] += kNoise * (random.values[i] - 0.5);
-  const auto error = [&](GradientKind kind) {
+  const auto error = [&](Normals kind) {
     // Near samples, whose gradients by differences are independent of those at the other ends of the edges.
     const auto contour = extract<double>(image.view(), 0.5 * static_cast<double>(samples) + 0.01, with(kind));
     double sum = 0;
@@ -482,7 +492,7 @@ void expect_damped_noise(std::size_t samples, double factor) {
     EXPECT_GT(count, 100u);
     return std::sqrt(sum / static_cast<double>(count));
   };
-  EXPECT_NEAR(error(GradientKind::sobel) / error(GradientKind::differences), factor, 0.12 * factor) << N << 'D';
+  EXPECT_NEAR(error(Normals::sobel) / error(Normals::differences), factor, 0.12 * factor) << N << 'D';
 }
 
 TEST(NormalErrors, InNoiseAreSmallerForSobelByItsWeights) {

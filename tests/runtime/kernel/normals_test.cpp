@@ -23,8 +23,8 @@
 namespace tegl::test {
 namespace {
 
-ExtractOptions with_normals(ExtractOptions options = {}) {
-  options.normals = true;
+ExtractOptions with_normals(ExtractOptions options = {}, Normals kind = Normals::differences) {
+  options.normals = kind;
   return options;
 }
 
@@ -356,11 +356,10 @@ void expect_normals_of_the_steepest(const std::array<std::size_t, N>& sizes) {
   auto image = noise_with_missing<double, N>(grid, 21, 0.1);
   for (double& value : image.values) value = (2.0 * value - 1.0) * 1.5e308;
   for (ExtractOptions options : variants())
-    for (const GradientKind kind : {GradientKind::differences, GradientKind::sobel}) {
+    for (const Normals kind : {Normals::differences, Normals::sobel}) {
       options.close = true;
-      options.gradient = kind;
       SCOPED_TRACE(describe(options));
-      const auto contour = extract<double>(image.view(), 1e307, with_normals(options));
+      const auto contour = extract<double>(image.view(), 1e307, with_normals(options, kind));
       ASSERT_GT(contour.normals.size(), 100u);
       const auto by_gradients = gradient_normals(image.view(), contour, kind);
       for (std::size_t v = 0; v < contour.normals.size(); ++v)

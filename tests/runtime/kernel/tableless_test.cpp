@@ -377,7 +377,7 @@ TEST(Extract5d, IsTheSameForAnyNumberOfThreadsAndAnyMemoryForTiles) {
   const auto image = noise<float, 5>({4, 3, 3, 3, 4}, 8);
   ExtractOptions options;
   options.close = true;
-  options.normals = true;
+  options.normals = Normals::differences;
   options.work.threads = 1;
   const auto one = extract<float>(image.view(), 0.5, options);
   EXPECT_FALSE(one.simplices.empty());
@@ -419,7 +419,7 @@ TEST(Extract5d, NormalsPointAwayFromABall) {
     return 1.0 - square;
   });
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const auto contour = extract<double>(image.view(), 0.0, options);
   ASSERT_EQ(contour.normals.size(), contour.vertices.size());
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {

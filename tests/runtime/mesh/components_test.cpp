@@ -202,7 +202,7 @@ TEST(Components, WithTheOtherDirectionEncloseTheSame) {
 
 TEST(Components, KeepNormalsAttributesNamesAndUnits) {
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   auto image = noise<float, 3>(10, 5);
   image.grid.axes[1].name = "lat";
   image.grid.axes[1].unit = "mm";

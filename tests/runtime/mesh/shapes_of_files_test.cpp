@@ -124,7 +124,7 @@ template <Value T, int N>
 void expect_normals_by_differences(const Image<T, N>& image, double isovalue) {
   const auto unit = on_unit_grid(image);
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   const auto contour = extract<double>(unit.view(), isovalue, options);
   const auto from_image = gradient_normals(unit.view(), contour);
   const auto from_shape = geometric_normals(contour);

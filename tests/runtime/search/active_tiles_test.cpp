@@ -2,6 +2,7 @@
 //
 // Indexes of active tiles find the tiles of the definition at every relevant isovalue, for every method, dimension and
 // value type; and loading restores them exactly or fails.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -180,6 +181,25 @@ TEST(ActiveTiles, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(ActiveTiles, OfIndexesThatNeedNoImageDoNotDependOnItsValues) {
+  auto image = noise<float, 3>(8, 21);
+  std::set<ActiveMethod> need_values;
+  for (const auto& index : all_indexes(image.view())) {
+    const std::vector<TileNumber> expected = index->find(0.5);
+    ASSERT_FALSE(expected.empty());
+    if (index->needs_image()) {
+      need_values.insert(index->method());
+      continue;
+    }
+    const auto values = image.values;
+    std::fill(image.values.begin(), image.values.end(), 0.0F);
+    EXPECT_EQ(index->find(0.5), expected) << active_method_name(index->method());
+    std::copy(values.begin(), values.end(), image.values.begin());
+  }
+  EXPECT_EQ(need_values,
+            (std::set<ActiveMethod>{ActiveMethod::full_scan, ActiveMethod::min_max_tree, ActiveMethod::seed_set}));
+}
+
 TEST(ActiveTiles, ChosenOnesAreThoseAndNotComplete) {
   const auto image = noise<float, 3>({9, 8, 7}, 16);
   const auto chosen = choose_tiles(image.view(), {3, 5, 335});
@@ -299,7 +319,7 @@ TEST_P(ActiveTilesFile, HasAHeadThatCanBeReadAlone) {
   const ActiveTilesHead head = read_active_tiles_head(file);
   EXPECT_EQ(head.method, GetParam());
   EXPECT_EQ(head.sizes, (std::vector<std::uint64_t>{11, 7, 6}));
-  EXPECT_EQ(head.value_type, "float");
+  EXPECT_EQ(head.value_type, ValueType::float32);
   EXPECT_TRUE(head.any_missing);
   EXPECT_EQ(head.digest, identify(image_.view()).digest);
 }

@@ -35,7 +35,7 @@ template <int N>
 Contour<N, double> ball(std::size_t samples) {
   const auto image = sample_field<float, N>(centred_grid<N>(samples, 1.3), Ball<N>{});
   ExtractOptions options;
-  options.normals = true;
+  options.normals = Normals::differences;
   return extract<double>(image.view(), 0.0, options);
 }
 

@@ -22,11 +22,13 @@ void write_active_tiles(const ActiveTiles<N>& active, const std::filesystem::pat
 /// Reads an index and verifies that it belongs to the image. Errors, naming the file: FileNotFound, and those of
 /// load_active_tiles.
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> read_active_tiles(
-    const std::filesystem::path& path, const Image<T, N>& image, const ActiveTilesOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::unique_ptr<ActiveTiles<N>> read_active_tiles(const std::filesystem::path& path,
+                                                                const Image<T, N>& image,
+                                                                const ActiveTilesOptions& options = {});
 
 /// Reads the header of an index file. Errors, naming the file: FileNotFound, MalformedFile, UnsupportedFormat.
-ActiveTilesHead read_active_tiles_head(const std::filesystem::path& path);
+[[nodiscard]] ActiveTilesHead read_active_tiles_head(const std::filesystem::path& path);
 
 /// Reads the whole file, verifies that it is undamaged, and returns its header. Errors: as read_active_tiles_head.
 ActiveTilesHead check_active_tiles(const std::filesystem::path& path);

@@ -52,7 +52,8 @@ void write_elements(const Elements<N>& elements, const std::filesystem::path& pa
 /// The column names of the text format, such as t x y z dsigma_t dsigma_x dsigma_y dsigma_z T. Axes without a name are
 /// x, y, z, t (and u in 5D); attributes of several numbers become NAME_0, NAME_1 ...; blanks become '_'.
 template <int N>
-requires DimensionBetween<N, 2, 5> std::vector<std::string> element_columns(const Elements<N>& elements,
-                                                                            const ElementFileOptions& options = {});
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<std::string> element_columns(const Elements<N>& elements,
+                                                       const ElementFileOptions& options = {});
 
 }  // namespace tegl

@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "tegl/image.hpp"
+#include "tegl/value_type.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -36,7 +38,7 @@ struct ImageInfo {
   std::string value_unit = {};                      ///< such as "degC"; may be empty
   std::string value_name = {};                      ///< long name; may be empty
   std::string world_frame = {};                     ///< such as "RAS", "LPS"; empty if unknown
-  std::string stored_type = {};                     ///< value type in the file, before any conversion
+  std::optional<ValueType> stored_type = {};        ///< value type in the file, before any conversion
   std::vector<AxisDirection> axis_directions = {};  ///< netCDF: one per axis of the image; else empty
   std::vector<std::string> remarks = {};            ///< DICOM: skipped files, uneven slice distances; else empty
 };
@@ -89,7 +91,7 @@ struct ReadImageOptions {
 /// that is not monotone), InvalidArgument (a variable or a fixed index for a format without names; a fixed dimension or
 /// index that the variable does not have), TooLarge, Cancelled. Memory: up to three times the values; a damaged file
 /// takes no more than its bytes can hold.
-ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
+[[nodiscard]] ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// A variable that is readable as an image.
 struct ImageVariable {
@@ -103,7 +105,7 @@ struct ImageVariable {
 /// Lists the values for ReadImageOptions::variable: the variables of a netCDF file, or the series of DICOM (with the
 /// description as long_name). Empty for other formats, whose files hold one unnamed image. Variables of more than 4
 /// axes are only readable with ReadImageOptions::fixed. Reads no values. Errors: those of read_image.
-std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
-                                                const ReadImageOptions& options = {});
+[[nodiscard]] std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
+                                                              const ReadImageOptions& options = {});
 
 }  // namespace tegl

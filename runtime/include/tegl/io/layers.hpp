@@ -14,6 +14,7 @@
 
 #include "tegl/io/images.hpp"
 #include "tegl/layers.hpp"
+#include "tegl/value_type.hpp"
 
 namespace tegl {
 
@@ -40,13 +41,14 @@ struct OpenLayersResult {
 /// of NIfTI, NRRD and MetaImage are read in one pass if layers are requested in ascending order; a layer before the
 /// last one starts a new pass. Errors: those of read_image, here or in read() (faults in compressed samples are found
 /// when they are read); UnsupportedData for a netCDF file that is gzipped as a whole, and for an NRRD list of images
-/// whose axis is not the last one in the file.
-OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
+/// whose axis is not the last one in the file. Progress is called while the file is opened, once for each file of a
+/// DICOM folder, and not while layers are read.
+[[nodiscard]] OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// The layout of a headerless raw file: contiguous values, axis 0 fastest.
 struct RawLayout {
   std::vector<std::size_t> sizes = {};       ///< sizes of 2 to 4 axes
-  std::string type = {};                     ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  ValueType type = ValueType::uint8;         ///< one that images in memory may have
   std::uint64_t offset = 0;                  ///< bytes before the first value
   bool big_endian = false;                   ///< byte order of values
   std::vector<double> spacing = {};          ///< distance of adjacent samples by axis, not 0; empty: 1
@@ -55,9 +57,9 @@ struct RawLayout {
   std::vector<std::string> axis_units = {};  ///< empty: none
 };
 
-/// Opens a headerless raw file to be read layer by layer. Errors: FileNotFound; InvalidArgument (the layout: an invalid
-/// size, spacing or origin, or lists of another length than `sizes`); MalformedFile if the file is shorter than the
-/// layout requires.
-OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
+/// Opens a headerless raw file to be read layer by layer. Errors: FileNotFound; InvalidArgument (the layout: another
+/// value type, an invalid size, spacing or origin, or lists of another length than `sizes`); MalformedFile if the file
+/// is shorter than the layout requires.
+[[nodiscard]] OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace tegl

@@ -93,15 +93,23 @@ struct MeshView {
 /// Converts a contour to a mesh with names, units, normals and attributes; `single_precision` is set for Real = float.
 /// Copies all data. write_mesh also takes contours and needs no Mesh.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Mesh to_mesh(const Contour<N, Real>& contour);
 /// Takes the contour's memory over: simplices, attributes and, for Real = double, coordinates and normals are not
 /// copied.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Mesh to_mesh(Contour<N, Real>&& contour);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Mesh to_mesh(Contour<N, Real>&& contour);
 /// Converts a mesh with dim = N - 1 and space_dim = N to a contour. Planar meshes read from 3D files (dim 1, all z = 0)
 /// become N = 2; their normals lose z. Throws UnsupportedData for other meshes.
 template <int N>
-requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh);
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, double> to_contour(const Mesh& mesh);
+/// Takes the mesh's memory over: attributes, and arrays that hold rows as a contour has them. Other arrays are freed as
+/// soon as they are copied. After an error the mesh is unchanged.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, double> to_contour(Mesh&& mesh);
 
 /// The meshes that a file format supports.
 struct MeshFileFormat {
@@ -111,10 +119,10 @@ struct MeshFileFormat {
 };
 
 /// The formats of read_mesh and write_mesh, by extension.
-std::span<const MeshFileFormat> mesh_file_formats() noexcept;
+[[nodiscard]] std::span<const MeshFileFormat> mesh_file_formats() noexcept;
 
 /// The format for a file's extension, in upper or lower case; null if it is unknown.
-const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
+[[nodiscard]] const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 
 /// Writes a mesh or a contour; the extension selects the format. Supported meshes: .ply, .obj (text; both lossless) and
 /// .gltf/.glb (coordinates as float): segments and triangles in the plane or in space; .stl (binary, float): triangles
@@ -170,6 +178,6 @@ struct ReadMeshOptions {
 ///
 /// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData (also a further file outside of the folder,
 /// see ReadMeshOptions), TooLarge, Cancelled.
-Mesh read_mesh(const std::filesystem::path& path, const ReadMeshOptions& options = {});
+[[nodiscard]] Mesh read_mesh(const std::filesystem::path& path, const ReadMeshOptions& options = {});
 
 }  // namespace tegl

@@ -33,7 +33,7 @@ struct SeriesOptions {
   std::string unit = {};
   SeriesOrder order = SeriesOrder::given;  ///< order of the files
   std::optional<RawLayout> raw = {};       ///< layout of each file, for headerless raw files
-  WorkOptions work = {};                   ///< progress of read_series, over all files; one thread reads
+  WorkOptions work = {};                   ///< progress over all files; one thread reads
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
@@ -65,19 +65,22 @@ struct OpenSeriesResult : OpenLayersResult {
 /// Errors, naming the file and the difference from the first file: UnsupportedData (files that do not match; more than
 /// 3 axes), InvalidArgument (no file; not one coordinate per file, or coordinates that are not monotone; both
 /// `coordinates` and `step`; a unit that the files' unit does not convert to), and those of read_image.
-ReadSeriesResult read_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
+[[nodiscard]] ReadSeriesResult read_series(std::span<const std::filesystem::path> files,
+                                           const SeriesOptions& options = {});
 
 /// Opens a series to be read layer by layer, one file per layer, for images larger than memory. Values as in
 /// open_layers (uint32, int64 and uint64 as double). Memory: one file. Errors: those of read_series, immediately; and
-/// in read() if a file has changed since. A single file is opened by open_layers or open_raw_layers.
-OpenSeriesResult open_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
+/// in read() if a file has changed since. Progress is called once for each file that is opened, and not while layers
+/// are read. A single file is opened by open_layers or open_raw_layers.
+[[nodiscard]] OpenSeriesResult open_series(std::span<const std::filesystem::path> files,
+                                           const SeriesOptions& options = {});
 
 /// Whether the files are DICOM. DICOM files have their own positions: read_series accepts them in any order, without
 /// coordinates and without a SeriesOrder.
-bool are_dicom_files(std::span<const std::filesystem::path> files);
+[[nodiscard]] bool are_dicom_files(std::span<const std::filesystem::path> files);
 
 /// Whether name `a` precedes `b` if runs of digits are compared as numbers: "frame_2" before "frame_10". Names that
 /// differ only in leading zeros are compared by bytes.
-bool natural_less(std::string_view a, std::string_view b);
+[[nodiscard]] bool natural_less(std::string_view a, std::string_view b);
 
 }  // namespace tegl

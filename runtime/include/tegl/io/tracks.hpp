@@ -12,18 +12,18 @@
 namespace tegl {
 
 /// The graph as JSON, without simplex_segments; docs/tracking.md lists the keys. Contents of open parts are null.
-std::string track_json(const TrackGraph& graph);
+[[nodiscard]] std::string track_json(const TrackGraph& graph);
 
 /// The graph in graphviz's DOT language: a node for each event, an arrow for each segment.
-std::string track_dot(const TrackGraph& graph);
+[[nodiscard]] std::string track_dot(const TrackGraph& graph);
 
 /// CSV tables with a header line: comma-separated fields, lists inside a field separated by blanks. One row for each
 /// event; empty fields for missing numbers.
-std::string track_events_csv(const TrackGraph& graph);
+[[nodiscard]] std::string track_events_csv(const TrackGraph& graph);
 /// One row for each segment; format as track_events_csv.
-std::string track_segments_csv(const TrackGraph& graph);
+[[nodiscard]] std::string track_segments_csv(const TrackGraph& graph);
 /// One row for each sample of each segment; format as track_events_csv.
-std::string track_samples_csv(const TrackGraph& graph);
+[[nodiscard]] std::string track_samples_csv(const TrackGraph& graph);
 
 /// Options of the picture.
 struct TrackPicture {
@@ -35,14 +35,14 @@ struct TrackPicture {
 /// The graph as an SVG picture: time from left to right, a line for each track. Line width is proportional to the
 /// square root of the part's measure if there are samples. Merging and splitting tracks are connected, and events are
 /// marked. Readable on light and dark backgrounds.
-std::string track_svg(const TrackGraph& graph, const TrackPicture& picture = {});
+[[nodiscard]] std::string track_svg(const TrackGraph& graph, const TrackPicture& picture = {});
 
 /// Writes a file by extension: .json, .dot (or .gv) or .svg. The file appears complete or not at all. Errors:
 /// UnsupportedFormat (the extension), WriteFailed.
 void write_track(const TrackGraph& graph, const std::filesystem::path& path, const TrackPicture& picture = {});
 
 /// Whether `write_track` supports the extension.
-bool is_track_file(const std::filesystem::path& path);
+[[nodiscard]] bool is_track_file(const std::filesystem::path& path);
 
 /// Writes `stem`-events.csv, `stem`-segments.csv and `stem`-samples.csv. Errors: WriteFailed.
 void write_track_csv(const TrackGraph& graph, const std::filesystem::path& stem);

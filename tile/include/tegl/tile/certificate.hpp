@@ -24,7 +24,7 @@ enum class Fault : std::uint8_t {
 };
 
 /// The enumerator's name in words, for messages.
-const char* fault_name(Fault fault) noexcept;
+[[nodiscard]] const char* fault_name(Fault fault) noexcept;
 
 /// Checks tiles one after the other and reuses its memory. Not thread-safe: one thread at a time.
 class Certifier {
@@ -44,7 +44,7 @@ class Certifier {
   /// it does not prove that the positions embed the complex, nor does it identify which of several fillings the complex
   /// is. Throws std::invalid_argument for malformed input: a wrong number of vertices in a simplex, indices out of
   /// range, more than 64 faces of codimension one.
-  Fault certify(const FaceLattice& lattice, const TileFacets& tile);
+  [[nodiscard]] Fault certify(const FaceLattice& lattice, const TileFacets& tile);
 
  private:
   class Impl;
@@ -52,6 +52,6 @@ class Certifier {
 };
 
 /// Checks a single tile with a temporary Certifier.
-Fault certify(const FaceLattice& lattice, const TileFacets& tile);
+[[nodiscard]] Fault certify(const FaceLattice& lattice, const TileFacets& tile);
 
 }  // namespace tegl::tile

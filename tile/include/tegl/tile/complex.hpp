@@ -27,14 +27,14 @@ inline constexpr Simplex kNoSimplex = {kNoVertex, kNoVertex, kNoVertex, kNoVerte
 using Simplices = std::vector<Simplex>;
 
 /// Number of vertices of the simplex.
-constexpr int size(const Simplex& simplex) noexcept {
+[[nodiscard]] constexpr int size(const Simplex& simplex) noexcept {
   int n = 0;
   while (n < kMaxVertices && simplex[n] != kNoVertex) ++n;
   return n;
 }
 
 /// The simplex without vertex i; the other vertices keep their order.
-constexpr Simplex without(const Simplex& simplex, int i) noexcept {
+[[nodiscard]] constexpr Simplex without(const Simplex& simplex, int i) noexcept {
   Simplex rest = simplex;
   for (; i + 1 < kMaxVertices; ++i) rest[i] = rest[i + 1];
   rest[kMaxVertices - 1] = kNoVertex;
@@ -42,7 +42,7 @@ constexpr Simplex without(const Simplex& simplex, int i) noexcept {
 }
 
 /// The simplex with `vertex` added in front. `simplex` has at most 6 vertices.
-constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
+[[nodiscard]] constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
   Simplex result = kNoSimplex;
   result[0] = vertex;
   for (int i = 1; i < kMaxVertices; ++i) result[i] = simplex[i - 1];
@@ -68,13 +68,13 @@ enum class Shape { other, ball, sphere };
 /// Shape of a pure complex. All simplices have the same number of vertices, 1 to 6, sorted, and are distinct. `ball`
 /// and `sphere` are proved. A sphere of dimension 3 or more is reported as `other` if no seeded try finds a shelling or
 /// a collapse.
-Shape shape_of(const Simplices& simplices);
+[[nodiscard]] Shape shape_of(const Simplices& simplices);
 
 /// True if one of a few seeded tries collapses the complex to a circle. An orientable 3-manifold that collapses to a
 /// circle is a solid torus, the regular neighbourhood of that circle.
-bool collapses_to_a_circle(const Simplices& simplices);
+[[nodiscard]] bool collapses_to_a_circle(const Simplices& simplices);
 
 /// Euler characteristic of the complex.
-int euler_characteristic(const Simplices& simplices);
+[[nodiscard]] int euler_characteristic(const Simplices& simplices);
 
 }  // namespace tegl::tile

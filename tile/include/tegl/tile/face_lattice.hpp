@@ -30,9 +30,9 @@ class FaceLattice {
   /// to 64 corners. Throws std::invalid_argument for a dimension above 6 and if faces are missing or too many. The
   /// checks are necessary conditions only: some families of sets that belong to no polytope pass.
   FaceLattice(int dim, std::span<const Signature> maximal_faces);
-  static FaceLattice cube(int n);        ///< n = 1 ... 6; corner v has coordinate i = v >> i & 1
-  static FaceLattice simplex(int n);     ///< n = 1 ... 6; n + 1 corners
-  static FaceLattice octahedron(int n);  ///< n = 2 ... 6; corners 2 a and 2 a + 1 are the ends of axis a
+  [[nodiscard]] static FaceLattice cube(int n);        ///< n = 1 ... 6; corner v has coordinate i = v >> i & 1
+  [[nodiscard]] static FaceLattice simplex(int n);     ///< n = 1 ... 6; n + 1 corners
+  [[nodiscard]] static FaceLattice octahedron(int n);  ///< n = 2 ... 6; corners 2 a and 2 a + 1 are the ends of axis a
 
   [[nodiscard]] int dim() const { return faces_.back().dim; }               ///< dimension of the polytope
   [[nodiscard]] const std::vector<Face>& faces() const& { return faces_; }  ///< all faces, ascending by dimension

@@ -117,6 +117,7 @@ class FacetBuilder {
 
 /// Builds a single tile with a temporary builder. For many tiles use one FacetBuilder: constructing it takes most of
 /// the time.
-TileFacets build_facets(const FaceLattice& lattice, Signature signature, const Resolution& resolution = {});
+[[nodiscard]] TileFacets build_facets(const FaceLattice& lattice, Signature signature,
+                                      const Resolution& resolution = {});
 
 }  // namespace tegl::tile

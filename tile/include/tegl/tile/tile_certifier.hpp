@@ -33,7 +33,7 @@ class TileCertifier {
   [[nodiscard]] FaceLattice lattice() const&&;        ///< for a temporary: a copy
 
   /// Builds and certifies a tile. Errors: as FacetBuilder::build.
-  Fault certify(Signature signature, const Resolution& resolution);
+  [[nodiscard]] Fault certify(Signature signature, const Resolution& resolution);
 
   /// The last tile; without geometry if it was built by FacetBuilder.
   [[nodiscard]] const TileFacets& tile() const&;
