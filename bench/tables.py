@@ -15,11 +15,11 @@ BOUNDS = {
     ("metaballs", 3): "instructions for rows with two or three edges",
     ("gyroid", 3): "instructions for each tile, fresh memory",
     ("noise", 3): "instructions for each tile, fresh memory",
-    ("metaballs", 2): "the samples' way from memory; threads meet twice in each batch",
-    ("gyroid", 2): "the samples' way from memory; threads meet twice in each batch",
+    ("metaballs", 2): "reading of samples from memory; threads synchronise twice in each batch",
+    ("gyroid", 2): "reading of samples from memory; threads synchronise twice in each batch",
     ("noise", 2): "instructions for each tile, fresh memory",
-    ("balls", 4): "instructions for each row; threads meet twice in each batch",
-    ("sphere", 4): "instructions for each tile; threads meet twice in each batch",
+    ("balls", 4): "instructions for each row; threads synchronise twice in each batch",
+    ("sphere", 4): "instructions for each tile; threads synchronise twice in each batch",
     ("noise", 4): "instructions for each tile, fresh memory",
 }
 NORMALS_BOUND = "samples around both ends of each edge, loaded for each vertex"
@@ -67,7 +67,7 @@ def side_rows(row: dict) -> list[str]:
 
 def side_by_side(result: dict) -> list[str]:
     """All figures, then what was to be reached."""
-    text = ["| field | simplices | side, threads | median ms | least ms | of tegl's | of which classify, find, generate | memory's floor, "
+    text = ["| field | simplices | side, threads | median ms | minimum ms | relative to tegl | stages: classify, find, generate | memory floor, "
             "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|---|"]
     for row in result["rows"]:
         text += side_rows(row)
@@ -77,7 +77,7 @@ def side_by_side(result: dict) -> list[str]:
         text += [f"| {row['name']} | {v['threads']} | {verdict_text(v)} |" for v in row["verdicts"]]
     rates = ", ".join(f"{threads} thread{'s' * (int(threads) > 1)}: read {rate['read'] / 1e9:.0f}, fresh memory written "
                       f"{rate['fresh_write'] / 1e9:.0f} GB/s" for threads, rate in result["memory"].items())
-    return text + ["", f"Memory, {rates} (huge pages). Memory's floor: the samples read once and the output written once at "
+    return text + ["", f"Memory, {rates} (huge pages). *Memory floor*: the samples read once and the output written once at "
                    "these rates."]
 
 
@@ -117,8 +117,8 @@ def fit(points: list[dict]) -> tuple[float, float]:
 
 def cost(result: dict) -> list[str]:
     """What a sample and an active tile cost, by dimension and threads."""
-    text = ["", "What a sample and an active tile cost, fitted to the smooth fields of at least 64³ or 32⁴ samples; and what "
-            "an active tile of the largest noise costs, samples included:", "",
+    text = ["", "Time per sample and per active tile, fitted to the smooth fields of at least 64³ or 32⁴ samples. The last column is the time per "
+            "active tile of the largest noise, samples included:", "",
             "| dimension | threads | ns per sample | ns per active tile | ns per active tile of noise |", "|---|---|---|---|---|"]
     for dim in (3, 4):
         for threads in sorted({p["threads"] for p in result["points"]}):
@@ -150,8 +150,8 @@ def instructions_text(cases: list[dict], row: dict) -> str:
 
 def missed(result: dict, cases: list[dict]) -> list[str]:
     """The marks for speed that are not met, and what bounds each."""
-    text = ["| image | threads | reached | asked for | memory alone takes, of the time | page faults | instructions per active tile | "
-            "what bounds the rest |", "|---|---|---|---|---|---|---|---|"]
+    text = ["| image | threads | reached | target | time of memory traffic, of the whole | page faults | instructions per active tile | "
+            "limited by |", "|---|---|---|---|---|---|---|---|"]
     for row in result["rows"]:
         for verdict in row["verdicts"]:
             if verdict["met"] or "memory" in verdict:
@@ -185,15 +185,15 @@ def page(name: str, title: str, how: str, table) -> list[str]:
 
 
 def main() -> None:
-    text = ["# Results", "", "Made by `bench/record`; the page on [cost](../../docs/cost.md) says what they mean. Times are "
-            "those of one machine: compare ratios, not times."]
-    text += page("side_by_side", "Side by side", "`bench/side_by_side`: the same samples, turn by turn, in one process.",
+    text = ["# Results", "", "Made by `bench/record`. The page on [cost](../../docs/cost.md) explains the figures. All times are "
+            "from one machine: compare ratios, not times."]
+    text += page("side_by_side", "Side by side", "`bench/side_by_side`: all programs on the same samples, in turn, in one process.",
                  side_by_side)
-    text += page("scaling", "Scaling", "`bench/scaling`: the least of three runs of each.", scaling)
+    text += page("scaling", "Scaling", "`bench/scaling`: the minimum of three runs of each.", scaling)
     text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
                  stages)
-    text += page("instructions", "Instructions", "`bench/instructions --large`: of one extraction by one thread, by callgrind, "
-                 "which knows AVX2 at most.", instructions)
+    text += page("instructions", "Instructions", "`bench/instructions --large`: instructions of one extraction by one thread, counted by callgrind, "
+                 "which supports AVX2 at most.", instructions)
     (RESULTS / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(text)) + "\n")
     write_missed(MISSED)
 

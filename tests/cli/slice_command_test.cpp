@@ -123,6 +123,20 @@ TEST_F(Slice, OfLayersFailsAsThatOfTheWholeImage) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(Slice, ReportsWrongCutsBeforeItReadsSamples) {
+  const std::string damaged = write(
+      "damaged.nrrd",
+      "NRRD0004\ntype: float\ndimension: 4\nsizes: 4 4 4 4\nendian: little\nencoding: gzip\n\nno compressed data");
+  const auto cut = [&](const std::string& at) {
+    return run_tegl({"slice", damaged, "--iso", "0", "--at", at, "-o", path("out.ply")});
+  };
+  EXPECT_THAT(cut("t=9").err, HasSubstr("the cut at t = 9 lies outside of the image"));
+  EXPECT_THAT(cut("x=9").err, HasSubstr("the cut at x = 9 lies outside of the image"));
+  EXPECT_THAT(cut("q=1").err, HasSubstr("--at q=1 names no axis"));
+  const RunResult inside = cut("t=1.5");
+  EXPECT_EQ(inside.exit, 4) << inside.err;
+}
+
 TEST_F(Slice, OfASavedContourEqualsThatOfItsImage) {
   ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
   for (const char* at : {"t=4", "t=7.3", "t=0", "t=8"}) {

@@ -327,36 +327,11 @@ ValueStatistics value_statistics(const AnyImage& image) {
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
-bool has_both_sides(const AnyImage& image, double isovalue) {
-  const auto of_owned = [isovalue](const auto& owned) {
-    bool low = false, high = false;
-    for (const auto value : owned.values) {
-      const auto wide = static_cast<double>(value);
-      // Both comparisons are false for NaN.
-      low = low || wide < isovalue;
-      high = high || wide >= isovalue;
-      if (low && high) return true;
-    }
-    return false;
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
-}
-
-ValueRange value_range(const AnyImage& image) {
-  const auto of_owned = [](const auto& owned) {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    bool any = false;
-    for (const auto value : owned.values) {
-      const auto wide = static_cast<double>(value);
-      any = any || wide == wide;
-      // Both comparisons are false for NaN.
-      if (wide < low) low = wide;
-      if (wide > high) high = wide;
-    }
-    return any ? ValueRange{low, high} : ValueRange{kNan, kNan};
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+ValueRange value_range(const AnyImage& image, double isovalue) {
+  ValueRange range;
+  const auto of_owned = [&](const auto& owned) { range.read(std::span(owned.values), isovalue, isovalue); };
+  std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+  return range;
 }
 
 }  // namespace tegl::cli

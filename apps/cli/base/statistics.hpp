@@ -7,7 +7,11 @@
 // from one pass over the grid).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -63,13 +67,29 @@ ValueStatistics value_statistics(std::span<const T> values, std::span<const std:
 
 ValueStatistics value_statistics(const AnyImage& image);
 
-/// Minimum and maximum sample, infinities included; NaN, NaN if all are missing.
+/// Minimum and maximum of the samples read so far, infinities included; NaN, NaN if all are missing.
 struct ValueRange {
-  double min = 0;
-  double max = 0;
+  double min = std::numeric_limits<double>::quiet_NaN();
+  double max = std::numeric_limits<double>::quiet_NaN();
+
+  /// Whether each isovalue from `least` to `most` has samples on both sides: one below it, and one at or above it.
+  [[nodiscard]] bool has_both_sides(double least, double most) const noexcept { return min < least && most <= max; }
+  [[nodiscard]] bool has_both_sides(double isovalue) const noexcept { return has_both_sides(isovalue, isovalue); }
+  /// Reads samples until each isovalue from `least` to `most` has samples on both sides.
+  template <Value T>
+  void read(std::span<const T> values, double least, double most) noexcept {
+    constexpr std::size_t kBlock = 4096;
+    for (std::size_t first = 0; first < values.size() && !has_both_sides(least, most); first += kBlock)
+      for (const T value : values.subspan(first, std::min(kBlock, values.size() - first))) {
+        const auto wide = static_cast<double>(value);
+        if (std::isnan(wide)) continue;
+        if (!(min <= wide)) min = wide;
+        if (!(max >= wide)) max = wide;
+      }
+  }
 };
-ValueRange value_range(const AnyImage& image);
-/// Whether some sample is at or above the isovalue, and some sample is below it. Reads samples until both are found.
-bool has_both_sides(const AnyImage& image, double isovalue);
+
+/// The range of an image's samples, which are read until the isovalue has some on both sides: complete if it has not.
+ValueRange value_range(const AnyImage& image, double isovalue);
 
 }  // namespace tegl::cli

@@ -109,17 +109,6 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
   }
 }
 
-/// Whether a cut across an axis needs only the layers beside it.
-bool is_apart(const AnyImage& image, int axis) {
-  const auto of_owned = [&](const auto& owned) {
-    bool apart = true;
-    for (int a = 0; a < static_cast<int>(owned.grid.axes.size()); ++a)
-      apart = apart && (a == axis || (owned.grid.linear[axis][a] == 0.0 && owned.grid.linear[a][axis] == 0.0));
-    return apart;
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
-}
-
 /// An empty cut, outside of an image, with names and units of its axes.
 template <int N, class Real>
 Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
@@ -140,6 +129,11 @@ auto visit_image(const AnyImage& image, const F& f) {
 template <Value T, int N, class F>
 auto visit_image(const LayerImage<T, N>& image, const F& f) {
   return f(image);
+}
+
+/// Whether a cut across an axis needs only the layers beside it.
+bool is_separate(const AnyImage& image, int axis) {
+  return visit_image(image, [axis](const auto& owned) { return owned.grid.is_separate(axis); });
 }
 
 template <class Real, class Source>
@@ -315,8 +309,8 @@ class SliceCommand final : public Command {
     return cut_whole_image(cuts, bar);
   }
 
-  /// Cuts an image across its last axis, of which it reads only the layers that the cuts need. Nullopt, also for
-  /// errors, if the whole image has to be read.
+  /// Cuts an image across its last axis, of which it reads only the layers that the cuts need. Nullopt if the whole
+  /// image has to be read. Wrong cuts and cuts outside of the image are errors before any sample is read.
   std::optional<std::vector<ContourResult>> cut_layers(const std::vector<Cut>& cuts, ProgressBar& bar) {
     const double isovalue = options_.isovalue();
     Stopwatch watch;
@@ -330,12 +324,11 @@ class SliceCommand final : public Command {
     const auto of_layers =
         [&]<Value T, int N>(
             const std::unique_ptr<LayerReader<T, N>>& layers) -> std::optional<std::vector<ContourResult>> {
-      if (std::is_same_v<T, double> && may_be_whole_numbers(input.info)) return std::nullopt;
+      require_cuts(N, "image");
       if constexpr (N >= 3) {
-        std::vector<LayersOfCut> needed;
+        std::vector<LayerRange> needed;
         std::vector<ContourResult> results = plan<T>(layers->grid(), cuts, needed);
-        if (results.empty()) return std::nullopt;
-        require_cuts(N, "image");
+        if (results.empty() || (std::is_same_v<T, double> && may_be_whole_numbers(input.info))) return std::nullopt;
         for (ContourResult& result : results) {
           result.isovalue = isovalue;
           result.variable = input.info.variable;
@@ -357,32 +350,26 @@ class SliceCommand final : public Command {
     return std::visit([&](const auto& any) { return std::visit(of_layers, any); }, input.layers);
   }
 
-  /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis,
-  /// or are not valid.
+  /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis.
+  /// Throws for cuts that are wrong or outside of the image.
   template <Value T, int N>
-  std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayersOfCut>& needed) {
+  std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayerRange>& needed) {
     constexpr int kLast = N - 1;
-    const AnyImage header = without_samples<T, N>(grid);
+    const CutSpace space = space_of(without_samples<T, N>(grid));
+    factors_ = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(cuts, space);
     if (std::any_of(grid.axes.begin(), grid.axes.end(), [](const Axis& axis) { return axis.size() < 2; }) ||
-        !is_apart(header, kLast) || !LayerImage<T, N>::fits_address_space(grid))
+        !grid.is_separate(kLast) || !LayerImage<T, N>::fits_address_space(grid))
       return {};
-    std::vector<ContourResult> results;
-    try {
-      const CutSpace space = space_of(header);
-      factors_ = parse_scale(scale_, space);
-      results = results_for(cuts, space);
-    } catch (const Error&) {
-      return {};
-    } catch (const EmptyResult&) {
-      return {};
-    }
-    const bool normals = options_.library_options().normals != Normals::none;
+    const ExtractOptions options = options_.library_options();
     for (ContourResult& result : results) {
       if (*result.cut->across != kLast) return {};
-      const auto layers = options_.single_precision() ? layers_of_cut<float, T, N>(grid, result.cut->value, normals)
-                                                      : layers_of_cut<double, T, N>(grid, result.cut->value, normals);
-      if (!layers && !result.cut->is_outside) return {};
-      needed.push_back(layers.value_or(LayersOfCut{}));
+      if (result.cut->is_outside)
+        needed.emplace_back();
+      else if (options_.single_precision())
+        needed.push_back(layers_of_cut<float>(grid, kLast, result.cut->value, options));
+      else
+        needed.push_back(layers_of_cut<double>(grid, kLast, result.cut->value, options));
       result.image_dim = N;
     }
     return results;
@@ -390,8 +377,8 @@ class SliceCommand final : public Command {
 
   /// Reads the layers that cuts need, in ascending order.
   template <Value T, int N>
-  static void read_layers(LayerImage<T, N>& image, std::vector<LayersOfCut> needed, const Progress& progress) {
-    std::ranges::sort(needed, {}, &LayersOfCut::first);
+  static void read_layers(LayerImage<T, N>& image, std::vector<LayerRange> needed, const Progress& progress) {
+    std::ranges::sort(needed, {}, &LayerRange::first);
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!progress(static_cast<double>(i) / static_cast<double>(needed.size())))
         InterruptHandler::throw_if_requested();
@@ -399,14 +386,15 @@ class SliceCommand final : public Command {
     }
   }
 
-  /// As require_contour, which has the whole image: reads further layers only if those of the cuts are all on one side.
+  /// As require_contour, for an image that is not read as a whole: reads further layers only if all samples of the
+  /// layers of the cuts are on one side of the isovalue.
   template <Value T, int N>
   void require_both_sides(LayerImage<T, N>& image, const ImageInfo& info, const Progress& progress) const {
     image.complete_range([&](double fraction) {
       if (!progress(fraction)) InterruptHandler::throw_if_requested();
     });
     const double isovalue = options_.isovalue();
-    if (is_outside(isovalue, image.range())) throw outside_error(isovalue, image.range(), info.value_unit);
+    if (!image.range().has_both_sides(isovalue)) throw outside_error(isovalue, image.range(), info.value_unit);
   }
 
   std::vector<ContourResult> cut_whole_image(std::vector<Cut> cuts, ProgressBar& bar) {
@@ -414,10 +402,10 @@ class SliceCommand final : public Command {
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
     require_cuts(image_dim(input.image), "image");
-    require_contour(input, isovalue, options_.allows_empty());
     const CutSpace space = space_of(input.image);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
+    require_contour(input, isovalue, options_.allows_empty());
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
     std::vector<std::size_t> places;
@@ -428,7 +416,7 @@ class SliceCommand final : public Command {
       result.isovalue = isovalue;
       result.image_dim = image_dim(input.image);
       result.seconds.read = read_seconds;
-      if (result.cut->across && is_apart(input.image, *result.cut->across)) {
+      if (result.cut->across && is_separate(input.image, *result.cut->across)) {
         cut_slab(input.image, result, bar);
         continue;
       }

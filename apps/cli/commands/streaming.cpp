@@ -50,7 +50,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
   const std::vector<ExtractedSize> extracted = extract_streamed_several<Real>(layers, contours, options.extract);
   for (std::size_t i = 0; i < contours.size(); ++i) {
     const double isovalue = contours[i].isovalue;
-    const bool outside = is_outside(isovalue, layers.range());
+    const bool outside = !layers.range().has_both_sides(isovalue);
     if (outside && !options.allow_empty) throw outside_error(isovalue, layers.range(), unit);
     if (!outside && extracted[i].size.simplices == 0) remarks.push_back(remark_on_missing(isovalue));
   }

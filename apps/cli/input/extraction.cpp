@@ -145,8 +145,6 @@ template void ExtractionOptions::add_shape_normals(Contour<4, double>&) const;
 
 int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
 
-bool is_outside(double isovalue, const ValueRange& range) { return !(isovalue > range.min && isovalue <= range.max); }
-
 EmptyResult outside_error(double isovalue, const ValueRange& range, const std::string& unit) {
   constexpr const char* kAllow = "(--allow-empty: an empty result)";
   if (std::isnan(range.min))
@@ -173,13 +171,13 @@ void require_contour(const ReadImageResult& input, double isovalue, bool allow_e
     }
   };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
-  if (allow_empty || has_both_sides(input.image, isovalue)) return;
-  const ValueRange range = value_range(input.image);
-  if (is_outside(isovalue, range)) throw outside_error(isovalue, range, input.info.value_unit);
+  if (allow_empty) return;
+  const ValueRange range = value_range(input.image, isovalue);
+  if (!range.has_both_sides(isovalue)) throw outside_error(isovalue, range, input.info.value_unit);
 }
 
 std::string remark_without_contour(const AnyImage& image, double isovalue) {
-  return has_both_sides(image, isovalue) ? remark_on_missing(isovalue) : std::string();
+  return value_range(image, isovalue).has_both_sides(isovalue) ? remark_on_missing(isovalue) : std::string();
 }
 
 std::string remark_on_missing(double isovalue) {

@@ -73,11 +73,8 @@ class ExtractionOptions {
 /// The dimension of the image.
 int image_dim(const AnyImage& image);
 
-/// Whether an isovalue is outside of a range of values (NaN if there are none): no sample is at or above it, or every
-/// sample is.
-bool is_outside(double isovalue, const ValueRange& range);
-
-/// The error of such an isovalue. `unit`: of the values; may be empty.
+/// The error of an isovalue without samples on both sides, for the range of all samples. `unit`: of the values; may be
+/// empty.
 EmptyResult outside_error(double isovalue, const ValueRange& range, const std::string& unit);
 
 /// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every

@@ -1,58 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An image of which only the layers are read that cuts across its last axis need.
+// An image of which a program reads only the layers that cuts across its last axis need.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <optional>
 #include <vector>
 
-#include "input/cuts.hpp"
 #include "input/ranged_layers.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
 #include "tegl/io/images.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl::cli {
-
-/// The layers [first, end) of an image along its last axis.
-struct LayersOfCut {
-  std::size_t first = 0;
-  std::size_t end = 0;
-};
 
 /// An image without samples, for functions that need only its grid.
 template <Value T, int N>
 AnyImage without_samples(const Grid<N>& grid) {
   return AnyImageN<N>(OwnedImage<T, N>{grid, {}});
-}
-
-/// The layers that slice_image reads for the cut by x_last = at, in coordinates of `Real`: those of the slabs that it
-/// meets and, for normals along the gradient, their neighbours. Also the next slab if `at` is a layer's coordinate up
-/// to rounding. The world map must not mix the last axis with others. Nullopt if `at` lies outside.
-template <class Real, Value T, int N>
-std::optional<LayersOfCut> layers_of_cut(const Grid<N>& grid, double at, bool normals) {
-  constexpr double kOfCoordinate = 8.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-  constexpr double kOfStep = 1e-6;
-  const std::size_t size = grid.axes[N - 1].size();
-  LayersOfCut layers{size, 0};
-  Grid<N> slab = grid;
-  for (std::size_t i = 0; i + 1 < size; ++i) {
-    slab.axes[N - 1] = grid.axes[N - 1].part(i, 2);
-    const CutAxis ends = space_of(without_samples<T, N>(slab)).axes.back();
-    const double slack =
-        kOfStep * (ends.last - ends.first) + kOfCoordinate * std::max(std::abs(ends.first), std::abs(ends.last));
-    if (at < ends.first - slack || at > ends.last + slack) continue;
-    layers.first = std::min(layers.first, i);
-    layers.end = i + 2;
-  }
-  if (layers.end == 0) return std::nullopt;
-  if (normals)
-    return LayersOfCut{layers.first - std::min<std::size_t>(layers.first, 1), std::min(layers.end + 1, size)};
-  return layers;
 }
 
 /// An image in memory for all its layers, of which only some are read. The memory of the others is not touched: it
@@ -66,7 +31,7 @@ class LayerImage {
   }
 
   /// Reads the layers that were not read before. Call it in ascending order for compressed files.
-  void read(const LayersOfCut& range) {
+  void read(const LayerRange& range) {
     for (std::size_t k = range.first; k < range.end; ++k) {
       if (is_read_[k]) continue;
       layers_.read(k, values_.data() + k * layers_.layer_size());
@@ -74,7 +39,7 @@ class LayerImage {
     }
   }
   /// Reads other layers for the range of values, without keeping them, until there are samples on both sides of the
-  /// isovalue or all are read. Calls tell(fraction) before each.
+  /// isovalue or all are read. Calls tell with the fraction that is done before each layer.
   template <class Tell>
   void complete_range(const Tell& tell) {
     std::vector<T> layer(layers_.layer_size());

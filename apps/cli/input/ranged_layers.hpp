@@ -3,8 +3,8 @@
 // Layers that report the range of the values read, for images that are never in memory as a whole.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "base/statistics.hpp"
 #include "tegl/layers.hpp"
@@ -23,16 +23,10 @@ class RangedLayers final : public LayerReader<T, N> {
   [[nodiscard]] const Grid<N>& grid() const noexcept override { return layers_.grid(); }
   void read(std::size_t k, T* to) override {
     layers_.read(k, to);
-    if (has_both_sides()) return;
-    for (std::size_t i = 0; i < layer_size_; ++i) {
-      const auto value = static_cast<double>(to[i]);
-      if (std::isnan(value)) continue;
-      range_.min = std::fmin(range_.min, value);
-      range_.max = std::fmax(range_.max, value);
-    }
+    range_.read(std::span<const T>(to, layer_size_), least_, most_);
   }
   /// Whether samples on both sides of all isovalues were read.
-  [[nodiscard]] bool has_both_sides() const noexcept { return range_.min < least_ && most_ <= range_.max; }
+  [[nodiscard]] bool has_both_sides() const noexcept { return range_.has_both_sides(least_, most_); }
   /// The range of the values read so far; complete if an isovalue lies outside of it.
   [[nodiscard]] const ValueRange& range() const noexcept { return range_; }
   /// Number of samples of a layer.
@@ -42,7 +36,7 @@ class RangedLayers final : public LayerReader<T, N> {
   LayerReader<T, N>& layers_;
   double least_, most_;
   std::size_t layer_size_ = 1;
-  ValueRange range_{static_cast<double>(NAN), static_cast<double>(NAN)};
+  ValueRange range_;
 };
 
 }  // namespace tegl::cli

@@ -248,24 +248,33 @@ void data(Writer& out, const Dialect& dialect, const TileTables& table, const Pa
 /// The complete table of the cube. Words: 256 by signature (first entry | ambiguous squares << 16); six per entry (for
 /// separate, low and high: first triangle | triangles << 16 | own vertices << 24, then the first mask); one per
 /// triangle (a byte per vertex); one per mask.
-EmittedFile packed_resolved(const TableSet& set, const Dialect& dialect, const ResolvedCube& table) {
-  // words
+struct PackedResolved {
   std::vector<std::uint32_t> words;
+  std::size_t entries = 0, triangles = 0, masks = 0;  ///< index of the first word of each
+};
+
+PackedResolved pack_resolved(const ResolvedCube& table) {
+  PackedResolved packed;
+  std::vector<std::uint32_t>& words = packed.words;
   for (std::size_t s = 0; s < table.first_entry.size(); ++s)
     words.push_back(table.first_entry[s] | std::uint32_t{table.ambiguous[s]} << 16);
-  const std::size_t entries = words.size();
+  packed.entries = words.size();
   for (const tables::ResolvedEntry& e : table.entries)
     for (const tables::ResolvedList& l : {e.separate, e.low, e.high}) {
       words.push_back(l.first_triangle | std::uint32_t{l.triangle_count} << 16 | std::uint32_t{l.own_vertices} << 24);
       words.push_back(l.first_mask);
     }
-  const std::size_t triangles = words.size();
+  packed.triangles = words.size();
   for (std::size_t t = 0; t < table.triangles.size(); t += 3)
     words.push_back(table.triangles[t] | std::uint32_t{table.triangles[t + 1]} << 8 |
                     std::uint32_t{table.triangles[t + 2]} << 16);
-  const std::size_t masks = words.size();
+  packed.masks = words.size();
   words.insert(words.end(), table.masks.begin(), table.masks.end());
+  return packed;
+}
 
+EmittedFile packed_resolved(const TableSet& set, const Dialect& dialect, const ResolvedCube& table) {
+  const PackedResolved packed = pack_resolved(table);
   // constants
   Writer out(dialect, "tegl_tile3_resolved");
   out.raw(banner(set, dialect.language, "The cube with every ambiguity resolved freely."));
@@ -275,9 +284,9 @@ EmittedFile packed_resolved(const TableSet& set, const Dialect& dialect, const R
   array_macros(out, dialect);
   out.constant("EDGES", 12);
   out.constant("ENTRIES", static_cast<std::uint32_t>(table.entries.size()));
-  out.constant("WORDS", static_cast<std::uint32_t>(words.size()));
+  out.constant("WORDS", static_cast<std::uint32_t>(packed.words.size()));
   out.raw("\n");
-  out.words(words);
+  out.words(packed.words);
   // functions
   out.function("The set of a signature's ambiguous squares.", "ambiguous_squares", {"signature"},
                "  return W[signature] >> 16u;\n");
@@ -293,20 +302,20 @@ EmittedFile packed_resolved(const TableSet& set, const Dialect& dialect, const R
                "    }\n"
                "  }\n"
                "  return number;\n");
-  const std::string at = fmt::format("W[{}u + (6u * entry) + (2u * centre)]", entries);
+  const std::string at = fmt::format("W[{}u + (6u * entry) + (2u * centre)]", packed.entries);
   out.function("How many triangles an entry has: its polygons apart (centre 0), the centre low (1) or high (2).",
                "triangle_count", {"entry", "centre"}, fmt::format("  return ({} >> 16u) & 0xffu;\n", at));
   out.function("Local vertex `corner` of a triangle.", "vertex", {"entry", "centre", "triangle", "corner"},
                fmt::format("  LET word = W[{}u + ({} & 0xffffu) + triangle];\n"
                            "  return (word >> (8u * corner)) & 0xffu;\n",
-                           triangles, at));
+                           packed.triangles, at));
   out.function("How many vertices it has beside edge points.", "own_vertices", {"entry", "centre"},
                fmt::format("  return {} >> 24u;\n", at));
   out.function("The corners (bit v) and edges (bit 8 + e) that say where an own vertex lies.", "own_mask",
                {"entry", "centre", "own"},
                fmt::format("  LET first = W[{}u + (6u * entry) + (2u * centre) + 1u];\n"
                            "  return W[{}u + first + own];\n",
-                           entries, masks));
+                           packed.entries, packed.masks));
   return {fmt::format("tile3_resolved.{}", dialect.suffix), out.take()};
 }
 

@@ -3,6 +3,7 @@
 // Cuts of contours by hyperplanes: a 4D contour at a time t, or in any other hyperplane.
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <span>
 #include <type_traits>
@@ -64,7 +65,7 @@ requires DimensionBetween<N, 3, 4>
 
 /// Cuts a contour by several hyperplanes, in any order. Each cut equals `slice` by its hyperplane bit by bit.
 /// Hyperplanes with equal normals are cut in one pass over the contour; as many cuts are made at a time as there are
-/// threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
+/// threads. Errors: as `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
 /// cuts; 8 #V bytes plus the memory of all cuts.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4>
@@ -90,7 +91,7 @@ requires DimensionBetween<N, 3, 4>
 /// Cuts the contour of an image by a hyperplane in world coordinates, without the whole contour if the normal is a
 /// multiple of an axis: then only the slab of tiles that the hyperplane passes is read, or, at a sample's coordinate,
 /// the two slabs that meet there (for normals across another axis than the last, also the adjacent layers). Otherwise
-/// the cut is that of the whole contour.
+/// the whole contour is cut.
 ///
 /// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
 /// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
@@ -100,7 +101,7 @@ requires DimensionBetween<N, 3, 4>
 /// the closed contour.
 ///
 /// An image with one sample along the axis has no tiles, hence an empty cut, at its only valid coordinate. Errors:
-/// those of `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
+/// as `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if
 /// the world map mixes the axis with others, so that its layers are not across it. Cost: that of extracting one or two
 /// slabs, independent of the length of the axis; for oblique hyperplanes, that of `extract` and `slice`.
 template <Coordinate Real = float, Value T, int N>
@@ -110,5 +111,18 @@ requires DimensionBetween<N, 3, 4>
                                                const ExtractOptions& options = {}) {
   return slice_image_with_stats<Real>(image, isovalue, hyperplane, options).contour;
 }
+
+/// Layers of an image along an axis.
+struct LayerRange {
+  std::size_t first = 0;  ///< the first layer
+  std::size_t end = 0;    ///< one past the last layer
+};
+
+/// The layers along `axis` that `slice_image<Real>` reads for the cut across it at the world coordinate `at`, so that
+/// the samples of other layers need not be in memory. Errors: InvalidArgument if `at` is outside of the image, or if
+/// the world map mixes the axis with others. O(n) time for an axis of n samples.
+template <Coordinate Real = float, int N>
+requires DimensionBetween<N, 3, 4>
+[[nodiscard]] LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at, const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -187,22 +187,25 @@ Attribute attribute_of_places(const char* name, const Places& places, const Valu
 }
 
 template <int N, class Real>
+io_detail::VtkhdfLayout vtkhdf_layout(const FacetHierarchy<N, Real>& facets, const FacetCells<N, Real>& cells,
+                                      Compression compression) {
+  constexpr bool kSingle = std::is_same_v<Real, float>;
+  return {N - 1,
+          N,
+          {facets.axis_names.begin(), facets.axis_names.end()},
+          {facets.axis_units.begin(), facets.axis_units.end()},
+          facets.vertices.size(),
+          cells.count(),
+          {},
+          kSingle,
+          kSingle && fits_int32(facets, cells),
+          compression};
+}
+
+template <int N, class Real>
 void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& file, const WriteOptions& options) {
   const FacetCells<N, Real> cells(facets);
-  constexpr bool kSingle = std::is_same_v<Real, float>;
-  io_detail::VtkhdfLayout layout{N - 1,
-                                 N,
-                                 {},
-                                 {},
-                                 facets.vertices.size(),
-                                 cells.count(),
-                                 {},
-                                 kSingle,
-                                 kSingle && fits_int32(facets, cells),
-                                 options.compression};
-  layout.axis_names.assign(facets.axis_names.begin(), facets.axis_names.end());
-  layout.axis_units.assign(facets.axis_units.begin(), facets.axis_units.end());
-  io_detail::VtkhdfWriter writer(file, layout);
+  io_detail::VtkhdfWriter writer(file, vtkhdf_layout(facets, cells, options.compression));
   const double all = static_cast<double>(facets.vertices.size() + facets.normals.size() + 4 * cells.count() + 1);
   double done = 0;
   /// Calls append(from, to) for blocks of 0 ... count - 1.

@@ -197,7 +197,7 @@ class Reader {
     if (std::isfinite(isovalue)) mesh_.isovalue = isovalue;
   }
 
-  /// The arrays of a group with one row per vertex or simplex; those of the writer first and in its order.
+  /// The arrays of a group with one row per vertex or simplex: first the arrays of VtkhdfWriter, in its order.
   [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
                                                   const std::set<std::string>& taken) {
     std::vector<Attribute> result;
@@ -243,23 +243,26 @@ class Reader {
   Mesh mesh_;
 };
 
+VtkhdfLayout layout_of(const MeshView& mesh, Compression compression) {
+  // Offsets are at most the number of vertex numbers.
+  const std::size_t largest_id = std::max(vertex_count(mesh), mesh.simplices.size());
+  return {mesh.dim,
+          mesh.space_dim,
+          {mesh.axis_names.begin(), mesh.axis_names.end()},
+          {mesh.axis_units.begin(), mesh.axis_units.end()},
+          vertex_count(mesh),
+          simplex_count(mesh),
+          mesh.isovalue,
+          mesh.single_precision,
+          mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
+          compression};
+}
+
 }  // namespace
 
 void write_vtkhdf(const MeshView& mesh, const PendingPath& file, const Progress& progress, Compression compression) {
   const fs::path& path = file.target();
-  // Offsets are at most the number of vertex numbers.
-  const std::size_t largest_id = std::max(vertex_count(mesh), mesh.simplices.size());
-  VtkhdfWriter writer(
-      file, {mesh.dim,
-             mesh.space_dim,
-             {mesh.axis_names.begin(), mesh.axis_names.end()},
-             {mesh.axis_units.begin(), mesh.axis_units.end()},
-             vertex_count(mesh),
-             simplex_count(mesh),
-             mesh.isovalue,
-             mesh.single_precision,
-             mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
-             compression});
+  VtkhdfWriter writer(file, layout_of(mesh, compression));
   // progress
   std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   for (const std::span<const Attribute> attributes : {mesh.vertex_attributes, mesh.simplex_attributes})

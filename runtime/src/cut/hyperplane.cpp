@@ -78,11 +78,7 @@ template struct Hyperplane<4>;
 template HyperplaneFrame<2> frame_of(const Hyperplane<2>&);
 template HyperplaneFrame<3> frame_of(const Hyperplane<3>&);
 template HyperplaneFrame<4> frame_of(const Hyperplane<4>&);
-template Contour<2, float> scale_axes(Contour<2, float>, const Vector<2>&);
-template Contour<2, double> scale_axes(Contour<2, double>, const Vector<2>&);
-template Contour<3, float> scale_axes(Contour<3, float>, const Vector<3>&);
-template Contour<3, double> scale_axes(Contour<3, double>, const Vector<3>&);
-template Contour<4, float> scale_axes(Contour<4, float>, const Vector<4>&);
-template Contour<4, double> scale_axes(Contour<4, double>, const Vector<4>&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) template Contour<N, Real> scale_axes(Contour<N, Real>, const Vector<N>&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

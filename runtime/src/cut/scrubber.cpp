@@ -19,6 +19,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -49,6 +51,43 @@ struct Range {
 
 constexpr const char* kCancelledScrubber = "building a scrubber was cancelled";
 
+/// The lowest and the highest vertex. Throws InvalidArgument if a height is not finite.
+template <int N, class Real>
+std::pair<double, double> height_range(const Contour<N, Real>& contour, const detail::HyperplaneFamily<N>& family) {
+  double highest = -std::numeric_limits<double>::infinity();
+  double lowest = -highest;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    const double height = family.height(contour.vertices[v]);
+    if (!std::isfinite(height))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("vertex {} at height {}; expected a finite one", v, height));
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  return {lowest, highest};
+}
+
+/// The range of places of each simplex. `place_of`: the place of a vertex.
+template <int N, class Real, class PlaceOf>
+std::vector<Range> place_ranges(const Contour<N, Real>& contour, unsigned threads, const PlaceOf& place_of) {
+  struct Nothing {};
+  detail::Workers<Nothing> workers(threads, [] { return Nothing(); });
+  constexpr std::size_t kGrain = std::size_t{1} << 14;
+  std::vector<Range> ranges(contour.simplices.size());
+  workers.for_range(ranges.size(), kGrain, [&](std::size_t from, std::size_t to, Nothing&) {
+    for (std::size_t s = from; s < to; ++s) {
+      std::uint32_t least = ~std::uint32_t{0};
+      std::uint32_t most = 0;
+      for (const Index v : contour.simplices[s]) {
+        const std::uint32_t here = place_of(v);
+        least = std::min(least, here);
+        most = std::max(most, here);
+      }
+      ranges[s] = {least, most, static_cast<Index>(s)};
+    }
+  });
+  return ranges;
+}
+
 }  // namespace
 
 template <int N, Coordinate Real>
@@ -63,34 +102,11 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
     nodes_.push_back({0, 0});
     return;
   }
-  // range of heights
-  double highest = -std::numeric_limits<double>::infinity();
-  lowest_ = -highest;
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
-    const double height = family.height(contour.vertices[v]);
-    if (!std::isfinite(height))
-      throw Error(ErrorCode::InvalidArgument, fmt::format("vertex {} at height {}; expected a finite one", v, height));
-    lowest_ = std::min(lowest_, height);
-    highest = std::max(highest, height);
-  }
-  range_ = {lowest_ * family.unit(), highest * family.unit()};
-  struct Nothing {};
-  detail::Workers<Nothing> workers(work.threads, [] { return Nothing(); });
-  constexpr std::size_t kGrain = std::size_t{1} << 14;
-  // range of places of each simplex
-  std::vector<Range> ranges(contour.simplices.size());
-  workers.for_range(ranges.size(), kGrain, [&](std::size_t from, std::size_t to, Nothing&) {
-    for (std::size_t s = from; s < to; ++s) {
-      std::uint32_t least = ~std::uint32_t{0};
-      std::uint32_t most = 0;
-      for (const Index v : contour.simplices[s]) {
-        const std::uint32_t here = place(family.height(contour.vertices[v]));
-        least = std::min(least, here);
-        most = std::max(most, here);
-      }
-      ranges[s] = {least, most, static_cast<Index>(s)};
-    }
-  });
+  const auto [lowest, highest] = height_range(contour, family);
+  lowest_ = lowest;
+  range_ = {lowest * family.unit(), highest * family.unit()};
+  std::vector<Range> ranges =
+      place_ranges(contour, work.threads, [&](Index v) { return place(family.height(contour.vertices[v])); });
   // Stable radix sorts: by one end, then by node.
   const auto gather = [&](std::vector<Entry>& entries, double fraction, const auto& key, const auto& end) {
     detail::tell(work.progress, fraction, kCancelledScrubber);

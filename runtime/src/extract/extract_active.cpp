@@ -6,7 +6,7 @@
 
 #include "base/stopwatch.hpp"
 #include "image/row_source.hpp"
-#include "kernel/tableless.hpp"
+#include "kernel/extract_in_memory.hpp"
 #include "kernel/tile_selection.hpp"
 #include "search/index_file.hpp"
 

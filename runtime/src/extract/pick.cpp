@@ -14,7 +14,7 @@
 
 #include "base/progress.hpp"
 #include "image/locate.hpp"
-#include "kernel/tableless.hpp"
+#include "kernel/extract_in_memory.hpp"
 #include "search/propagation.hpp"
 #include "tegl/components.hpp"
 

@@ -13,7 +13,6 @@
 
 #include "base/workers.hpp"
 #include "kernel/stream.hpp"
-#include "kernel/tableless.hpp"
 
 namespace tegl {
 

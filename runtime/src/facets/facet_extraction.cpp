@@ -631,14 +631,8 @@ FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& g
   return FacetExtraction<N, Real>(source, grid, options).run();
 }
 
-#define TEGL_INSTANTIATE(N, Real) \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
   template FacetHierarchy<N, Real> extract_facets<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

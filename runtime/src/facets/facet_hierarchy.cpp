@@ -165,17 +165,11 @@ requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const 
   return detail::extract_facets<N, Real>(source, image.grid(), options);
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                      \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                             \
   template struct FacetHierarchy<N, Real>;                                             \
   template int facet_euler<N, Real>(const FacetHierarchy<N, Real>&, int, std::size_t); \
   template FacetReport check<N, Real>(const FacetHierarchy<N, Real>&, const WorkOptions&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real) \
   template FacetHierarchy<N, Real> extract_facets<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&);

@@ -409,11 +409,7 @@ void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
   }
 }
 
-template class Caps<2, float>;
-template class Caps<2, double>;
-template class Caps<3, float>;
-template class Caps<3, double>;
-template class Caps<4, float>;
-template class Caps<4, double>;
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) template class Caps<N, Real>;
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -247,8 +247,8 @@ static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* pl
 
 namespace {
 
-/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and the table's counts by those of
-/// the variants. N < 4.
+/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
+/// N < 4.
 template <int N>
 class TileResolver {
  public:
@@ -535,6 +535,8 @@ void Counter<N>::clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) 
 
 namespace {
 
+/// Prefix sum over the rows of a chunk. place_layer and place_slab (extract_number.cpp) add the first number of the
+/// chunk.
 template <class Plane>
 void offset(Plane& plane, std::size_t row, std::uint64_t& next) {
   plane.offset.data()[row] = static_cast<Index>(next);  // data(): checked builds do not inline operator[]

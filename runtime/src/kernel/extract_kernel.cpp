@@ -628,7 +628,7 @@ Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid,
   return result;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                                \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                                                       \
   template ExtractStats extract_to<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,                \
                                             const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
   template std::unique_ptr<SteppedExtraction<N, Real>> make_extraction<N, Real>(                                 \
@@ -636,12 +636,6 @@ Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid,
       ContourOutput<N, Real>&);                                                                                  \
   template Extraction<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,     \
                                                        const ExtractOptions&, const ExtractPlan&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -377,7 +377,7 @@ HWY_INLINE typename TileOutput<N>::Simplex* write_plain(const std::uint8_t* loca
 /// Index of a key's entry in RowTable::entries().
 template <int N, bool Variants>
 HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
-  if constexpr (N == 3 && Variants) return table.variant_places()[CubeKey(key).signature()] + CubeKey(key).variant();
+  if constexpr (N == 3 && Variants) return table.place_of(CubeKey(key));
   return key;
 }
 

@@ -357,14 +357,8 @@ void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& cand
     if (!candidates.empty()) NonmanifoldSplitter<N, Real>(contour, candidates, max_vertices).run();
 }
 
-#define TEGL_INSTANTIATE(N, Real) \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
   template void split_nonmanifold<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

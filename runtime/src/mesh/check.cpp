@@ -409,13 +409,7 @@ requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& cont
   return check_any<Real>(N - 1, rows, N, coordinates, work.progress);
 }
 
-template MeshReport check(const Contour<2, float>&, const WorkOptions&);
-template MeshReport check(const Contour<2, double>&, const WorkOptions&);
-template MeshReport check(const Contour<3, float>&, const WorkOptions&);
-template MeshReport check(const Contour<3, double>&, const WorkOptions&);
-template MeshReport check(const Contour<4, float>&, const WorkOptions&);
-template MeshReport check(const Contour<4, double>&, const WorkOptions&);
-template MeshReport check(const Contour<5, float>&, const WorkOptions&);
-template MeshReport check(const Contour<5, double>&, const WorkOptions&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) template MeshReport check(const Contour<N, Real>&, const WorkOptions&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -267,22 +267,14 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> add_component_attribute(Cont
   return contour;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                                     \
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                                       \
   template ComponentLabels label_components(const Contour<N, Real>&, const WorkOptions&);                             \
   template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const WorkOptions&); \
   template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&,            \
                                                           const WorkOptions&);                                        \
   template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \
                                               const std::vector<bool>&, const WorkOptions&);                          \
-  template Contour<N, Real> add_component_attribute(Contour<N, Real>, const ComponentLabels&)
-TEGL_INSTANTIATE(2, float);
-TEGL_INSTANTIATE(2, double);
-TEGL_INSTANTIATE(3, float);
-TEGL_INSTANTIATE(3, double);
-TEGL_INSTANTIATE(4, float);
-TEGL_INSTANTIATE(4, double);
-TEGL_INSTANTIATE(5, float);
-TEGL_INSTANTIATE(5, double);
-#undef TEGL_INSTANTIATE
+  template Contour<N, Real> add_component_attribute(Contour<N, Real>, const ComponentLabels&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -231,14 +231,9 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
   return result;
 }
 
-template Measures<2> measure(const Contour<2, float>&, const WorkOptions&);
-template Measures<2> measure(const Contour<2, double>&, const WorkOptions&);
-template Measures<3> measure(const Contour<3, float>&, const WorkOptions&);
-template Measures<3> measure(const Contour<3, double>&, const WorkOptions&);
-template Measures<4> measure(const Contour<4, float>&, const WorkOptions&);
-template Measures<4> measure(const Contour<4, double>&, const WorkOptions&);
-template Measures<5> measure(const Contour<5, float>&, const WorkOptions&);
-template Measures<5> measure(const Contour<5, double>&, const WorkOptions&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \
+  template Measures<N> measure(const Contour<N, Real>&, const WorkOptions&);
+#include "base/instantiate.hpp"
 
 template std::vector<CutMeasures> measure_cuts(const Contour<3, float>&, std::span<const double>, const WorkOptions&);
 template std::vector<CutMeasures> measure_cuts(const Contour<3, double>&, std::span<const double>, const WorkOptions&);

@@ -151,17 +151,11 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gra
   return result;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                               \
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                                                      \
   template Buffer<Contour<N, Real>::Vertex> flat_normals<N, Real>(const Contour<N, Real>&, const WorkOptions&); \
   template Buffer<Contour<N, Real>::Vertex> geometric_normals<N, Real>(const Contour<N, Real>&, NormalWeights,  \
                                                                        const WorkOptions&);
-TEGL_INSTANTIATE(2, float)
-TEGL_INSTANTIATE(2, double)
-TEGL_INSTANTIATE(3, float)
-TEGL_INSTANTIATE(3, double)
-TEGL_INSTANTIATE(4, float)
-TEGL_INSTANTIATE(4, double)
-#undef TEGL_INSTANTIATE
+#include "base/instantiate.hpp"
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                            \
   template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&, \

@@ -605,11 +605,8 @@ requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& f
   return result;
 }
 
-template Deviation deviation(const Contour<2, float>&, const Contour<2, float>&, const DeviationOptions<2>&);
-template Deviation deviation(const Contour<2, double>&, const Contour<2, double>&, const DeviationOptions<2>&);
-template Deviation deviation(const Contour<3, float>&, const Contour<3, float>&, const DeviationOptions<3>&);
-template Deviation deviation(const Contour<3, double>&, const Contour<3, double>&, const DeviationOptions<3>&);
-template Deviation deviation(const Contour<4, float>&, const Contour<4, float>&, const DeviationOptions<4>&);
-template Deviation deviation(const Contour<4, double>&, const Contour<4, double>&, const DeviationOptions<4>&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
+  template Deviation deviation(const Contour<N, Real>&, const Contour<N, Real>&, const DeviationOptions<N>&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -644,11 +644,8 @@ requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contou
   return detail::Simplifier<N, Real>(contour, options).run();
 }
 
-template Simplification<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&);
-template Simplification<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&);
-template Simplification<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&);
-template Simplification<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&);
-template Simplification<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&);
-template Simplification<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
+  template Simplification<N, Real> simplify(const Contour<N, Real>&, const SimplifyOptions<N>&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

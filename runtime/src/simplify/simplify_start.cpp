@@ -56,11 +56,8 @@ requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const C
 template std::vector<Hyperplane<2>> border_planes(const Grid<2>&);
 template std::vector<Hyperplane<3>> border_planes(const Grid<3>&);
 template std::vector<Hyperplane<4>> border_planes(const Grid<4>&);
-template std::array<double, 2> automatic_scale<2, float>(const Contour<2, float>&);
-template std::array<double, 2> automatic_scale<2, double>(const Contour<2, double>&);
-template std::array<double, 3> automatic_scale<3, float>(const Contour<3, float>&);
-template std::array<double, 3> automatic_scale<3, double>(const Contour<3, double>&);
-template std::array<double, 4> automatic_scale<4, float>(const Contour<4, float>&);
-template std::array<double, 4> automatic_scale<4, double>(const Contour<4, double>&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
+  template std::array<double, N> automatic_scale<N, Real>(const Contour<N, Real>&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -48,11 +48,13 @@ class RowTable {
   void mark_as_own(unsigned signature) noexcept { entries_[signature] |= kOwnFlag; }
   /// Whether there are more keys than signatures.
   [[nodiscard]] bool has_variants() const noexcept { return entries_.size() > std::size_t{1} << (1u << table_->dim); }
-  /// Indexed by signature; in 2D by key; in 3D with variants by variant_places()[signature] + variant.
+  /// Indexed by signature; in 2D by key; in 3D with variants by place_of(key).
   [[nodiscard]] const std::uint32_t* entries() const noexcept { return entries_.data(); }
-  [[nodiscard]] const VariantPlaces& variant_places() const noexcept { return variant_places_; }
+  [[nodiscard]] std::uint32_t place_of(CubeKey key) const noexcept {
+    return variant_places_[key.signature()] + key.variant();
+  }
   [[nodiscard]] std::uint32_t entry(unsigned key) const noexcept {
-    return entries_[variants_.empty() ? key : variant_places_[CubeKey(key).signature()] + CubeKey(key).variant()];
+    return entries_[variants_.empty() ? key : place_of(CubeKey(key))];
   }
   /// The cube of an entry of tables::ResolvedTable. `choice`: tile::Choice of its centre, if that matters.
   [[nodiscard]] const Variant& variant(unsigned resolved, unsigned choice) const noexcept {

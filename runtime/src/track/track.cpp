@@ -44,7 +44,7 @@ void require_sound(const Contour<N, Real>& contour) {
   detail::require_finite(contour);
 }
 
-/// Builds the result, with conversion from the sweep's numbers to those of the result.
+/// Builds the result and converts the sweep's numbers to the numbers of the result.
 template <int N, class Real>
 class Builder {
  public:
@@ -308,11 +308,7 @@ TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep)
   return result;
 }
 
-template TrackGraph track(const Contour<2, float>&, const TrackOptions&);
-template TrackGraph track(const Contour<2, double>&, const TrackOptions&);
-template TrackGraph track(const Contour<3, float>&, const TrackOptions&);
-template TrackGraph track(const Contour<3, double>&, const TrackOptions&);
-template TrackGraph track(const Contour<4, float>&, const TrackOptions&);
-template TrackGraph track(const Contour<4, double>&, const TrackOptions&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) template TrackGraph track(const Contour<N, Real>&, const TrackOptions&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -495,11 +495,7 @@ SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options) 
   return Sweeper<N, Real>(contour, options).run();
 }
 
-template SweepResult sweep(const Contour<2, float>&, const TrackOptions&);
-template SweepResult sweep(const Contour<2, double>&, const TrackOptions&);
-template SweepResult sweep(const Contour<3, float>&, const TrackOptions&);
-template SweepResult sweep(const Contour<3, double>&, const TrackOptions&);
-template SweepResult sweep(const Contour<4, float>&, const TrackOptions&);
-template SweepResult sweep(const Contour<4, double>&, const TrackOptions&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) template SweepResult sweep(const Contour<N, Real>&, const TrackOptions&);
+#include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -297,6 +297,42 @@ ErrorCode code_of(const std::function<void()>& call, const std::string& part_of_
   return ErrorCode::Cancelled;
 }
 
+/// Replaces the samples of all layers outside of a range.
+void overwrite_other_layers(OwnedImage<float, 4>& image, int axis, LayerRange kept) {
+  const auto sizes = image.grid.sizes();
+  std::size_t stride = 1;
+  for (int a = 0; a < axis; ++a) stride *= sizes[a];
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const std::size_t layer = i / stride % sizes[axis];
+    if (layer < kept.first || layer >= kept.end) image.values[i] = 1e30f;
+  }
+}
+
+TEST(SliceImage, ReadsOnlyTheLayersOfTheCut) {
+  const auto whole = test::noise<float, 4>(Grid<4>::unit({6, 6, 6, 6}), 38);
+  ExtractOptions options;
+  options.work.threads = 1;
+  for (const Normals normals : {Normals::none, Normals::differences, Normals::sobel})
+    for (const int axis : {0, 3})
+      for (const double at : {0.0, 2.0, 2.25, 5.0}) {
+        options.normals = normals;
+        const LayerRange layers = layers_of_cut(whole.grid, axis, at, options);
+        auto part = whole;
+        overwrite_other_layers(part, axis, layers);
+        const auto hyperplane = Hyperplane<4>::across(axis, at);
+        const auto expected = slice_image(whole.view(), 0.5, hyperplane, options);
+        const auto cut = slice_image(part.view(), 0.5, hyperplane, options);
+        EXPECT_FALSE(cut.simplices.empty());
+        EXPECT_EQ(cut.vertices, expected.vertices) << "axis " << axis << " at " << at;
+        EXPECT_EQ(cut.simplices, expected.simplices);
+        EXPECT_EQ(cut.normals, expected.normals);
+      }
+  const LayerRange slab = layers_of_cut(whole.grid, 3, 2.25);
+  EXPECT_EQ(slab.first, 2u);
+  EXPECT_EQ(slab.end, 4u);
+  EXPECT_EQ(code_of([&] { (void)layers_of_cut(whole.grid, 3, 5.5); }, "between 0 and 5"), ErrorCode::InvalidArgument);
+}
+
 TEST(SliceImage, RefusesAWorldMapThatMixesTheLastAxis) {
   for (const auto& [row, column] : {std::pair{3, 0}, std::pair{1, 3}}) {
     Grid<4> grid = Grid<4>::unit({3, 3, 3, 3});

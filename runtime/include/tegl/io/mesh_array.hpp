@@ -8,62 +8,35 @@
 #include <cstddef>
 #include <initializer_list>
 #include <iterator>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "tegl/contour.hpp"
 
 namespace tegl {
 
-/// Numbers in one contiguous block of memory, with the functions of a std::vector. Takes over a Buffer of numbers, or
-/// of rows of 2 to 4 numbers as a contour has them, without a copy.
+namespace detail {
 template <class T>
-class MeshArray {
+using HeldNumbers =
+    HeldArray<T, Buffer<T>, Buffer<std::array<T, 2>>, Buffer<std::array<T, 3>>, Buffer<std::array<T, 4>>>;
+}  // namespace detail
+
+/// Numbers in one contiguous block of memory, with the functions of a std::vector, such as data, size, begin, end, back
+/// and []. Takes over a Buffer of numbers, or of rows of 2 to 4 numbers as a contour has them, without a copy.
+template <class T>
+class MeshArray : public detail::HeldNumbers<T> {
+  using Held = detail::HeldNumbers<T>;
+
  public:
-  using value_type = T;                                                             ///< the type of a number
-  using size_type = std::size_t;                                                    ///< a number of numbers
-  using difference_type = std::ptrdiff_t;                                           ///< a distance between two numbers
-  using reference = T&;                                                             ///< a number
-  using const_reference = const T&;                                                 ///< a constant number
-  using iterator = T*;                                                              ///< in memory order
-  using const_iterator = const T*;                                                  ///< in memory order
-  MeshArray() noexcept = default;                                                   ///< no numbers
-  MeshArray(Buffer<T> numbers) noexcept : held_(std::move(numbers)) { refresh(); }  ///< moves the numbers
+  MeshArray() noexcept = default;                                      ///< no numbers
+  MeshArray(Buffer<T> numbers) noexcept : Held(std::move(numbers)) {}  ///< moves the numbers
   /// Moves rows; number i of row r becomes number r * Width + i.
   template <std::size_t Width>
   requires(Width >= 2 && Width <= 4) MeshArray(Buffer<std::array<T, Width>> rows)
-  noexcept : held_(std::move(rows)) { refresh(); }
+  noexcept : Held(std::move(rows)) {}
   MeshArray(std::initializer_list<T> numbers) : MeshArray(Buffer<T>(numbers)) {}  ///< copies the numbers
   explicit MeshArray(std::size_t count, T number = T()) : MeshArray(Buffer<T>(count, number)) {}  ///< equal numbers
-  MeshArray(const MeshArray& other) : held_(other.held_) { refresh(); }                           ///< a copy
-  MeshArray(MeshArray&& other) noexcept : held_(std::exchange(other.held_, Held())) {  ///< `other` becomes empty
-    refresh();
-    other.refresh();
-  }
-  MeshArray& operator=(const MeshArray& other) { return *this = MeshArray(other); }  ///< a copy
-  MeshArray& operator=(MeshArray&& other) noexcept {                                 ///< `other` becomes empty
-    held_ = std::exchange(other.held_, Held());
-    refresh();
-    other.refresh();
-    return *this;
-  }
-  ~MeshArray() = default;
 
-  [[nodiscard]] T* data() noexcept { return data_; }                                    ///< the first number
-  [[nodiscard]] const T* data() const noexcept { return data_; }                        ///< the first number
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }                     ///< how many numbers
-  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }                      ///< whether size() is 0
-  [[nodiscard]] T* begin() noexcept { return data_; }                                   ///< to the first number
-  [[nodiscard]] const T* begin() const noexcept { return data_; }                       ///< to the first number
-  [[nodiscard]] T* end() noexcept { return data_ + size_; }                             ///< past the last number
-  [[nodiscard]] const T* end() const noexcept { return data_ + size_; }                 ///< past the last number
-  [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }              ///< number i < size()
-  [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }  ///< number i < size()
-  [[nodiscard]] T& back() noexcept { return data_[size_ - 1]; }                         ///< precondition: not empty
-  [[nodiscard]] const T& back() const noexcept { return data_[size_ - 1]; }             ///< precondition: not empty
-
-  /// These functions are those of std::vector. They invalidate pointers, and copy rows that were taken over.
+  /// These functions work as in a std::vector. They invalidate pointers, and copy rows that were taken over.
   /// New numbers are uninitialised, as in a Buffer.
   void resize(std::size_t count) {
     change([&](Buffer<T>& numbers) { numbers.resize(count); });
@@ -78,8 +51,8 @@ class MeshArray {
     change([](Buffer<T>& numbers) { numbers.pop_back(); });
   }
   template <std::input_iterator It>
-  void insert(const_iterator before, It first, It last) {  ///< inserts a range
-    const auto at = before - data_;
+  void insert(const T* before, It first, It last) {  ///< inserts a range
+    const auto at = before - this->data();
     change([&](Buffer<T>& numbers) { numbers.insert(numbers.begin() + at, first, last); });
   }
   void assign(std::size_t count, T number) {  ///< `count` equal numbers
@@ -90,17 +63,16 @@ class MeshArray {
     change([&](Buffer<T>& numbers) { numbers.assign(first, last); });
   }
   void clear() noexcept {  ///< removes all numbers
-    held_ = Held();
-    refresh();
+    this->hold(Buffer<T>());
   }
   /// The numbers as a Buffer; copies rows that were taken over.
   [[nodiscard]] const Buffer<T>& numbers() & {
     change([](Buffer<T>&) {});
-    return std::get<Buffer<T>>(held_);
+    return *this->template held_as<Buffer<T>>();
   }
   [[nodiscard]] Buffer<T> numbers() && {  ///< becomes empty
     change([](Buffer<T>&) {});
-    Buffer<T> result = std::move(std::get<Buffer<T>>(held_));
+    Buffer<T> result = std::move(*this->template held_as<Buffer<T>>());
     clear();
     return result;
   }
@@ -109,11 +81,11 @@ class MeshArray {
   template <std::size_t Width>
   requires(Width >= 2 && Width <= 4) [[nodiscard]] Buffer<std::array<T, Width>> rows() && {  ///< becomes empty
     Buffer<std::array<T, Width>> result;
-    if (auto* const held = std::get_if<Buffer<std::array<T, Width>>>(&held_)) {
+    if (auto* const held = this->template held_as<Buffer<std::array<T, Width>>>()) {
       result = std::move(*held);
     } else {
-      result.resize(size_ / Width);
-      for (std::size_t i = 0; i < result.size() * Width; ++i) result[i / Width][i % Width] = data_[i];
+      result.resize(this->size() / Width);
+      for (std::size_t i = 0; i < result.size() * Width; ++i) result[i / Width][i % Width] = (*this)[i];
     }
     clear();
     return result;
@@ -124,31 +96,14 @@ class MeshArray {
   }
 
  private:
-  using Held = std::variant<Buffer<T>, Buffer<std::array<T, 2>>, Buffer<std::array<T, 3>>, Buffer<std::array<T, 4>>>;
-
+  /// Calls change(numbers) for the numbers as a Buffer; copies rows that were taken over.
   template <class Change>
   void change(const Change& change) {
-    if (!std::holds_alternative<Buffer<T>>(held_)) held_ = Buffer<T>(begin(), end());
-    Buffer<T>& numbers = std::get<Buffer<T>>(held_);
+    if (this->template held_as<Buffer<T>>() == nullptr) this->hold(Buffer<T>(this->begin(), this->end()));
+    Buffer<T>& numbers = *this->template held_as<Buffer<T>>();
     change(numbers);
-    data_ = numbers.data();
-    size_ = numbers.size();
+    this->find_elements(numbers);
   }
-  void refresh() noexcept {
-    std::visit(
-        [&]<class Item>(Buffer<Item>& held) {
-          size_ = held.size() * (sizeof(Item) / sizeof(T));
-          if constexpr (std::is_same_v<Item, T>)
-            data_ = held.data();
-          else
-            data_ = held.empty() ? nullptr : held.data()->data();
-        },
-        held_);
-  }
-
-  Held held_;
-  T* data_ = nullptr;  ///< the first number in `held_`
-  std::size_t size_ = 0;
 };
 
 }  // namespace tegl

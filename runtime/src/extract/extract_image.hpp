@@ -7,8 +7,8 @@
 
 #include "base/progress.hpp"
 #include "image/transposed_layers.hpp"
+#include "kernel/extract_in_memory.hpp"
 #include "kernel/stream.hpp"
-#include "kernel/tableless.hpp"
 
 namespace tegl {
 
