@@ -205,7 +205,8 @@ class SliceCommand final : public Command {
                 "a 4D or 3D image, or a 4D or 3D contour saved by 'tegl contour' (.vtkhdf ...)", Files::image) {
     app()
         .add_option("--at", at_,
-                    "axis and place of the cut: t=7.3, x=2; t=1,2.5 for several; t=0:10:21 for 21 from 0 to 10")
+                    "axis and coordinate of the cut, in the unit of the axis: t=7.3, x=2; t=1,2.5 for several; "
+                    "t=0:10:21 for 21 from 0 to 10")
         ->allow_extra_args(false)
         ->type_name("AXIS=NUMBERS");
     app()

@@ -125,7 +125,7 @@ void require_output_keeps(const fs::path& output, std::string_view normals, bool
 }
 
 void CompressOption::add_to(CLI::App& app) {
-  app.add_flag("--compress", compress_, ".vtkhdf (and .vtu): compressed without loss; takes longer to write");
+  app.add_flag("--compress", compress_, ".vtkhdf (and .vtu of --facets): compressed without loss; takes longer to write");
 }
 
 void CompressOption::require_known(const fs::path& output, bool facets) const {

@@ -193,8 +193,10 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   source.grid.linear = Eigen::MatrixXd::Identity(n, n);
   source.grid.offset = Eigen::VectorXd::Zero(n);
   name_axes(source.grid);
+  drop_trailing_axes(source.grid, source.info);
+  const auto dropped = static_cast<std::ptrdiff_t>(layout.sizes.size() - source.grid.axes.size());
   const std::uint64_t per_layer =
-      checked_bytes(std::vector<std::uint64_t>(layout.sizes.begin(), layout.sizes.end() - 1), 1, path);
+      checked_bytes(std::vector<std::uint64_t>(layout.sizes.begin(), layout.sizes.end() - 1 - dropped), 1, path);
   StoredSamples samples;
   samples.path = path;
   samples.offset = layout.offset;

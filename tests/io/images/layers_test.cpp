@@ -184,6 +184,8 @@ TEST(Layers, OfRawValuesAreThoseOfTheFile) {
   const AnyImage any = AnyImageN<3>(image);
   expect_layers_of(any, open_raw_layers(dir / "little.raw", {{3, 4, 5}, ValueType::int16, 6, false}).layers);
   expect_layers_of(any, open_raw_layers(dir / "big.raw", {{3, 4, 5}, ValueType::int16, 0, true}).layers);
+  // a trailing axis of one sample is dropped
+  expect_layers_of(any, open_raw_layers(dir / "big.raw", {{3, 4, 5, 1}, ValueType::int16, 0, true}).layers);
 }
 
 TEST(Layers, ThatCannotBeReadAreNamed) {

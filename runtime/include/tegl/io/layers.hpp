@@ -57,9 +57,9 @@ struct RawLayout {
   std::vector<std::string> axis_units = {};  ///< empty: none
 };
 
-/// Opens a headerless raw file to be read layer by layer. Errors: FileNotFound; InvalidArgument (the layout: another
-/// value type, an invalid size, spacing or origin, or lists of another length than `sizes`); MalformedFile if the file
-/// is shorter than the layout requires.
+/// Opens a headerless raw file to be read layer by layer. Trailing axes of one sample are dropped while more than two
+/// axes are left. Errors: FileNotFound; InvalidArgument (the layout: another value type, an invalid size, spacing or
+/// origin, or lists of another length than `sizes`); MalformedFile if the file is shorter than the layout requires.
 [[nodiscard]] OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
 
 }  // namespace tegl
