@@ -25,16 +25,10 @@ struct LayersOfCut {
   std::size_t end = 0;
 };
 
-/// An image without samples, for functions that need only its grid.
-template <Value T, int N>
-AnyImage without_samples(const Grid<N>& grid) {
-  return AnyImageN<N>(OwnedImage<T, N>{grid, {}});
-}
-
 /// The layers that slice_image reads for the cut by x_last = at, in coordinates of `Real`: those of the slabs that it
 /// meets and, for normals along the gradient, their neighbours. Also the next slab if `at` is a layer's coordinate up
 /// to rounding. The world map must not mix the last axis with others. Nullopt if `at` lies outside.
-template <class Real, Value T, int N>
+template <class Real, int N>
 std::optional<LayersOfCut> layers_of_cut(const Grid<N>& grid, double at, bool normals) {
   constexpr double kOfCoordinate = 8.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
   constexpr double kOfStep = 1e-6;
@@ -43,7 +37,7 @@ std::optional<LayersOfCut> layers_of_cut(const Grid<N>& grid, double at, bool no
   Grid<N> slab = grid;
   for (std::size_t i = 0; i + 1 < size; ++i) {
     slab.axes[N - 1] = grid.axes[N - 1].part(i, 2);
-    const CutAxis ends = space_of(without_samples<T, N>(slab)).axes.back();
+    const CutAxis ends = space_of(slab).axes.back();
     const double slack =
         kOfStep * (ends.last - ends.first) + kOfCoordinate * std::max(std::abs(ends.first), std::abs(ends.last));
     if (at < ends.first - slack || at > ends.last + slack) continue;
@@ -54,6 +48,15 @@ std::optional<LayersOfCut> layers_of_cut(const Grid<N>& grid, double at, bool no
   if (normals)
     return LayersOfCut{layers.first - std::min<std::size_t>(layers.first, 1), std::min(layers.end + 1, size)};
   return layers;
+}
+
+/// Whether there are addresses for all samples of this grid.
+template <int N>
+bool fits_address_space(const Grid<N>& grid, std::size_t sample_bytes) {
+  constexpr double kMostBytes = 0x1p45;
+  auto bytes = static_cast<double>(sample_bytes);
+  for (const Axis& axis : grid.axes) bytes *= static_cast<double>(axis.size());
+  return bytes <= kMostBytes;
 }
 
 /// An image in memory for all its layers, of which only some are read. The memory of the others is not touched: it
@@ -87,14 +90,6 @@ class LayerImage {
   }
   /// The range of the values read so far; complete if the isovalue lies outside of it.
   [[nodiscard]] const ValueRange& range() const noexcept { return layers_.range(); }
-
-  /// Whether there are addresses for an image of this grid.
-  [[nodiscard]] static bool fits_address_space(const Grid<N>& grid) {
-    constexpr double kMostBytes = 0x1p45;
-    double bytes = sizeof(T);
-    for (const Axis& axis : grid.axes) bytes *= static_cast<double>(axis.size());
-    return bytes <= kMostBytes;
-  }
 
   /// The image; only layers that were read have their values.
   [[nodiscard]] Image<T, N> view() const& { return Image<T, N>(values_.data(), grid); }

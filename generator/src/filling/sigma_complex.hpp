@@ -27,7 +27,7 @@ class SigmaComplex {
 
   const FaceContours& faces_;
   std::array<std::bitset<256>, 256> adjacent_;
-  std::vector<std::array<std::uint8_t, 3>> triangles_;  // ascending vertices, sorted
+  std::vector<std::uint32_t> triangles_;  // keys, sorted
 };
 
 }  // namespace tegl::gen
