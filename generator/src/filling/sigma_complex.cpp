@@ -4,25 +4,18 @@
 #include "filling/sigma_complex.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace tegl::gen {
 
 namespace {
 
-/// A triangle as one number, the same for any order of its vertices.
-std::uint32_t key_of(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
-  if (a > b) std::swap(a, b);
-  if (b > c) std::swap(b, c);
-  if (a > b) std::swap(a, b);
-  return static_cast<std::uint32_t>(a) << 16 | static_cast<std::uint32_t>(b) << 8 | c;
-}
+Key key_of_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) { return key_of({a, b, c, 0}, 3); }
 
 }  // namespace
 
 SigmaComplex::SigmaComplex(const FaceContours& faces, const std::vector<LocalSimplex>& component) : faces_(faces) {
   for (const LocalSimplex& s : component) {
-    triangles_.push_back(key_of(s[0], s[1], s[2]));
+    triangles_.push_back(key_of_triangle(s[0], s[1], s[2]));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (i != j) adjacent_[s[i]].set(s[j]);
@@ -32,7 +25,7 @@ SigmaComplex::SigmaComplex(const FaceContours& faces, const std::vector<LocalSim
 
 bool SigmaComplex::allows_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) const {
   if ((faces_.faces_of(a) & faces_.faces_of(b) & faces_.faces_of(c)) == 0) return true;
-  return std::binary_search(triangles_.begin(), triangles_.end(), key_of(a, b, c));
+  return std::binary_search(triangles_.begin(), triangles_.end(), key_of_triangle(a, b, c));
 }
 
 bool SigmaComplex::allows(const LocalSimplex& t) const {
