@@ -28,14 +28,15 @@ function(tegl_precompile target)
   endif()
 endfunction()
 
-# tegl_unity(target [BATCH n] [ALONE sources...]): with TEGL_UNITY_BUILD, the sources of a room (a folder) are compiled
-# together, at most `n` (8) at a time. Headers are read once, and templates are instantiated once. ALONE: sources, or
-# folders of sources, that are compiled by themselves; so are the sources that Highway compiles several times.
+# tegl_unity(target [BATCH n] [ALONE sources...] [TOGETHER folders...]): with TEGL_UNITY_BUILD, the sources of a room (a
+# folder) are compiled together, at most `n` (8) at a time. Headers are read once, and templates are instantiated once.
+# ALONE: sources, or folders of sources, that are compiled by themselves; so are the sources that Highway compiles several
+# times, and those with compile options of their own. TOGETHER: folders that count as one room.
 function(tegl_unity target)
   if(NOT TEGL_UNITY_BUILD)
     return()
   endif()
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BATCH" "ALONE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BATCH" "ALONE;TOGETHER")
   if(NOT arg_BATCH)
     set(arg_BATCH 8)
   endif()
@@ -51,6 +52,9 @@ function(tegl_unity target)
       set_property(SOURCE ${source} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
       continue()
     endif()
+    if(folder IN_LIST arg_TOGETHER)
+      list(GET arg_TOGETHER 0 folder)
+    endif()
     string(MAKE_C_IDENTIFIER "${folder}" room)
     if(NOT DEFINED count_${room})
       set(count_${room} 0)
@@ -64,6 +68,16 @@ function(tegl_unity target)
   # uninitialised values in functions this large; the preset dev has both warnings.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage -Wno-maybe-uninitialized)
+  endif()
+endfunction()
+
+# tegl_release_level(level targets...): the optimisation level of targets in Release, for other code than loops over
+# samples and simplices: higher levels compile for longer and make it no faster.
+function(tegl_release_level level)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    foreach(target IN LISTS ARGN)
+      target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
+    endforeach()
   endif()
 endfunction()
 

@@ -254,11 +254,11 @@ double rounded(double value, double range) {
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
-template <class T>
-void suggest(const Binning& binning, const Spectrum& spectrum, ValueStatistics& result) {
+/// `integers`: whether the values are.
+void suggest(const Binning& binning, const Spectrum& spectrum, bool integers, ValueStatistics& result) {
   if (binning.bins < 2) return;
   const auto add = [&](double value, std::string method) {
-    if (std::is_integral_v<T>) {
+    if (integers) {
       value = std::floor(value) + 0.5;
       if (value > result.max) value -= 1;
     } else if (const double round = rounded(value, result.max - result.min); std::isfinite(round)) {
@@ -268,14 +268,13 @@ void suggest(const Binning& binning, const Spectrum& spectrum, ValueStatistics& 
     const auto same = [&](const Suggestion& other) { return other.value == value; };
     if (std::any_of(result.suggestions.begin(), result.suggestions.end(), same)) return;
     // Threshold k lies between bins k - 1 and k.
-    const std::size_t k =
-        std::clamp<std::size_t>(binning(value) + (std::is_integral_v<T> ? 1 : 0), 1, binning.bins - 1);
+    const std::size_t k = std::clamp<std::size_t>(binning(value) + (integers ? 1 : 0), 1, binning.bins - 1);
     if (spectrum.edges[k] <= 0) return;
     result.suggestions.push_back({value, std::move(method), static_cast<std::uint64_t>(spectrum.edges[k])});
   };
   // Integers: threshold k separates low + k - 1 from low + k; `add` moves it to the middle.
   const auto at = [&](std::size_t k) {
-    return binning.low + binning.width * (static_cast<double>(k) - (std::is_integral_v<T> ? 0.5 : 0.0));
+    return binning.low + binning.width * (static_cast<double>(k) - (integers ? 0.5 : 0.0));
   };
   add(at(otsu_threshold(result.histogram.counts)), "otsu");
   if (const auto k = contrast_threshold(spectrum, binning.bins)) add(at(*k), "contrast");
@@ -307,7 +306,7 @@ ValueStatistics value_statistics(std::span<const T> values, std::span<const std:
   const Binning binning = make_binning<T>(result);
   result.histogram = make_histogram(values, binning);
   measure_percentiles(values, binning, result);
-  suggest<T>(binning, make_spectrum(values, sizes, binning), result);
+  suggest(binning, make_spectrum(values, sizes, binning), std::is_integral_v<T>, result);
   return result;
 }
 

@@ -312,24 +312,25 @@ class ContourCommand final : public Command {
   void pick(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     Stopwatch watch;
     Picked& picked = *result.picked;
+    const auto keep = [&](auto found) {
+      picked.tile.assign(found.report.at.begin(), found.report.at.end());
+      picked.distance = found.report.distance;
+      picked.tiles = found.report.tiles;
+      picked.components = found.report.components;
+      result.mesh = with_additions(std::move(found.contour), options.work.threads, bar);
+    };
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
       if (picked.point.size() != N)
         throw Error(ErrorCode::InvalidArgument, fmt::format("--pick {} has {} numbers; expected {}, one for each axis",
                                                             pick_, picked.point.size(), N));
       std::array<double, N> point;
       std::copy_n(picked.point.begin(), N, point.begin());
-      const auto keep = [&](auto found) {
-        picked.tile.assign(found.report.at.begin(), found.report.at.end());
-        picked.distance = found.report.distance;
-        picked.tiles = found.report.tiles;
-        picked.components = found.report.components;
-        return with_additions(std::move(found.contour), options.work.threads, bar);
-      };
-      return options_.single_precision()
-                 ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options))
-                 : keep(extract_component<double>(owned.view(), *result.isovalue, point, options));
+      if (options_.single_precision())
+        keep(extract_component<float>(owned.view(), *result.isovalue, point, options));
+      else
+        keep(extract_component<double>(owned.view(), *result.isovalue, point, options));
     };
-    result.mesh = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
     result.seconds.generate += watch.lap();
   }
 
@@ -345,20 +346,22 @@ class ContourCommand final : public Command {
   template <class Finished>
   void by_index(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results,
                 const Finished& finished) const {
+    const WorkOptions reading{options.work.threads, bar.stage("index")};
+    const auto keep = [&](ContourResult& result, auto extraction) {
+      result.stats = extraction.stats;
+      result.mesh = with_additions(std::move(extraction.contour), options.work.threads, bar);
+    };
+    Stopwatch watch;
     const auto of_owned = [&](const auto& owned) {
-      Stopwatch watch;
       const auto view = owned.view();
-      const auto active = read_active_tiles(index_, view, {options.work.threads, bar.stage("index")});
+      const auto active = read_active_tiles(index_, view, reading);
       results.front().seconds.read += watch.lap();
       for (ContourResult& result : results) {
         options.work.progress = bar.stage("contour");
-        const auto keep = [&](auto extraction) {
-          result.stats = extraction.stats;
-          return with_additions(std::move(extraction.contour), options.work.threads, bar);
-        };
-        result.mesh = options_.single_precision()
-                          ? keep(extract_with_stats<float>(view, *result.isovalue, *active, options))
-                          : keep(extract_with_stats<double>(view, *result.isovalue, *active, options));
+        if (options_.single_precision())
+          keep(result, extract_with_stats<float>(view, *result.isovalue, *active, options));
+        else
+          keep(result, extract_with_stats<double>(view, *result.isovalue, *active, options));
       }
     };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);

@@ -175,13 +175,12 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
   ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
-  const auto of_owned = [&](const auto& owned) {
-    use_facets<void>(owned, work, options, [&](const auto& facets) {
-      result.seconds.generate = watch.lap();
-      result.stats = stats_of(facets, result.seconds.generate);
-      check_and_write(facets, work, bar, result, written);
-    });
+  const auto finish = [&](const auto& facets) {
+    result.seconds.generate = watch.lap();
+    result.stats = stats_of(facets, result.seconds.generate);
+    check_and_write(facets, work, bar, result, written);
   };
+  const auto of_owned = [&](const auto& owned) { use_facets<void>(owned, work, options, finish); };
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
 }
 
@@ -198,15 +197,12 @@ std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(
   ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
-  return std::visit(
-      [&](const auto& owned) {
-        const auto triangulated = [&]<class Real>(const FacetHierarchy<3, Real>& facets) -> Triangles {
-          auto contour = triangulate(facets, method, {work.options.work.threads, bar.stage("triangles")});
-          return Extraction<3, Real>{std::move(contour), stats_of(facets, watch.lap())};
-        };
-        return use_facets<Triangles>(owned, work, options, triangulated);
-      },
-      *typed);
+  const auto triangulated = [&]<class Real>(const FacetHierarchy<3, Real>& facets) -> Triangles {
+    auto contour = triangulate(facets, method, {work.options.work.threads, bar.stage("triangles")});
+    return Extraction<3, Real>{std::move(contour), stats_of(facets, watch.lap())};
+  };
+  return std::visit([&](const auto& owned) { return use_facets<Triangles>(owned, work, options, triangulated); },
+                    *typed);
 }
 
 }  // namespace tegl::cli

@@ -129,8 +129,7 @@ class IndexCommand final : public Command {
     result.variable = input.info.variable;
     result.image_dim = image_dim(input.image);
     result.read_seconds = watch.lap();
-    std::visit([&](const auto& typed) { std::visit([&](const auto& owned) { build(owned, bar, result); }, typed); },
-               input.image);
+    build(input.image, bar, result);
     // report
     bar.clear();
     if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
@@ -145,8 +144,7 @@ class IndexCommand final : public Command {
     return name + kIndexExtension;
   }
 
-  template <class Owned>
-  void build(const Owned& owned, ProgressBar& bar, IndexResult& result) const {
+  void build(const AnyImage& image, ProgressBar& bar, IndexResult& result) const {
     Stopwatch watch;
     const std::vector<ActiveMethod> methods = active_methods();
     const ActiveMethod method =
@@ -156,13 +154,16 @@ class IndexCommand final : public Command {
     options.seed_method =
         *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return name_of(each) == seeds_; });
     options.scan_order = scan_order_;
-    const auto index = build_active_tiles(owned.view(), method, options);
-    result.tiles = index->grid().count();
-    result.memory_bytes = index->memory_bytes();
-    result.build_seconds = watch.lap();
-    const Progress writing = bar.stage("write");
-    write_active_tiles(*index, result.output);
-    writing(1);
+    const auto write = [&](const auto& index) {
+      result.tiles = index.grid().count();
+      result.memory_bytes = index.memory_bytes();
+      result.build_seconds = watch.lap();
+      const Progress writing = bar.stage("write");
+      write_active_tiles(index, result.output);
+      writing(1);
+    };
+    const auto of_owned = [&](const auto& owned) { write(*build_active_tiles(owned.view(), method, options)); };
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
     result.output_bytes = std::filesystem::file_size(result.output);
     result.write_seconds = watch.lap();
   }

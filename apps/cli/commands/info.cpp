@@ -42,15 +42,14 @@ struct Description {
   double statistics_seconds = 0;
 };
 
-template <class T, int N>
-void describe_grid(const OwnedImage<T, N>& image, Description& description) {
-  description.value_type = kValueType<T>;
-  description.axes.assign(image.grid.axes.begin(), image.grid.axes.end());
-  if (!image.grid.has_world_map()) return;
+template <int N>
+void describe_grid(const Grid<N>& grid, Description& description) {
+  description.axes.assign(grid.axes.begin(), grid.axes.end());
+  if (!grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
     description.linear.emplace_back();
-    for (int column = 0; column < N; ++column) description.linear.back().push_back(image.grid.linear[row][column]);
-    description.offset.push_back(image.grid.offset[row]);
+    for (int column = 0; column < N; ++column) description.linear.back().push_back(grid.linear[row][column]);
+    description.offset.push_back(grid.offset[row]);
   }
 }
 
@@ -346,9 +345,11 @@ class InfoCommand final : public Command {
     description.info = image.info;
     description.read_seconds = watch.lap();
     InterruptHandler::throw_if_requested();
-    std::visit(
-        [&](const auto& typed) { std::visit([&](const auto& owned) { describe_grid(owned, description); }, typed); },
-        image.image);
+    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+      description.value_type = kValueType<T>;
+      describe_grid(owned.grid, description);
+    };
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image.image);
     description.values = value_statistics(image.image);
     description.statistics_seconds = watch.lap();
     bar.clear();

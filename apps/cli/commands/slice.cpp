@@ -121,41 +121,30 @@ Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
   return cut;
 }
 
-/// Calls f with the image of any type and dimension.
-template <class F>
-auto visit_image(const AnyImage& image, const F& f) {
-  return std::visit([&](const auto& typed) { return std::visit(f, typed); }, image);
-}
-template <Value T, int N, class F>
-auto visit_image(const LayerImage<T, N>& image, const F& f) {
-  return f(image);
+/// The cut of an image, of which it reads only the layers beside the cut.
+template <class Real, Value T, int N>
+Extraction<N - 1, Real> slice_slab(const Image<T, N>& image, double isovalue, const Cut& cut,
+                                   const ExtractOptions& options) {
+  if (cut.is_outside) return {empty_cut<N - 1, Real>(image.grid(), *cut.across), {}};
+  return slice_image_with_stats<Real>(image, isovalue, Hyperplane<N>::across(*cut.across, cut.value), options);
 }
 
 /// Whether a cut across an axis needs only the layers beside it.
 bool is_separate(const AnyImage& image, int axis) {
-  return visit_image(image, [axis](const auto& owned) { return owned.grid.is_separate(axis); });
+  const auto of_owned = [axis](const auto& owned) { return owned.grid.is_separate(axis); };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
-template <class Real, class Source>
-Mesh slice_mesh(const Source& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
-                const ExtractionOptions& own, const ExtractOptions& options, ExtractStats& stats) {
-  const auto of_owned = [&](const auto& owned) -> Mesh {
-    constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
-    if constexpr (kDim >= 3) {
-      if (cut.is_outside) return to_mesh(empty_cut<kDim - 1, Real>(owned.grid, *cut.across));
-      auto [contour, counts] = slice_image_with_stats<Real>(owned.view(), isovalue,
-                                                            Hyperplane<kDim>::across(*cut.across, cut.value), options);
-      stats = counts;
-      std::vector<double> others = factors;
-      others.erase(others.begin() + *cut.across);
-      stretch(contour, others);
-      own.add_shape_normals(contour);
-      return to_mesh(std::move(contour));
-    } else {
-      throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // checked before by require_cuttable
-    }
-  };
-  return visit_image(image, of_owned);
+/// The mesh of a cut, after its axes are scaled, with the normals of --normals.
+template <int N, class Real>
+Mesh cut_mesh(Contour<N, Real> contour, const Cut& cut, const std::vector<double>& factors,
+              const ExtractionOptions& own) {
+  if (cut.is_outside) return to_mesh(std::move(contour));
+  std::vector<double> others = factors;
+  others.erase(others.begin() + *cut.across);
+  stretch(contour, others);
+  own.add_shape_normals(contour);
+  return to_mesh(std::move(contour));
 }
 
 /// Appends the vertices of a cut, in the coordinates of the space that was cut.
@@ -316,51 +305,51 @@ class SliceCommand final : public Command {
     const double isovalue = options_.isovalue();
     Stopwatch watch;
     const Progress progress = bar.stage("read");
+    std::vector<ContourResult> results;
     OpenLayersResult input;
     try {
       input = open();
     } catch (const Error&) {
       return std::nullopt;  // not a format with layers, or reading reports the error
     }
-    const auto of_layers =
-        [&]<Value T, int N>(
-            const std::unique_ptr<LayerReader<T, N>>& layers) -> std::optional<std::vector<ContourResult>> {
+    const auto of_layers = [&]<Value T, int N>(const std::unique_ptr<LayerReader<T, N>>& layers) {
       require_cuts(N, "image");
       if constexpr (N >= 3) {
         std::vector<LayerRange> needed;
-        std::vector<ContourResult> results = plan<T>(layers->grid(), cuts, needed);
-        if (results.empty() || (std::is_same_v<T, double> && may_be_whole_numbers(input.info))) return std::nullopt;
-        for (ContourResult& result : results) {
-          result.isovalue = isovalue;
-          result.variable = input.info.variable;
+        results = plan(layers->grid(), sizeof(T), input.info, cuts, needed);
+        if (results.empty()) return;
+        if (std::is_same_v<T, double> && may_be_whole_numbers(input.info)) {
+          results.clear();
+          return;
         }
         RangedLayers<T, N> ranged(*layers, isovalue, isovalue);
         LayerImage<T, N> image(ranged);
         read_layers(image, needed, progress);
         if (!options_.allows_empty()) require_both_sides(image, input.info, progress);
         results.front().seconds.read = watch.lap();
+        const Image<T, N> view = image.view();
         for (ContourResult& result : results) {
           result.seconds.read = results.front().seconds.read;
-          cut_slab(image, result, bar);
+          cut_slab(view, result, bar);
         }
-        return results;
-      } else {
-        return std::nullopt;
       }
     };
-    return std::visit([&](const auto& any) { return std::visit(of_layers, any); }, input.layers);
+    std::visit([&](const auto& any) { std::visit(of_layers, any); }, input.layers);
+    if (results.empty()) return std::nullopt;
+    return results;
   }
 
   /// A result for each cut, and the layers that it needs; none if the cuts need more than layers along the last axis.
   /// Throws for cuts that are wrong or outside of the image.
-  template <Value T, int N>
-  std::vector<ContourResult> plan(const Grid<N>& grid, const std::vector<Cut>& cuts, std::vector<LayerRange>& needed) {
+  template <int N>
+  std::vector<ContourResult> plan(const Grid<N>& grid, std::size_t sample_bytes, const ImageInfo& info,
+                                  const std::vector<Cut>& cuts, std::vector<LayerRange>& needed) {
     constexpr int kLast = N - 1;
-    const CutSpace space = space_of(without_samples<T, N>(grid));
+    const CutSpace space = space_of(grid);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(cuts, space);
     if (std::any_of(grid.axes.begin(), grid.axes.end(), [](const Axis& axis) { return axis.size() < 2; }) ||
-        !grid.is_separate(kLast) || !LayerImage<T, N>::fits_address_space(grid))
+        !grid.is_separate(kLast) || !fits_address_space(grid, sample_bytes))
       return {};
     const ExtractOptions options = options_.library_options();
     for (ContourResult& result : results) {
@@ -372,6 +361,8 @@ class SliceCommand final : public Command {
       else
         needed.push_back(layers_of_cut<double>(grid, kLast, result.cut->value, options));
       result.image_dim = N;
+      result.isovalue = options_.isovalue();
+      result.variable = info.variable;
     }
     return results;
   }
@@ -418,7 +409,10 @@ class SliceCommand final : public Command {
       result.image_dim = image_dim(input.image);
       result.seconds.read = read_seconds;
       if (result.cut->across && is_separate(input.image, *result.cut->across)) {
-        cut_slab(input.image, result, bar);
+        const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+          if constexpr (N >= 3) cut_slab(owned.view(), result, bar);  // others are refused by require_cuts
+        };
+        std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, input.image);
         continue;
       }
       of_whole.push_back(result);
@@ -430,17 +424,23 @@ class SliceCommand final : public Command {
   }
 
   /// Contours only the layers of a cut.
-  template <class Source>
-  void cut_slab(const Source& image, ContourResult& result, ProgressBar& bar) const {
+  template <Value T, int N>
+  void cut_slab(const Image<T, N>& image, ContourResult& result, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.work.progress = bar.stage("slice");
-    ExtractStats& stats = result.stats.emplace();
     Stopwatch watch;
-    result.mesh = options_.single_precision()
-                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors_, options_, options, stats)
-                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors_, options_, options, stats);
+    if (options_.single_precision())
+      finish_slab(slice_slab<float>(image, *result.isovalue, *result.cut, options), result, watch);
+    else
+      finish_slab(slice_slab<double>(image, *result.isovalue, *result.cut, options), result, watch);
+  }
+
+  template <int N, class Real>
+  void finish_slab(Extraction<N, Real> extraction, ContourResult& result, Stopwatch& watch) const {
+    result.stats = extraction.stats;
+    result.mesh = cut_mesh(std::move(extraction.contour), *result.cut, factors_, options_);
     const double seconds = watch.lap();
-    result.seconds.add(stats);
+    result.seconds.add(extraction.stats);
     // The slab's extraction is part of the time; the rest is the cut itself.
     result.seconds.slice = std::max(0.0, seconds - (result.seconds.total() - result.seconds.read));
   }

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include "base/empty_result.hpp"
 #include "base/numbers.hpp"
@@ -24,48 +26,75 @@ namespace tegl::cli {
 
 namespace {
 
-template <int N, class Real, class T>
-std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
-                                      std::vector<ContourResult>& results) {
-  // check the axes
-  for (int a = 0; a < N; ++a)
-    if (source.grid().axes[a].size() < 2)
-      throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
-                                    axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
-  // open the output files
+/// The pending files of streamed contours.
+template <int N, class Real>
+class StreamedFiles {
+ public:
+  /// Opens the output of each result. Throws EmptyResult if the image has no tiles.
+  StreamedFiles(const Grid<N>& grid, const StreamOptions& options, std::vector<ContourResult>& results)
+      : options_(options), results_(results) {
+    for (int a = 0; a < N; ++a)
+      if (grid.axes[a].size() < 2)
+        throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
+                                      axis_label(grid.axes[a].name, static_cast<std::size_t>(a))));
+    for (const ContourResult& result : results) {
+      files_.push_back(std::make_unique<PendingContour<N, Real>>(written_.stage(result.output), grid, result.isovalue,
+                                                                 options.compression));
+      contours_.push_back({*result.isovalue, files_.back().get()});
+    }
+  }
+
+  [[nodiscard]] std::span<const StreamedContour<N, Real>> contours() const { return contours_; }
+
+  /// Checks the range of values, completes the files and the results. Returns remarks.
+  std::vector<std::string> finish(const std::vector<ExtractedSize>& extracted, const ValueRange& range,
+                                  const std::string& unit) {
+    std::vector<std::string> remarks;
+    for (std::size_t i = 0; i < contours_.size(); ++i) {
+      const double isovalue = contours_[i].isovalue;
+      const bool outside = !range.has_both_sides(isovalue);
+      if (outside && !options_.allow_empty) throw outside_error(isovalue, range, unit);
+      if (!outside && extracted[i].size.simplices == 0) remarks.push_back(remark_on_missing(isovalue));
+    }
+    for (const auto& file : files_) file->close();
+    written_.keep();
+    // report
+    const double seconds = watch_.lap();
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      ContourResult& result = results_[i];
+      result.image_dim = N;
+      result.stats = extracted[i].stats;
+      result.streamed = MeshSize{N - 1, extracted[i].size.vertices, extracted[i].size.simplices};
+      result.seconds.add(extracted[i].stats);
+      result.seconds.write = std::max(0.0, seconds - result.seconds.total());
+    }
+    return remarks;
+  }
+
+ private:
+  const StreamOptions& options_;
+  std::vector<ContourResult>& results_;
+  Stopwatch watch_;
+  WrittenFiles written_;
+  std::vector<std::unique_ptr<PendingContour<N, Real>>> files_;
+  std::vector<StreamedContour<N, Real>> contours_;
+};
+
+/// The least and the greatest isovalue.
+std::pair<double, double> isovalue_range(const std::vector<ContourResult>& results) {
   const auto [least, most] =
       std::ranges::minmax_element(results, {}, [](const ContourResult& result) { return *result.isovalue; });
-  RangedLayers<T, N> layers(source, *least->isovalue, *most->isovalue);
-  WrittenFiles written;
-  std::vector<std::unique_ptr<PendingContour<N, Real>>> files;
-  std::vector<StreamedContour<N, Real>> contours;
-  std::vector<std::string> remarks;
-  Stopwatch watch;
-  for (const ContourResult& result : results) {
-    files.push_back(std::make_unique<PendingContour<N, Real>>(written.stage(result.output), layers.grid(),
-                                                              result.isovalue, options.compression));
-    contours.push_back({*result.isovalue, files.back().get()});
-  }
-  // extract, check the range of values, complete the files
-  const std::vector<ExtractedSize> extracted = extract_streamed_several<Real>(layers, contours, options.extract);
-  for (std::size_t i = 0; i < contours.size(); ++i) {
-    const double isovalue = contours[i].isovalue;
-    const bool outside = !layers.range().has_both_sides(isovalue);
-    if (outside && !options.allow_empty) throw outside_error(isovalue, layers.range(), unit);
-    if (!outside && extracted[i].size.simplices == 0) remarks.push_back(remark_on_missing(isovalue));
-  }
-  for (const auto& file : files) file->close();
-  written.keep();
-  // report
-  const double seconds = watch.lap();
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    results[i].image_dim = N;
-    results[i].stats = extracted[i].stats;
-    results[i].streamed = MeshSize{N - 1, extracted[i].size.vertices, extracted[i].size.simplices};
-    results[i].seconds.add(extracted[i].stats);
-    results[i].seconds.write = std::max(0.0, seconds - results[i].seconds.total());
-  }
-  return remarks;
+  return {*least->isovalue, *most->isovalue};
+}
+
+template <class Real, class T, int N>
+std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
+                                      std::vector<ContourResult>& results) {
+  StreamedFiles<N, Real> files(source.grid(), options, results);
+  const auto [least, most] = isovalue_range(results);
+  RangedLayers<T, N> layers(source, least, most);
+  const auto extracted = extract_streamed_several<Real>(layers, files.contours(), options.extract);
+  return files.finish(extracted, layers.range(), unit);
 }
 
 }  // namespace
@@ -89,8 +118,8 @@ void require_open_files(std::size_t contours) {
 std::vector<std::string> stream_contours(OpenLayersResult& input, const StreamOptions& options,
                                          std::vector<ContourResult>& results) {
   const auto typed = [&]<class T, int N>(const std::unique_ptr<LayerReader<T, N>>& layers) {
-    return options.single_precision ? stream_typed<N, float>(*layers, input.info.value_unit, options, results)
-                                    : stream_typed<N, double>(*layers, input.info.value_unit, options, results);
+    return options.single_precision ? stream_typed<float>(*layers, input.info.value_unit, options, results)
+                                    : stream_typed<double>(*layers, input.info.value_unit, options, results);
   };
   return std::visit([&](const auto& any) { return std::visit(typed, any); }, input.layers);
 }

@@ -131,14 +131,15 @@ void refuse_image_options(const std::vector<std::string>& files, std::vector<std
 
 std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const AnyImage& image) {
   using Ends = std::pair<std::optional<double>, std::optional<double>>;
-  const auto of_owned = [](const auto& owned) -> Ends {
-    constexpr int kLast = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>) - 1;
+  const auto of_grid = []<int N>(const Grid<N>& grid) -> Ends {
+    constexpr int kLast = N - 1;
     for (int a = 0; a < kLast; ++a)
-      if (owned.grid.linear[kLast][a] != 0) return {};
-    const Axis& axis = owned.grid.axes[kLast];
-    const auto world = [&](double at) { return owned.grid.linear[kLast][kLast] * at + owned.grid.offset[kLast]; };
+      if (grid.linear[kLast][a] != 0) return {};
+    const Axis& axis = grid.axes[kLast];
+    const auto world = [&](double at) { return grid.linear[kLast][kLast] * at + grid.offset[kLast]; };
     return std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
   };
+  const auto of_owned = [&](const auto& owned) { return of_grid(owned.grid); };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 

@@ -191,24 +191,28 @@ std::vector<Cut> parse_planes(const std::vector<std::string>& planes) {
   return cuts;
 }
 
-CutSpace space_of(const AnyImage& image) {
-  const auto of_owned = [](const auto& owned) {
-    constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
-    CutSpace space{{}, "image", {}};
-    for (int a = 0; a < kDim; ++a) {
-      CutAxis& world = space.axes.emplace_back();
-      world = {axis_label(owned.grid.axes[a].name, static_cast<std::size_t>(a)), owned.grid.offset[a],
-               owned.grid.offset[a]};
-      for (int b = 0; b < kDim; ++b) {
-        const Axis& axis = owned.grid.axes[b];
-        const auto [low, high] =
-            std::minmax({owned.grid.linear[a][b] * axis[0], owned.grid.linear[a][b] * axis[axis.size() - 1]});
-        world.first += low;
-        world.last += high;
-      }
+template <int N>
+CutSpace space_of(const Grid<N>& grid) {
+  CutSpace space{{}, "image", {}};
+  for (int a = 0; a < N; ++a) {
+    CutAxis& world = space.axes.emplace_back();
+    world = {axis_label(grid.axes[a].name, static_cast<std::size_t>(a)), grid.offset[a], grid.offset[a]};
+    for (int b = 0; b < N; ++b) {
+      const Axis& axis = grid.axes[b];
+      const auto [low, high] = std::minmax({grid.linear[a][b] * axis[0], grid.linear[a][b] * axis[axis.size() - 1]});
+      world.first += low;
+      world.last += high;
     }
-    return space;
-  };
+  }
+  return space;
+}
+
+template CutSpace space_of(const Grid<2>&);
+template CutSpace space_of(const Grid<3>&);
+template CutSpace space_of(const Grid<4>&);
+
+CutSpace space_of(const AnyImage& image) {
+  const auto of_owned = [](const auto& owned) { return space_of(owned.grid); };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 

@@ -51,6 +51,9 @@ struct CutSpace {
   std::span<const double> vertices = {};
 };
 CutSpace space_of(const AnyImage& image);
+/// The space of an image on this grid.
+template <int N>
+CutSpace space_of(const Grid<N>& grid);
 CutSpace space_of(const Mesh& mesh);
 
 /// Parses the values of --scale, one factor for each axis: "t=10", "x=2,y=3". Throws InvalidArgument.

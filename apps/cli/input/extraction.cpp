@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/numbers.hpp"
 #include "base/statistics.hpp"
@@ -163,13 +164,14 @@ EmptyResult outside_error(double isovalue, const ValueRange& range, const std::s
 }
 
 void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
-  const auto require_tiles = [](const auto& owned) {
-    for (std::size_t a = 0; a < owned.grid.axes.size(); ++a) {
-      if (owned.grid.axes[a].size() > 1) continue;
+  const auto require_samples = [](std::span<const Axis> axes) {
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      if (axes[a].size() > 1) continue;
       throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
-                                    axis_label(owned.grid.axes[a].name, a)));
+                                    axis_label(axes[a].name, a)));
     }
   };
+  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
   if (allow_empty) return;
   const ValueRange range = value_range(input.image, isovalue);

@@ -14,10 +14,13 @@
 
 namespace tegl::cli {
 
-/// An image without samples, for functions that need only its grid.
-template <Value T, int N>
-AnyImage without_samples(const Grid<N>& grid) {
-  return AnyImageN<N>(OwnedImage<T, N>{grid, {}});
+/// Whether there are addresses for all samples of this grid.
+template <int N>
+bool fits_address_space(const Grid<N>& grid, std::size_t sample_bytes) {
+  constexpr double kMostBytes = 0x1p45;
+  auto bytes = static_cast<double>(sample_bytes);
+  for (const Axis& axis : grid.axes) bytes *= static_cast<double>(axis.size());
+  return bytes <= kMostBytes;
 }
 
 /// An image in memory for all its layers, of which only some are read. The memory of the others is not touched: it
@@ -51,14 +54,6 @@ class LayerImage {
   }
   /// The range of the values read so far; complete if the isovalue lies outside of it.
   [[nodiscard]] const ValueRange& range() const noexcept { return layers_.range(); }
-
-  /// Whether there are addresses for an image of this grid.
-  [[nodiscard]] static bool fits_address_space(const Grid<N>& grid) {
-    constexpr double kMostBytes = 0x1p45;
-    double bytes = sizeof(T);
-    for (const Axis& axis : grid.axes) bytes *= static_cast<double>(axis.size());
-    return bytes <= kMostBytes;
-  }
 
   /// The image; only layers that were read have their values.
   [[nodiscard]] Image<T, N> view() const& { return Image<T, N>(values_.data(), grid); }

@@ -53,7 +53,7 @@ std::string upper(std::string text) {
 }
 
 /// Names as typed: "-o", "--output".
-std::vector<std::string> names_of(const CLI::Option& option) {
+std::vector<std::string> forms_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -140,7 +140,7 @@ std::string man_examples(const std::string& footer) {
 }
 
 std::string man_option(const CLI::Option& option) {
-  std::vector<std::string> names = names_of(option);
+  std::vector<std::string> names = forms_of(option);
   for (std::string& name : names) name = "\\fB" + roff(name) + "\\fR";
   std::string text = fmt::format(".TP\n{}", fmt::join(names, ", "));
   const std::vector<std::string> words = words_of(option);
@@ -217,7 +217,7 @@ BashWords bash_words(const CLI::App& program) {
   for (const CLI::App* command : commands_of(program)) {
     std::vector<std::string> words;
     for (const CLI::Option* option : options_of(*command)) {
-      const std::vector<std::string> own = names_of(*option);
+      const std::vector<std::string> own = forms_of(*option);
       words.insert(words.end(), own.begin(), own.end());
       if (const auto allowed = words_of(*option); !allowed.empty())
         for (const std::string& name : own)
@@ -280,7 +280,7 @@ std::string zsh_script(const CLI::App& program) {
         fmt::format("    {}\n", single_quoted(command->get_name() + ":" + escaped(brief(command->get_description()))));
     cases += fmt::format("    {})\n      _arguments -s \\\n", command->get_name());
     for (const CLI::Option* option : options_of(*command))
-      for (const std::string& name : names_of(*option)) {
+      for (const std::string& name : forms_of(*option)) {
         // "--name=" accepts its value after '=' or as the next word.
         std::string spec = fmt::format("*{}{}[{}]", name, takes_value(*option) && name.starts_with("--") ? "=" : "",
                                        escaped(brief(option->get_description())));

@@ -17,6 +17,7 @@
 #include "filling/ball_dissection.hpp"
 #include "filling/side_filling.hpp"
 #include "filling/sigma_complex.hpp"
+#include "filling/simplex_key.hpp"
 #include "tegl/tile/disjoint_sets.hpp"
 
 namespace tegl::gen {
@@ -185,32 +186,32 @@ std::vector<LocalSimplex> cone(int n, const Component& c, std::uint8_t apex) {
   return result;
 }
 
-using SortedFace = std::pair<LocalSimplex, int>;
-
-/// The simplex with ascending vertices, and the sign of the permutation.
-SortedFace sorted_face(LocalSimplex s, int count) {
-  const int sign = tile::sort_vertices(s, count);
-  return {s, sign};
-}
+/// The key of a simplex, and the sign of the permutation that sorts its vertices.
+SignedFace signed_face(const LocalSimplex& s, int count) { return {key_of(s, count), parity(s, count)}; }
 
 /// True if the oriented boundary of the n-vertex simplices is exactly `boundary`.
 bool is_bounded_by(int n, const std::vector<LocalSimplex>& simplices, const std::vector<LocalSimplex>& boundary) {
-  std::map<LocalSimplex, int> sum;
+  std::vector<SignedFace> sum;
+  sum.reserve(static_cast<std::size_t>(n) * simplices.size());
   for (const LocalSimplex& s : simplices)
     for (int drop = 0; drop < n; ++drop) {
-      LocalSimplex face{};
-      for (int i = 0, k = 0; i < n; ++i)
-        if (i != drop) face[k++] = s[i];
-      const auto [key, sign] = sorted_face(face, n - 1);
-      sum[key] += drop % 2 == 0 ? sign : -sign;
+      const auto [key, sign] = signed_face(without(s, drop, n), n - 1);
+      sum.push_back({key, drop % 2 == 0 ? sign : -sign});
     }
-  std::erase_if(sum, [](const auto& entry) { return entry.second == 0; });
+  // add the signs of equal faces; faces with the sum 0 are inside
+  std::sort(sum.begin(), sum.end());
+  auto end = sum.begin();
+  for (auto at = sum.begin(); at != sum.end();) {
+    SignedFace total{at->key, 0};
+    for (; at != sum.end() && at->key == total.key; ++at) total.sign += at->sign;
+    if (total.sign != 0) *end++ = total;
+  }
+  sum.erase(end, sum.end());
   if (sum.size() != boundary.size()) return false;
-  return std::all_of(boundary.begin(), boundary.end(), [&](LocalSimplex s) {
-    for (int i = n - 1; i < 4; ++i) s[i] = 0;
-    const auto [key, sign] = sorted_face(s, n - 1);
-    const auto found = sum.find(key);
-    return found != sum.end() && found->second == sign;
+  return std::all_of(boundary.begin(), boundary.end(), [&](const LocalSimplex& s) {
+    const SignedFace face = signed_face(s, n - 1);
+    const auto found = std::lower_bound(sum.begin(), sum.end(), face);
+    return found != sum.end() && *found == face;
   });
 }
 
@@ -287,25 +288,22 @@ bool fill_simplex(int n, const Component& c, LocalFacet& facet) {
 /// Orients tetrahedra that fill a component so that the component is their oriented boundary. Propagates signs over
 /// shared triangles.
 std::vector<LocalSimplex> oriented(std::vector<LocalSimplex> tetrahedra, const Component& c) {
-  std::map<LocalSimplex, int> known;  // triangle (ascending vertices) -> sign that a tetrahedron on it needs
+  std::map<Key, int> known;  // triangle -> sign that a tetrahedron on it needs
   for (const LocalSimplex& s : c.boundary) {
-    const auto [key, sign] = sorted_face({s[0], s[1], s[2], 0}, 3);
+    const auto [key, sign] = signed_face(s, 3);
     known[key] = sign;
   }
   std::vector<LocalSimplex> result;
   while (!tetrahedra.empty()) {
     const std::size_t before = tetrahedra.size();
     std::erase_if(tetrahedra, [&](const LocalSimplex& t) {
-      std::array<SortedFace, 4> faces;
+      std::array<SignedFace, 4> faces{};
       int sign = 0;
       for (int drop = 0; drop < 4; ++drop) {
-        LocalSimplex face{};
-        for (int i = 0, k = 0; i < 4; ++i)
-          if (i != drop) face[k++] = t[i];
-        faces[drop] = sorted_face(face, 3);
-        if (drop % 2 != 0) faces[drop].second = -faces[drop].second;
-        const auto found = known.find(faces[drop].first);
-        if (found != known.end() && sign == 0) sign = found->second * faces[drop].second;
+        faces[drop] = signed_face(without(t, drop, 4), 3);
+        if (drop % 2 != 0) faces[drop].sign = -faces[drop].sign;
+        const auto found = known.find(faces[drop].key);
+        if (found != known.end() && sign == 0) sign = found->second * faces[drop].sign;
       }
       if (sign == 0) return false;
       for (const auto& [face, own] : faces) known.try_emplace(face, -sign * own);  // for the other side

@@ -9,17 +9,13 @@ namespace tegl::gen {
 
 namespace {
 
-std::array<std::uint8_t, 3> sorted(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
-  std::array<std::uint8_t, 3> t{a, b, c};
-  std::sort(t.begin(), t.end());
-  return t;
-}
+Key key_of_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) { return key_of({a, b, c, 0}, 3); }
 
 }  // namespace
 
 SigmaComplex::SigmaComplex(const FaceContours& faces, const std::vector<LocalSimplex>& component) : faces_(faces) {
   for (const LocalSimplex& s : component) {
-    triangles_.push_back(sorted(s[0], s[1], s[2]));
+    triangles_.push_back(key_of_triangle(s[0], s[1], s[2]));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (i != j) adjacent_[s[i]].set(s[j]);
@@ -29,7 +25,7 @@ SigmaComplex::SigmaComplex(const FaceContours& faces, const std::vector<LocalSim
 
 bool SigmaComplex::allows_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) const {
   if ((faces_.faces_of(a) & faces_.faces_of(b) & faces_.faces_of(c)) == 0) return true;
-  return std::binary_search(triangles_.begin(), triangles_.end(), sorted(a, b, c));
+  return std::binary_search(triangles_.begin(), triangles_.end(), key_of_triangle(a, b, c));
 }
 
 bool SigmaComplex::allows(const LocalSimplex& t) const {

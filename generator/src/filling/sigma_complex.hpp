@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "filling/face_contours.hpp"
+#include "filling/simplex_key.hpp"
 #include "filling/tile_contour.hpp"
 
 namespace tegl::gen {
@@ -27,7 +28,7 @@ class SigmaComplex {
 
   const FaceContours& faces_;
   std::array<std::bitset<256>, 256> adjacent_;
-  std::vector<std::array<std::uint8_t, 3>> triangles_;  // ascending vertices, sorted
+  std::vector<Key> triangles_;  // keys, sorted
 };
 
 }  // namespace tegl::gen

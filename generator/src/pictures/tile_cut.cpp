@@ -70,11 +70,11 @@ class Places {
   const TileContour& contour_;
 };
 
-Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}; }
+Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}; }
 
 /// The spatial part of the normal that faces high.
 Place normal_of(const std::array<Point, 4>& t) {
-  std::array<Point, 4> rows{difference(t[1], t[0]), difference(t[2], t[0]), difference(t[3], t[0]), Point{}};
+  std::array<Point, 4> rows{minus(t[1], t[0]), minus(t[2], t[0]), minus(t[3], t[0]), Point{}};
   Place normal{};
   for (std::size_t i = 0; i < 3; ++i) {
     rows[3] = Point{};
