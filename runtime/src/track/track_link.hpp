@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "track/sweep_result.hpp"
@@ -65,7 +66,7 @@ class SweptComplex {
 
   SweptComplex(const Contour<N, Real>& contour, unsigned threads, const Progress& progress)
       : contour_(contour),
-        stars_(make_stars<N>(rows_of(contour), contour.vertices.size(), part_of(progress, 0.0, 0.3))) {
+        stars_(make_stars<N>(SimplexView<N>(contour).rows(), contour.vertices.size(), part_of(progress, 0.0, 0.3))) {
     rank_vertices(part_of(progress, 0.3, 0.5));
     find_border(threads, part_of(progress, 0.5, 1.0));
   }
