@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/function_ref.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
 
@@ -51,8 +52,9 @@ class CountedProgress {
 
 /// Calls work(from, to) in order for parts of 0 … count - 1 of `size` items each (the last may be smaller), on the
 /// calling thread. Reports progress before each part and at the end.
-template <class Work>
-void in_parts(std::size_t count, const Progress& progress, const Work& work, std::size_t size = std::size_t{1} << 16) {
+inline void in_parts(std::size_t count, const Progress& progress,
+                     FunctionRef<void(std::size_t from, std::size_t to)> work,
+                     std::size_t size = std::size_t{1} << 16) {
   for (std::size_t first = 0; first < count; first += size) {
     tell(progress, static_cast<double>(first) / static_cast<double>(count));
     work(first, std::min(count, first + size));

@@ -94,6 +94,34 @@ std::pair<Pairs, int> cut_pairs(int high_count) {
   }
 }
 
+/// An (N-2)-face that lies in the hyperplane, as seen from one of its simplices.
+template <int N>
+struct OnFace {
+  std::array<Index, N - 1> vertices;  // ascending
+  Index simplex;
+  int omitted;  // position in the simplex of the vertex that is not in the face
+};
+
+/// Sorts by the vertices, then by simplex. `most`: maximum vertex number.
+template <int N>
+void sort_on_faces(std::vector<OnFace<N>>& on_faces, Index most) {
+  sort_by_bits(on_faces, static_cast<unsigned>(std::bit_width(most)),
+               [](const OnFace<N>& face) { return face.vertices[0]; });
+  const auto before = [](const OnFace<N>& a, const OnFace<N>& b) {
+    return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
+  };
+  // sort by all vertices within runs of equal first vertex
+  for (auto from = on_faces.begin(), to = from; from != on_faces.end(); from = to) {
+    to = std::find_if(from, on_faces.end(), [&](const OnFace<N>& f) { return f.vertices[0] != from->vertices[0]; });
+    std::sort(from, to, before);
+  }
+}
+
+/// Sorts entries of on vertices: twice the vertex, plus 0 or 1. `most`: maximum vertex number.
+void sort_entries(std::vector<std::uint64_t>& entries, Index most) {
+  sort_by_bits(entries, static_cast<unsigned>(std::bit_width(most)) + 1, [](std::uint64_t entry) { return entry; });
+}
+
 template <int N, class Real>
 class Cutter {
  public:
@@ -129,12 +157,7 @@ class Cutter {
   }
 
  private:
-  /// An (N-2)-face that lies in the hyperplane, as seen from one of its simplices.
-  struct OnFace {
-    std::array<Index, N - 1> vertices;  // ascending
-    Index simplex;
-    int omitted;  // position in the simplex of the vertex that is not in the face
-  };
+  using OnFace = detail::OnFace<N>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
   /// The vertices of a simplex below the hyperplane and on it: bit j for vertex j.
@@ -174,7 +197,7 @@ class Cutter {
   }
 
   void list_on_vertices(std::vector<std::uint64_t> entries) {
-    sort_by_bits(entries, static_cast<unsigned>(std::bit_width(most_)) + 1, [](std::uint64_t entry) { return entry; });
+    sort_entries(entries, most_);
     std::vector<Index> on;
     std::vector<bool> has_way_down;
     bool all_have = true;
@@ -363,16 +386,7 @@ class Cutter {
     std::vector<OnFace> on_faces;
     for (std::size_t i = 0; i < touching_.size(); ++i)
       if (std::popcount(unsigned{sides_[i].on}) >= N - 1) gather_on_faces(touching_[i], on_high(i), on_faces);
-    sort_by_bits(on_faces, static_cast<unsigned>(std::bit_width(most_)),
-                 [](const OnFace& face) { return face.vertices[0]; });
-    const auto before = [](const OnFace& a, const OnFace& b) {
-      return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
-    };
-    // sort by all vertices within runs of equal first vertex
-    for (auto from = on_faces.begin(), to = from; from != on_faces.end(); from = to) {
-      to = std::find_if(from, on_faces.end(), [&](const OnFace& f) { return f.vertices[0] != from->vertices[0]; });
-      std::sort(from, to, before);
-    }
+    sort_on_faces<N>(on_faces, most_);
     // keep the boundary faces whose simplex is above
     std::vector<Piece> faces;
     if (on_faces.empty()) return faces;

@@ -49,6 +49,21 @@ struct Range {
   Index simplex;
 };
 
+/// Sorts by node; within a node by the lower ends, ascending, or by the upper ends, descending (`by_upper`). Stable
+/// radix sorts: by one end, then by node.
+void sort_by_node(std::vector<Range>& ranges, bool by_upper) {
+  if (by_upper)
+    detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return ~range.most; });
+  else
+    detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return range.least; });
+  detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); });
+}
+
+/// Sorts numbers below `count`.
+void sort_numbers(std::vector<Index>& numbers, std::size_t count) {
+  detail::sort_by_bits(numbers, static_cast<unsigned>(std::bit_width(count)), [](Index number) { return number; });
+}
+
 constexpr const char* kCancelledScrubber = "building a scrubber was cancelled";
 
 /// The lowest and the highest vertex. Throws InvalidArgument if a height is not finite.
@@ -107,18 +122,15 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   range_ = {lowest * family.unit(), highest * family.unit()};
   std::vector<Range> ranges =
       place_ranges(contour, work.threads, [&](Index v) { return place(family.height(contour.vertices[v])); });
-  // Stable radix sorts: by one end, then by node.
-  const auto gather = [&](std::vector<Entry>& entries, double fraction, const auto& key, const auto& end) {
+  const auto gather = [&](std::vector<Entry>& entries, double fraction, bool by_upper) {
     detail::tell(work.progress, fraction, kCancelledScrubber);
-    detail::sort_by_bits(ranges, kPlaceBits, key);
-    detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); });
+    sort_by_node(ranges, by_upper);
     entries.resize(ranges.size());
-    for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = {end(ranges[i]), ranges[i].simplex};
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      entries[i] = {by_upper ? ranges[i].most : ranges[i].least, ranges[i].simplex};
   };
-  gather(
-      by_least_, 0.1, [](const Range& range) { return range.least; }, [](const Range& range) { return range.least; });
-  gather(
-      by_most_, 0.5, [](const Range& range) { return ~range.most; }, [](const Range& range) { return range.most; });
+  gather(by_least_, 0.1, false);
+  gather(by_most_, 0.5, true);
   // nodes: runs of equal middle
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const std::uint32_t middle = middle_of(ranges[i].least, ranges[i].most);
@@ -174,8 +186,7 @@ const {
     }
     return !reaches_down || !reaches_up;
   });
-  detail::sort_by_bits(found, static_cast<unsigned>(std::bit_width(contour_->simplices.size())),
-                       [](Index s) { return s; });
+  sort_numbers(found, contour_->simplices.size());
   return found;
 }
 

@@ -2,10 +2,12 @@
 //
 // Sizes of contours, and extraction into memory of the caller.
 #include <algorithm>
+#include <memory>
 #include <span>
 
 #include <fmt/format.h>
 
+#include "base/function_ref.hpp"
 #include "kernel/stream.hpp"
 #include "kernel/tableless.hpp"
 
@@ -149,21 +151,54 @@ class MemorySink final : public ContourSink<N, Real> {
   ContourSize size_;
 };
 
-template <Value T, int N>
-ExtractedSize count_by_parts(const Image<T, N>& image, double isovalue, const ExtractOptions& options) {
+/// Makes the samples of an image, once per pass.
+template <int N>
+using SourceOfPass = FunctionRef<std::unique_ptr<SampleSource<N>>()>;
+
+template <int N>
+ExtractedSize count_by_parts(const SourceOfPass<N>& make_source, const Grid<N>& grid, const ExtractOptions& options) {
   const ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
   const auto tables = generated_tables<N>(options);
   if (!options.close) {
-    ImageSource<T, N> source(image, isovalue, options.epsilon);
+    const auto source = make_source();
     CountOutput<N, float> output;
-    const ExtractStats stats = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+    const ExtractStats stats = extract_to<N, float>(*source, grid, tables, options, plan, output);
     if (!output.any_missing) return {output.size, stats};
   }
-  ImageSource<T, N> source(image, isovalue, options.epsilon);
+  const auto source = make_source();
   NoSink<N, float> sink;
   StreamOutput<N, float> output(sink, options.normals != Normals::none);
-  const ExtractStats stats = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+  const ExtractStats stats = extract_to<N, float>(*source, grid, tables, options, plan, output);
   return {output.size(), stats};
+}
+
+/// `extract_into`, compiled once for all value types.
+template <int N, class Real, class I>
+ExtractedSize extract_into_room(const SourceOfPass<N>& make_source, const Grid<N>& grid,
+                                const ContourRoom<N, Real, I>& room, const ExtractOptions& options) {
+  const auto tables = generated_tables<N>(options);
+  ExtractPlan plan;
+  if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
+  const auto source = make_source();
+  MemoryOutput<N, Real, I> output(room, options.normals);
+  ExtractedSize result;
+  result.stats = extract_to<N, Real>(*source, grid, tables, options, plan, output);
+  result.size = output.size;
+  if (output.any_missing) {
+    const auto again = make_source();
+    MemorySink<N, Real, I> sink(room);
+    StreamOutput<N, Real> parts(sink, options.normals);
+    result.stats = extract_to<N, Real>(*again, grid, tables, options, plan, parts);
+    result.size = parts.size();
+  } else if constexpr (sizeof(I) == sizeof(Index)) {
+    check_vertex_count(result.size.vertices, kMaxVertices);
+  }
+  return result;
+}
+
+template <Value T, int N>
+std::unique_ptr<SampleSource<N>> source_of(const Image<T, N>& image, double isovalue, double epsilon) {
+  return std::make_unique<ImageSource<T, N>>(image, isovalue, epsilon);
 }
 
 }  // namespace
@@ -179,7 +214,8 @@ requires DimensionBetween<N, 2, 5> ExtractedSize count_with_stats(const Image<T,
     detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
     return detail::count_tiles<N>(source, image.grid(), options);
   } else {
-    return detail::count_by_parts(image, isovalue, options);
+    return detail::count_by_parts<N>([&] { return detail::source_of(image, isovalue, options.epsilon); }, image.grid(),
+                                     options);
   }
 }
 
@@ -188,24 +224,8 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Image<T, N>&
                                                               const ContourRoom<N, Real, I>& room,
                                                               const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
-  const auto tables = detail::generated_tables<N>(options);
-  detail::ExtractPlan plan;
-  if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
-  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  detail::MemoryOutput<N, Real, I> output(room, options.normals != Normals::none);
-  ExtractedSize result;
-  result.stats = detail::extract_to<N, Real>(source, image.grid(), tables, options, plan, output);
-  result.size = output.size;
-  if (output.any_missing) {
-    detail::ImageSource<T, N> again(image, isovalue, options.epsilon);
-    detail::MemorySink<N, Real, I> sink(room);
-    detail::StreamOutput<N, Real> parts(sink, options.normals != Normals::none);
-    result.stats = detail::extract_to<N, Real>(again, image.grid(), tables, options, plan, parts);
-    result.size = parts.size();
-  } else if constexpr (sizeof(I) == sizeof(Index)) {
-    detail::check_vertex_count(result.size.vertices, detail::kMaxVertices);
-  }
-  return result;
+  return detail::extract_into_room<N, Real, I>([&] { return detail::source_of(image, isovalue, options.epsilon); },
+                                               image.grid(), room, options);
 }
 
 #define TEGL_INSTANTIATE_INTO(T, N, Real, I)                                                                     \

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "base/function_ref.hpp"
 #include "base/progress.hpp"
 #include "image/locate.hpp"
 #include "kernel/extract_in_memory.hpp"
@@ -184,12 +185,15 @@ std::vector<bool> components_in(const Contour<N, double>& inside, const Componen
   return result;
 }
 
+/// By component, whether it is allowed.
+using Choose = detail::FunctionRef<std::vector<bool>(const ComponentLabels& labels, const Progress& progress)>;
+
 /// The component of a contour nearest to a point, among those that `choose(labels, progress)` allows. Reports progress
 /// from kExtracted on.
-template <int N, class Real, class Choose>
+template <int N, class Real>
 Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::GridLocator<N>& locator,
                               const std::type_identity_t<std::array<double, N>>& at, const ExtractOptions& options,
-                              std::uint64_t& components, const Choose& choose) {
+                              std::uint64_t& components, Choose choose) {
   using detail::part_of;
   const Progress& progress = options.work.progress;
   const ComponentLabels labels =
@@ -219,6 +223,99 @@ std::array<double, N> place_in_grid(const detail::GridLocator<N>& locator, const
                           grid.has_world_map() ? ", mapped to the world as the image is" : ""));
 }
 
+constexpr auto kChooseAll = [](const ComponentLabels& labels, const Progress& /*progress*/) {
+  return std::vector<bool>(labels.count, true);
+};
+
+/// The tiles of the component at the tile nearest to a point.
+template <int N>
+struct ReachedTiles {
+  PickReport<N> report = {};
+  TileGrid<N> grid;
+  std::vector<TileNumber> tiles = {};   ///< ascending
+  std::vector<TileNumber> around = {};  ///< tiles beside them, if missing values may separate them
+};
+
+/// Searches the nearest active tile and propagates from it. `with_around`: whether to list the tiles around.
+template <Value T, int N>
+ReachedTiles<N> reach_tiles(const Image<T, N>& image, double isovalue, const std::array<double, N>& at,
+                            const WorkOptions& work, bool with_around) {
+  const detail::TileFlood<T, N> flood(image, isovalue);
+  ReachedTiles<N> reached{.grid = flood.grid()};
+  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(reached.report, work.progress)) return reached;
+  bool at_missing = false;
+  reached.tiles = flood.run({reached.report.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, work.threads,
+                            detail::part_of(work.progress, kNearestShare, kFlooded), &at_missing);
+  std::sort(reached.tiles.begin(), reached.tiles.end());
+  reached.report.tiles = reached.tiles.size();
+  if (at_missing && with_around)
+    reached.around = flood.beside(reached.tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
+  return reached;
+}
+
+/// Extractions from an image, for work that is compiled once for all value types.
+template <int N, class Real>
+struct Extractors {
+  /// Contour in these tiles; null: in all.
+  detail::FunctionRef<Contour<N, Real>(const ExtractOptions& options, const std::vector<TileNumber>* tiles)> contour;
+  /// On a grid with steps of 1, in double precision.
+  detail::FunctionRef<Contour<N, double>(const ExtractOptions& options, const std::vector<TileNumber>* tiles)> on_steps;
+  /// An empty contour with names and units.
+  detail::FunctionRef<Contour<N, Real>(const ExtractOptions& options)> nothing;
+};
+
+/// The component in the tiles reached, from contours of the image.
+template <int N, class Real>
+PickedComponent<N, Real> extract_reached(const ReachedTiles<N>& reached, bool in_tiles,
+                                         const detail::GridLocator<N>& locator, const std::array<double, N>& at,
+                                         const ExtractOptions& options, const Extractors<N, Real>& extractors) {
+  PickReport<N> found = reached.report;
+  ExtractOptions rest = options;
+  rest.work.progress = detail::part_of(options.work.progress, kFlooded, kExtracted);
+  if (!found.found) {
+    if (!options.close) {
+      auto nothing = extractors.nothing(rest);
+      detail::tell(options.work.progress, 1.0);
+      return {std::move(nothing), found};
+    }
+    // The whole contour consists of caps: take the component of the nearest vertex.
+    auto nearest =
+        nearest_part<N, Real>(extractors.contour(rest, nullptr), locator, at, options, found.components, kChooseAll);
+    return {std::move(nearest), found};
+  }
+  // If missing values separate the tiles around an edge, a vertex on it is doubled for the components on either side.
+  // It comes first in one component and last in the others (split_nonmanifold.hpp), so all tiles around it are needed.
+  std::vector<TileNumber> looked_at = reached.tiles;
+  looked_at.insert(looked_at.end(), reached.around.begin(), reached.around.end());
+  std::sort(looked_at.begin(), looked_at.end());
+  const std::vector<TileNumber>* const chosen = in_tiles ? &looked_at : nullptr;
+  const auto allowed = [&](const ComponentLabels& labels, const Progress& progress) {
+    if (in_tiles && reached.around.empty()) return kChooseAll(labels, progress);
+    const Progress extracting = detail::part_of(progress, 0.0, 0.9);
+    return components_in(extractors.on_steps(inside_edges(options, extracting), chosen), labels, reached.grid,
+                         reached.tiles, detail::part_of(progress, 0.9, 1.0));
+  };
+  auto nearest =
+      nearest_part<N, Real>(extractors.contour(rest, chosen), locator, at, options, found.components, allowed);
+  return {std::move(nearest), found};
+}
+
+/// The contour in these tiles; null: in all.
+template <class Real, Value T, int N>
+Contour<N, Real> extract_in(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                            const std::vector<TileNumber>* tiles) {
+  if constexpr (N <= 4)
+    if (tiles != nullptr) return extract<Real>(image, isovalue, *choose_tiles(image, *tiles), options);
+  return extract<Real>(image, isovalue, options);
+}
+
+template <Value T, int N>
+Contour<N, double> extract_on_steps(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                                    const std::vector<TileNumber>* tiles) {
+  const Image<T, N> on_steps_of_1(image.data(), Grid<N>::unit(image.grid().sizes()), image.strides());
+  return extract_in<double>(on_steps_of_1, isovalue, options, tiles);
+}
+
 }  // namespace
 
 template <Coordinate Real, Value T, int N>
@@ -228,52 +325,18 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
   detail::check_arguments(isovalue, options);
   const detail::GridLocator<N> locator(image.grid());
   const std::array<double, N> at = place_in_grid(locator, image.grid(), point);
-  PickReport<N> found;
-  ExtractOptions rest = options;
-  rest.work.progress = detail::part_of(options.work.progress, kFlooded, kExtracted);
-  const auto all_of = [](const ComponentLabels& labels, const Progress&) {
-    return std::vector<bool>(labels.count, true);
-  };
-  const detail::TileFlood<T, N> flood(image, isovalue);
-  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.work.progress)) {
-    if (!options.close) {
-      auto nothing =
-          extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // empty, with names and units
-      detail::tell(options.work.progress, 1.0);
-      return {std::move(nothing), found};
-    }
-    // The whole contour consists of caps: take the component of the nearest vertex.
-    auto nearest = nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
-    return {std::move(nearest), found};
-  }
-  bool at_missing = false;
-  std::vector<TileNumber> tiles =
-      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.work.threads,
-                detail::part_of(options.work.progress, kNearestShare, kFlooded), &at_missing);
-  std::sort(tiles.begin(), tiles.end());
-  found.tiles = tiles.size();
   const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
-  // If missing values separate the tiles around an edge, a vertex on it is doubled for the components on either side.
-  // It comes first in one component and last in the others (split_nonmanifold.hpp), so all tiles around it are needed.
-  std::vector<TileNumber> around;
-  if (at_missing && in_tiles) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
-  std::vector<TileNumber> looked_at = tiles;
-  looked_at.insert(looked_at.end(), around.begin(), around.end());
-  std::sort(looked_at.begin(), looked_at.end());
-  const auto contour_of = [&]<class R>(const Image<T, N>& of, const ExtractOptions& with, R) {
-    if constexpr (N <= 4)
-      if (in_tiles) return extract<R>(of, isovalue, *choose_tiles(of, looked_at), with);
-    return extract<R>(of, isovalue, with);
+  const ReachedTiles<N> reached = reach_tiles<T, N>(image, isovalue, at, options.work, in_tiles);
+  const auto contour = [&](const ExtractOptions& with, const std::vector<TileNumber>* tiles) {
+    return extract_in<Real>(image, isovalue, with, tiles);
   };
-  const auto allowed = [&](const ComponentLabels& labels, const Progress& progress) {
-    if (in_tiles && around.empty()) return all_of(labels, progress);
-    const Progress extracting = detail::part_of(progress, 0.0, 0.9);
-    const Image<T, N> on_steps_of_1(image.data(), Grid<N>::unit(image.grid().sizes()), image.strides());
-    return components_in(contour_of(on_steps_of_1, inside_edges(options, extracting), double{}), labels, flood.grid(),
-                         tiles, detail::part_of(progress, 0.9, 1.0));
+  const auto on_steps = [&](const ExtractOptions& with, const std::vector<TileNumber>* tiles) {
+    return extract_on_steps(image, isovalue, with, tiles);
   };
-  auto nearest = nearest_part(contour_of(image, rest, Real{}), locator, at, options, found.components, allowed);
-  return {std::move(nearest), found};
+  const auto nothing = [&](const ExtractOptions& with) {
+    return extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, with);
+  };
+  return extract_reached<N, Real>(reached, in_tiles, locator, at, options, {contour, on_steps, nothing});
 }
 
 #define TEGL_INSTANTIATE_REAL(T, N, Real)                          \

@@ -10,9 +10,6 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/LU>
-
-#include "tegl/eigen.hpp"
 #include "tegl/grid.hpp"
 
 namespace tegl::detail {
@@ -29,11 +26,15 @@ struct CellPlace {
   std::array<double, N> share;
 };
 
+/// The inverse matrix.
+template <int N>
+Matrix<N> inverse_of(const Matrix<N>& matrix);
+
 template <int N>
 class GridLocator {
  public:
   explicit GridLocator(const Grid<N>& grid)
-      : axes_(grid.axes), mapped_(grid.has_world_map()), inverse_(inverse_of(grid.linear)), offset_(grid.offset) {
+      : axes_(grid.axes), mapped_(grid.has_world_map()), inverse_(inverse_of<N>(grid.linear)), offset_(grid.offset) {
     for (int a = 0; a < N; ++a)
       for (std::size_t i = 0; i < axes_[a].size() && !axes_[a].is_uniform(); ++i)
         keys_[a].push_back(axes_[a].is_descending() ? -axes_[a][i] : axes_[a][i]);
@@ -51,12 +52,6 @@ class GridLocator {
   }
 
  private:
-  static Matrix<N> inverse_of(const Matrix<N>& matrix) {
-    const Eigen::Matrix<double, N, N> linear = as_eigen(matrix);
-    const Eigen::Matrix<double, N, N> inverse = linear.inverse();
-    return to_matrix(inverse);
-  }
-
   bool find(const std::array<double, N>& world, CellPlace<N>& place, double slack) const noexcept {
     std::array<double, N> point = world;
     if (mapped_)

@@ -243,17 +243,33 @@ class LinkChecker {
   bool branching_ = false;
 };
 
+/// Coordinates of vertices, of either type.
+class Coordinates {
+ public:
+  explicit Coordinates(std::span<const float> values) : singles_(values.data()), size_(values.size()) {}
+  explicit Coordinates(std::span<const double> values) : doubles_(values.data()), size_(values.size()) {}
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] double operator[](std::size_t i) const noexcept {
+    return singles_ != nullptr ? static_cast<double>(singles_[i]) : doubles_[i];
+  }
+
+ private:
+  const float* singles_ = nullptr;
+  const double* doubles_ = nullptr;
+  std::size_t size_;
+};
+
 /// Whether D edge vectors from one corner span less than D dimensions, up to rounding. Gram–Schmidt with pivoting,
 /// longest remainder first; the remainders are heights of the simplex in decreasing order.
-template <int D, class Real>
-bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
+template <int D>
+bool is_flat(const Index* row, int space_dim, const Coordinates& coordinates) {
   constexpr int kMaxSpace = 8;
   constexpr double kFlat = 1e-14;
   std::array<std::array<double, kMaxSpace>, D> edges;
   for (int j = 0; j < D; ++j)
     for (int a = 0; a < space_dim; ++a)
-      edges[j][a] = static_cast<double>(coordinates[std::size_t{row[j + 1]} * space_dim + a]) -
-                    static_cast<double>(coordinates[std::size_t{row[0]} * space_dim + a]);
+      edges[j][a] =
+          coordinates[std::size_t{row[j + 1]} * space_dim + a] - coordinates[std::size_t{row[0]} * space_dim + a];
   const auto dot = [space_dim](const auto& x, const auto& y) {
     double sum = 0.0;
     for (int a = 0; a < space_dim; ++a) sum += x[a] * y[a];
@@ -295,14 +311,15 @@ void require_vertex_numbers(std::span<const Index> rows, std::size_t vertices, s
   });
 }
 
-template <class Real>
-std::uint64_t count_nonfinite(std::span<const Real> coordinates, std::size_t vertices, const Progress& progress) {
+std::uint64_t count_nonfinite(const Coordinates& coordinates, std::size_t vertices, const Progress& progress) {
   const std::size_t space_dim = vertices == 0 ? 0 : coordinates.size() / vertices;
   std::uint64_t count = 0;
   detail::in_parts(vertices, progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t v = from; v < to; ++v) {
-      const auto at = coordinates.subspan(v * space_dim, space_dim);
-      if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++count;
+      bool all_finite = true;
+      for (std::size_t a = 0; a < space_dim; ++a)
+        all_finite = all_finite && std::isfinite(coordinates[v * space_dim + a]);
+      if (!all_finite) ++count;
     }
   });
   return count;
@@ -315,14 +332,14 @@ struct SimplexCounts {
   std::uint64_t joins = 0;  ///< edges that join two components of the vertices
 };
 
-template <int D, class Real>
-SimplexCounts count_simplices(const Complex<D>& complex, int space_dim, std::span<const Real> coordinates,
+template <int D>
+SimplexCounts count_simplices(const Complex<D>& complex, int space_dim, const Coordinates& coordinates,
                               const Progress& progress) {
   SimplexCounts counts;
   detail::DisjointSets connected(complex.vertex_count);
   detail::in_parts(complex.size(), progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) {
-      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data())) ++counts.degenerate;
+      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates)) ++counts.degenerate;
       if (complex.is_collapsed(s)) continue;
       ++counts.sound;
       for (int i = 1; i <= D; ++i)
@@ -332,8 +349,8 @@ SimplexCounts count_simplices(const Complex<D>& complex, int space_dim, std::spa
   return counts;
 }
 
-template <int D, class Real>
-MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<const Real> coordinates,
+template <int D>
+MeshReport check_complex(std::span<const Index> rows, int space_dim, const Coordinates& coordinates,
                          const Progress& progress) {
   using detail::part_of;
   const Complex<D> complex{rows, coordinates.size() / static_cast<std::size_t>(space_dim)};
@@ -365,8 +382,7 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
   return report;
 }
 
-template <class Real>
-MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std::span<const Real> coordinates,
+MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, const Coordinates& coordinates,
                      const Progress& progress) {
   if (d < 1 || d > 4)
     throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2, 3 or 4", d));
@@ -397,7 +413,7 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
 
 MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
                  const WorkOptions& work) {
-  return check_any<double>(d, simplices, space_dim, coordinates, work.progress);
+  return check_any(d, simplices, space_dim, Coordinates(coordinates), work.progress);
 }
 
 template <int N, Coordinate Real>
@@ -406,7 +422,7 @@ requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& cont
                                     contour.simplices.size() * N);
   const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
                                           contour.vertices.size() * N);
-  return check_any<Real>(N - 1, rows, N, coordinates, work.progress);
+  return check_any(N - 1, rows, N, Coordinates(coordinates), work.progress);
 }
 
 #define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) template MeshReport check(const Contour<N, Real>&, const WorkOptions&);

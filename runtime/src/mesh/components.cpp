@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "base/disjoint_sets.hpp"
+#include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 
 namespace tegl {
@@ -28,6 +29,31 @@ std::uint64_t rows_to_copy(const Contour<N, Real>& contour, std::uint64_t vertic
          simplices * (1 + contour.simplex_attributes.size());
 }
 
+/// Copies the rows with these numbers.
+template <class Row>
+void gather(const Buffer<Row>& from, std::span<const Index> items, Buffer<Row>& to, detail::CountedProgress& copied) {
+  to.resize(items.size());
+  detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) to[i] = from[items[i]];
+    copied.add(end - first);
+  });
+}
+
+/// Appends the attributes of the items with these numbers.
+void gather_attributes(const std::vector<Attribute>& from, std::span<const Index> items, std::vector<Attribute>& to,
+                       detail::CountedProgress& copied) {
+  for (const Attribute& attribute : from) {
+    Attribute& copy = to.emplace_back(Attribute{attribute.name, attribute.unit, attribute.width, {}});
+    const auto width = static_cast<std::size_t>(attribute.width);
+    copy.values.resize(items.size() * width);
+    detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i)
+        std::copy_n(attribute.values.data() + items[i] * width, width, copy.values.data() + i * width);
+      copied.add(end - first);
+    });
+  }
+}
+
 /// The part of a contour with these vertices and simplices. `number`: by vertex of the contour, its new number.
 template <int N, class Real>
 Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<const Index> vertices,
@@ -37,50 +63,50 @@ Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<cons
   part.axis_names = contour.axis_names;
   part.axis_units = contour.axis_units;
   part.direction = contour.direction;
-  const auto gather = [&](const auto& from, std::span<const Index> items, std::size_t width, auto& to) {
-    to.resize(items.size() * width);
-    detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i)
-        std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(items[i] * width), width,
-                    to.begin() + static_cast<std::ptrdiff_t>(i * width));
-      copied.add(end - first);
-    });
-  };
-  const auto gather_attributes = [&](const std::vector<Attribute>& from, std::span<const Index> items,
-                                     std::vector<Attribute>& to) {
-    for (const Attribute& attribute : from) {
-      Attribute& copy = to.emplace_back(Attribute{attribute.name, attribute.unit, attribute.width, {}});
-      gather(attribute.values, items, static_cast<std::size_t>(attribute.width), copy.values);
-    }
-  };
-  gather(contour.vertices, vertices, 1, part.vertices);
-  if (!contour.normals.empty()) gather(contour.normals, vertices, 1, part.normals);
-  gather(contour.simplices, simplices, 1, part.simplices);
+  gather(contour.vertices, vertices, part.vertices, copied);
+  if (!contour.normals.empty()) gather(contour.normals, vertices, part.normals, copied);
+  gather(contour.simplices, simplices, part.simplices, copied);
   for (auto& simplex : part.simplices)
     for (Index& v : simplex) v = number[v];
-  gather_attributes(contour.vertex_attributes, vertices, part.vertex_attributes);
-  gather_attributes(contour.simplex_attributes, simplices, part.simplex_attributes);
+  gather_attributes(contour.vertex_attributes, vertices, part.vertex_attributes, copied);
+  gather_attributes(contour.simplex_attributes, simplices, part.simplex_attributes, copied);
   return part;
+}
+
+/// Vertex numbers of simplices, for any dimension.
+struct SimplexRows {
+  std::span<const Index> numbers;  ///< #S x width, row = simplex
+  std::size_t width;
+  std::size_t vertices;  ///< number of vertices of the contour
+
+  [[nodiscard]] std::size_t size() const noexcept { return numbers.size() / width; }
+  [[nodiscard]] std::span<const Index> operator[](std::size_t s) const noexcept {
+    return numbers.subspan(s * width, width);
+  }
+};
+
+template <int N, class Real>
+SimplexRows rows_of(const Contour<N, Real>& contour) noexcept {
+  return {detail::SimplexView<N>(contour).rows(), N, contour.vertices.size()};
 }
 
 /// Throws InvalidArgument unless the labels fit the contour: one per vertex and simplex, each below the count, each
 /// used by a simplex, equal for a simplex and its vertices, and none for vertices in no simplex.
-template <int N, class Real>
-void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels, const Progress& progress = {}) {
-  detail::require_vertices(contour);
+void require_labels(const SimplexRows& contour, const ComponentLabels& labels, const Progress& progress = {}) {
+  detail::require_vertex_numbers(contour.numbers, contour.width, contour.vertices);
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
   const auto require_count = [&](std::size_t found, std::size_t expected, const char* what) {
     if (found != expected)
       fail(fmt::format("labels for {} {}; expected {}, as many as the contour has", found, what, expected));
   };
   // counts
-  require_count(labels.vertices.size(), contour.vertices.size(), "vertices");
-  require_count(labels.simplices.size(), contour.simplices.size(), "simplices");
-  if (labels.count > contour.simplices.size())
+  require_count(labels.vertices.size(), contour.vertices, "vertices");
+  require_count(labels.simplices.size(), contour.size(), "simplices");
+  if (labels.count > contour.size())
     fail(fmt::format("{} components of {} simplices; expected the labels of this contour", labels.count,
-                     contour.simplices.size()));
+                     contour.size()));
   // simplices and their vertices
-  std::vector<bool> is_in_simplex(contour.vertices.size(), false);
+  std::vector<bool> is_in_simplex(contour.vertices, false);
   std::vector<bool> has_simplex(labels.count, false);
   const auto look_at = [&](std::size_t s) {
     const Index label = labels.simplices[s];
@@ -88,14 +114,14 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
       fail(fmt::format("simplex {} has the label {}; expected less than {}, the number of components", s, label,
                        labels.count));
     has_simplex[label] = true;
-    for (const Index v : contour.simplices[s]) {
+    for (const Index v : contour[s]) {
       is_in_simplex[v] = true;
       if (labels.vertices[v] != label)
         fail(fmt::format("simplex {} has the label {}, and its vertex {} the label {}; expected the same", s, label, v,
                          labels.vertices[v]));
     }
   };
-  detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
+  detail::in_parts(contour.size(), progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) look_at(s);
   });
   // vertices in no simplex, components without simplices
@@ -123,14 +149,10 @@ Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& 
   return count;
 }
 
-}  // namespace
-
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> ComponentLabels label_components(const Contour<N, Real>& contour,
-                                                                    const WorkOptions& work) {
-  detail::require_vertices(contour);
-  const std::size_t vertices = contour.vertices.size();
-  const std::size_t simplices = contour.simplices.size();
+ComponentLabels label_rows(const SimplexRows& contour, const WorkOptions& work) {
+  detail::require_vertex_numbers(contour.numbers, contour.width, contour.vertices);
+  const std::size_t vertices = contour.vertices;
+  const std::size_t simplices = contour.size();
   // merge the vertices of each simplex
   detail::SharedDisjointSets sets(vertices);
   Buffer<std::uint8_t> used(vertices);
@@ -138,8 +160,8 @@ requires DimensionBetween<N, 2, 5> ComponentLabels label_components(const Contou
   detail::for_each_block(simplices, kBlock, work.threads, detail::part_of(work.progress, 0.0, 0.7),
                          [&](std::size_t, std::size_t from, std::size_t to) {
                            for (std::size_t s = from; s < to; ++s)
-                             for (const Index v : contour.simplices[s]) {
-                               sets.join(contour.simplices[s][0], v);
+                             for (const Index v : contour[s]) {
+                               sets.join(contour[s][0], v);
                                std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
                              }
                          });
@@ -149,24 +171,24 @@ requires DimensionBetween<N, 2, 5> ComponentLabels label_components(const Contou
   labels.simplices.resize(simplices);
   detail::for_each_block(simplices, kBlock, work.threads, detail::part_of(work.progress, 0.9, 1.0),
                          [&](std::size_t, std::size_t from, std::size_t to) {
-                           for (std::size_t s = from; s < to; ++s)
-                             labels.simplices[s] = labels.vertices[contour.simplices[s][0]];
+                           for (std::size_t s = from; s < to; ++s) labels.simplices[s] = labels.vertices[contour[s][0]];
                          });
   return labels;
 }
 
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Contour<N, Real>& contour,
-                                                                        const ComponentLabels& labels,
-                                                                        const WorkOptions& work) {
-  require_labels(contour, labels, detail::part_of(work.progress, 0.0, 0.05));
-  detail::require_finite(contour);
+/// `check_coordinates()` throws InvalidArgument unless they are finite.
+template <int N>
+std::vector<Component<N>> measure_components(const detail::SimplexView<N>& contour, GradientDirection direction,
+                                             const ComponentLabels& labels, const WorkOptions& work,
+                                             detail::FunctionRef<void()> check_coordinates) {
+  require_labels({contour.rows(), N, contour.vertex_count()}, labels, detail::part_of(work.progress, 0.0, 0.05));
+  check_coordinates();
   // count faces by label
-  const std::span<const Index> rows = detail::rows_of(contour);
+  const std::span<const Index> rows = contour.rows();
   std::vector<detail::FaceCounts> faces;
   {
     const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(work.progress, 0.05, 0.1));
+        detail::make_stars<N>(rows, contour.vertex_count(), detail::part_of(work.progress, 0.05, 0.1));
     faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, work.threads,
                                    detail::part_of(work.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });
@@ -184,7 +206,7 @@ requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Co
     component.label = label;
     component.simplices = groups.first[label + std::size_t{1}] - groups.first[label];
     component.size = sums[label].size.value();
-    component.content = detail::content_of(sums[label], faces[label], contour.direction);
+    component.content = detail::content_of(sums[label], faces[label], direction);
     component.centroid = sums[label].centroid();
     component.lowest = sums[label].lowest;
     component.highest = sums[label].highest;
@@ -194,13 +216,48 @@ requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Co
   return result;
 }
 
+/// The vertices or simplices whose component is kept, ascending. `of`: their labels.
+Buffer<Index> kept_items(const Buffer<Index>& of, const std::vector<bool>& keep, const Progress& progress) {
+  Buffer<Index> items;
+  detail::in_parts(of.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (of[i] != kNoComponent && keep[of[i]]) items.push_back(static_cast<Index>(i));
+  });
+  return items;
+}
+
+/// Sets the attribute "component".
+void add_labels(const Buffer<Index>& of, std::vector<Attribute>& attributes) {
+  std::erase_if(attributes, [](const Attribute& attribute) { return attribute.name == "component"; });
+  Attribute& attribute = attributes.emplace_back(Attribute{"component", "", 1, {}});
+  attribute.values.resize(of.size());
+  for (std::size_t i = 0; i < of.size(); ++i)
+    attribute.values[i] = of[i] == kNoComponent ? -1.0 : static_cast<double>(of[i]);
+}
+
+}  // namespace
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> ComponentLabels label_components(const Contour<N, Real>& contour,
+                                                                    const WorkOptions& work) {
+  return label_rows(rows_of(contour), work);
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Contour<N, Real>& contour,
+                                                                        const ComponentLabels& labels,
+                                                                        const WorkOptions& work) {
+  return measure_components(detail::SimplexView<N>(contour), contour.direction, labels, work,
+                            [&] { detail::require_finite(contour); });
+}
+
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour,
                                                                                   const ComponentLabels& labels,
                                                                                   const WorkOptions& work) {
   using detail::part_of;
   const Progress& progress = work.progress;
-  require_labels(contour, labels, part_of(progress, 0.0, 0.2));
+  require_labels(rows_of(contour), labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
   const detail::Groups vertices = detail::group_by(labels.vertices, labels.count, part_of(progress, 0.2, 0.3));
   const detail::Groups simplices = detail::group_by(labels.simplices, labels.count, part_of(progress, 0.3, 0.5));
@@ -224,22 +281,14 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Cont
                                                                       const WorkOptions& work) {
   using detail::part_of;
   const Progress& progress = work.progress;
-  require_labels(contour, labels, part_of(progress, 0.0, 0.2));
+  require_labels(rows_of(contour), labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
   if (keep.size() != labels.count)
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} choices of components; expected {}, one for each component",
                                                         keep.size(), labels.count));
-  const auto kept = [&](const Buffer<Index>& of, const Progress& part) {
-    Buffer<Index> items;
-    detail::in_parts(of.size(), part, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i)
-        if (of[i] != kNoComponent && keep[of[i]]) items.push_back(static_cast<Index>(i));
-    });
-    return items;
-  };
   // list the kept vertices and simplices
-  const Buffer<Index> vertices = kept(labels.vertices, part_of(progress, 0.2, 0.3));
-  const Buffer<Index> simplices = kept(labels.simplices, part_of(progress, 0.3, 0.5));
+  const Buffer<Index> vertices = kept_items(labels.vertices, keep, part_of(progress, 0.2, 0.3));
+  const Buffer<Index> simplices = kept_items(labels.simplices, keep, part_of(progress, 0.3, 0.5));
   const Progress copying = part_of(progress, 0.5, 1.0);
   detail::CountedProgress copied(copying, rows_to_copy(contour, vertices.size(), simplices.size()));
   Buffer<Index> number(contour.vertices.size());
@@ -253,17 +302,10 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Cont
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> Contour<N, Real> add_component_attribute(Contour<N, Real> contour,
                                                                             const ComponentLabels& labels) {
-  require_labels(contour, labels);
+  require_labels(rows_of(contour), labels);
   detail::require_attributes(contour);
-  const auto add = [](const Buffer<Index>& of, std::vector<Attribute>& attributes) {
-    std::erase_if(attributes, [](const Attribute& attribute) { return attribute.name == "component"; });
-    Attribute& attribute = attributes.emplace_back(Attribute{"component", "", 1, {}});
-    attribute.values.resize(of.size());
-    for (std::size_t i = 0; i < of.size(); ++i)
-      attribute.values[i] = of[i] == kNoComponent ? -1.0 : static_cast<double>(of[i]);
-  };
-  add(labels.vertices, contour.vertex_attributes);
-  add(labels.simplices, contour.simplex_attributes);
+  add_labels(labels.vertices, contour.vertex_attributes);
+  add_labels(labels.simplices, contour.simplex_attributes);
   return contour;
 }
 

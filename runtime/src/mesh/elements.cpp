@@ -25,37 +25,58 @@ namespace tegl {
 
 namespace {
 
-template <int N, class Real>
-Elements<N> make_elements(const Contour<N, Real>& contour, std::size_t count) {
+/// A contour with coordinates of either type.
+template <int N>
+struct AnyContour {
+  detail::SimplexView<N> simplices;
+  std::span<const Attribute> vertex_attributes;
+  std::span<const Attribute> simplex_attributes;
+
+  template <class Real>
+  explicit AnyContour(const Contour<N, Real>& contour)
+      : simplices(contour),
+        vertex_attributes(contour.vertex_attributes),
+        simplex_attributes(contour.simplex_attributes) {}
+};
+
+/// Appends `count` rows of each attribute, without values.
+void add_attributes(std::span<const Attribute> from, std::size_t count, std::vector<Attribute>& to) {
+  for (const Attribute& attribute : from) {
+    to.push_back({attribute.name, attribute.unit, attribute.width, {}});
+    to.back().values.resize(count * static_cast<std::size_t>(attribute.width));
+  }
+}
+
+template <int N>
+Elements<N> make_elements(const AnyContour<N>& contour, std::size_t count) {
   Elements<N> result;
   result.centroids.resize(count);
   result.normals.resize(count);
   result.measures.resize(count);
   result.counts.resize(count);
-  result.axis_names = contour.axis_names;
-  result.axis_units = contour.axis_units;
-  result.direction = contour.direction;
-  const auto add = [&](const std::vector<Attribute>& attributes) {
-    for (const Attribute& attribute : attributes) {
-      result.attributes.push_back({attribute.name, attribute.unit, attribute.width, {}});
-      result.attributes.back().values.resize(count * static_cast<std::size_t>(attribute.width));
-    }
-  };
-  add(contour.vertex_attributes);
-  add(contour.simplex_attributes);
+  add_attributes(contour.vertex_attributes, count, result.attributes);
+  add_attributes(contour.simplex_attributes, count, result.attributes);
   return result;
 }
 
-/// Interpolates the attributes of element s from its vertices.
 template <int N, class Real>
-void interpolate(const Contour<N, Real>& contour, std::size_t s, std::vector<Attribute>& attributes) noexcept {
+Elements<N> with_axes(Elements<N> elements, const Contour<N, Real>& contour) {
+  elements.axis_names = contour.axis_names;
+  elements.axis_units = contour.axis_units;
+  elements.direction = contour.direction;
+  return elements;
+}
+
+/// Interpolates the attributes of element s from its vertices.
+template <int N>
+void interpolate(const AnyContour<N>& contour, std::size_t s, std::vector<Attribute>& attributes) noexcept {
   std::size_t next = 0;
   for (const Attribute& from : contour.vertex_attributes) {
     const auto width = static_cast<std::size_t>(from.width);
     double* const to = attributes[next++].values.data() + s * width;
     for (std::size_t i = 0; i < width; ++i) {
       double sum = 0.0;
-      for (const Index v : contour.simplices[s]) sum += from.values[v * width + i];
+      for (const Index v : contour.simplices.simplices()[s]) sum += from.values[v * width + i];
       to[i] = sum / N;
     }
   }
@@ -74,10 +95,10 @@ struct Placed {
 };
 
 /// The place of each simplex, sorted. A tile is convex, so it contains the centroids of all its simplices.
-template <int N, class Real>
-std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>& grid, const WorkOptions& work) {
-  constexpr double kInBorder =
-      std::is_same_v<Real, float> ? 1e-5 : 1e-9;  // in grid steps: bound of the rounding of vertices
+template <int N>
+std::vector<Placed> place_simplices(const Elements<N>& simplices, bool is_single, const Grid<N>& grid,
+                                    const WorkOptions& work) {
+  const double in_border = is_single ? 1e-5 : 1e-9;  // in grid steps: bound of the rounding of vertices
   constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
   const detail::GridLocator<N> locator(grid);
   const std::array<std::size_t, N> sizes = grid.sizes();
@@ -91,8 +112,8 @@ std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>&
     for (int a = N - 1; a >= 0; --a) {
       if (sizes[a] < 2) return;
       tile = tile * (sizes[a] - 1) + at.base[a];
-      if (at.base[a] == 0 && at.share[a] <= kInBorder) side = 1 + 2 * static_cast<unsigned>(a);
-      if (at.base[a] + 2 == sizes[a] && at.share[a] >= 1.0 - kInBorder) side = 2 + 2 * static_cast<unsigned>(a);
+      if (at.base[a] == 0 && at.share[a] <= in_border) side = 1 + 2 * static_cast<unsigned>(a);
+      if (at.base[a] + 2 == sizes[a] && at.share[a] >= 1.0 - in_border) side = 2 + 2 * static_cast<unsigned>(a);
     }
     placed[s].place = tile * (2 * N + 1) + side;
   });
@@ -106,10 +127,10 @@ std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>&
 }
 
 /// Finds the connected components, by shared vertices, of the simplices of one place.
-template <int N, class Real>
+template <int N>
 class PieceFinder {
  public:
-  explicit PieceFinder(const Contour<N, Real>& contour) : contour_(contour) {}
+  explicit PieceFinder(std::span<const std::array<Index, N>> contour) : contour_(contour) {}
 
   /// Reorders the simplices by component: components by their first simplex, and simplices in order within each.
   /// Returns the ends of the components.
@@ -117,7 +138,7 @@ class PieceFinder {
     sets_.reset(simplices.size());
     corners_.clear();
     for (std::size_t i = 0; i < simplices.size(); ++i)
-      for (const Index v : contour_.simplices[simplices[i].simplex]) corners_.emplace_back(v, static_cast<Index>(i));
+      for (const Index v : contour_[simplices[i].simplex]) corners_.emplace_back(v, static_cast<Index>(i));
     std::sort(corners_.begin(), corners_.end());
     for (std::size_t i = 1; i < corners_.size(); ++i)
       if (corners_[i].first == corners_[i - 1].first) sets_.join(corners_[i].second, corners_[i - 1].second);
@@ -134,7 +155,7 @@ class PieceFinder {
   }
 
  private:
-  const Contour<N, Real>& contour_;
+  std::span<const std::array<Index, N>> contour_;
   detail::DisjointSets sets_;  ///< of simplices; the first simplex of a component is its root
   std::vector<std::pair<Index, Index>> corners_;
   std::vector<std::pair<Index, Placed>> order_;
@@ -171,14 +192,11 @@ void merge(const Elements<N>& simplices, std::span<const Placed> piece, std::siz
   }
 }
 
-}  // namespace
-
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& work) {
-  detail::require_sound(contour);
-  Elements<N> result = make_elements(contour, contour.simplices.size());
-  detail::for_each_item(contour.simplices.size(), work.threads, work.progress, [&](std::size_t s) {
-    const auto corners = detail::corners_of(contour, s);
+template <int N>
+Elements<N> elements_of(const AnyContour<N>& contour, const WorkOptions& work) {
+  Elements<N> result = make_elements(contour, contour.simplices.simplices().size());
+  detail::for_each_item(contour.simplices.simplices().size(), work.threads, work.progress, [&](std::size_t s) {
+    const auto corners = contour.simplices.corners(s);
     result.centroids[s] = detail::centroid_of<N>(corners);
     result.normals[s] = detail::normal_vector_of<N>(corners);
     result.measures[s] = detail::length_of<N>(result.normals[s]);
@@ -188,15 +206,14 @@ requires DimensionBetween<N, 2, 5> Elements<N> elements(const Contour<N, Real>& 
   return result;
 }
 
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid,
-                                                                const WorkOptions& work) {
+template <int N>
+Elements<N> elements_of_cells(const AnyContour<N>& contour, const Grid<N>& grid, const WorkOptions& work) {
   // Progress: two passes over all simplices and two over the sorted ones; only the last of these reports.
-  const Elements<N> simplices = elements(contour, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
-  std::vector<Placed> placed =
-      place_simplices<N, Real>(simplices, grid, {work.threads, detail::part_of(work.progress, 0.4, 0.6)});
+  const Elements<N> simplices = elements_of(contour, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
+  std::vector<Placed> placed = place_simplices<N>(simplices, contour.simplices.is_single(), grid,
+                                                  {work.threads, detail::part_of(work.progress, 0.4, 0.6)});
   std::vector<std::size_t> ends;  // of components in `placed`
-  PieceFinder<N, Real> finder(contour);
+  PieceFinder<N> finder(contour.simplices.simplices());
   for (std::size_t first = 0, end; first < placed.size(); first = end) {
     end = first;
     while (end < placed.size() && placed[end].place == placed[first].place) ++end;
@@ -210,6 +227,21 @@ requires DimensionBetween<N, 2, 5> Elements<N> elements_by_cell(const Contour<N,
     merge(simplices, std::span<const Placed>(placed).subspan(first, ends[e] - first), e, result);
   });
   return result;
+}
+
+}  // namespace
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& work) {
+  detail::require_sound(contour);
+  return with_axes(elements_of(AnyContour<N>(contour), work), contour);
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid,
+                                                                const WorkOptions& work) {
+  detail::require_sound(contour);
+  return with_axes(elements_of_cells(AnyContour<N>(contour), grid, work), contour);
 }
 
 template <int N>

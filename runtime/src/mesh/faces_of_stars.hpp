@@ -12,7 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/function_ref.hpp"
+#include "mesh/vertex_stars.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 
@@ -132,5 +135,17 @@ class FacesOfStars {
   std::vector<Index> edges_;
   std::vector<std::array<Index, 2>> triangles_;
 };
+
+/// Vertices or simplices per block: large enough to amortize the cost of a block, small enough to occupy all threads.
+inline constexpr std::size_t kBlock = 4096;
+
+/// Counts the faces of a complex by the label of their vertices (without labels: one label for all). Calls
+/// on_open(block, ridge) for each (N-2)-face whose orientations do not cancel. Blocks run in parallel; the calls of one
+/// block are sequential.
+template <int N>
+std::vector<FaceCounts> count_faces(
+    std::span<const Index> rows, const Stars& stars, std::span<const Index> labels, std::size_t label_count,
+    bool with_euler, unsigned threads, const Progress& progress,
+    FunctionRef<void(std::size_t block, const typename FacesOfStars<N>::Ridge& ridge)> on_open);
 
 }  // namespace tegl::detail

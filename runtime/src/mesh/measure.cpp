@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/slice_at.hpp"
+#include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 
 namespace tegl {
@@ -106,14 +107,15 @@ void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin
 }
 
 /// By value, whether the cut is open: an (N-2)-face whose orientations do not cancel is cut there.
-template <int N, class Real>
-std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& work) {
-  std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertices.size(), kBlock));
-  const detail::Stars stars = detail::make_stars<N>(detail::rows_of(contour), contour.vertices.size(),
-                                                    detail::part_of(work.progress, 0.0, 0.1));
-  detail::count_faces<N>(detail::rows_of(contour), stars, {}, 1, false, work.threads,
-                         detail::part_of(work.progress, 0.1, 0.6), [&](std::size_t block, const auto& ridge) {
-                           const auto time = [&](Index v) { return static_cast<double>(contour.vertices[v][N - 1]); };
+template <int N>
+std::vector<bool> find_open_cuts(const detail::SimplexView<N>& contour, const CutValues& values,
+                                 const WorkOptions& work) {
+  std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertex_count(), kBlock));
+  const detail::Stars stars =
+      detail::make_stars<N>(contour.rows(), contour.vertex_count(), detail::part_of(work.progress, 0.0, 0.1));
+  detail::count_faces<N>(contour.rows(), stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.6),
+                         [&](std::size_t block, const auto& ridge) {
+                           const auto time = [&](Index v) { return contour.coordinate(v, N - 1); };
                            std::pair<double, double> span(time(ridge[0]), time(ridge[0]));
                            for (const Index v : ridge) {
                              span.first = std::min(span.first, time(v));
@@ -136,13 +138,13 @@ std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValue
 }
 
 /// Bounding box of the simplices; 0 if there are none.
-template <int N, class Real>
-std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) {
-  if (contour.simplices.empty()) return {};
-  PointOf<N> low = detail::corners_of(contour, 0)[0];
+template <int N>
+std::pair<PointOf<N>, PointOf<N>> bounding_box(const detail::SimplexView<N>& contour) {
+  if (contour.simplices().empty()) return {};
+  PointOf<N> low = contour.corners(0)[0];
   PointOf<N> high = low;
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
-    for (const PointOf<N>& corner : detail::corners_of(contour, s))
+  for (std::size_t s = 0; s < contour.simplices().size(); ++s)
+    for (const PointOf<N>& corner : contour.corners(s))
       for (int a = 0; a < N; ++a) {
         low[a] = std::min(low[a], corner[a]);
         high[a] = std::max(high[a], corner[a]);
@@ -150,33 +152,29 @@ std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) 
   return {low, high};
 }
 
-}  // namespace
-
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work) {
-  detail::require_vertices(contour);
-  detail::require_finite(contour);
+template <int N>
+Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirection direction, const WorkOptions& work) {
   Measures<N> result;
-  if (contour.simplices.empty()) {
+  if (contour.simplices().empty()) {
     result.content = 0.0;  // it has no boundary
     return result;
   }
   // boundary faces
-  const std::span<const Index> rows = detail::rows_of(contour);
+  const std::span<const Index> rows = contour.rows();
   detail::FaceCounts faces;
   {
     const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(work.progress, 0.0, 0.1));
+        detail::make_stars<N>(rows, contour.vertex_count(), detail::part_of(work.progress, 0.0, 0.1));
     faces = detail::count_faces<N>(rows, stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.7),
                                    [](std::size_t, const auto&) { /* counted */ })
                 .front();
   }
   // sums over simplices
-  const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices.size()),
+  const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices().size()),
                                                        work.threads, detail::part_of(work.progress, 0.7, 1.0))
                                         .front();
   result.size = sums.size.value();
-  result.content = detail::content_of(sums, faces, contour.direction);
+  result.content = detail::content_of(sums, faces, direction);
   result.centroid = sums.centroid();
   result.lowest = sums.lowest;
   result.highest = sums.highest;
@@ -185,25 +183,21 @@ requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& c
   return result;
 }
 
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
-                                                                         std::span<const double> at,
-                                                                         const WorkOptions& work) {
-  detail::require_vertices(contour);
-  detail::require_finite(contour);
-  for (const double t : at)
-    if (!std::isfinite(t))
-      throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
+template <int N>
+std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& contour, GradientDirection direction,
+                                              std::span<const double> at, const WorkOptions& work) {
   const auto [low, high] = bounding_box(contour);
   std::vector<double> levels;  // the values rounded as by `slice`
-  for (const double t : at) levels.push_back(static_cast<double>(detail::rounded_at<Real>(t)));
+  for (const double t : at)
+    levels.push_back(contour.is_single() ? static_cast<double>(detail::rounded_at<float>(t))
+                                         : detail::rounded_at<double>(t));
   const CutValues values(levels, low[N - 1]);
   const std::vector<bool> open = find_open_cuts(contour, values, work);
   PointOf<N> origin;  // near the contour, so that the terms of the contents are small
   for (int a = 0; a < N; ++a) origin[a] = low[a] + 0.5 * (high[a] - low[a]);
 
   // The partition depends only on the input, so sums are reproducible. Each part has its own sums for all values.
-  const std::size_t simplices = contour.simplices.size();
+  const std::size_t simplices = contour.simplices().size();
   const std::size_t parts =
       std::clamp<std::size_t>((std::size_t{1} << 20) / std::max<std::size_t>(1, values.size()), 1, 64);
   const std::size_t size = std::max(kBlock, detail::block_count(simplices, parts));
@@ -212,7 +206,7 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
                          [&](std::size_t block, std::size_t from, std::size_t to) {
                            sums[block].resize(values.size());
                            for (std::size_t s = from; s < to; ++s)
-                             add_cuts<N>(detail::corners_of(contour, s), origin, values, sums[block]);
+                             add_cuts<N>(contour.corners(s), origin, values, sums[block]);
                          });
   // add up the parts
   std::vector<CutMeasures> result(values.size());
@@ -226,9 +220,30 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
     cut.at = at[values.place(i)];
     cut.size = total.size.value();
     const double content = total.content.value() / (N - 1);
-    if (!open[i]) cut.content = contour.direction == GradientDirection::descent ? content : -content;
+    if (!open[i]) cut.content = direction == GradientDirection::descent ? content : -content;
   }
   return result;
+}
+
+}  // namespace
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work) {
+  detail::require_vertices(contour);
+  detail::require_finite(contour);
+  return measure_view(detail::SimplexView<N>(contour), contour.direction, work);
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
+                                                                         std::span<const double> at,
+                                                                         const WorkOptions& work) {
+  detail::require_vertices(contour);
+  detail::require_finite(contour);
+  for (const double t : at)
+    if (!std::isfinite(t))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
+  return measure_cuts_of_view(detail::SimplexView<N>(contour), contour.direction, at, work);
 }
 
 #define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \

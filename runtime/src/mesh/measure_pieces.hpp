@@ -12,10 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "base/exact_sum.hpp"
-#include "base/workers.hpp"
+#include "base/progress.hpp"
 #include "mesh/faces_of_stars.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
@@ -25,14 +23,6 @@
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
-
-/// Items per block: large enough to amortize the cost of a block, small enough to occupy all threads.
-inline constexpr std::size_t kBlock = 4096;
-
-template <int N, class Real>
-std::span<const Index> rows_of(const Contour<N, Real>& contour) noexcept {
-  return {contour.simplices.empty() ? nullptr : contour.simplices.data()->data(), contour.simplices.size() * N};
-}
 
 /// Items sorted by group: group g has members[first[g] … first[g + 1]), ascending.
 struct Groups {
@@ -117,57 +107,9 @@ struct PieceSums {
 };
 
 /// The sums of each group of simplices. No group may be empty.
-template <int N, class Real>
-std::vector<PieceSums<N>> sum_groups(const Contour<N, Real>& contour, const Groups& groups, unsigned threads,
-                                     const Progress& progress) {
-  const std::size_t count = groups.first.back();
-  const auto reference_of = [&](std::size_t g) { return corners_of(contour, groups.member(groups.first[g]))[0]; };
-  std::vector<std::vector<std::pair<std::size_t, PieceSums<N>>>> parts(block_count(count, kBlock));
-  for_each_block(count, kBlock, threads, progress, [&](std::size_t block, std::size_t from, std::size_t to) {
-    auto g = static_cast<std::size_t>(std::upper_bound(groups.first.begin(), groups.first.end(), from) -
-                                      groups.first.begin()) -
-             1;
-    for (std::size_t i = from; i < to; ++g) {
-      PieceSums<N> sums(reference_of(g));
-      const std::size_t end = std::min(to, groups.first[g + 1]);
-      for (; i < end; ++i) sums.add(corners_of(contour, groups.member(i)));
-      parts[block].emplace_back(g, sums);
-    }
-  });
-  std::vector<PieceSums<N>> result;
-  for (std::size_t g = 0; g + 1 < groups.first.size(); ++g) result.emplace_back(reference_of(g));
-  for (const auto& part : parts)
-    for (const auto& [g, sums] : part) result[g].add(sums);
-  return result;
-}
-
-/// Counts the faces of a complex by the label of their vertices (without labels: one label for all). Calls
-/// on_open(block, ridge) for each (N-2)-face whose orientations do not cancel. Blocks run in parallel; the calls of one
-/// block are sequential.
-template <int N, class OnOpen>
-std::vector<FaceCounts> count_faces(std::span<const Index> rows, const Stars& stars, std::span<const Index> labels,
-                                    std::size_t label_count, bool with_euler, unsigned threads,
-                                    const Progress& progress, const OnOpen& on_open) {
-  const std::size_t vertices = stars.first.size() - 1;
-  std::vector<std::vector<std::pair<Index, FaceCounts>>> parts(block_count(vertices, kBlock));
-  for_each_block(
-      vertices, kBlock, threads, progress, [&] { return FacesOfStars<N>(rows.data(), with_euler); },
-      [&](std::size_t block, std::size_t from, std::size_t to, FacesOfStars<N>& faces) {
-        auto& part = parts[block];
-        for (std::size_t v = from; v < to; ++v) {
-          const std::span<const Index> star = stars.of(v);
-          if (star.empty()) continue;
-          const Index label = labels.empty() ? 0 : labels[v];
-          if (part.empty() || part.back().first != label) part.emplace_back(label, FaceCounts{});
-          part.back().second +=
-              faces.visit(static_cast<Index>(v), star, [&](const auto& ridge) { on_open(block, ridge); });
-        }
-      });
-  std::vector<FaceCounts> result(label_count);
-  for (const auto& part : parts)
-    for (const auto& [label, counts] : part) result[label] += counts;
-  return result;
-}
+template <int N>
+std::vector<PieceSums<N>> sum_groups(const SimplexView<N>& contour, const Groups& groups, unsigned threads,
+                                     const Progress& progress);
 
 /// The enclosed content from the sums of a contour; empty if the contour is open.
 template <int N>

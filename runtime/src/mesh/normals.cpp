@@ -72,6 +72,41 @@ double weight_of(const std::array<PointOf<N>, N>& corners, int j, double measure
   return weights == NormalWeights::equal ? 1.0 : angle_at<N>(corners, j);
 }
 
+/// By vertex, the weighted sum of the unit normals of its simplices.
+template <int N>
+std::vector<PointOf<N>> sum_normals(const detail::SimplexView<N>& contour, NormalWeights weights,
+                                    const WorkOptions& work) {
+  // By simplex: its unit normal and its weights at the corners.
+  struct Share {
+    PointOf<N> normal;
+    std::array<double, N> weights;
+  };
+  constexpr std::size_t kBatch = std::size_t{1} << 20;  // bounds the memory of shares
+  std::vector<PointOf<N>> sums(contour.vertex_count());
+  Buffer<Share> shares(std::min(kBatch, contour.simplices().size()));
+  const std::size_t count = contour.simplices().size();
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    const std::size_t batch = std::min(kBatch, count - first);
+    const auto progress = [&](double fraction) {
+      const double done = static_cast<double>(first) + fraction * static_cast<double>(batch);
+      return !work.progress || work.progress(done / static_cast<double>(count));
+    };
+    detail::for_each_item(batch, work.threads, progress, [&](std::size_t i) {
+      const auto corners = contour.corners(first + i);
+      const PointOf<N> normal = detail::normal_vector_of<N>(corners);
+      shares[i].normal = unit<N>(normal);
+      const double measure = detail::length_of<N>(normal);
+      for (int j = 0; j < N; ++j) shares[i].weights[j] = weight_of<N>(corners, j, measure, weights);
+    });
+    // Sequential, in the order of simplices: sums do not depend on the threads.
+    for (std::size_t i = 0; i < batch; ++i)
+      for (int j = 0; j < N; ++j)
+        for (int a = 0; a < N; ++a)
+          sums[contour.simplices()[first + i][j]][a] += shares[i].weights[j] * shares[i].normal[a];
+  }
+  return sums;
+}
+
 /// Gradients at all vertices, as normals. Compiled once for all value types.
 template <int N, class Real>
 void interpolate_gradients(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid,
@@ -105,34 +140,7 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
     const Contour<N, Real>& contour, NormalWeights weights, const WorkOptions& work) {
   detail::require_vertices(contour);
-  // By simplex: its unit normal and its weights at the corners.
-  struct Share {
-    PointOf<N> normal;
-    std::array<double, N> weights;
-  };
-  constexpr std::size_t kBatch = std::size_t{1} << 20;  // bounds the memory of shares
-  std::vector<PointOf<N>> sums(contour.vertices.size());
-  Buffer<Share> shares(std::min(kBatch, contour.simplices.size()));
-  const std::size_t count = contour.simplices.size();
-  for (std::size_t first = 0; first < count; first += kBatch) {
-    const std::size_t batch = std::min(kBatch, count - first);
-    const auto progress = [&](double fraction) {
-      const double done = static_cast<double>(first) + fraction * static_cast<double>(batch);
-      return !work.progress || work.progress(done / static_cast<double>(count));
-    };
-    detail::for_each_item(batch, work.threads, progress, [&](std::size_t i) {
-      const auto corners = detail::corners_of(contour, first + i);
-      const PointOf<N> normal = detail::normal_vector_of<N>(corners);
-      shares[i].normal = unit<N>(normal);
-      const double measure = detail::length_of<N>(normal);
-      for (int j = 0; j < N; ++j) shares[i].weights[j] = weight_of<N>(corners, j, measure, weights);
-    });
-    // Sequential, in the order of simplices: sums do not depend on the threads.
-    for (std::size_t i = 0; i < batch; ++i)
-      for (int j = 0; j < N; ++j)
-        for (int a = 0; a < N; ++a)
-          sums[contour.simplices[first + i][j]][a] += shares[i].weights[j] * shares[i].normal[a];
-  }
+  const std::vector<PointOf<N>> sums = sum_normals(detail::SimplexView<N>(contour), weights, work);
   Buffer<typename Contour<N, Real>::Vertex> result(sums.size());
   detail::for_each_item(sums.size(), work.threads, {},
                         [&](std::size_t v) { result[v] = rounded<N, Real>(unit<N>(sums[v])); });

@@ -10,6 +10,7 @@
 #include "base/workers.hpp"
 #include "image/locate.hpp"
 #include "image/row_source.hpp"
+#include "mesh/simplex_geometry.hpp"
 
 namespace tegl {
 
@@ -41,13 +42,12 @@ double value_at(const detail::CornerValues<N>& samples, const detail::CellPlace<
 }
 
 /// Interpolates at all vertices. Compiled once for all value types.
-template <int N, Coordinate Real>
-void interpolate(const detail::CornerValues<N>& samples, const Grid<N>& grid, const Contour<N, Real>& contour,
+template <int N>
+void interpolate(const detail::CornerValues<N>& samples, const Grid<N>& grid, const detail::SimplexView<N>& contour,
                  const WorkOptions& work, Buffer<double>& values) {
   const detail::GridLocator<N> locator(grid);
-  detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
-    std::array<double, N> point;
-    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
+  detail::for_each_item(contour.vertex_count(), work.threads, work.progress, [&](std::size_t v) {
+    const std::array<double, N> point = contour.point(static_cast<Index>(v));
     detail::CellPlace<N> place;
     values[v] = locator.find(point, place) ? value_at(samples, place) : std::numeric_limits<double>::quiet_NaN();
   });
@@ -60,7 +60,8 @@ requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, co
                                                     std::string name, std::string unit, const WorkOptions& work) {
   Attribute attribute{std::move(name), std::move(unit), 1, {}};
   attribute.values.resize(contour.vertices.size());
-  interpolate(detail::ImageSource<T, N>(image, 0.0, 0.0), image.grid(), contour, work, attribute.values);
+  interpolate(detail::ImageSource<T, N>(image, 0.0, 0.0), image.grid(), detail::SimplexView<N>(contour), work,
+              attribute.values);
   return attribute;
 }
 

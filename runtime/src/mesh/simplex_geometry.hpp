@@ -4,11 +4,12 @@
 // is the measure of the simplex.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <Eigen/Core>
-#include <Eigen/LU>
+#include <cstddef>
+#include <span>
+#include <type_traits>
 
 #include "tegl/contour.hpp"
 
@@ -50,25 +51,57 @@ PointOf<N> centroid_of(const std::array<PointOf<N>, N>& corners) noexcept {
 /// perpendicular to the simplex, its length is the measure of the simplex, and it points to the side that the
 /// orientation faces. It is a covector and needs no metric.
 template <int N>
-PointOf<N> normal_vector_of(const std::array<PointOf<N>, N>& corners) noexcept {
-  using Minor = Eigen::Matrix<double, N - 1, N - 1>;
-  constexpr double kFactorial = [] {
-    double product = 1.0;
-    for (int k = 2; k < N; ++k) product *= k;
-    return product;
-  }();
-  PointOf<N> normal;
-  for (int a = 0; a < N; ++a) {
-    Minor minor;
-    for (int row = 0, b = 0; b < N; ++b) {
-      if (b == a) continue;
-      for (int j = 0; j < N - 1; ++j) minor(row, j) = corners[j + 1][b] - corners[0][b];
-      ++row;
-    }
-    const double cofactor = minor.determinant();
-    normal[a] = ((a + N - 1) % 2 == 0 ? cofactor : -cofactor) / kFactorial;
+PointOf<N> normal_vector_of(const std::array<PointOf<N>, N>& corners) noexcept;
+
+extern template PointOf<2> normal_vector_of<2>(const std::array<PointOf<2>, 2>&) noexcept;
+extern template PointOf<3> normal_vector_of<3>(const std::array<PointOf<3>, 3>&) noexcept;
+extern template PointOf<4> normal_vector_of<4>(const std::array<PointOf<4>, 4>&) noexcept;
+extern template PointOf<5> normal_vector_of<5>(const std::array<PointOf<5>, 5>&) noexcept;
+
+/// The simplices of a contour with coordinates of either type, read in double precision. The contour must outlive it.
+template <int N>
+class SimplexView {
+ public:
+  template <class Real>
+  explicit SimplexView(const Contour<N, Real>& contour) noexcept
+      : simplices_(contour.simplices), is_single_(std::is_same_v<Real, float>), vertex_count_(contour.vertices.size()) {
+    if constexpr (std::is_same_v<Real, float>)
+      singles_ = contour.vertices.data();
+    else
+      doubles_ = contour.vertices.data();
   }
-  return normal;
-}
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
+  [[nodiscard]] std::span<const std::array<Index, N>> simplices() const noexcept { return simplices_; }
+  /// Whether the coordinates are in single precision.
+  [[nodiscard]] bool is_single() const noexcept { return is_single_; }
+  /// Vertex numbers, #S x N, row = simplex.
+  [[nodiscard]] std::span<const Index> rows() const noexcept {
+    return {simplices_.empty() ? nullptr : simplices_.data()->data(), simplices_.size() * N};
+  }
+  [[nodiscard]] PointOf<N> point(Index v) const noexcept {
+    if (!is_single_) return doubles_[v];
+    PointOf<N> result;
+    for (int a = 0; a < N; ++a) result[a] = static_cast<double>(singles_[v][a]);
+    return result;
+  }
+  /// One coordinate of a vertex.
+  [[nodiscard]] double coordinate(Index v, int axis) const noexcept {
+    return is_single_ ? static_cast<double>(singles_[v][axis]) : doubles_[v][axis];
+  }
+  /// The corners of simplex s, N points.
+  [[nodiscard]] std::array<PointOf<N>, N> corners(std::size_t s) const noexcept {
+    std::array<PointOf<N>, N> result;
+    for (int j = 0; j < N; ++j) result[j] = point(simplices_[s][j]);
+    return result;
+  }
+
+ private:
+  std::span<const std::array<Index, N>> simplices_;
+  const std::array<float, N>* singles_ = nullptr;
+  const std::array<double, N>* doubles_ = nullptr;
+  bool is_single_;
+  std::size_t vertex_count_;
+};
 
 }  // namespace tegl::detail

@@ -1,63 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Validation of contours. Contours also come from files and callers, so every vertex number is checked before it is
-// used as an index.
+// used as an index. The checks are compiled once for all dimensions, in validate.cpp.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
-#include <vector>
-
-#include <fmt/format.h>
+#include <span>
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
 
 namespace tegl::detail {
+
+/// Throws InvalidArgument unless all vertex numbers in `rows`, `corners` per simplex, are below `vertices`. O(#S).
+void require_vertex_numbers(std::span<const Index> rows, std::size_t corners, std::size_t vertices);
+
+/// Throws InvalidArgument unless all coordinates, `width` per vertex, are finite. O(#V).
+void require_finite_numbers(std::span<const float> coordinates, std::size_t width);
+void require_finite_numbers(std::span<const double> coordinates, std::size_t width);
+
+/// Throws InvalidArgument unless attributes and normals match the number of vertices or simplices.
+void require_attribute_sizes(const std::vector<Attribute>& of_vertices, const std::vector<Attribute>& of_simplices,
+                             const ContourSize& size, std::size_t normals);
+
+/// Rows of an array of points or simplices, one after the other.
+template <class T, std::size_t N>
+std::span<const T> flat_rows(std::span<const std::array<T, N>> rows) noexcept {
+  return {rows.empty() ? nullptr : rows.front().data(), rows.size() * N};
+}
 
 /// Throws InvalidArgument unless all vertex numbers are below the number of vertices. O(#S).
 template <int N, class Real>
 void require_vertices(const Contour<N, Real>& contour) {
-  std::array<Index, N> highest{};  // by corner: independent maxima, which run in parallel
-  for (const auto& simplex : contour.simplices)
-    for (int j = 0; j < N; ++j) highest[j] = std::max(highest[j], simplex[j]);
-  if (contour.simplices.empty() || *std::max_element(highest.begin(), highest.end()) < contour.vertices.size()) return;
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
-    for (const Index v : contour.simplices[s])
-      if (v >= contour.vertices.size())
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices", s, v,
-                                contour.vertices.size()));
+  require_vertex_numbers(flat_rows(std::span<const std::array<Index, N>>(contour.simplices)), N,
+                         contour.vertices.size());
 }
 
 /// Throws InvalidArgument unless all coordinates are finite. O(#V).
 template <int N, class Real>
 void require_finite(const Contour<N, Real>& contour) {
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v)
-    for (const Real x : contour.vertices[v])
-      if (!std::isfinite(x))
-        throw Error(ErrorCode::InvalidArgument, fmt::format("a coordinate of vertex {} is {}; expected a finite one", v,
-                                                            std::isnan(x) ? std::abs(x) : x));  // drop the sign of NaN
+  require_finite_numbers(flat_rows(std::span<const std::array<Real, N>>(contour.vertices)), N);
 }
 
 /// Throws InvalidArgument unless attributes and normals match the number of vertices or simplices.
 template <int N, class Real>
 void require_attributes(const Contour<N, Real>& contour) {
-  const auto require = [](const std::vector<Attribute>& attributes, std::size_t count, const char* what) {
-    for (const Attribute& attribute : attributes)
-      if (attribute.width < 1 || attribute.values.size() != count * static_cast<std::size_t>(attribute.width))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("attribute '{}' has {} values of width {}; expected {} {} times the width",
-                                attribute.name, attribute.values.size(), attribute.width, count, what));
-  };
-  require(contour.vertex_attributes, contour.vertices.size(), "vertices");
-  require(contour.simplex_attributes, contour.simplices.size(), "simplices");
-  if (!contour.normals.empty() && contour.normals.size() != contour.vertices.size())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} normals for {} vertices; expected one for each vertex, or none", contour.normals.size(),
-                            contour.vertices.size()));
+  require_attribute_sizes(contour.vertex_attributes, contour.simplex_attributes,
+                          {contour.vertices.size(), contour.simplices.size()}, contour.normals.size());
 }
 
 /// All of the checks above.

@@ -10,12 +10,13 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "mesh/simplex_shapes.hpp"
 
 namespace tegl::detail {
+
+/// The solution x of a x = b for a symmetric positive definite matrix, by Cholesky decomposition.
+template <int N>
+PointN<N> solve_positive(const std::array<double, N * N>& a, const PointN<N>& b);
 
 /// x -> sum of w (n.x - d)^2 over hyperplanes with unit normal n, offset d and weight w.
 template <int N>
@@ -58,24 +59,21 @@ class Quadric {
   /// Minimizes the function plus a small multiple of the squared distance from `near`. The second term makes the
   /// minimum unique where the surface is flat.
   [[nodiscard]] PointN<N> least_near(const PointN<N>& near) const {
-    Eigen::Matrix<double, N, N> a;
-    Eigen::Matrix<double, N, 1> b;
+    std::array<double, N * N> a;
+    PointN<N> b;
     double trace = 0.0;
     int k = 0;
     for (int i = 0; i < N; ++i) {
-      for (int j = 0; j <= i; ++j) a(i, j) = a(j, i) = matrix_[k++];
-      trace += a(i, i);
+      for (int j = 0; j <= i; ++j) a[i * N + j] = a[j * N + i] = matrix_[k++];
+      trace += a[i * N + i];
     }
     const double pull = kPull * trace;
     if (!(pull > 0.0)) return near;
     for (int i = 0; i < N; ++i) {
-      b(i) = vector_[i] + pull * near[i];
-      a(i, i) += pull;
+      b[i] = vector_[i] + pull * near[i];
+      a[i * N + i] += pull;
     }
-    const Eigen::Matrix<double, N, 1> x = a.llt().solve(b);
-    PointN<N> result;
-    for (int i = 0; i < N; ++i) result[i] = x(i);
-    return result;
+    return solve_positive<N>(a, b);
   }
 
   /// The t in [0, 1] that minimizes the function at a + t (b - a); 1/2 if it is constant.

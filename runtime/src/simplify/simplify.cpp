@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -62,18 +63,20 @@ struct RemainingSimplices {
   std::vector<std::size_t> sources;             ///< #S: simplex of the original; empty if unknown
 };
 
-template <int N, class Real>
+/// Works in double precision. If the contour's coordinates are in single precision, those of the result are, too.
+template <int N>
 class Simplifier {
  public:
-  Simplifier(const Contour<N, Real>& contour, const SimplifyOptions<N>& options)
-      : contour_(contour), options_(options) {
+  /// `is_single`: whether the coordinates are rounded to single precision.
+  Simplifier(const Contour<N, double>& contour, bool is_single, const SimplifyOptions<N>& options)
+      : contour_(contour), is_single_(is_single), options_(options) {
     require_options(options);
     require_sound(contour);
     for (int a = 0; a < N; ++a) {
       double low = kUnlimited, high = -kUnlimited;
       for (const auto& vertex : contour.vertices) {
-        low = std::min(low, static_cast<double>(vertex[a]));
-        high = std::max(high, static_cast<double>(vertex[a]));
+        low = std::min(low, vertex[a]);
+        high = std::max(high, vertex[a]);
       }
       box_[a] = {low, high};
       if (low <= high) size_ = std::max({size_, (high - low) * options.scale[a], kEpsilon * std::abs(high)});
@@ -85,10 +88,10 @@ class Simplifier {
     gather_vertex_data();
   }
 
-  Simplification<N, Real> run() {
+  Simplification<N, double> run() {
     stats_.simplices_before = contour_.simplices.size();
     stats_.vertices_before = contour_.vertices.size();
-    Contour<N, Real> result = contour_.simplices.empty() ? contour_ : run_rounds();
+    Contour<N, double> result = contour_.simplices.empty() ? contour_ : run_rounds();
     stats_.simplices_after = result.simplices.size();
     stats_.vertices_after = result.vertices.size();
     tell(options_.work.progress, 1.0, "simplification cancelled at its end");
@@ -110,7 +113,7 @@ class Simplifier {
     carried_.reserve(contour_.vertices.size() * carried_width_);
     for (std::size_t v = 0; v < contour_.vertices.size(); ++v) {
       if (!contour_.normals.empty())
-        for (const Real x : contour_.normals[v]) carried_.push_back(static_cast<double>(x));
+        carried_.insert(carried_.end(), contour_.normals[v].begin(), contour_.normals[v].end());
       for (const Attribute* attribute : carried_attributes_) {
         const auto width = static_cast<std::size_t>(attribute->width);
         carried_.insert(carried_.end(), attribute->values.begin() + static_cast<std::ptrdiff_t>(v * width),
@@ -121,7 +124,7 @@ class Simplifier {
 
   /// The result of a round, and its errors.
   struct Round {
-    Contour<N, Real> result = {};
+    Contour<N, double> result = {};
     std::vector<double> errors = {};  ///< #S; empty if not measured
     std::optional<double> error_of_original = {};
     std::optional<double> error_of_result = {};
@@ -131,7 +134,7 @@ class Simplifier {
     std::vector<Index> kept = {};       ///< the original numbers of the result's vertices
   };
 
-  Contour<N, Real> run_rounds() {
+  Contour<N, double> run_rounds() {
     if (options_.max_error && earlier_error_ > *options_.max_error + kRounding * size_)
       throw Error(
           ErrorCode::InvalidArgument,
@@ -279,7 +282,7 @@ class Simplifier {
   }
 
   /// Reason of the end if no maximum error or curvature was the limit.
-  [[nodiscard]] SimplifyEnd end_without_limits(const Contour<N, Real>& result) const {
+  [[nodiscard]] SimplifyEnd end_without_limits(const Contour<N, double>& result) const {
     return by_count() && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
   }
 
@@ -304,7 +307,7 @@ class Simplifier {
     return round;
   }
 
-  Contour<N, Real> finish(Round round) {
+  Contour<N, double> finish(Round round) {
     if (round.result.simplices.empty())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("meshoptimizer left none of {} triangles; expected some: a larger count, or another "
@@ -352,7 +355,7 @@ class Simplifier {
     input.points.reserve(contour_.vertices.size());
     for (const auto& vertex : contour_.vertices) {
       PointN<N> point;
-      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]);
+      for (int a = 0; a < N; ++a) point[a] = vertex[a];
       input.points.push_back(point);
     }
     input.tolerance = tolerance;
@@ -360,7 +363,7 @@ class Simplifier {
     input.carried_width = carried_width_;
     input.carried = carried_;
     input.border_fixed = options_.border == SimplifyBorder::fixed;
-    input.single_precision = std::is_same_v<Real, float>;
+    input.single_precision = is_single_;
     input.progress = progress;
     EdgeCollapse<N> collapse(std::move(input));
     bind_to_planes(collapse);
@@ -380,7 +383,7 @@ class Simplifier {
       points.reserve(contour_.vertices.size());
       for (const auto& vertex : contour_.vertices) {
         PointN<3> point;
-        for (int a = 0; a < 3; ++a) point[a] = static_cast<double>(vertex[a]) * options_.scale[a];
+        for (int a = 0; a < 3; ++a) point[a] = vertex[a] * options_.scale[a];
         points.push_back(point);
       }
       const auto within = [&](double error) {
@@ -402,7 +405,7 @@ class Simplifier {
     return round;
   }
 
-  static void require_manifold(const Contour<N, Real>& contour, const char* what) {
+  static void require_manifold(const Contour<N, double>& contour, const char* what) {
     const MeshReport report = check(contour);
     auto sorted = contour.simplices;  // `check` takes two triangles with the same corners for a sphere
     for (auto& simplex : sorted) std::sort(simplex.begin(), simplex.end());
@@ -428,7 +431,7 @@ class Simplifier {
             if (collapse.points()[v][a] == side) collapse.bind(v, number);
         ++number;
       }
-    const double precision = std::is_same_v<Real, float> ? 1e-6 : 1e-12;
+    const double precision = is_single_ ? 1e-6 : 1e-12;
     for (const Hyperplane<N>& plane : options_.planes) {
       for (Index v = 0; v < collapse.points().size(); ++v) {
         double sum = -plane.offset, size = std::abs(plane.offset);
@@ -527,7 +530,7 @@ class Simplifier {
   }
 
   /// Adds the error attribute: by vertex the maximum bound of its simplices.
-  void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
+  void add_errors(Contour<N, double>& result, const std::vector<double>& errors) const {
     Attribute attribute;
     attribute.name = kErrorName;
     attribute.unit = error_unit<N>(contour_, options_.scale);
@@ -543,7 +546,7 @@ class Simplifier {
   /// Sets the round's contour: the used vertices, in their order, with attributes. `collapse`: gives the new places of
   /// vertices; null: the places are unchanged.
   void set_result(Round& round, const RemainingSimplices<N>& remains, const EdgeCollapse<N>* collapse) const {
-    Contour<N, Real>& result = round.result;
+    Contour<N, double>& result = round.result;
     result.axis_names = contour_.axis_names;
     result.axis_units = contour_.axis_units;
     result.direction = contour_.direction;
@@ -566,7 +569,7 @@ class Simplifier {
     for (const Index v : round.kept) {
       auto vertex = contour_.vertices[v];
       if (collapse != nullptr)
-        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(collapse->points()[v][a]);
+        for (int a = 0; a < N; ++a) vertex[a] = rounded(collapse->points()[v][a]);
       result.vertices.push_back(vertex);
     }
     append_vertex_data(result, round.kept, collapse);
@@ -574,7 +577,7 @@ class Simplifier {
   }
 
   /// Appends normals and attributes of the vertices with these original numbers.
-  void append_vertex_data(Contour<N, Real>& result, const std::vector<Index>& kept,
+  void append_vertex_data(Contour<N, double>& result, const std::vector<Index>& kept,
                           const EdgeCollapse<N>* collapse) const {
     for (const Attribute* attribute : carried_attributes_) {
       result.vertex_attributes.push_back({attribute->name, attribute->unit, attribute->width, {}});
@@ -597,17 +600,20 @@ class Simplifier {
     }
   }
 
-  static std::array<Real, N> unit_normal(std::span<const double> sum) {
+  /// A coordinate as the contour's number type stores it.
+  [[nodiscard]] double rounded(double x) const { return is_single_ ? static_cast<double>(static_cast<float>(x)) : x; }
+
+  [[nodiscard]] std::array<double, N> unit_normal(std::span<const double> sum) const {
     PointN<N> normal;
     std::copy(sum.begin(), sum.end(), normal.begin());
     const double length = norm(normal);
-    std::array<Real, N> result{};
+    std::array<double, N> result{};
     if (length > 0.0)
-      for (int a = 0; a < N; ++a) result[a] = static_cast<Real>(normal[a] / length);
+      for (int a = 0; a < N; ++a) result[a] = rounded(normal[a] / length);
     return result;
   }
 
-  void append_simplex_attributes(Contour<N, Real>& result, const std::vector<std::size_t>& sources) const {
+  void append_simplex_attributes(Contour<N, double>& result, const std::vector<std::size_t>& sources) const {
     for (const Attribute& attribute : contour_.simplex_attributes) {
       Attribute& left = result.simplex_attributes.emplace_back();
       left.name = attribute.name;
@@ -622,7 +628,8 @@ class Simplifier {
     }
   }
 
-  const Contour<N, Real>& contour_;
+  const Contour<N, double>& contour_;
+  const bool is_single_;
   const SimplifyOptions<N>& options_;
   std::array<std::pair<double, double>, N> box_;
   double size_ = 0.0;
@@ -635,13 +642,33 @@ class Simplifier {
   SimplifyStats stats_;
 };
 
+/// The contour with coordinates of another type. The rest is moved.
+template <class To, int N, class From>
+Contour<N, To> with_coordinates(Contour<N, From>&& contour) {
+  const auto converted = [](const Buffer<std::array<From, N>>& from) {
+    Buffer<std::array<To, N>> to(from.size());
+    for (std::size_t v = 0; v < from.size(); ++v)
+      for (int a = 0; a < N; ++a) to[v][a] = static_cast<To>(from[v][a]);
+    return to;
+  };
+  return {converted(contour.vertices),          std::move(contour.simplices),         converted(contour.normals),
+          std::move(contour.axis_names),        std::move(contour.axis_units),        contour.direction,
+          std::move(contour.vertex_attributes), std::move(contour.simplex_attributes)};
+}
+
 }  // namespace
 }  // namespace detail
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contour<N, Real>& contour,
                                                                     const SimplifyOptions<N>& options) {
-  return detail::Simplifier<N, Real>(contour, options).run();
+  if constexpr (std::is_same_v<Real, double>) {
+    return detail::Simplifier<N>(contour, false, options).run();
+  } else {
+    const Contour<N, double> in_doubles = detail::with_coordinates<double>(Contour<N, Real>(contour));
+    auto [result, stats] = detail::Simplifier<N>(in_doubles, true, options).run();
+    return {detail::with_coordinates<Real>(std::move(result)), stats};
+  }
 }
 
 #define TEGL_INSTANTIATE_CONTOURS(N, Real) \

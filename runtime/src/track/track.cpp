@@ -5,10 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <string>
 
 #include <fmt/format.h>
 
+#include "base/function_ref.hpp"
 #include "base/progress.hpp"
+#include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
 #include "track/track_graph.hpp"
 #include "track/track_sweep.hpp"
@@ -44,11 +49,21 @@ void require_sound(const Contour<N, Real>& contour) {
   detail::require_finite(contour);
 }
 
+/// The contour of a sweep, for any dimension.
+struct SweptContour {
+  std::span<const std::string> axis_names;  ///< one per axis
+  std::span<const std::string> axis_units;
+  std::span<const Index> rows;  ///< vertex numbers of all simplices
+  double epsilon;               ///< of its coordinates' type
+  detail::FunctionRef<double(Index vertex, int axis)> coordinate;
+
+  [[nodiscard]] int last_axis() const noexcept { return static_cast<int>(axis_names.size()) - 1; }
+};
+
 /// Builds the result and converts the sweep's numbers to the numbers of the result.
-template <int N, class Real>
 class Builder {
  public:
-  Builder(const Contour<N, Real>& contour, const TrackOptions& options, SweepResult&& swept)
+  Builder(const SweptContour& contour, const TrackOptions& options, SweepResult&& swept)
       : contour_(contour),
         options_(options),
         samples_(std::move(swept.samples)),
@@ -83,21 +98,20 @@ class Builder {
   }
 
   void describe() {
-    result_.space_dim = N;
+    result_.space_dim = static_cast<int>(contour_.axis_names.size());
     std::copy(contour_.axis_names.begin(), contour_.axis_names.end(), result_.axis_names.begin());
     std::copy(contour_.axis_units.begin(), contour_.axis_units.end(), result_.axis_units.begin());
     double least = std::numeric_limits<double>::infinity();
     double greatest = -least;
-    for (const auto& simplex : contour_.simplices)
-      for (const Index v : simplex) {
-        least = std::min(least, static_cast<double>(contour_.vertices[v][N - 1]));
-        greatest = std::max(greatest, static_cast<double>(contour_.vertices[v][N - 1]));
-      }
-    if (contour_.simplices.empty()) least = greatest = 0;
+    for (const Index v : contour_.rows) {
+      const double time = contour_.coordinate(v, contour_.last_axis());
+      least = std::min(least, time);
+      greatest = std::max(greatest, time);
+    }
+    if (contour_.rows.empty()) least = greatest = 0;
     result_.first = options_.first.value_or(least);
     result_.last = options_.last.value_or(greatest);
-    tolerance_ =
-        4 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * std::max(std::abs(least), std::abs(greatest));
+    tolerance_ = 4 * contour_.epsilon * std::max(std::abs(least), std::abs(greatest));
   }
 
   void add_events() {
@@ -214,11 +228,11 @@ class Builder {
 
   [[nodiscard]] std::array<double, 3> place(Index v) const {
     std::array<double, 3> result{};
-    for (int a = 0; a < N - 1; ++a) result[a] = static_cast<double>(contour_.vertices[v][a]);
+    for (int a = 0; a < contour_.last_axis(); ++a) result[a] = contour_.coordinate(v, a);
     return result;
   }
 
-  const Contour<N, Real>& contour_;
+  const SweptContour& contour_;
   const TrackOptions& options_;
   std::vector<detail::SweepSample> samples_;
   std::vector<Index> simplex_arcs_;
@@ -270,7 +284,11 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
   require_sound(options);
   require_sound(contour);
-  return Builder<N, Real>(contour, options, detail::sweep(contour, options)).build();
+  const detail::SimplexView<N> view(contour);
+  const auto coordinate = [&](Index vertex, int axis) { return view.coordinate(vertex, axis); };
+  const SweptContour swept{contour.axis_names, contour.axis_units, view.rows(),
+                           static_cast<double>(std::numeric_limits<Real>::epsilon()), coordinate};
+  return Builder(swept, options, detail::sweep(contour, options)).build();
 }
 
 TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep) {

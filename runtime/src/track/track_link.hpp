@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "track/sweep_result.hpp"
@@ -58,21 +59,20 @@ class Faces {
 };
 
 /// A simplicial complex whose vertices are ordered by the last coordinate (time).
-template <int N, class Real>
+template <int N>
 class SweptComplex {
  public:
   using Simplex = std::array<Index, N>;
 
-  SweptComplex(const Contour<N, Real>& contour, unsigned threads, const Progress& progress)
-      : contour_(contour),
-        stars_(make_stars<N>(rows_of(contour), contour.vertices.size(), part_of(progress, 0.0, 0.3))) {
+  SweptComplex(const SimplexView<N>& contour, unsigned threads, const Progress& progress)
+      : contour_(contour), stars_(make_stars<N>(contour.rows(), contour.vertex_count(), part_of(progress, 0.0, 0.3))) {
     rank_vertices(part_of(progress, 0.3, 0.5));
     find_border(threads, part_of(progress, 0.5, 1.0));
   }
 
-  [[nodiscard]] const Contour<N, Real>& contour() const { return contour_; }
-  [[nodiscard]] const Simplex& simplex(Index s) const { return contour_.simplices[s]; }
-  [[nodiscard]] double time(Index v) const { return static_cast<double>(contour_.vertices[v][N - 1]); }
+  [[nodiscard]] const SimplexView<N>& contour() const { return contour_; }
+  [[nodiscard]] const Simplex& simplex(Index s) const { return contour_.simplices()[s]; }
+  [[nodiscard]] double time(Index v) const { return contour_.coordinate(v, N - 1); }
   /// Vertices by time, then number; `rank` is the position of a vertex in that order.
   [[nodiscard]] std::span<const Index> order() const { return order_; }
   [[nodiscard]] Index rank(Index v) const { return rank_[v]; }
@@ -86,11 +86,11 @@ class SweptComplex {
   void rank_vertices(const Progress& progress) {
     constexpr std::size_t kPart = std::size_t{1} << 16;
     const auto comes_first = [&](Index a, Index b) {
-      const Real ta = contour_.vertices[a][N - 1];
-      const Real tb = contour_.vertices[b][N - 1];
+      const double ta = time(a);
+      const double tb = time(b);
       return ta != tb ? ta < tb : a < b;
     };
-    const std::size_t count = contour_.vertices.size();
+    const std::size_t count = contour_.vertex_count();
     order_.resize(count);
     rank_.resize(count);
     std::iota(order_.begin(), order_.end(), Index{0});
@@ -127,9 +127,9 @@ class SweptComplex {
   };
 
   void find_border(unsigned threads, const Progress& progress) {
-    border_.assign(contour_.simplices.size(), 0);
+    border_.assign(contour_.simplices().size(), 0);
     for_each_block(
-        contour_.vertices.size(), kBlock, threads, progress, [] { return std::vector<Facet>(); },
+        contour_.vertex_count(), kBlock, threads, progress, [] { return std::vector<Facet>(); },
         [&](std::size_t, std::size_t from, std::size_t to, std::vector<Facet>& facets) {
           for (std::size_t v = from; v < to; ++v) find_border_at(static_cast<Index>(v), facets);
         });
@@ -160,7 +160,7 @@ class SweptComplex {
     }
   }
 
-  const Contour<N, Real>& contour_;
+  SimplexView<N> contour_;
   Stars stars_;
   Buffer<Index> order_;
   Buffer<Index> rank_;
@@ -168,10 +168,10 @@ class SweptComplex {
 };
 
 /// Star and link of one vertex at a time.
-template <int N, class Real>
+template <int N>
 class VertexStar {
  public:
-  explicit VertexStar(const SweptComplex<N, Real>& complex)
+  explicit VertexStar(const SweptComplex<N>& complex)
       : complex_(complex), met_(complex.order().size(), kNone), number_(complex.order().size()) {}
 
   void load(Index v) {
@@ -255,7 +255,7 @@ class VertexStar {
     }
   }
 
-  const SweptComplex<N, Real>& complex_;
+  const SweptComplex<N>& complex_;
   Index v_ = kNone;
   std::span<const Index> cells_;
   std::vector<Index> met_;  ///< by vertex: the last vertex in whose link it was met

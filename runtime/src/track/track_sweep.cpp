@@ -47,17 +47,19 @@ struct Component {
   std::int64_t euler_before = 0;
 };
 
-template <int N, class Real>
+template <int N>
 class Sweeper {
  public:
-  Sweeper(const Contour<N, Real>& contour, const TrackOptions& options)
+  Sweeper(const SimplexView<N>& contour, GradientDirection direction, const TrackOptions& options)
       : options_(options),
+        direction_(direction),
         complex_(contour, options.work.threads, part_of(options.work.progress, 0.0, kReady)),
         star_(complex_) {
-    const std::size_t count = contour.simplices.size();
+    const std::size_t count = contour.simplices().size();
     labels_.assign(count, kNone);
     seen_.assign(count, 0);
-    for (const double time : options.times) times_.push_back(static_cast<double>(rounded_at<Real>(time)));
+    for (const double time : options.times)
+      times_.push_back(contour.is_single() ? static_cast<double>(rounded_at<float>(time)) : rounded_at<double>(time));
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
     if (times_.empty() || count == 0) return;
     first_ = complex_.time(complex_.order().front());
@@ -381,17 +383,17 @@ class Sweeper {
       return is_cut ? static_cast<std::size_t>(at - times_.begin()) : times_.size();
     };
     starts_.assign(times_.size() + 3, 0);
-    for (Index s = 0; s < contour.simplices.size(); ++s) {
+    for (Index s = 0; s < contour.simplices().size(); ++s) {
       tell_all(1);
       ++starts_[first_cut(s) + 2];
     }
     for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
-    starting_.resize(contour.simplices.size());
-    for (Index s = 0; s < contour.simplices.size(); ++s) {
+    starting_.resize(contour.simplices().size());
+    for (Index s = 0; s < contour.simplices().size(); ++s) {
       tell_all(1);
       starting_[starts_[first_cut(s) + 1]++] = s;
     }
-    for (int a = 0; a < N - 1; ++a) origin_[a] = static_cast<double>(contour.vertices[0][a]);
+    for (int a = 0; a < N - 1; ++a) origin_[a] = contour.coordinate(0, a);
   }
 
   [[nodiscard]] std::pair<double, double> span(Index s) const {
@@ -431,11 +433,11 @@ class Sweeper {
   }
 
   void add_cut(Index s, double time, PartSums& sums) const {
-    std::array<PointOf<N>, N> corners = corners_of(complex_.contour(), s);
+    std::array<PointOf<N>, N> corners = complex_.contour().corners(s);
     for (auto& corner : corners)
       for (int a = 0; a < N - 1; ++a) corner[a] -= origin_[a];
     PointOf<N> normal = normal_vector_of<N>(corners);
-    if (complex_.contour().direction == GradientDirection::ascent)
+    if (direction_ == GradientDirection::ascent)
       for (double& x : normal) x = -x;
     if constexpr (N == 2) sums.open = true;  // a point encloses nothing
     unsigned below = 0;
@@ -455,10 +457,11 @@ class Sweeper {
   static constexpr double kReady = 0.2;  ///< progress at the start of the sweep
 
   const TrackOptions& options_;
+  const GradientDirection direction_;
   double fraction_ = 0.0;       ///< of the sweep
   std::size_t seen_since_ = 0;  ///< simplices visited since the last progress report
-  SweptComplex<N, Real> complex_;
-  VertexStar<N, Real> star_;
+  SweptComplex<N> complex_;
+  VertexStar<N> star_;
   SweepResult result_;
   DisjointSets sets_;
   std::vector<Component> components_;  ///< by set, valid at its root
@@ -492,7 +495,7 @@ class Sweeper {
 
 template <int N, class Real>
 SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options) {
-  return Sweeper<N, Real>(contour, options).run();
+  return Sweeper<N>(SimplexView<N>(contour), contour.direction, options).run();
 }
 
 #define TEGL_INSTANTIATE_CONTOURS(N, Real) template SweepResult sweep(const Contour<N, Real>&, const TrackOptions&);
