@@ -180,14 +180,14 @@ ExtractedSize extract_into_room(const SourceOfPass<N>& make_source, const Grid<N
   ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
   const auto source = make_source();
-  MemoryOutput<N, Real, I> output(room, options.normals);
+  MemoryOutput<N, Real, I> output(room, options.normals != Normals::none);
   ExtractedSize result;
   result.stats = extract_to<N, Real>(*source, grid, tables, options, plan, output);
   result.size = output.size;
   if (output.any_missing) {
     const auto again = make_source();
     MemorySink<N, Real, I> sink(room);
-    StreamOutput<N, Real> parts(sink, options.normals);
+    StreamOutput<N, Real> parts(sink, options.normals != Normals::none);
     result.stats = extract_to<N, Real>(*again, grid, tables, options, plan, parts);
     result.size = parts.size();
   } else if constexpr (sizeof(I) == sizeof(Index)) {
