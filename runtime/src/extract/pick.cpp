@@ -41,9 +41,10 @@ std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
 template <Value T, int N>
 class NearestTile {
  public:
-  NearestTile(const detail::TileFlood<T, N>& flood, const std::array<double, N>& at) : flood_(flood), at_(at) {
+  NearestTile(const detail::TileFlood<T>& flood, const TileGrid<N>& grid, const std::array<double, N>& at)
+      : flood_(flood), grid_(grid), at_(at) {
     for (int a = 0; a < N; ++a)
-      centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid().size(a)) - 1);
+      centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid_.size(a)) - 1);
   }
 
   /// Reports progress. Returns false if no tile is active.
@@ -64,7 +65,7 @@ class NearestTile {
   }
 
  private:
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return flood_.grid(); }
+  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
 
   /// Visits all tiles of the shell with these indices along the axes above `axis`. `on_shell`: these indices are on the
   /// shell already.
@@ -111,7 +112,8 @@ class NearestTile {
     square_ = square;
   }
 
-  const detail::TileFlood<T, N>& flood_;
+  const detail::TileFlood<T>& flood_;
+  const TileGrid<N>& grid_;
   std::array<double, N> at_;
   std::array<std::ptrdiff_t, N> centre_;
   std::ptrdiff_t radius_ = 0;
@@ -234,8 +236,9 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
   const auto all_of = [](const ComponentLabels& labels, const Progress&) {
     return std::vector<bool>(labels.count, true);
   };
-  const detail::TileFlood<T, N> flood(image, isovalue);
-  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.work.progress)) {
+  const TileGrid<N> grid(image.grid().sizes());
+  const detail::TileFlood<T> flood(detail::SampleView<T>(image), isovalue);
+  if (grid.count() == 0 || !NearestTile<T, N>(flood, grid, at).find(found, options.work.progress)) {
     if (!options.close) {
       auto nothing =
           extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // empty, with names and units
@@ -269,8 +272,8 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
     if (in_tiles && around.empty()) return all_of(labels, progress);
     const Progress extracting = detail::part_of(progress, 0.0, 0.9);
     const Image<T, N> on_steps_of_1(image.data(), Grid<N>::unit(image.grid().sizes()), image.strides());
-    return components_in(contour_of(on_steps_of_1, inside_edges(options, extracting), double{}), labels, flood.grid(),
-                         tiles, detail::part_of(progress, 0.9, 1.0));
+    return components_in(contour_of(on_steps_of_1, inside_edges(options, extracting), double{}), labels, grid, tiles,
+                         detail::part_of(progress, 0.9, 1.0));
   };
   auto nearest = nearest_part(contour_of(image, rest, Real{}), locator, at, options, found.components, allowed);
   return {std::move(nearest), found};

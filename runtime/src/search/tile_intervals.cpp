@@ -13,9 +13,9 @@
 
 namespace tegl::detail {
 
-template <Value T, int N>
-TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
-  const TileGrid<N> grid(task.identity.sizes);
+template <Value T>
+TileIntervals<T> gather_intervals(const IndexTask<T>& task) {
+  const TileShape& grid = task.tiles;
   if (grid.count() > std::uint64_t{std::numeric_limits<TileId>::max()} + 1)
     throw Error(ErrorCode::TooLarge, fmt::format("an image of {} tiles; expected at most 2^32 for this method (the min-"
                                                  "max tree has no such limit)",
@@ -24,10 +24,10 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
   const std::size_t parts = (grid.rows() + kPartRows - 1) / kPartRows;
   std::vector<std::size_t> first(parts + 1);
   TileIntervals<T> result;
-  Workers<TileRanges<T, N>> workers(task.options.work.threads, [&] { return TileRanges<T, N>(task.image); });
+  Workers<TileRanges<T>> workers(task.options.work.threads, [&] { return TileRanges<T>(task.samples); });
   const std::size_t along = grid.size(0);
   // count per part, then write: buffers are allocated once
-  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
+  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T>& ranges) {
     for (std::size_t part = from; part < to; ++part) {
       std::size_t count = 0;
       for (std::size_t row = part * kPartRows; row < std::min(grid.rows(), (part + 1) * kPartRows); ++row) {
@@ -44,7 +44,7 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
   result.least.resize(first[parts]);
   result.greatest.resize(first[parts]);
   // write
-  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
+  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T>& ranges) {
     for (std::size_t part = from; part < to; ++part) {
       std::size_t next = first[part];
       for (std::size_t row = part * kPartRows; row < std::min(grid.rows(), (part + 1) * kPartRows); ++row) {
@@ -156,13 +156,11 @@ void require_tiles(const std::vector<TileId>& tiles, TileNumber end) {
 }
 
 #define TEGL_INSTANTIATE(T)                                                                              \
+  template TileIntervals<T> gather_intervals<T>(const IndexTask<T>&);                                    \
   template Buffer<TileId> ascending_order<T>(const Buffer<T>&);                                          \
   template void add_quantiles<T>(const Buffer<T>&, const Buffer<TileId>&, std::size_t, std::vector<T>&); \
   template void sort_unique<T>(std::vector<T>&);                                                         \
   template Buffer<std::uint32_t> cells_of<T>(const Buffer<T>&, const Buffer<TileId>&, const std::vector<T>&);
-#include "base/instantiate.hpp"
-
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template TileIntervals<T> gather_intervals<T, N>(const IndexTask<T, N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail
