@@ -2,7 +2,9 @@
 //
 // Builds and loads indexes of active tiles, by any method, and makes indexes of chosen tiles.
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -24,20 +26,23 @@ namespace detail {
 
 namespace {
 
-/// Adds a row of samples to the hash of its layer. Sets `missing` if any sample is NaN.
+/// Adds a row of samples to the hash of its layer; `first`: offset of its first sample in the image, in elements. Sets
+/// `missing` if any sample is NaN. `room`: bytes for a row.
+using RowHash = std::function<std::uint64_t(std::ptrdiff_t first, std::uint64_t hash, void* room, bool& missing)>;
+
 template <Value T>
-std::uint64_t hash_row(const T* samples, std::ptrdiff_t stride, std::vector<T>& row, std::uint64_t hash,
+std::uint64_t hash_row(const T* samples, std::ptrdiff_t stride, std::size_t count, std::uint64_t hash, T* row,
                        bool& missing) {
   if (stride != 1) {
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = samples[static_cast<std::ptrdiff_t>(i) * stride];
-    samples = row.data();
+    for (std::size_t i = 0; i < count; ++i) row[i] = samples[static_cast<std::ptrdiff_t>(i) * stride];
+    samples = row;
   }
   if constexpr (std::is_floating_point_v<T>) {
     unsigned any = 0;
-    for (std::size_t i = 0; i < row.size(); ++i) any |= samples[i] != samples[i] ? 1u : 0u;
+    for (std::size_t i = 0; i < count; ++i) any |= samples[i] != samples[i] ? 1u : 0u;
     missing = missing || any != 0;
   }
-  return hash_bytes(samples, row.size() * sizeof(T), hash);
+  return hash_bytes(samples, count * sizeof(T), hash);
 }
 
 /// Digest of an image, and whether any value is NaN.
@@ -51,45 +56,43 @@ IndexedImage<N> identity_of(const Image<T, N>& image, const Identity& found) {
   return {image.grid().sizes(), std::string(value_type_name<T>()), found.digest, found.any_missing};
 }
 
-/// Reads all values.
-template <Value T>
-Identity identify_samples(const SampleView<T>& image, const WorkOptions& work) {
-  const int last = image.dim - 1;
-  const std::size_t layers = image.sizes[last];
+/// Calls `hash_of` for all rows of an image. `type`: name of the value type.
+Identity identify_rows(std::span<const std::size_t> sizes, std::span<const std::ptrdiff_t> strides,
+                       std::string_view type, const RowHash& hash_of, const WorkOptions& work) {
+  const std::size_t last = sizes.size() - 1;
+  const std::size_t layers = sizes[last];
   std::size_t rows = 1;
-  for (int a = 1; a < last; ++a) rows *= image.sizes[a];
+  for (std::size_t a = 1; a < last; ++a) rows *= sizes[a];
   struct Layer {
     std::uint64_t hash;
     bool missing = false;
   };
   std::vector<Layer> found(layers);
-  Workers<std::vector<T>> workers(work.threads, [&] { return std::vector<T>(image.sizes[0]); });
+  using Room = std::vector<std::uint64_t>;
+  Workers<Room> workers(work.threads, [&] { return Room(sizes[0]); });
   constexpr std::size_t kSamplesAtOnce = std::size_t{1} << 24;
-  const std::size_t at_once = std::max<std::size_t>(1, kSamplesAtOnce / (rows * image.sizes[0]));
+  const std::size_t at_once = std::max<std::size_t>(1, kSamplesAtOnce / (rows * sizes[0]));
   // hash each layer
   for (std::size_t first = 0; first < layers; first += at_once) {
     if (work.progress && !work.progress(static_cast<double>(first) / static_cast<double>(layers)))
       throw Error(ErrorCode::Cancelled, fmt::format("reading of values cancelled at layer {} of {}", first, layers));
-    workers.for_range(std::min(at_once, layers - first), 1,
-                      [&](std::size_t from, std::size_t to, std::vector<T>& room) {
-                        for (std::size_t k = first + from; k < first + to; ++k) {
-                          Layer layer{k};
-                          for (std::size_t row = 0; row < rows; ++row) {
-                            const T* samples = image.data + static_cast<std::ptrdiff_t>(k) * image.strides[last];
-                            std::size_t rest = row;
-                            for (int a = 1; a < last; rest /= image.sizes[a++])
-                              samples += static_cast<std::ptrdiff_t>(rest % image.sizes[a]) * image.strides[a];
-                            layer.hash = hash_row(samples, image.strides[0], room, layer.hash, layer.missing);
-                          }
-                          found[k] = layer;
-                        }
-                      });
+    workers.for_range(std::min(at_once, layers - first), 1, [&](std::size_t from, std::size_t to, Room& room) {
+      for (std::size_t k = first + from; k < first + to; ++k) {
+        Layer layer{k};
+        for (std::size_t row = 0; row < rows; ++row) {
+          std::ptrdiff_t samples = static_cast<std::ptrdiff_t>(k) * strides[last];
+          for (std::size_t a = 1, rest = row; a < last; rest /= sizes[a++])
+            samples += static_cast<std::ptrdiff_t>(rest % sizes[a]) * strides[a];
+          layer.hash = hash_of(samples, layer.hash, room.data(), layer.missing);
+        }
+        found[k] = layer;
+      }
+    });
   }
   // combine type, sizes and layers
   Identity result;
-  const std::string_view type = value_type_name<T>();
-  result.digest = hash_bytes(type.data(), type.size(), static_cast<std::uint64_t>(image.dim));
-  for (const std::size_t size : image.axes()) {
+  result.digest = hash_bytes(type.data(), type.size(), sizes.size());
+  for (const std::size_t size : sizes) {
     const std::uint64_t wide = size;
     result.digest = hash_bytes(&wide, sizeof(wide), result.digest);
   }
@@ -98,6 +101,15 @@ Identity identify_samples(const SampleView<T>& image, const WorkOptions& work) {
     result.any_missing = result.any_missing || layer.missing;
   }
   return result;
+}
+
+/// Reads all values.
+template <Value T>
+Identity identify_samples(const SampleView<T>& image, const WorkOptions& work) {
+  const RowHash of_row = [&](std::ptrdiff_t first, std::uint64_t hash, void* room, bool& missing) {
+    return hash_row(image.data + first, image.strides[0], image.sizes[0], hash, static_cast<T*>(room), missing);
+  };
+  return identify_rows(image.axes(), image.strides, value_type_name<T>(), of_row, work);
 }
 
 /// Whether a corner of a tile is NaN. `lowest`: offset of its lowest sample in the image, in elements.

@@ -73,7 +73,7 @@ class MinMaxTree final : public IndexMethod {
   bool collect_rows(double isovalue, TileRowSet& rows) const override {
     for (const std::size_t brick : active_bricks(make_threshold<T>(isovalue))) {
       const Brick at(*this, brick);
-      at.for_rows(dim(), 0, [&](const Index& index, std::size_t) { rows.add(tiles_.row(tiles_.number(index))); });
+      at.for_rows(dim(), 0, [&](const Index& index, std::size_t) { rows.add(tiles_.row(index)); });
     }
     return true;
   }
@@ -243,7 +243,7 @@ void fill_brick_row(std::size_t brick_row, TileRanges<T>& ranges, MinMaxLevel<T>
     end[a] = std::min(first[a] + brick_width(grid.dim()), grid.size(a));
   }
   for (int a = 0; a < grid.dim();) {
-    ranges.load(grid.row(grid.number(index)));
+    ranges.load(grid.row(index));
     for (std::size_t i = 0; i < grid.size(0); ++i)
       if (has_range(ranges.least()[i], ranges.greatest()[i]))
         bricks.widen(brick_row * bricks.sizes[0] + i / kBrickLength, ranges.least()[i], ranges.greatest()[i]);

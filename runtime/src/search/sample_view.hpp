@@ -72,7 +72,12 @@ class TileShape {
     index[dim_ - 1] = number;
     return index;
   }
-  [[nodiscard]] std::size_t row(TileNumber number) const noexcept { return number / sizes_[0]; }
+  /// The row of the tile with this index.
+  [[nodiscard]] std::size_t row(const Index& index) const noexcept {
+    std::size_t row = 0;
+    for (int a = dim_; --a > 0;) row = row * sizes_[a] + index[a];
+    return row;
+  }
 
  private:
   int dim_ = 0;
