@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -38,10 +39,10 @@ std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
 }
 
 /// Searches the nearest active tile in shells around a point.
-template <Value T, int N>
+template <int N>
 class NearestTile {
  public:
-  NearestTile(const detail::TileFlood<T>& flood, const TileGrid<N>& grid, const std::array<double, N>& at)
+  NearestTile(const detail::TileFlood& flood, const TileGrid<N>& grid, const std::array<double, N>& at)
       : flood_(flood), grid_(grid), at_(at) {
     for (int a = 0; a < N; ++a)
       centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid_.size(a)) - 1);
@@ -112,7 +113,7 @@ class NearestTile {
     square_ = square;
   }
 
-  const detail::TileFlood<T>& flood_;
+  const detail::TileFlood& flood_;
   const TileGrid<N>& grid_;
   std::array<double, N> at_;
   std::array<std::ptrdiff_t, N> centre_;
@@ -186,12 +187,15 @@ std::vector<bool> components_in(const Contour<N, double>& inside, const Componen
   return result;
 }
 
+/// Components, by label, that may be returned.
+using ChooseComponents = std::function<std::vector<bool>(const ComponentLabels&, const Progress&)>;
+
 /// The component of a contour nearest to a point, among those that `choose(labels, progress)` allows. Reports progress
 /// from kExtracted on.
-template <int N, class Real, class Choose>
+template <int N, class Real>
 Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::GridLocator<N>& locator,
                               const std::type_identity_t<std::array<double, N>>& at, const ExtractOptions& options,
-                              std::uint64_t& components, const Choose& choose) {
+                              std::uint64_t& components, const ChooseComponents& choose) {
   using detail::part_of;
   const Progress& progress = options.work.progress;
   const ComponentLabels labels =
@@ -237,8 +241,8 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
     return std::vector<bool>(labels.count, true);
   };
   const TileGrid<N> grid(image.grid().sizes());
-  const detail::TileFlood<T> flood(detail::SampleView<T>(image), isovalue);
-  if (grid.count() == 0 || !NearestTile<T, N>(flood, grid, at).find(found, options.work.progress)) {
+  const detail::TileFlood flood(detail::SampleView<T>(image), isovalue);
+  if (grid.count() == 0 || !NearestTile<N>(flood, grid, at).find(found, options.work.progress)) {
     if (!options.close) {
       auto nothing =
           extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // empty, with names and units

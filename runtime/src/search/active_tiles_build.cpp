@@ -2,6 +2,7 @@
 //
 // Builds and loads indexes of active tiles, by any method, and makes indexes of chosen tiles.
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -51,9 +52,12 @@ struct Identity {
   bool any_missing = false;
 };
 
-template <int N, Value T>
-IndexedImage<N> identity_of(const Image<T, N>& image, const Identity& found) {
-  return {image.grid().sizes(), std::string(value_type_name<T>()), found.digest, found.any_missing};
+template <int N>
+using Sizes = std::array<std::size_t, N>;
+
+template <int N>
+IndexedImage<N> identity_of(const Sizes<N>& sizes, std::string_view type, const Identity& found) {
+  return {sizes, std::string(type), found.digest, found.any_missing};
 }
 
 /// Calls `hash_of` for all rows of an image. `type`: name of the value type.
@@ -286,9 +290,15 @@ FoundIndex read_index(ByteSource& from, const SampleView<T>& image, const Active
 }
 
 /// Adds sizes and type.
-template <Value T, int N>
-std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const Image<T, N>& image, FoundIndex found) {
-  return std::make_unique<MethodTiles<N>>(identity_of(image, found.identity), found.method, std::move(found.index));
+template <int N>
+std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const Sizes<N>& sizes, std::string_view type, FoundIndex found) {
+  return std::make_unique<MethodTiles<N>>(identity_of<N>(sizes, type, found.identity), found.method,
+                                          std::move(found.index));
+}
+template <int N>
+std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const Sizes<N>& sizes, std::string_view type,
+                                                      std::vector<TileNumber> chosen) {
+  return std::make_unique<ChosenTiles<N>>(identity_of<N>(sizes, type, {}), std::move(chosen));
 }
 
 }  // namespace
@@ -297,26 +307,29 @@ std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const Image<T, N>& image, 
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5> IndexedImage<N> identify(const Image<T, N>& image, const WorkOptions& work) {
-  return detail::identity_of(image, detail::identify_samples(detail::SampleView<T>(image), work));
+  return detail::identity_of<N>(image.grid().sizes(), detail::value_type_name<T>(),
+                                detail::identify_samples(detail::SampleView<T>(image), work));
 }
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> build_active_tiles(
     const Image<T, N>& image, ActiveMethod method, const ActiveTilesOptions& options) {
-  return detail::to_active_tiles(image, detail::build_index(detail::SampleView<T>(image), method, options));
+  return detail::to_active_tiles<N>(image.grid().sizes(), detail::value_type_name<T>(),
+                                    detail::build_index(detail::SampleView<T>(image), method, options));
 }
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> load_active_tiles(
     ByteSource& from, const Image<T, N>& image, const ActiveTilesOptions& options) {
-  return detail::to_active_tiles(image, detail::read_index(from, detail::SampleView<T>(image), options));
+  return detail::to_active_tiles<N>(image.grid().sizes(), detail::value_type_name<T>(),
+                                    detail::read_index(from, detail::SampleView<T>(image), options));
 }
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5> std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image,
                                                                                 std::vector<TileNumber> tiles) {
   detail::check_chosen(detail::SampleView<T>(image), tiles);
-  return std::make_unique<detail::ChosenTiles<N>>(detail::identity_of(image, {}), std::move(tiles));
+  return detail::to_active_tiles<N>(image.grid().sizes(), detail::value_type_name<T>(), std::move(tiles));
 }
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                             \

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "base/workers.hpp"
@@ -24,11 +26,121 @@ namespace {
 constexpr std::size_t kBrickLength = 8;
 constexpr std::size_t brick_width(int dim) noexcept { return dim <= 3 ? 4 : 2; }
 
+using Index = TileShape::Index;
+
+/// Rows of the samples of a brick, one bit per sample.
+struct Bits {
+  std::vector<std::uint16_t> high, missing;
+};
+
+/// Position of a brick: its first tile and its number of tiles along each axis.
+struct Brick {
+  /// `bricks`: number of bricks along each axis.
+  Brick(const TileShape& grid, const Index& bricks, std::size_t number) : dim(grid.dim()) {
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t width = a == 0 ? kBrickLength : brick_width(dim);
+      first[a] = number % bricks[a] * width;
+      tiles[a] = std::min(width, grid.size(a) - first[a]);
+      number /= bricks[a];
+    }
+  }
+  /// Calls visit(index, ordinal) for the first tile of each row of tiles; with `more` = 1, for the first sample of
+  /// each row of samples.
+  template <class Visit>
+  void for_rows(std::size_t more, const Visit& visit) const {
+    Index index = first;
+    for (std::size_t ordinal = 0;; ++ordinal) {
+      visit(index, ordinal);
+      int a = 1;
+      for (; a < dim && ++index[a] == first[a] + tiles[a] + more; ++a) index[a] = first[a];
+      if (a == dim) return;
+    }
+  }
+  [[nodiscard]] std::size_t sample_rows() const noexcept {
+    std::size_t rows = 1;
+    for (int a = 1; a < dim; ++a) rows *= tiles[a] + 1;
+    return rows;
+  }
+
+  int dim;
+  Index first{}, tiles{};
+};
+
+/// Lists the nodes below a node. `above`, `sizes`: number of nodes along each axis, of its level and of the next.
+/// Returns how many there are.
+std::size_t list_children(int dim, std::size_t node, const Index& above, const Index& sizes,
+                          std::array<std::size_t, std::size_t{1} << kMostAxes>& children) noexcept {
+  children[0] = 0;
+  std::size_t count = 1;
+  std::size_t stride = 1;
+  for (int a = 0; a < dim; ++a) {
+    const std::size_t first = node % above[a] * 2;
+    node /= above[a];
+    const bool two = first + 1 < sizes[a];
+    for (std::size_t c = 0; c < count; ++c) {
+      children[c] += first * stride;
+      if (two) children[c + count] = children[c] + stride;
+    }
+    if (two) count *= 2;
+    stride *= sizes[a];
+  }
+  return count;
+}
+
+/// Adds the active tiles of a brick: combines the bits of the corners of each tile.
+void add_active(const TileShape& grid, const Brick& brick, const Bits& bits, std::vector<TileNumber>& tiles) {
+  Index strides{};  // in rows of samples, by axis
+  std::size_t rows = 1;
+  for (int a = 1; a < brick.dim; ++a) {
+    strides[a] = rows;
+    rows *= brick.tiles[a] + 1;
+  }
+  // the rows of samples around a row of tiles
+  std::array<std::size_t, std::size_t{1} << (kMostAxes - 1)> around{};
+  std::size_t corners = 1;
+  for (int a = 1; a < brick.dim; ++a, corners *= 2)
+    for (std::size_t c = 0; c < corners; ++c) around[corners + c] = around[c] + strides[a];
+  const auto inside = static_cast<std::uint16_t>((1u << brick.tiles[0]) - 1);
+  brick.for_rows(0, [&](const Index& index, std::size_t) {
+    std::size_t row = 0;
+    for (int a = 1; a < brick.dim; ++a) row += (index[a] - brick.first[a]) * strides[a];
+    unsigned any = 0, all = ~0u, missing = 0;
+    for (std::size_t c = 0; c < corners; ++c) {
+      const std::size_t at = row + around[c];
+      any |= bits.high[at];
+      all &= bits.high[at];
+      missing |= bits.missing[at];
+    }
+    unsigned active = (any | any >> 1) & ~(all & all >> 1) & ~(missing | missing >> 1) & inside;
+    const TileNumber first = grid.number(index);
+    for (; active != 0; active &= active - 1) tiles.push_back(first + static_cast<unsigned>(std::countr_zero(active)));
+  });
+}
+
+/// Numbers of nodes of the levels along each axis, from the bricks to the top; 1 beyond the dimension.
+std::vector<Index> plan_sizes(const TileShape& grid) {
+  std::vector<Index> sizes(1);
+  sizes[0].fill(1);
+  for (int a = 0; a < grid.dim(); ++a) {
+    const std::size_t width = a == 0 ? kBrickLength : brick_width(grid.dim());
+    sizes[0][a] = (grid.size(a) + width - 1) / width;
+  }
+  const auto count_of = [](const Index& of) {
+    return std::accumulate(of.begin(), of.end(), std::size_t{1}, std::multiplies<>());
+  };
+  while (count_of(sizes.back()) > 1) {
+    Index above;
+    for (int a = 0; a < kMostAxes; ++a) above[a] = (sizes.back()[a] + 1) / 2;
+    sizes.push_back(above);
+  }
+  return sizes;
+}
+
 /// One level of the pyramid: ranges of bricks or of their unions, axis 0 fastest. A node without tiles that can be
 /// active has greatest < least. Axes beyond the dimension have size 1.
 template <Value T>
 struct MinMaxLevel {
-  std::array<std::size_t, kMostAxes> sizes{};
+  Index sizes{};
   std::vector<T> least, greatest;
 
   void resize() {
@@ -52,7 +164,6 @@ template <Value T>
 class MinMaxTree final : public IndexMethod {
  public:
   using Levels = std::vector<MinMaxLevel<T>>;
-  using Index = TileShape::Index;
 
   MinMaxTree(const IndexTask<T>& task, Levels levels)
       : samples_(task.samples), tiles_(task.tiles), levels_(std::move(levels)) {}
@@ -72,8 +183,8 @@ class MinMaxTree final : public IndexMethod {
   }
   bool collect_rows(double isovalue, TileRowSet& rows) const override {
     for (const std::size_t brick : active_bricks(make_threshold<T>(isovalue))) {
-      const Brick at(*this, brick);
-      at.for_rows(dim(), 0, [&](const Index& index, std::size_t) { rows.add(tiles_.row(index)); });
+      const Brick at(tiles_, levels_[0].sizes, brick);
+      at.for_rows(0, [&](const Index& index, std::size_t) { rows.add(tiles_.row(index)); });
     }
     return true;
   }
@@ -87,36 +198,6 @@ class MinMaxTree final : public IndexMethod {
   }
 
  private:
-  /// Rows of the samples of a brick, one bit per sample.
-  struct Bits {
-    std::vector<std::uint16_t> high, missing;
-  };
-
-  /// Position of a brick: its first tile and its number of tiles along each axis.
-  struct Brick {
-    Brick(const MinMaxTree& tree, std::size_t number) {
-      for (int a = 0; a < tree.dim(); ++a) {
-        const std::size_t width = a == 0 ? kBrickLength : brick_width(tree.dim());
-        first[a] = number % tree.levels_[0].sizes[a] * width;
-        tiles[a] = std::min(width, tree.tiles_.size(a) - first[a]);
-        number /= tree.levels_[0].sizes[a];
-      }
-    }
-    /// Calls visit(index, ordinal) for the first tile of each row of tiles; with `more` = 1, for the first sample of
-    /// each row of samples.
-    template <class Visit>
-    void for_rows(int dim, std::size_t more, const Visit& visit) const {
-      Index index = first;
-      for (std::size_t ordinal = 0;; ++ordinal) {
-        visit(index, ordinal);
-        int a = 1;
-        for (; a < dim && ++index[a] == first[a] + tiles[a] + more; ++a) index[a] = first[a];
-        if (a == dim) return;
-      }
-    }
-    Index first{}, tiles{};
-  };
-
   [[nodiscard]] int dim() const noexcept { return tiles_.dim(); }
 
   [[nodiscard]] std::vector<std::size_t> active_bricks(const Threshold<T>& threshold) const {
@@ -127,74 +208,27 @@ class MinMaxTree final : public IndexMethod {
     };
     if (is_active(levels_.back(), 0)) nodes.push_back(0);
     std::vector<std::size_t> below;
+    std::array<std::size_t, std::size_t{1} << kMostAxes> children{};
     for (std::size_t l = levels_.size() - 1; l > 0; --l) {
       below.clear();
-      for (const std::size_t node : nodes)
-        for_children(l, node, [&](std::size_t child) {
-          if (is_active(levels_[l - 1], child)) below.push_back(child);
-        });
+      for (const std::size_t node : nodes) {
+        const std::size_t count = list_children(dim(), node, levels_[l].sizes, levels_[l - 1].sizes, children);
+        for (std::size_t c = 0; c < count; ++c)
+          if (is_active(levels_[l - 1], children[c])) below.push_back(children[c]);
+      }
       nodes.swap(below);
     }
     return nodes;
   }
 
-  template <class Visit>
-  void for_children(std::size_t l, std::size_t node, const Visit& visit) const {
-    const auto& above = levels_[l].sizes;
-    const auto& sizes = levels_[l - 1].sizes;
-    std::array<std::size_t, std::size_t{1} << kMostAxes> children{};
-    std::size_t count = 1;
-    std::size_t stride = 1;
-    for (int a = 0; a < dim(); ++a) {
-      const std::size_t first = node % above[a] * 2;
-      node /= above[a];
-      const bool two = first + 1 < sizes[a];
-      for (std::size_t c = 0; c < count; ++c) {
-        children[c] += first * stride;
-        if (two) children[c + count] = children[c] + stride;
-      }
-      if (two) count *= 2;
-      stride *= sizes[a];
-    }
-    for (std::size_t c = 0; c < count; ++c) visit(children[c]);
-  }
-
   void find_in_brick(std::size_t number, const Threshold<T>& threshold, Bits& bits,
                      std::vector<TileNumber>& tiles) const {
-    const Brick brick(*this, number);
-    Index strides{};  // in rows of samples, by axis
-    std::size_t rows = 1;
-    for (int a = 1; a < dim(); ++a) {
-      strides[a] = rows;
-      rows *= brick.tiles[a] + 1;
-    }
-    // the rows of samples around a row of tiles
-    std::array<std::size_t, std::size_t{1} << (kMostAxes - 1)> around{};
-    std::size_t corners = 1;
-    for (int a = 1; a < dim(); ++a, corners *= 2)
-      for (std::size_t c = 0; c < corners; ++c) around[corners + c] = around[c] + strides[a];
-    // classify the samples
+    const Brick brick(tiles_, levels_[0].sizes, number);
+    const std::size_t rows = brick.sample_rows();
     bits.high.resize(rows);
     bits.missing.resize(rows);
-    brick.for_rows(dim(), 1,
-                   [&](const Index& index, std::size_t row) { classify(brick, index, row, threshold, bits); });
-    // combine the bits of the corners of each tile
-    const auto inside = static_cast<std::uint16_t>((1u << brick.tiles[0]) - 1);
-    brick.for_rows(dim(), 0, [&](const Index& index, std::size_t) {
-      std::size_t row = 0;
-      for (int a = 1; a < dim(); ++a) row += (index[a] - brick.first[a]) * strides[a];
-      unsigned any = 0, all = ~0u, missing = 0;
-      for (std::size_t c = 0; c < corners; ++c) {
-        const std::size_t at = row + around[c];
-        any |= bits.high[at];
-        all &= bits.high[at];
-        missing |= bits.missing[at];
-      }
-      unsigned active = (any | any >> 1) & ~(all & all >> 1) & ~(missing | missing >> 1) & inside;
-      const TileNumber first = tiles_.number(index);
-      for (; active != 0; active &= active - 1)
-        tiles.push_back(first + static_cast<unsigned>(std::countr_zero(active)));
-    });
+    brick.for_rows(1, [&](const Index& index, std::size_t row) { classify(brick, index, row, threshold, bits); });
+    add_active(tiles_, brick, bits, tiles);
   }
 
   void classify(const Brick& brick, const Index& index, std::size_t row, const Threshold<T>& threshold,
@@ -215,20 +249,11 @@ class MinMaxTree final : public IndexMethod {
   Levels levels_;
 };
 
-/// Sizes of the levels, without values, from the bricks to the top.
+/// Levels without values.
 template <Value T>
 std::vector<MinMaxLevel<T>> plan_levels(const TileShape& grid) {
-  std::vector<MinMaxLevel<T>> levels(1);
-  levels[0].sizes.fill(1);
-  for (int a = 0; a < grid.dim(); ++a) {
-    const std::size_t width = a == 0 ? kBrickLength : brick_width(grid.dim());
-    levels[0].sizes[a] = (grid.size(a) + width - 1) / width;
-  }
-  while (levels.back().count() > 1) {
-    MinMaxLevel<T> above;
-    for (int a = 0; a < kMostAxes; ++a) above.sizes[a] = (levels.back().sizes[a] + 1) / 2;
-    levels.push_back(above);
-  }
+  std::vector<MinMaxLevel<T>> levels;
+  for (const Index& sizes : plan_sizes(grid)) levels.push_back({sizes, {}, {}});
   return levels;
 }
 
@@ -236,7 +261,7 @@ std::vector<MinMaxLevel<T>> plan_levels(const TileShape& grid) {
 template <Value T>
 void fill_brick_row(std::size_t brick_row, TileRanges<T>& ranges, MinMaxLevel<T>& bricks) {
   const TileShape& grid = ranges.grid();
-  TileShape::Index first{}, index{}, end{};
+  Index first{}, index{}, end{};
   std::size_t rest = brick_row;
   for (int a = 1; a < grid.dim(); rest /= bricks.sizes[a++]) {
     index[a] = first[a] = rest % bricks.sizes[a] * brick_width(grid.dim());

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "image/bitplanes.hpp"
@@ -21,9 +22,9 @@ enum class FloodRule {
 };
 
 /// Reads only the samples of the tiles that it visits. The image must outlive it.
-template <Value T>
 class TileFlood {
  public:
+  template <Value T>
   TileFlood(const SampleView<T>& samples, double isovalue);
 
   [[nodiscard]] const TileShape& grid() const noexcept { return grid_; }
@@ -60,16 +61,11 @@ class TileFlood {
   void visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const;
   /// Offset of the lowest sample of a tile, in elements of the image.
   [[nodiscard]] std::ptrdiff_t lowest(const Index& index) const noexcept;
-  /// Signature of the tile whose lowest sample has this offset.
-  [[nodiscard]] std::uint32_t signature_at(std::ptrdiff_t lowest) const noexcept;
-  template <unsigned Corners>
-  [[nodiscard]] std::uint32_t signature_of(std::ptrdiff_t lowest) const noexcept;
 
-  SampleView<T> samples_;
+  std::array<std::ptrdiff_t, kMostAxes> strides_;
   TileShape grid_;
-  Threshold<T> threshold_;
   std::uint32_t all_high_;
-  std::array<std::ptrdiff_t, std::size_t{1} << kMostAxes> corners_{};  ///< from a tile's lowest sample, in elements
+  std::function<std::uint32_t(std::ptrdiff_t)> signature_at_;  ///< of the tile whose lowest sample has this offset
 };
 
 }  // namespace tegl::detail

@@ -25,7 +25,7 @@ class SeedIndex final : public IndexMethod {
   [[nodiscard]] std::size_t memory_bytes() const noexcept override { return seeds_.size() * sizeof(TileNumber); }
   [[nodiscard]] bool needs_image() const noexcept override { return true; }
   void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
-    const TileFlood<T> flood(samples_, isovalue);
+    const TileFlood flood(samples_, isovalue);
     std::vector<TileNumber> active;
     for (const TileNumber seed : seeds_)
       if (flood.is_active(flood.signature(seed))) active.push_back(seed);
