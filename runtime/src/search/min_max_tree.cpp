@@ -26,8 +26,6 @@ namespace {
 constexpr std::size_t kBrickLength = 8;
 constexpr std::size_t brick_width(int dim) noexcept { return dim <= 3 ? 4 : 2; }
 
-using Index = TileShape::Index;
-
 /// Rows of the samples of a brick, one bit per sample.
 struct Bits {
   std::vector<std::uint16_t> high, missing;
@@ -36,7 +34,7 @@ struct Bits {
 /// Position of a brick: its first tile and its number of tiles along each axis.
 struct Brick {
   /// `bricks`: number of bricks along each axis.
-  Brick(const TileShape& grid, const Index& bricks, std::size_t number) : dim(grid.dim()) {
+  Brick(const TileShape& grid, const TileShape::Index& bricks, std::size_t number) : dim(grid.dim()) {
     for (int a = 0; a < dim; ++a) {
       const std::size_t width = a == 0 ? kBrickLength : brick_width(dim);
       first[a] = number % bricks[a] * width;
@@ -48,7 +46,7 @@ struct Brick {
   /// each row of samples.
   template <class Visit>
   void for_rows(std::size_t more, const Visit& visit) const {
-    Index index = first;
+    TileShape::Index index = first;
     for (std::size_t ordinal = 0;; ++ordinal) {
       visit(index, ordinal);
       int a = 1;
@@ -63,12 +61,12 @@ struct Brick {
   }
 
   int dim;
-  Index first{}, tiles{};
+  TileShape::Index first{}, tiles{};
 };
 
 /// Lists the nodes below a node. `above`, `sizes`: number of nodes along each axis, of its level and of the next.
 /// Returns how many there are.
-std::size_t list_children(int dim, std::size_t node, const Index& above, const Index& sizes,
+std::size_t list_children(int dim, std::size_t node, const TileShape::Index& above, const TileShape::Index& sizes,
                           std::array<std::size_t, std::size_t{1} << kMostAxes>& children) noexcept {
   children[0] = 0;
   std::size_t count = 1;
@@ -89,7 +87,7 @@ std::size_t list_children(int dim, std::size_t node, const Index& above, const I
 
 /// Adds the active tiles of a brick: combines the bits of the corners of each tile.
 void add_active(const TileShape& grid, const Brick& brick, const Bits& bits, std::vector<TileNumber>& tiles) {
-  Index strides{};  // in rows of samples, by axis
+  TileShape::Index strides{};  // in rows of samples, by axis
   std::size_t rows = 1;
   for (int a = 1; a < brick.dim; ++a) {
     strides[a] = rows;
@@ -101,7 +99,7 @@ void add_active(const TileShape& grid, const Brick& brick, const Bits& bits, std
   for (int a = 1; a < brick.dim; ++a, corners *= 2)
     for (std::size_t c = 0; c < corners; ++c) around[corners + c] = around[c] + strides[a];
   const auto inside = static_cast<std::uint16_t>((1u << brick.tiles[0]) - 1);
-  brick.for_rows(0, [&](const Index& index, std::size_t) {
+  brick.for_rows(0, [&](const TileShape::Index& index, std::size_t) {
     std::size_t row = 0;
     for (int a = 1; a < brick.dim; ++a) row += (index[a] - brick.first[a]) * strides[a];
     unsigned any = 0, all = ~0u, missing = 0;
@@ -118,18 +116,18 @@ void add_active(const TileShape& grid, const Brick& brick, const Bits& bits, std
 }
 
 /// Numbers of nodes of the levels along each axis, from the bricks to the top; 1 beyond the dimension.
-std::vector<Index> plan_sizes(const TileShape& grid) {
-  std::vector<Index> sizes(1);
+std::vector<TileShape::Index> plan_sizes(const TileShape& grid) {
+  std::vector<TileShape::Index> sizes(1);
   sizes[0].fill(1);
   for (int a = 0; a < grid.dim(); ++a) {
     const std::size_t width = a == 0 ? kBrickLength : brick_width(grid.dim());
     sizes[0][a] = (grid.size(a) + width - 1) / width;
   }
-  const auto count_of = [](const Index& of) {
+  const auto count_of = [](const TileShape::Index& of) {
     return std::accumulate(of.begin(), of.end(), std::size_t{1}, std::multiplies<>());
   };
   while (count_of(sizes.back()) > 1) {
-    Index above;
+    TileShape::Index above;
     for (int a = 0; a < kMostAxes; ++a) above[a] = (sizes.back()[a] + 1) / 2;
     sizes.push_back(above);
   }
@@ -140,7 +138,7 @@ std::vector<Index> plan_sizes(const TileShape& grid) {
 /// active has greatest < least. Axes beyond the dimension have size 1.
 template <Value T>
 struct MinMaxLevel {
-  Index sizes{};
+  TileShape::Index sizes{};
   std::vector<T> least, greatest;
 
   void resize() {
@@ -184,7 +182,7 @@ class MinMaxTree final : public IndexMethod {
   bool collect_rows(double isovalue, TileRowSet& rows) const override {
     for (const std::size_t brick : active_bricks(make_threshold<T>(isovalue))) {
       const Brick at(tiles_, levels_[0].sizes, brick);
-      at.for_rows(0, [&](const Index& index, std::size_t) { rows.add(tiles_.row(index)); });
+      at.for_rows(0, [&](const TileShape::Index& index, std::size_t) { rows.add(tiles_.row(index)); });
     }
     return true;
   }
@@ -227,11 +225,12 @@ class MinMaxTree final : public IndexMethod {
     const std::size_t rows = brick.sample_rows();
     bits.high.resize(rows);
     bits.missing.resize(rows);
-    brick.for_rows(1, [&](const Index& index, std::size_t row) { classify(brick, index, row, threshold, bits); });
+    brick.for_rows(
+        1, [&](const TileShape::Index& index, std::size_t row) { classify(brick, index, row, threshold, bits); });
     add_active(tiles_, brick, bits, tiles);
   }
 
-  void classify(const Brick& brick, const Index& index, std::size_t row, const Threshold<T>& threshold,
+  void classify(const Brick& brick, const TileShape::Index& index, std::size_t row, const Threshold<T>& threshold,
                 Bits& bits) const {
     const T* samples = samples_.data;
     for (int a = 0; a < dim(); ++a) samples += static_cast<std::ptrdiff_t>(index[a]) * samples_.strides[a];
@@ -253,7 +252,7 @@ class MinMaxTree final : public IndexMethod {
 template <Value T>
 std::vector<MinMaxLevel<T>> plan_levels(const TileShape& grid) {
   std::vector<MinMaxLevel<T>> levels;
-  for (const Index& sizes : plan_sizes(grid)) levels.push_back({sizes, {}, {}});
+  for (const TileShape::Index& sizes : plan_sizes(grid)) levels.push_back({sizes, {}, {}});
   return levels;
 }
 
@@ -261,7 +260,7 @@ std::vector<MinMaxLevel<T>> plan_levels(const TileShape& grid) {
 template <Value T>
 void fill_brick_row(std::size_t brick_row, TileRanges<T>& ranges, MinMaxLevel<T>& bricks) {
   const TileShape& grid = ranges.grid();
-  Index first{}, index{}, end{};
+  TileShape::Index first{}, index{}, end{};
   std::size_t rest = brick_row;
   for (int a = 1; a < grid.dim(); rest /= bricks.sizes[a++]) {
     index[a] = first[a] = rest % bricks.sizes[a] * brick_width(grid.dim());
