@@ -53,10 +53,10 @@ struct Identity {
 };
 
 template <int N>
-using Sizes = std::array<std::size_t, N>;
+using ImageSizes = std::array<std::size_t, N>;
 
 template <int N>
-IndexedImage<N> identity_of(const Sizes<N>& sizes, std::string_view type, const Identity& found) {
+IndexedImage<N> identity_of(const ImageSizes<N>& sizes, std::string_view type, const Identity& found) {
   return {sizes, std::string(type), found.digest, found.any_missing};
 }
 
@@ -291,12 +291,13 @@ FoundIndex read_index(ByteSource& from, const SampleView<T>& image, const Active
 
 /// Adds sizes and type.
 template <int N>
-std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const Sizes<N>& sizes, std::string_view type, FoundIndex found) {
+std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const ImageSizes<N>& sizes, std::string_view type,
+                                                      FoundIndex found) {
   return std::make_unique<MethodTiles<N>>(identity_of<N>(sizes, type, found.identity), found.method,
                                           std::move(found.index));
 }
 template <int N>
-std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const Sizes<N>& sizes, std::string_view type,
+std::unique_ptr<tegl::ActiveTiles<N>> to_active_tiles(const ImageSizes<N>& sizes, std::string_view type,
                                                       std::vector<TileNumber> chosen) {
   return std::make_unique<ChosenTiles<N>>(identity_of<N>(sizes, type, {}), std::move(chosen));
 }

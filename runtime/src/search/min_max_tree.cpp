@@ -27,7 +27,7 @@ constexpr std::size_t kBrickLength = 8;
 constexpr std::size_t brick_width(int dim) noexcept { return dim <= 3 ? 4 : 2; }
 
 /// Rows of the samples of a brick, one bit per sample.
-struct Bits {
+struct BrickBits {
   std::vector<std::uint16_t> high, missing;
 };
 
@@ -86,7 +86,7 @@ std::size_t list_children(int dim, std::size_t node, const TileShape::Index& abo
 }
 
 /// Adds the active tiles of a brick: combines the bits of the corners of each tile.
-void add_active(const TileShape& grid, const Brick& brick, const Bits& bits, std::vector<TileNumber>& tiles) {
+void add_active(const TileShape& grid, const Brick& brick, const BrickBits& bits, std::vector<TileNumber>& tiles) {
   TileShape::Index strides{};  // in rows of samples, by axis
   std::size_t rows = 1;
   for (int a = 1; a < brick.dim; ++a) {
@@ -176,7 +176,7 @@ class MinMaxTree final : public IndexMethod {
   }
   void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
     const Threshold<T> threshold = make_threshold<T>(isovalue);
-    Bits bits;
+    BrickBits bits;
     for (const std::size_t brick : active_bricks(threshold)) find_in_brick(brick, threshold, bits, tiles);
   }
   bool collect_rows(double isovalue, TileRowSet& rows) const override {
@@ -219,7 +219,7 @@ class MinMaxTree final : public IndexMethod {
     return nodes;
   }
 
-  void find_in_brick(std::size_t number, const Threshold<T>& threshold, Bits& bits,
+  void find_in_brick(std::size_t number, const Threshold<T>& threshold, BrickBits& bits,
                      std::vector<TileNumber>& tiles) const {
     const Brick brick(tiles_, levels_[0].sizes, number);
     const std::size_t rows = brick.sample_rows();
@@ -231,7 +231,7 @@ class MinMaxTree final : public IndexMethod {
   }
 
   void classify(const Brick& brick, const TileShape::Index& index, std::size_t row, const Threshold<T>& threshold,
-                Bits& bits) const {
+                BrickBits& bits) const {
     const T* samples = samples_.data;
     for (int a = 0; a < dim(); ++a) samples += static_cast<std::ptrdiff_t>(index[a]) * samples_.strides[a];
     unsigned high = 0, missing = 0;
