@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -39,12 +40,13 @@ std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
 }
 
 /// Searches the nearest active tile in shells around a point.
-template <Value T, int N>
+template <int N>
 class NearestTile {
  public:
-  NearestTile(const detail::TileFlood<T, N>& flood, const std::array<double, N>& at) : flood_(flood), at_(at) {
+  NearestTile(const detail::TileFlood& flood, const TileGrid<N>& grid, const std::array<double, N>& at)
+      : flood_(flood), grid_(grid), at_(at) {
     for (int a = 0; a < N; ++a)
-      centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid().size(a)) - 1);
+      centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid_.size(a)) - 1);
   }
 
   /// Reports progress. Returns false if no tile is active.
@@ -65,7 +67,7 @@ class NearestTile {
   }
 
  private:
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return flood_.grid(); }
+  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
 
   /// Visits all tiles of the shell with these indices along the axes above `axis`. `on_shell`: these indices are on the
   /// shell already.
@@ -112,7 +114,8 @@ class NearestTile {
     square_ = square;
   }
 
-  const detail::TileFlood<T, N>& flood_;
+  const detail::TileFlood& flood_;
+  const TileGrid<N>& grid_;
   std::array<double, N> at_;
   std::array<std::ptrdiff_t, N> centre_;
   std::ptrdiff_t radius_ = 0;

@@ -86,7 +86,15 @@ struct FacetsOfFace {
   }
 };
 
-template <int N, class Real>
+/// Facets of one dimension, as in FacetHierarchy.
+struct NumberedFacets {
+  Buffer<FacetPlace> places;
+  Buffer<Index> down_first, down;
+  Buffer<std::int8_t> down_signs;
+};
+
+/// Everything but the coordinates of points, which depends on no type of coordinates.
+template <int N>
 class FacetExtraction {
  public:
   FacetExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options)
@@ -99,47 +107,31 @@ class FacetExtraction {
         reporter_(options.work.progress, passes_, "passes"),
         rows_(grid.sizes()),
         tables_(options.ambiguity),
-        placement_(grid),
         workers_(options.work.threads, [this] { return FacetScratch(tables_); }) {
-    if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
     faces_.resize(2u << N);
     for (unsigned axes = 1; axes <= kAll; ++axes) add_kind({axes, false});
     if (options.close)
       for (unsigned axes = 0; axes < kAll; ++axes) add_kind({axes, true});
-    facets_.sizes = grid.sizes();
-    facets_.direction = options.direction;
-    for (int a = 0; a < N; ++a) {
-      facets_.axis_names[a] = grid.axes[a].name;
-      facets_.axis_units[a] = grid.axes[a].unit;
-    }
   }
 
-  FacetHierarchy<N, Real> run() {
+ protected:
+  /// Fills `levels_`.
+  void find_facets() {
     classify();
     find_faces();
     if (estimator_) resolve_faces();
     count_facets();
     number_facets();
     for (unsigned dim = 1; dim <= N; ++dim) write_facets(dim);
-    write_points();
-    if (rows_.any_missing())
-      separate_facets(facets_, [this](const FacetPlace& place) {
-        return !rows_.is_surrounded(place.axes, static_cast<std::size_t>(place.base / rows_.size(0)),
-                                    static_cast<std::size_t>(place.base % rows_.size(0)));
-      });
-    reporter_.tell(static_cast<double>(passes_));
-    return std::move(facets_);
   }
 
- private:
   static constexpr unsigned kAll = (1u << N) - 1;
   static constexpr std::size_t kGrain = 16;  ///< rows
   /// Classify, find, count, points, and one pass per dimension. Up to two more if ambiguities are resolved from the
   /// data.
   static constexpr std::size_t kPasses = N + 4u;
-  using Level = typename FacetHierarchy<N, Real>::Level;
-  using Vertex = std::array<Real, N>;
+  using RowWork = std::function<void(std::size_t, FacetScratch&)>;
 
   void add_kind(const FaceKind& kind) {
     KnownKind& known = kinds_.emplace_back();
@@ -170,8 +162,7 @@ class FacetExtraction {
   static bool is_top(const FaceKind& kind) noexcept { return kind.dim() == N; }
 
   /// A pass: calls work(row, scratch) for all rows.
-  template <class Work>
-  void for_rows(const Work& work) {
+  void for_rows(const RowWork& work) {
     reporter_.begin_batch(pass_, pass_ + 1, 1);
     ++pass_;
     reporter_.begin_pass(rows_.rows());
@@ -184,8 +175,7 @@ class FacetExtraction {
     });
   }
   /// A pass over the rows with facets.
-  template <class Work>
-  void for_busy_rows(const Work& work) {
+  void for_busy_rows(const RowWork& work) {
     for_rows([&](std::size_t row, FacetScratch& scratch) {
       if (busy_[row] != 0) work(row, scratch);
     });
@@ -391,7 +381,7 @@ class FacetExtraction {
     for (std::size_t k = 0; k < N; ++k) {
       check_number(facets[k], "facets", k);
       check_number(entries[k], "incidences", k);
-      Level& level = facets_.levels[k];
+      NumberedFacets& level = levels_[k];
       level.places.resize(facets[k]);
       if (k == 0) continue;
       level.down_first.resize(facets[k] + 1);
@@ -417,7 +407,7 @@ class FacetExtraction {
   void write_row(const KnownKind& kind, std::size_t row, FacetScratch& scratch) {
     FaceNumbers& here = *kind.numbers;
     const unsigned k = kind.dim() - 1;
-    Level& level = facets_.levels[k];
+    NumberedFacets& level = levels_[k];
     auto facet = static_cast<Index>(here.first_facet[row]);
     auto entry = static_cast<Index>(here.first_entry[row]);
     auto segment = kind.is_resolved_cube() ? static_cast<Index>(here.first_segment[row]) : 0;
@@ -463,19 +453,19 @@ class FacetExtraction {
       const FacetTables::Inside& inside = tables_.inside(here.type(row, i));
       const unsigned signature = rows_.signature(kind.corners, row, i);
       for (std::size_t s = 0; s < inside.segments.size(); ++s, ++segment) {
-        facets_.levels[1].places[segment] = place(kind, row, i, signature, s);
-        facets_.levels[1].down_first[segment] = end;
+        levels_[1].places[segment] = place(kind, row, i, signature, s);
+        levels_[1].down_first[segment] = end;
         for (const std::size_t side : {0u, 1u}) {
           const unsigned v = inside.segments[s][side];
           const bool on_edge = v < FacetTables::kCubeEdges;
           const KnownKind::Sub& edge = kind.edges[on_edge ? v : 0];
-          facets_.levels[1].down[end] = on_edge ? edge.numbers->first(row + edge.rows, i + edge.ahead)
-                                                : point + static_cast<Index>(v - FacetTables::kCubeEdges);
-          facets_.levels[1].down_signs[end++] = side == 0 ? -1 : 1;
+          levels_[1].down[end] = on_edge ? edge.numbers->first(row + edge.rows, i + edge.ahead)
+                                         : point + static_cast<Index>(v - FacetTables::kCubeEdges);
+          levels_[1].down_signs[end++] = side == 0 ? -1 : 1;
         }
       }
       for (std::size_t p = 0; p < inside.points.size(); ++p)
-        facets_.levels[0].places[point++] = place(kind, row, i, signature, p);
+        levels_[0].places[point++] = place(kind, row, i, signature, p);
     });
   }
 
@@ -487,6 +477,71 @@ class FacetExtraction {
     const bool is_lower = (across == 0 ? i : rows_.index_of(row)[across]) == 0;
     return ((N - 1 - across) % 2 != 0) != is_lower;
   }
+
+  SampleSource<N>& source_;
+  const ExtractOptions& options_;
+  bool flip_;
+  std::size_t passes_;
+  ProgressReporter reporter_;
+  std::size_t pass_ = 0;
+  GridRows<N> rows_;
+  FacetTables tables_;
+  std::optional<FaceEstimator<N>> estimator_;  ///< set if ambiguities are resolved from the data
+  Workers<FacetScratch> workers_;
+  std::vector<KnownKind> kinds_;
+  std::vector<FaceNumbers> faces_;  ///< by axes; outward kinds after the others
+  std::vector<std::uint8_t> busy_;  ///< by row: whether any face in it has facets
+  std::vector<std::uint8_t> met_;   ///< by signature of a tesseract: whether it occurs
+  std::array<NumberedFacets, N> levels_;
+};
+
+/// The whole extraction.
+template <int N, class Real>
+class FacetWriter : FacetExtraction<N> {
+  using Base = FacetExtraction<N>;
+
+ public:
+  FacetWriter(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options)
+      : Base(source, grid, options), placement_(grid) {
+    if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
+    facets_.sizes = grid.sizes();
+    facets_.direction = options.direction;
+    for (int a = 0; a < N; ++a) {
+      facets_.axis_names[a] = grid.axes[a].name;
+      facets_.axis_units[a] = grid.axes[a].unit;
+    }
+  }
+
+  FacetHierarchy<N, Real> run() {
+    this->find_facets();
+    for (std::size_t k = 0; k < N; ++k) {
+      auto& level = facets_.levels[k];
+      level.places = std::move(levels_[k].places);
+      level.down_first = std::move(levels_[k].down_first);
+      level.down = std::move(levels_[k].down);
+      level.down_signs = std::move(levels_[k].down_signs);
+    }
+    write_points();
+    if (rows_.any_missing())
+      separate_facets(facets_, [this](const FacetPlace& place) {
+        return !rows_.is_surrounded(place.axes, static_cast<std::size_t>(place.base / rows_.size(0)),
+                                    static_cast<std::size_t>(place.base % rows_.size(0)));
+      });
+    reporter_.tell(static_cast<double>(passes_));
+    return std::move(facets_);
+  }
+
+ private:
+  using Base::for_busy_rows;
+  using Base::kinds_;
+  using Base::levels_;
+  using Base::options_;
+  using Base::passes_;
+  using Base::place_of;
+  using Base::reporter_;
+  using Base::rows_;
+  using Base::source_;
+  using Base::tables_;
 
   void write_points() {
     facets_.vertices.resize(facets_.count(0));
@@ -594,21 +649,7 @@ class FacetExtraction {
                                 });
   }
 
-  SampleSource<N>& source_;
-  const ExtractOptions& options_;
-  bool flip_;
-  std::size_t passes_;
-  ProgressReporter reporter_;
-  std::size_t pass_ = 0;
-  GridRows<N> rows_;
-  FacetTables tables_;
-  std::optional<FaceEstimator<N>> estimator_;  ///< set if ambiguities are resolved from the data
   Placement<N, Real> placement_;
-  Workers<FacetScratch> workers_;
-  std::vector<KnownKind> kinds_;
-  std::vector<FaceNumbers> faces_;  ///< by axes; outward kinds after the others
-  std::vector<std::uint8_t> busy_;  ///< by row: whether any face in it has facets
-  std::vector<std::uint8_t> met_;   ///< by signature of a tesseract: whether it occurs
   FacetHierarchy<N, Real> facets_;
 };
 
@@ -628,7 +669,7 @@ FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& g
     }
     return none;
   }
-  return FacetExtraction<N, Real>(source, grid, options).run();
+  return FacetWriter<N, Real>(source, grid, options).run();
 }
 
 #define TEGL_INSTANTIATE_CONTOURS(N, Real) \

@@ -310,7 +310,9 @@ std::array<double, N> RowSource<T, N>::sobel(const Index& index, const std::arra
   return sobel_gradient<N>(values, weights);
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template class RowSource<T, N>;
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N) \
+  template class RowSource<T, N>;         \
+  template class ImageSource<T, N>;
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

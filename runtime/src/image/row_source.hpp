@@ -102,4 +102,10 @@ class ImageSource final : public RowSource<T, N> {
   std::ptrdiff_t stride_;
 };
 
+// compiled in row_source.cpp
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N) \
+  extern template class RowSource<T, N>;  \
+  extern template class ImageSource<T, N>;
+#include "base/instantiate.hpp"
+
 }  // namespace tegl::detail

@@ -2,7 +2,11 @@
 //
 // Active tiles by a scan of all samples, one bit per sample, as in the extraction. This is the reference for all other
 // methods, and the fastest one if most rows are active.
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "base/workers.hpp"
@@ -14,28 +18,27 @@ namespace tegl::detail {
 
 namespace {
 
+/// Classifies the row of samples that begins at an offset in the image, in elements. Returns whether it has NaNs.
+using RowClassifier = std::function<bool(std::ptrdiff_t, Word* high, Word* missing)>;
+
 /// The bits of a layer of samples.
 struct LayerBits {
   std::vector<Word> high, missing;  ///< rows x pitch
   std::vector<std::uint8_t> row_missing;
 };
 
-template <Value T, int N>
-class FullScan final : public tegl::ActiveTiles<N> {
+/// Everything that does not depend on the type of the values.
+template <int N>
+class FullScan {
  public:
-  explicit FullScan(const IndexTask<T, N>& task)
-      : tegl::ActiveTiles<N>(task.identity),
-        image_(task.image),
-        shape_(task.image.grid().sizes()),
-        threads_(task.options.work.threads) {}
+  using Sizes = std::array<std::size_t, N>;
 
-  [[nodiscard]] ActiveMethod method() const noexcept override { return ActiveMethod::full_scan; }
-  [[nodiscard]] std::size_t memory_bytes() const noexcept override { return 0; }
-  [[nodiscard]] bool needs_image() const noexcept override { return true; }
+  FullScan(const Sizes& sizes, std::span<const std::ptrdiff_t> strides, unsigned threads)
+      : grid_(sizes), shape_(sizes), threads_(threads) {
+    std::copy_n(strides.begin(), N, strides_.begin());
+  }
 
- protected:
-  void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
-    const Threshold<T> threshold = make_threshold<T>(isovalue);
+  void collect(const RowClassifier& classify_row, std::vector<TileNumber>& tiles) const {
     const std::size_t slabs = shape_.layers() - 1;
     std::vector<std::vector<TileNumber>> found(slabs);
     Workers<std::array<LayerBits, 2>> workers(threads_, [&] {
@@ -48,9 +51,9 @@ class FullScan final : public tegl::ActiveTiles<N> {
     // Each part classifies its own first layer again.
     constexpr std::size_t kLeastSlabs = 8;
     workers.for_range(slabs, kLeastSlabs, [&](std::size_t from, std::size_t to, std::array<LayerBits, 2>& bits) {
-      classify(from, threshold, bits[from % 2]);
+      classify(from, classify_row, bits[from % 2]);
       for (std::size_t k = from; k < to; ++k) {
-        classify(k + 1, threshold, bits[(k + 1) % 2]);
+        classify(k + 1, classify_row, bits[(k + 1) % 2]);
         for (std::size_t row = 0; row < shape_.rows(); ++row) find_in_row(k, row, bits, found[k]);
       }
     });
@@ -60,18 +63,13 @@ class FullScan final : public tegl::ActiveTiles<N> {
     for (const auto& part : found) tiles.insert(tiles.end(), part.begin(), part.end());
   }
 
-  void collect_rows(double /*isovalue*/, TileRowSet& rows) const override { rows.add_all(); }
-  void write(IndexWriter& /*to*/) const override {}
-
  private:
-  void classify(std::size_t k, const Threshold<T>& threshold, LayerBits& bits) const {
-    const auto& strides = image_.strides();
+  void classify(std::size_t k, const RowClassifier& classify_row, LayerBits& bits) const {
     for (std::size_t row = 0; row < shape_.rows(); ++row) {
-      const T* samples = image_.data() + static_cast<std::ptrdiff_t>(k) * strides[N - 1];
-      for (int a = 1; a < N - 1; ++a) samples += static_cast<std::ptrdiff_t>(shape_.index_of(row)[a]) * strides[a];
+      std::ptrdiff_t samples = static_cast<std::ptrdiff_t>(k) * strides_[N - 1];
+      for (int a = 1; a < N - 1; ++a) samples += static_cast<std::ptrdiff_t>(shape_.index_of(row)[a]) * strides_[a];
       const std::size_t at = row * shape_.pitch();
-      const bool any =
-          classify_row(samples, strides[0], shape_.size(0), threshold, bits.high.data() + at, bits.missing.data() + at);
+      const bool any = classify_row(samples, bits.high.data() + at, bits.missing.data() + at);
       bits.row_missing[row] = any ? 1 : 0;
     }
   }
@@ -82,7 +80,7 @@ class FullScan final : public tegl::ActiveTiles<N> {
     typename TileGrid<N>::GridIndex index = shape_.index_of(row);
     if (!shape_.has_cells(index, kMiddle)) return;
     index[N - 1] = k;
-    const TileNumber first = this->grid().number(index);
+    const TileNumber first = grid_.number(index);
     for (std::size_t w = 0; w < shape_.words(); ++w) {
       Word any = 0, all = ~Word{0}, next_any = 0, next_all = ~Word{0}, missing = 0;
       for (unsigned corner = 0; corner <= kMiddle; corner += 2)
@@ -104,19 +102,54 @@ class FullScan final : public tegl::ActiveTiles<N> {
     }
   }
 
-  Image<T, N> image_;
+  TileGrid<N> grid_;
   RowShape<N> shape_;
+  std::array<std::ptrdiff_t, N> strides_;
+  unsigned threads_;
+};
+
+template <int N>
+void scan_all(std::span<const std::size_t> sizes, std::span<const std::ptrdiff_t> strides, unsigned threads,
+              const RowClassifier& classify_row, std::vector<TileNumber>& tiles) {
+  typename FullScan<N>::Sizes all;
+  std::copy_n(sizes.begin(), N, all.begin());
+  FullScan<N>(all, strides, threads).collect(classify_row, tiles);
+}
+
+template <Value T>
+class FullScanMethod final : public IndexMethod {
+ public:
+  explicit FullScanMethod(const IndexTask<T>& task) : samples_(task.samples), threads_(task.options.work.threads) {}
+
+  [[nodiscard]] std::size_t memory_bytes() const noexcept override { return 0; }
+  [[nodiscard]] bool needs_image() const noexcept override { return true; }
+  void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
+    const Threshold<T> threshold = make_threshold<T>(isovalue);
+    const RowClassifier classify = [&](std::ptrdiff_t first, Word* high, Word* missing) {
+      return classify_row(samples_.data + first, samples_.strides[0], samples_.sizes[0], threshold, high, missing);
+    };
+    constexpr std::array scan = {scan_all<2>, scan_all<3>, scan_all<4>, scan_all<5>};
+    scan[static_cast<std::size_t>(samples_.dim - 2)](samples_.axes(), samples_.strides, threads_, classify, tiles);
+  }
+  bool collect_rows(double /*isovalue*/, TileRowSet& rows) const override {
+    rows.add_all();
+    return true;
+  }
+  void write(IndexWriter& /*to*/) const override {}
+
+ private:
+  SampleView<T> samples_;
   unsigned threads_;
 };
 
 }  // namespace
 
-template <Value T, int N>
-ActiveTilesPtr<N> make_full_scan(const IndexTask<T, N>& task) {
-  return std::make_unique<FullScan<T, N>>(task);
+template <Value T>
+IndexMethodPtr make_full_scan(const IndexTask<T>& task) {
+  return std::make_unique<FullScanMethod<T>>(task);
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template ActiveTilesPtr<N> make_full_scan<T, N>(const IndexTask<T, N>&);
+#define TEGL_INSTANTIATE(T) template IndexMethodPtr make_full_scan<T>(const IndexTask<T>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -10,22 +10,40 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "search/index_file.hpp"
+#include "search/sample_view.hpp"
 #include "tegl/active_tiles.hpp"
 
 namespace tegl::detail {
 
-template <int N>
-using ActiveTilesPtr = std::unique_ptr<tegl::ActiveTiles<N>>;
+/// The data of an index and how tiles are found in it. The dimension is a run-time value; active_tiles_build.cpp makes
+/// ActiveTiles<N> of it.
+class IndexMethod {
+ public:
+  IndexMethod() = default;
+  IndexMethod(const IndexMethod&) = delete;
+  IndexMethod& operator=(const IndexMethod&) = delete;
+  virtual ~IndexMethod() = default;
 
-/// Input of a method. All members must outlive building or reading; the samples must also outlive the index.
-template <Value T, int N>
+  // as in ActiveTiles
+  [[nodiscard]] virtual std::size_t memory_bytes() const noexcept = 0;
+  [[nodiscard]] virtual bool needs_image() const noexcept { return false; }
+  virtual void collect(double isovalue, std::vector<TileNumber>& tiles) const = 0;
+  virtual void write(IndexWriter& to) const = 0;
+  /// Adds the rows that have active tiles, and possibly more. Returns false if the method finds rows only by `collect`.
+  virtual bool collect_rows(double /*isovalue*/, TileRowSet& /*rows*/) const { return false; }
+};
+using IndexMethodPtr = std::unique_ptr<IndexMethod>;
+
+/// Input of a method. `options` must outlive building or reading; the samples must also outlive the index.
+template <Value T>
 struct IndexTask {
-  const Image<T, N>& image;
-  const IndexedImage<N>& identity;
+  SampleView<T> samples;
+  TileShape tiles;
   const ActiveTilesOptions& options;
 
   /// Throws Cancelled if the caller's progress callback returns false.
@@ -38,28 +56,28 @@ struct IndexTask {
 /// Tile number in trees and buckets.
 using TileId = std::uint32_t;
 
-template <Value T, int N>
-ActiveTilesPtr<N> make_full_scan(const IndexTask<T, N>& task);
+template <Value T>
+IndexMethodPtr make_full_scan(const IndexTask<T>& task);
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_interval_tree(const IndexTask<T, N>& task);
-template <Value T, int N>
-ActiveTilesPtr<N> read_interval_tree(IndexReader& from, const IndexTask<T, N>& task);
+template <Value T>
+IndexMethodPtr build_interval_tree(const IndexTask<T>& task);
+template <Value T>
+IndexMethodPtr read_interval_tree(IndexReader& from, const IndexTask<T>& task);
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_span_space(const IndexTask<T, N>& task);
-template <Value T, int N>
-ActiveTilesPtr<N> read_span_space(IndexReader& from, const IndexTask<T, N>& task);
+template <Value T>
+IndexMethodPtr build_span_space(const IndexTask<T>& task);
+template <Value T>
+IndexMethodPtr read_span_space(IndexReader& from, const IndexTask<T>& task);
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_min_max_tree(const IndexTask<T, N>& task);
-template <Value T, int N>
-ActiveTilesPtr<N> read_min_max_tree(IndexReader& from, const IndexTask<T, N>& task);
+template <Value T>
+IndexMethodPtr build_min_max_tree(const IndexTask<T>& task);
+template <Value T>
+IndexMethodPtr read_min_max_tree(IndexReader& from, const IndexTask<T>& task);
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task);
-template <Value T, int N>
-ActiveTilesPtr<N> read_seed_index(IndexReader& from, const IndexTask<T, N>& task);
+template <Value T>
+IndexMethodPtr build_seed_index(const IndexTask<T>& task);
+template <Value T>
+IndexMethodPtr read_seed_index(IndexReader& from, const IndexTask<T>& task);
 
 inline constexpr std::array<char, 8> kIndexMagic = {'T', 'E', 'G', 'L', 'I', 'D', 'X', '\n'};
 inline constexpr std::uint32_t kIndexByteOrder = 0x01020304;

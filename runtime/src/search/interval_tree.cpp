@@ -37,20 +37,16 @@ struct IntervalLists {
   [[nodiscard]] std::size_t in_nodes() const noexcept { return first[nodes()]; }
 };
 
-template <Value T, int N>
-class IntervalTree final : public tegl::ActiveTiles<N> {
+template <Value T>
+class IntervalTree final : public IndexMethod {
  public:
-  IntervalTree(const IndexedImage<N>& image, IntervalLists<T> lists)
-      : tegl::ActiveTiles<N>(image), lists_(std::move(lists)) {}
+  explicit IntervalTree(IntervalLists<T> lists) : lists_(std::move(lists)) {}
 
-  [[nodiscard]] ActiveMethod method() const noexcept override { return ActiveMethod::interval_tree; }
   [[nodiscard]] std::size_t memory_bytes() const noexcept override {
     const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
     return bytes(lists_.values) + bytes(lists_.first) + bytes(lists_.by_least) + bytes(lists_.least) +
            bytes(lists_.by_greatest) + bytes(lists_.greatest);
   }
-
- protected:
   void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
     const Threshold<T> threshold = make_threshold<T>(isovalue);
     if (threshold.never) return;
@@ -127,8 +123,8 @@ constexpr std::size_t kLeafTiles = 64;
 
 }  // namespace
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_interval_tree(const IndexTask<T, N>& task) {
+template <Value T>
+IndexMethodPtr build_interval_tree(const IndexTask<T>& task) {
   IntervalLists<T> lists;
   TileIntervals<T> intervals = gather_intervals(task);
   const Buffer<TileId> up = ascending_order(intervals.least);
@@ -167,12 +163,12 @@ ActiveTilesPtr<N> build_interval_tree(const IndexTask<T, N>& task) {
   lists.greatest = in_order(intervals.greatest, by_greatest.order);
   by_greatest.order.resize(lists.in_nodes());
   lists.by_greatest = in_order(intervals.tiles, by_greatest.order);
-  return std::make_unique<IntervalTree<T, N>>(task.identity, std::move(lists));
+  return std::make_unique<IntervalTree<T>>(std::move(lists));
 }
 
-template <Value T, int N>
-ActiveTilesPtr<N> read_interval_tree(IndexReader& from, const IndexTask<T, N>& task) {
-  const TileNumber tiles = TileGrid<N>(task.identity.sizes).count();
+template <Value T>
+IndexMethodPtr read_interval_tree(IndexReader& from, const IndexTask<T>& task) {
+  const TileNumber tiles = task.tiles.count();
   IntervalLists<T> lists;
   lists.values = from.array<T>(2 * (tiles / kLeafTiles + 1), "values of the nodes");
   const std::size_t nodes = lists.nodes();
@@ -191,12 +187,12 @@ ActiveTilesPtr<N> read_interval_tree(IndexReader& from, const IndexTask<T, N>& t
                                      lists.by_greatest.size(), lists.greatest.size(), lists.in_nodes(), count));
   require_tiles(lists.by_least, tiles);
   require_tiles(lists.by_greatest, tiles);
-  return std::make_unique<IntervalTree<T, N>>(task.identity, std::move(lists));
+  return std::make_unique<IntervalTree<T>>(std::move(lists));
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                       \
-  template ActiveTilesPtr<N> build_interval_tree<T, N>(const IndexTask<T, N>&); \
-  template ActiveTilesPtr<N> read_interval_tree<T, N>(IndexReader&, const IndexTask<T, N>&);
+#define TEGL_INSTANTIATE(T)                                            \
+  template IndexMethodPtr build_interval_tree<T>(const IndexTask<T>&); \
+  template IndexMethodPtr read_interval_tree<T>(IndexReader&, const IndexTask<T>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -138,43 +138,37 @@ std::vector<std::ptrdiff_t> PaddedTiles::neighbours(Neighbourhood neighbourhood,
   return result;
 }
 
-template <Value T, int N>
-RangeMap<KeyOf<T>> map_ranges(const Image<T, N>& image, unsigned threads, const Progress& progress) {
-  const TileGrid<N> grid(image.grid().sizes());
-  std::array<std::size_t, N> sizes;
-  for (int a = 0; a < N; ++a) sizes[a] = grid.size(a);
-  RangeMap<KeyOf<T>> map{PaddedTiles(sizes), {}, {}};
+template <Value T>
+RangeMap<KeyOf<T>> map_ranges(const SampleView<T>& samples, unsigned threads, const Progress& progress) {
+  const TileShape grid(samples.axes());
+  RangeMap<KeyOf<T>> map{PaddedTiles(grid.axes()), {}, {}};
   map.least.resize(map.tiles.room());
   map.greatest.resize(map.tiles.room());
-  Workers<TileRanges<T, N>> workers(threads, [&] { return TileRanges<T, N>(image); });
+  Workers<TileRanges<T>> workers(threads, [&] { return TileRanges<T>(samples); });
   const std::size_t rows = map.tiles.rows();
   constexpr std::size_t kAtOnce = 1u << 14;
   for (std::size_t first = 0; first < rows; first += kAtOnce) {
     if (progress && !progress(static_cast<double>(first) / static_cast<double>(rows)))
       throw Error(ErrorCode::Cancelled, "seeds: cancelled while ranges of tiles were read");
-    workers.for_range(std::min(kAtOnce, rows - first), 16,
-                      [&](std::size_t from, std::size_t to, TileRanges<T, N>& own) {
-                        for (std::size_t row = first + from; row < first + to; ++row) {
-                          own.load(row);
-                          const Place at = map.tiles.row_place(row);
-                          for (std::size_t i = 0; i < sizes[0]; ++i) {
-                            const bool any = has_range(own.least()[i], own.greatest()[i]);
-                            map.least[at + i] = any ? key_of(own.least()[i]) : 0;
-                            map.greatest[at + i] = any ? key_of(own.greatest()[i]) : 0;
-                          }
-                        }
-                      });
+    workers.for_range(std::min(kAtOnce, rows - first), 16, [&](std::size_t from, std::size_t to, TileRanges<T>& own) {
+      for (std::size_t row = first + from; row < first + to; ++row) {
+        own.load(row);
+        const Place at = map.tiles.row_place(row);
+        for (std::size_t i = 0; i < grid.size(0); ++i) {
+          const bool any = has_range(own.least()[i], own.greatest()[i]);
+          map.least[at + i] = any ? key_of(own.least()[i]) : 0;
+          map.greatest[at + i] = any ? key_of(own.greatest()[i]) : 0;
+        }
+      }
+    });
   }
   return map;
 }
 
-#define TEGL_INSTANTIATE(T)                                                                    \
-  template KeyOf<T> key_of<T>(T) noexcept;                                                     \
-  template T value_of<T>(KeyOf<T>) noexcept;                                                   \
-  template RangeMap<KeyOf<T>> map_ranges<T, 2>(const Image<T, 2>&, unsigned, const Progress&); \
-  template RangeMap<KeyOf<T>> map_ranges<T, 3>(const Image<T, 3>&, unsigned, const Progress&); \
-  template RangeMap<KeyOf<T>> map_ranges<T, 4>(const Image<T, 4>&, unsigned, const Progress&); \
-  template RangeMap<KeyOf<T>> map_ranges<T, 5>(const Image<T, 5>&, unsigned, const Progress&);
+#define TEGL_INSTANTIATE(T)                  \
+  template KeyOf<T> key_of<T>(T) noexcept;   \
+  template T value_of<T>(KeyOf<T>) noexcept; \
+  template RangeMap<KeyOf<T>> map_ranges(const SampleView<T>&, unsigned, const Progress&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "search/sample_view.hpp"
 #include "tegl/active_tiles.hpp"
 #include "tegl/seed_set.hpp"
 
@@ -31,7 +32,6 @@ T value_of(KeyOf<T> key) noexcept;
 
 /// Place of a tile in the padded arrays, below 2^32.
 using Place = std::uint32_t;
-inline constexpr int kMostAxes = 5;
 
 /// A step from a tile to a neighbour: -1, 0 or 1 along every axis.
 using Step = std::array<std::int8_t, kMostAxes>;
@@ -115,7 +115,7 @@ struct RangeMap {
 };
 
 /// Computes the ranges with `threads` threads. Errors: TooLarge, Cancelled.
-template <Value T, int N>
-RangeMap<KeyOf<T>> map_ranges(const Image<T, N>& image, unsigned threads, const Progress& progress);
+template <Value T>
+RangeMap<KeyOf<T>> map_ranges(const SampleView<T>& samples, unsigned threads, const Progress& progress);
 
 }  // namespace tegl::detail

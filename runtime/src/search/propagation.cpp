@@ -15,8 +15,7 @@ namespace tegl::detail {
 
 /// One bit per tile, set atomically by the first thread that reaches it. calloc provides zeroed pages on demand, so
 /// pages without visited tiles take no memory.
-template <Value T, int N>
-class TileFlood<T, N>::Seen {
+class TileFlood::Seen {
  public:
   explicit Seen(TileNumber tiles) : words_(static_cast<Word*>(std::calloc((tiles + 63) / 64, sizeof(Word)))) {
     if (words_ == nullptr) throw std::bad_alloc();
@@ -36,44 +35,74 @@ class TileFlood<T, N>::Seen {
   std::unique_ptr<Word, Free> words_;
 };
 
-template <Value T, int N>
-TileFlood<T, N>::TileFlood(const Image<T, N>& image, double isovalue)
-    : image_(image), grid_(image.grid().sizes()), threshold_(make_threshold<T>(isovalue)) {
-  for (unsigned corner = 0; corner < corners_.size(); ++corner) {
-    corners_[corner] = 0;
-    for (int a = 0; a < N; ++a)
-      if ((corner >> a & 1u) != 0) corners_[corner] += image.strides()[a];
+namespace {
+
+/// Reads signatures of tiles with this number of corners.
+template <Value T, unsigned Corners>
+class SignatureReader {
+ public:
+  SignatureReader(const SampleView<T>& samples, double isovalue)
+      : data_(samples.data), threshold_(make_threshold<T>(isovalue)) {
+    for (unsigned corner = 0; corner < Corners; ++corner)
+      for (int a = 0; a < samples.dim; ++a)
+        if ((corner >> a & 1u) != 0) corners_[corner] += samples.strides[a];
+  }
+  std::uint32_t operator()(std::ptrdiff_t lowest) const noexcept {
+    std::uint32_t signature = 0;
+    bool missing = threshold_.never;
+    for (unsigned corner = 0; corner < Corners; ++corner) {
+      const T value = data_[lowest + corners_[corner]];
+      signature |= (value >= threshold_.value ? 1u : 0u) << corner;
+      if constexpr (std::is_floating_point_v<T>) missing = missing || value != value;
+    }
+    return missing ? 0 : signature;
+  }
+
+ private:
+  const T* data_;
+  Threshold<T> threshold_;
+  std::array<std::ptrdiff_t, Corners> corners_{};  ///< from a tile's lowest sample, in elements
+};
+
+template <Value T>
+std::function<std::uint32_t(std::ptrdiff_t)> signature_reader(const SampleView<T>& samples, double isovalue) {
+  switch (samples.dim) {
+    case 2:
+      return SignatureReader<T, 4>(samples, isovalue);
+    case 3:
+      return SignatureReader<T, 8>(samples, isovalue);
+    case 4:
+      return SignatureReader<T, 16>(samples, isovalue);
+    default:
+      return SignatureReader<T, 32>(samples, isovalue);
   }
 }
 
-template <Value T, int N>
-std::uint32_t TileFlood<T, N>::signature(TileNumber tile) const noexcept {
-  return signature_at(grid_.index(tile));
-}
+}  // namespace
 
-template <Value T, int N>
-std::uint32_t TileFlood<T, N>::signature_at(const Index& index) const noexcept {
+template <Value T>
+TileFlood::TileFlood(const SampleView<T>& samples, double isovalue)
+    : strides_(samples.strides),
+      grid_(samples.axes()),
+      all_high_(static_cast<std::uint32_t>((std::uint64_t{1} << (1u << samples.dim)) - 1)),
+      signature_at_(signature_reader(samples, isovalue)) {}
+
+std::uint32_t TileFlood::signature(TileNumber tile) const noexcept { return signature_at_(lowest(grid_.index(tile))); }
+
+std::ptrdiff_t TileFlood::lowest(const Index& index) const noexcept {
   std::ptrdiff_t at = 0;
-  for (int a = 0; a < N; ++a) at += static_cast<std::ptrdiff_t>(index[a]) * image_.strides()[a];
-  std::uint32_t signature = 0;
-  bool missing = threshold_.never;
-  for (unsigned corner = 0; corner < corners_.size(); ++corner) {
-    const T value = image_.data()[at + corners_[corner]];
-    signature |= (value >= threshold_.value ? 1u : 0u) << corner;
-    if constexpr (std::is_floating_point_v<T>) missing = missing || value != value;
-  }
-  return missing ? 0 : signature;
+  for (int a = 0; a < grid_.dim(); ++a) at += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
+  return at;
 }
 
-template <Value T, int N>
-std::vector<typename TileFlood<T, N>::Move> TileFlood<T, N>::moves(Neighbourhood neighbourhood) const {
+std::vector<TileFlood::Move> TileFlood::moves(Neighbourhood neighbourhood) const {
   std::vector<Move> result;
-  for (const Step& step : neighbour_steps(N, neighbourhood)) {
-    Move move{{}, 0, kAllHigh};
-    for (int a = 0; a < N; ++a) {
-      move.along[a] = step[a];
+  for (const Step& step : neighbour_steps(grid_.dim(), neighbourhood)) {
+    Move move{step, 0, 0, all_high_};
+    for (int a = 0; a < grid_.dim(); ++a) {
       move.distance += step[a] * static_cast<std::ptrdiff_t>(grid_.stride(a));
-      for (unsigned corner = 0; corner < corners_.size(); ++corner)
+      move.samples += step[a] * strides_[a];
+      for (unsigned corner = 0; corner < 1u << grid_.dim(); ++corner)
         if (step[a] != 0 && (corner >> a & 1u) != (step[a] > 0 ? 1u : 0u)) move.face &= ~(1u << corner);
     }
     result.push_back(move);
@@ -81,33 +110,30 @@ std::vector<typename TileFlood<T, N>::Move> TileFlood<T, N>::moves(Neighbourhood
   return result;
 }
 
-template <Value T, int N>
-void TileFlood<T, N>::visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen,
-                            Found& found) const {
+void TileFlood::visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const {
   const Index index = grid_.index(tile);
-  const std::uint32_t own = signature_at(index);
+  const std::ptrdiff_t at = lowest(index);
+  const std::uint32_t own = signature_at_(at);
   for (const Move& move : moves) {
     const std::uint32_t shared = own & move.face;
     if (rule == FloodRule::crossed_faces && (shared == 0 || shared == move.face)) continue;
-    Index next = index;
     bool inside = true;
-    for (int a = 0; a < N; ++a) {
-      next[a] += static_cast<std::size_t>(static_cast<std::ptrdiff_t>(move.along[a]));
-      inside = inside && next[a] < grid_.size(a);  // negative indices wrap around to large ones
+    for (int a = 0; a < grid_.dim(); ++a) {
+      const std::size_t next = index[a] + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(move.along[a]));
+      inside = inside && next < grid_.size(a);  // negative indices wrap around to large ones
     }
     if (!inside) continue;
     const auto other = static_cast<TileNumber>(static_cast<std::ptrdiff_t>(tile) + move.distance);
     if (!seen.add(other)) continue;
-    if (is_active(signature_at(next)))
+    if (is_active(signature_at_(at + move.samples)))
       found.tiles.push_back(other);
     else
       found.stopped = true;
   }
 }
 
-template <Value T, int N>
-std::vector<TileNumber> TileFlood<T, N>::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
-                                             unsigned threads, const Progress& progress, bool* stopped) const {
+std::vector<TileNumber> TileFlood::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
+                                       unsigned threads, const Progress& progress, bool* stopped) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
   // the starting tiles are the first layer
   Seen seen(grid_.count());
@@ -141,9 +167,8 @@ std::vector<TileNumber> TileFlood<T, N>::run(std::vector<TileNumber> from, Flood
   return std::move(all.tiles);
 }
 
-template <Value T, int N>
-std::vector<TileNumber> TileFlood<T, N>::beside(const std::vector<TileNumber>& tiles, FloodRule rule,
-                                                Neighbourhood neighbourhood) const {
+std::vector<TileNumber> TileFlood::beside(const std::vector<TileNumber>& tiles, FloodRule rule,
+                                          Neighbourhood neighbourhood) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
   Seen seen(grid_.count());
   for (const TileNumber tile : tiles) seen.add(tile);
@@ -152,7 +177,7 @@ std::vector<TileNumber> TileFlood<T, N>::beside(const std::vector<TileNumber>& t
   return std::move(found.tiles);
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template class TileFlood<T, N>;
+#define TEGL_INSTANTIATE(T) template TileFlood::TileFlood(const SampleView<T>&, double);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "image/bitplanes.hpp"
@@ -21,16 +22,16 @@ enum class FloodRule {
 };
 
 /// Reads only the samples of the tiles that it visits. The image must outlive it.
-template <Value T, int N>
 class TileFlood {
  public:
-  TileFlood(const Image<T, N>& image, double isovalue);
+  template <Value T>
+  TileFlood(const SampleView<T>& samples, double isovalue);
 
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
+  [[nodiscard]] const TileShape& grid() const noexcept { return grid_; }
   /// The tile's high corners, bit v for corner v; 0 if a corner is missing.
   [[nodiscard]] std::uint32_t signature(TileNumber tile) const noexcept;
-  [[nodiscard]] static bool is_active(std::uint32_t signature) noexcept {
-    return signature != 0 && signature != kAllHigh;
+  [[nodiscard]] bool is_active(std::uint32_t signature) const noexcept {
+    return signature != 0 && signature != all_high_;
   }
   /// All tiles reached from the active tiles `from`, which are included; each once, in no particular order. `stopped`:
   /// whether propagation met an inactive tile of the image; with `crossed_faces` such a tile has a missing corner.
@@ -42,10 +43,11 @@ class TileFlood {
                                                Neighbourhood neighbourhood) const;
 
  private:
-  using Index = typename TileGrid<N>::GridIndex;
+  using Index = TileShape::Index;
   struct Move {
-    std::array<std::int8_t, N> along;
+    Step along;
     std::ptrdiff_t distance;  ///< in tile numbers
+    std::ptrdiff_t samples;   ///< distance in elements of the image
     std::uint32_t face;       ///< corners of the face that the move crosses
   };
   class Seen;
@@ -57,14 +59,13 @@ class TileFlood {
   [[nodiscard]] std::vector<Move> moves(Neighbourhood neighbourhood) const;
   /// Adds the neighbours of the tile that were not seen before.
   void visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const;
-  [[nodiscard]] std::uint32_t signature_at(const Index& index) const noexcept;
+  /// Offset of the lowest sample of a tile, in elements of the image.
+  [[nodiscard]] std::ptrdiff_t lowest(const Index& index) const noexcept;
 
-  static constexpr std::uint32_t kAllHigh = static_cast<std::uint32_t>((std::uint64_t{1} << (1u << N)) - 1);
-
-  Image<T, N> image_;
-  TileGrid<N> grid_;
-  Threshold<T> threshold_;
-  std::array<std::ptrdiff_t, 1u << N> corners_;  ///< from a tile's lowest sample, in elements
+  std::array<std::ptrdiff_t, kMostAxes> strides_;
+  TileShape grid_;
+  std::uint32_t all_high_;
+  std::function<std::uint32_t(std::ptrdiff_t)> signature_at_;  ///< of the tile whose lowest sample has this offset
 };
 
 }  // namespace tegl::detail

@@ -5,6 +5,7 @@
 
 #include "search/active_tiles_methods.hpp"
 #include "search/propagation.hpp"
+#include "search/seed_methods.hpp"
 #include "tegl/seed_set.hpp"
 
 namespace tegl::detail {
@@ -15,22 +16,16 @@ namespace {
 /// neighbours.
 constexpr Neighbourhood kNeighbourhood = Neighbourhood::faces;
 
-template <Value T, int N>
-class SeedIndex final : public tegl::ActiveTiles<N> {
+template <Value T>
+class SeedIndex final : public IndexMethod {
  public:
-  SeedIndex(const IndexTask<T, N>& task, std::vector<TileNumber> seeds)
-      : tegl::ActiveTiles<N>(task.identity),
-        image_(task.image),
-        threads_(task.options.work.threads),
-        seeds_(std::move(seeds)) {}
+  SeedIndex(const IndexTask<T>& task, std::vector<TileNumber> seeds)
+      : samples_(task.samples), threads_(task.options.work.threads), seeds_(std::move(seeds)) {}
 
-  [[nodiscard]] ActiveMethod method() const noexcept override { return ActiveMethod::seed_set; }
   [[nodiscard]] std::size_t memory_bytes() const noexcept override { return seeds_.size() * sizeof(TileNumber); }
   [[nodiscard]] bool needs_image() const noexcept override { return true; }
-
- protected:
   void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
-    const TileFlood<T, N> flood(image_, isovalue);
+    const TileFlood flood(samples_, isovalue);
     std::vector<TileNumber> active;
     for (const TileNumber seed : seeds_)
       if (flood.is_active(flood.signature(seed))) active.push_back(seed);
@@ -40,15 +35,15 @@ class SeedIndex final : public tegl::ActiveTiles<N> {
   void write(IndexWriter& to) const override { to.array(seeds_); }
 
  private:
-  Image<T, N> image_;
+  SampleView<T> samples_;
   unsigned threads_;
   std::vector<TileNumber> seeds_;
 };
 
 }  // namespace
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task) {
+template <Value T>
+IndexMethodPtr build_seed_index(const IndexTask<T>& task) {
   SeedSetOptions options;
   options.method = task.options.seed_method;
   options.scan_order = task.options.scan_order;
@@ -58,22 +53,22 @@ ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task) {
     task.tell(fraction);
     return true;
   };
-  return std::make_unique<SeedIndex<T, N>>(task, find_seeds(task.image, options).tiles);
+  return std::make_unique<SeedIndex<T>>(task, find_seeds(task.samples, options).tiles);
 }
 
-template <Value T, int N>
-ActiveTilesPtr<N> read_seed_index(IndexReader& from, const IndexTask<T, N>& task) {
-  const TileNumber count = TileGrid<N>(task.identity.sizes).count();
+template <Value T>
+IndexMethodPtr read_seed_index(IndexReader& from, const IndexTask<T>& task) {
+  const TileNumber count = task.tiles.count();
   auto seeds = from.array<TileNumber>(count, "seeds");
   for (std::size_t i = 0; i < seeds.size(); ++i)
     if (seeds[i] >= count || (i > 0 && seeds[i] <= seeds[i - 1]))
       IndexReader::damaged(fmt::format("seed {} is tile {}; expected ascending numbers below {}", i, seeds[i], count));
-  return std::make_unique<SeedIndex<T, N>>(task, std::move(seeds));
+  return std::make_unique<SeedIndex<T>>(task, std::move(seeds));
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                         \
-  template ActiveTilesPtr<N> build_seed_index<T, N>(const IndexTask<T, N>& task); \
-  template ActiveTilesPtr<N> read_seed_index<T, N>(IndexReader&, const IndexTask<T, N>&);
+#define TEGL_INSTANTIATE(T)                                         \
+  template IndexMethodPtr build_seed_index<T>(const IndexTask<T>&); \
+  template IndexMethodPtr read_seed_index<T>(IndexReader&, const IndexTask<T>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

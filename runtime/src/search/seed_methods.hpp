@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "search/seed_graph.hpp"
-#include "tegl/image.hpp"
 
 namespace tegl::detail {
 
@@ -43,7 +42,11 @@ std::vector<Place> climb_tiles(const RangeMap<Key>& map, const std::vector<std::
 /// A skeleton of tiles that connects all extrema. Based on: Itoh, Yamaguchi, Koyamada, Volume thinning for automatic
 /// isosurface propagation, 1996. Criterion for removal: Couprie, Bertrand, New characterizations of simple points in
 /// 2D, 3D and 4D discrete spaces, 2009 (the common boundary of a tile with the others collapses to a point).
-template <Value T, int N>
-std::vector<Place> thin_tiles(const Image<T, N>& image, const PaddedTiles& tiles, const Progress& progress);
+template <Value T>
+std::vector<Place> thin_tiles(const SampleView<T>& samples, const PaddedTiles& tiles, const Progress& progress);
+
+/// As the public function; compiled once per type, for all dimensions.
+template <Value T>
+SeedSet find_seeds(const SampleView<T>& samples, const SeedSetOptions& options);
 
 }  // namespace tegl::detail

@@ -160,20 +160,35 @@ detail::RangeMap<std::uint8_t> at_some_levels(const detail::RangeMap<Key>& map, 
   return result;
 }
 
-template <Value T>
-SeedSet to_seed_set(const detail::RangeMap<detail::KeyOf<T>>& map, const SeedSetOptions& options,
-                    std::vector<detail::Place> places) {
-  std::sort(places.begin(), places.end());  // ascending places are ascending tile numbers
+/// The tiles of `places`, without their ranges.
+SeedSet to_seed_set(const detail::PaddedTiles& tiles, const SeedSetOptions& options,
+                    const std::vector<detail::Place>& places) {
   SeedSet set;
   set.method = options.method;
   set.neighbourhood = options.neighbourhood;
-  for (const detail::Place place : places) {
-    set.tiles.push_back(map.tiles.number(place));
-    const bool never = map.constant(place);
-    set.least.push_back(never ? 0.0 : static_cast<double>(detail::value_of<T>(map.least[place])));
-    set.greatest.push_back(never ? 0.0 : static_cast<double>(detail::value_of<T>(map.greatest[place])));
-  }
+  for (const detail::Place place : places) set.tiles.push_back(tiles.number(place));
   return set;
+}
+
+/// A lower bound from all levels or, if that takes too much work, from fewer and fewer of them.
+template <class Key>
+std::uint64_t lower_bound_of(const detail::RangeMap<Key>& map, const SeedSetOptions& options) {
+  double done = 0.1;
+  // The lower bound from all levels or from quantized ones; null if the work exceeds `most_work`.
+  const auto pack = [&](const auto& ranges, std::uint64_t most_work) -> std::optional<std::uint64_t> {
+    SeedSetStats stats;
+    SeedFinder finder(ranges, options, stats);
+    const Progress graphs = detail::part_of(options.work.progress, done, 0.5 + 0.5 * done);
+    if (const auto graph = finder.make_small_graph(most_work, graphs))
+      return detail::pack_components(*graph, detail::part_of(options.work.progress, 0.5 + 0.5 * done, 1.0));
+    done += 0.5 * detail::kProgressWithRoots * (1.0 - done);
+    return std::nullopt;
+  };
+  std::optional<std::uint64_t> bound = pack(map, kMostWork<Key>);
+  for (std::size_t levels = 255; !bound; levels = std::max<std::size_t>(1, levels / 4))
+    bound = pack(at_some_levels(map, levels), levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0});
+  detail::report_progress(options.work.progress, 1.0);
+  return *bound;
 }
 
 }  // namespace
@@ -188,47 +203,46 @@ std::vector<SeedMethod> seed_methods() {
   return methods;
 }
 
-template <Value T, int N>
-requires DimensionBetween<N, 2, 5> SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options) {
+template <Value T>
+SeedSet detail::find_seeds(const SampleView<T>& samples, const SeedSetOptions& options) {
   SeedSetStats found;
-  found.tiles = TileGrid<N>(image.grid().sizes()).count();
-  const auto map = detail::map_ranges(image, options.work.threads, detail::part_of(options.work.progress, 0.0, 0.1));
-  SeedFinder<detail::KeyOf<T>> finder(map, options, found);
-  std::vector<detail::Place> places;
+  found.tiles = TileShape(samples.axes()).count();
+  const auto map = map_ranges(samples, options.work.threads, part_of(options.work.progress, 0.0, 0.1));
+  SeedFinder<KeyOf<T>> finder(map, options, found);
+  std::vector<Place> places;
   if (options.method == SeedMethod::volume_thinning) {
-    places = detail::thin_tiles(image, map.tiles, detail::part_of(options.work.progress, 0.1, 1.0));
-    if (!options.keep_constant_tiles) std::erase_if(places, [&](detail::Place place) { return map.constant(place); });
+    places = thin_tiles(samples, map.tiles, part_of(options.work.progress, 0.1, 1.0));
+    if (!options.keep_constant_tiles) std::erase_if(places, [&](Place place) { return map.constant(place); });
   } else {
     places = finder.find();
   }
-  detail::report_progress(options.work.progress, 1.0);
-  SeedSet set = to_seed_set<T>(map, options, std::move(places));
+  report_progress(options.work.progress, 1.0);
+  std::sort(places.begin(), places.end());  // ascending places are ascending tile numbers
+  SeedSet set = to_seed_set(map.tiles, options, places);
+  for (const Place place : places) {
+    const bool never = map.constant(place);
+    set.least.push_back(never ? 0.0 : static_cast<double>(value_of<T>(map.least[place])));
+    set.greatest.push_back(never ? 0.0 : static_cast<double>(value_of<T>(map.greatest[place])));
+  }
   set.stats = found;
   return set;
 }
 
 template <Value T, int N>
-requires DimensionBetween<N, 2, 5> std::uint64_t seed_lower_bound(const Image<T, N>& image,
-                                                                  const SeedSetOptions& options) {
-  const auto map = detail::map_ranges(image, options.work.threads, detail::part_of(options.work.progress, 0.0, 0.1));
-  double done = 0.1;
-  // The lower bound from all levels or from quantized ones; null if the work exceeds `most_work`.
-  const auto pack = [&](const auto& ranges, std::uint64_t most_work) -> std::optional<std::uint64_t> {
-    SeedSetStats stats;
-    SeedFinder finder(ranges, options, stats);
-    const Progress graphs = detail::part_of(options.work.progress, done, 0.5 + 0.5 * done);
-    if (const auto graph = finder.make_small_graph(most_work, graphs))
-      return detail::pack_components(*graph, detail::part_of(options.work.progress, 0.5 + 0.5 * done, 1.0));
-    done += 0.5 * detail::kProgressWithRoots * (1.0 - done);
-    return std::nullopt;
-  };
-  std::optional<std::uint64_t> bound = pack(map, kMostWork<detail::KeyOf<T>>);
-  for (std::size_t levels = 255; !bound; levels = std::max<std::size_t>(1, levels / 4))
-    bound = pack(at_some_levels(map, levels), levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0});
-  detail::report_progress(options.work.progress, 1.0);
-  return *bound;
+requires DimensionBetween<N, 2, 5> SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options) {
+  return detail::find_seeds(detail::SampleView<T>(image), options);
 }
 
+template <Value T, int N>
+requires DimensionBetween<N, 2, 5> std::uint64_t seed_lower_bound(const Image<T, N>& image,
+                                                                  const SeedSetOptions& options) {
+  const auto map = detail::map_ranges(detail::SampleView<T>(image), options.work.threads,
+                                      detail::part_of(options.work.progress, 0.0, 0.1));
+  return lower_bound_of(map, options);
+}
+
+#define TEGL_INSTANTIATE(T) template SeedSet detail::find_seeds<T>(const SampleView<T>&, const SeedSetOptions&);
+#include "base/instantiate.hpp"
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                       \
   template SeedSet find_seeds<T, N>(const Image<T, N>&, const SeedSetOptions&); \
   template std::uint64_t seed_lower_bound<T, N>(const Image<T, N>&, const SeedSetOptions&);

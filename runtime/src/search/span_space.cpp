@@ -29,20 +29,16 @@ struct SpanBuckets {
   std::vector<T> greatest;           ///< of these tiles; empty if every bucket has only one maximum, its bound
 };
 
-template <Value T, int N>
-class SpanSpace final : public tegl::ActiveTiles<N> {
+template <Value T>
+class SpanSpace final : public IndexMethod {
  public:
-  SpanSpace(const IndexedImage<N>& image, SpanBuckets<T> buckets)
-      : tegl::ActiveTiles<N>(image), buckets_(std::move(buckets)) {}
+  explicit SpanSpace(SpanBuckets<T> buckets) : buckets_(std::move(buckets)) {}
 
-  [[nodiscard]] ActiveMethod method() const noexcept override { return ActiveMethod::span_space; }
   [[nodiscard]] std::size_t memory_bytes() const noexcept override {
     const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
     return bytes(buckets_.bounds) + bytes(buckets_.first) + bytes(buckets_.tiles) + bytes(buckets_.least) +
            bytes(buckets_.greatest);
   }
-
- protected:
   void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
     const Threshold<T> threshold = make_threshold<T>(isovalue);
     if (threshold.never || buckets_.bounds.empty()) return;
@@ -84,8 +80,8 @@ constexpr std::size_t kMostBuckets = 4096;
 
 }  // namespace
 
-template <Value T, int N>
-ActiveTilesPtr<N> build_span_space(const IndexTask<T, N>& task) {
+template <Value T>
+IndexMethodPtr build_span_space(const IndexTask<T>& task) {
   SpanBuckets<T> buckets;
   const TileIntervals<T> intervals = gather_intervals(task);
   Buffer<std::uint32_t> bucket_of;
@@ -116,12 +112,12 @@ ActiveTilesPtr<N> build_span_space(const IndexTask<T, N>& task) {
     buckets.least = in_order(intervals.least, bins.order);
     if (!few) buckets.greatest = in_order(intervals.greatest, bins.order);
   }
-  return std::make_unique<SpanSpace<T, N>>(task.identity, std::move(buckets));
+  return std::make_unique<SpanSpace<T>>(std::move(buckets));
 }
 
-template <Value T, int N>
-ActiveTilesPtr<N> read_span_space(IndexReader& from, const IndexTask<T, N>& task) {
-  const TileNumber tiles = TileGrid<N>(task.identity.sizes).count();
+template <Value T>
+IndexMethodPtr read_span_space(IndexReader& from, const IndexTask<T>& task) {
+  const TileNumber tiles = task.tiles.count();
   SpanBuckets<T> buckets;
   buckets.bounds = from.array<T>(kMostBuckets + 1, "bounds of the buckets");
   buckets.first = from.array<std::uint64_t>(buckets.bounds.size() + 1, "positions of the buckets");
@@ -136,12 +132,12 @@ ActiveTilesPtr<N> read_span_space(IndexReader& from, const IndexTask<T, N>& task
         buckets.first.size(), buckets.least.size(), buckets.greatest.size(), buckets.bounds.size() + 1, count));
   require_offsets(buckets.first, count, "buckets");
   require_tiles(buckets.tiles, tiles);
-  return std::make_unique<SpanSpace<T, N>>(task.identity, std::move(buckets));
+  return std::make_unique<SpanSpace<T>>(std::move(buckets));
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                    \
-  template ActiveTilesPtr<N> build_span_space<T, N>(const IndexTask<T, N>&); \
-  template ActiveTilesPtr<N> read_span_space<T, N>(IndexReader&, const IndexTask<T, N>&);
+#define TEGL_INSTANTIATE(T)                                         \
+  template IndexMethodPtr build_span_space<T>(const IndexTask<T>&); \
+  template IndexMethodPtr read_span_space<T>(IndexReader&, const IndexTask<T>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -5,8 +5,10 @@
 // of the contour that met no remaining tile would separate the image into two sides, each with an extremum, but the
 // remaining tiles connect all extrema.
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <optional>
+#include <span>
 #include <unordered_map>
 
 #include "base/disjoint_sets.hpp"
@@ -87,10 +89,51 @@ void for_each_sample(const std::array<std::size_t, N>& sizes, const Visit& visit
   }
 }
 
-template <Value T, int N>
+/// Comparison of samples, by their offsets in the image in elements.
+class SampleOrder {
+ public:
+  SampleOrder() = default;
+  SampleOrder(const SampleOrder&) = delete;
+  SampleOrder& operator=(const SampleOrder&) = delete;
+  virtual ~SampleOrder() = default;
+  [[nodiscard]] virtual bool may_miss() const noexcept = 0;  ///< whether the type has missing values
+  [[nodiscard]] virtual bool missing(std::ptrdiff_t at) const noexcept = 0;
+  /// Negative, 0 or positive: value a is below, equal to or above value b.
+  [[nodiscard]] virtual int compare(std::ptrdiff_t a, std::ptrdiff_t b) const noexcept = 0;
+};
+
+template <Value T>
+class OrderOf final : public SampleOrder {
+ public:
+  explicit OrderOf(const T* data) : data_(data) {}
+  [[nodiscard]] bool may_miss() const noexcept override { return std::is_floating_point_v<T>; }
+  [[nodiscard]] bool missing(std::ptrdiff_t at) const noexcept override { return data_[at] != data_[at]; }
+  [[nodiscard]] int compare(std::ptrdiff_t a, std::ptrdiff_t b) const noexcept override {
+    return static_cast<int>(data_[b] < data_[a]) - static_cast<int>(data_[a] < data_[b]);
+  }
+
+ private:
+  const T* data_;
+};
+
+/// Sizes and strides of an image, in elements.
+template <int N>
+struct SampleGrid {
+  std::array<std::size_t, N> sizes;
+  std::array<std::ptrdiff_t, N> strides;
+
+  [[nodiscard]] std::ptrdiff_t offset(const std::array<std::size_t, N>& index) const noexcept {
+    std::ptrdiff_t at = 0;
+    for (int a = 0; a < N; ++a) at += static_cast<std::ptrdiff_t>(index[a]) * strides[a];
+    return at;
+  }
+};
+
+template <int N>
 class Thinning {
  public:
-  Thinning(const Image<T, N>& image, const PaddedTiles& tiles) : image_(image), tiles_(tiles), state_(tiles.room()) {
+  Thinning(const SampleGrid<N>& grid, const SampleOrder& values, const PaddedTiles& tiles)
+      : grid_(grid), values_(values), tiles_(tiles), state_(tiles.room()) {
     std::size_t faces = 1;
     for (int a = 0; a < N; ++a) faces *= 3;
     for (std::size_t face = 0; face + 1 < faces; ++face) {
@@ -116,16 +159,11 @@ class Thinning {
  private:
   enum State : std::uint8_t { kNone = 0, kTile, kKept };
 
-  [[nodiscard]] bool missing(const std::array<std::size_t, N>& index) const noexcept {
-    const T value = image_(index);
-    return value != value;
-  }
-
   void find_tiles() {
     tiles_.scan(default_order(N), [&](Place place) { state_[place] = kTile; });
-    if constexpr (std::is_floating_point_v<T>)
-      for_each_sample<N>(image_.grid().sizes(), [&](std::size_t, const auto& index) {
-        if (missing(index)) for_tiles_around(index, [&](Place place) { state_[place] = kNone; });
+    if (values_.may_miss())
+      for_each_sample<N>(grid_.sizes, [&](std::size_t, const auto& index) {
+        if (values_.missing(grid_.offset(index))) for_tiles_around(index, [&](Place place) { state_[place] = kNone; });
       });
   }
 
@@ -160,7 +198,7 @@ class Thinning {
   /// Keeps the tiles around one sample of every extremal plateau (a connected set of equal samples with no higher, or
   /// no lower, neighbour along the axes).
   void keep_extrema() {
-    const auto sizes = image_.grid().sizes();
+    const auto& sizes = grid_.sizes;
     std::size_t count = 1;
     for (const std::size_t size : sizes) count *= size;
     DisjointSets plateaus(count);
@@ -170,25 +208,24 @@ class Thinning {
         std::size_t step = 1;
         for (int a = 0; a < N; step *= sizes[a++]) {
           if (index[a] + 1 >= sizes[a] || !has_tile(index, a)) continue;
-          auto next = index;
-          ++next[a];
-          visit(i, i + step, image_(index), image_(next));
+          const std::ptrdiff_t at = grid_.offset(index);
+          visit(i, i + step, values_.compare(at, at + grid_.strides[a]));
         }
       });
     };
     // merge equal neighbours into plateaus
-    for_edges([&](std::size_t i, std::size_t j, T value, T next) {
+    for_edges([&](std::size_t i, std::size_t j, int order) {
       has_tiles[i] = has_tiles[j] = true;
-      if (value != next) return;
+      if (order != 0) return;
       const auto a = plateaus.find(static_cast<std::uint32_t>(i));
       const auto b = plateaus.find(static_cast<std::uint32_t>(j));
       if (a != b) plateaus.join_under(std::max(a, b), std::min(a, b));
     });
     // mark plateaus that have higher or lower neighbours
-    for_edges([&](std::size_t i, std::size_t j, T value, T next) {
-      if (value == next) return;
-      const auto lower = static_cast<std::uint32_t>(value < next ? i : j);
-      const auto higher = static_cast<std::uint32_t>(value < next ? j : i);
+    for_edges([&](std::size_t i, std::size_t j, int order) {
+      if (order == 0) return;
+      const auto lower = static_cast<std::uint32_t>(order < 0 ? i : j);
+      const auto higher = static_cast<std::uint32_t>(order < 0 ? j : i);
       has_higher[plateaus.find(lower)] = true;
       has_lower[plateaus.find(higher)] = true;
     });
@@ -248,7 +285,8 @@ class Thinning {
     return result;
   }
 
-  const Image<T, N>& image_;
+  const SampleGrid<N>& grid_;
+  const SampleOrder& values_;
   const PaddedTiles& tiles_;
   std::vector<std::uint8_t> state_;
   std::vector<std::pair<std::ptrdiff_t, std::size_t>> neighbours_;  ///< distance, face shared
@@ -256,16 +294,27 @@ class Thinning {
   std::unordered_map<typename CubeBoundary<N>::Set, bool> may_go_;  ///< lookup by key only: the order does not matter
 };
 
-}  // namespace
-
-template <Value T, int N>
-std::vector<Place> thin_tiles(const Image<T, N>& image, const PaddedTiles& tiles, const Progress& progress) {
-  if (tiles.rows() == 0) return {};
-  return Thinning<T, N>(image, tiles).run(progress);
+template <int N>
+std::vector<Place> thin(std::span<const std::size_t> sizes, std::span<const std::ptrdiff_t> strides,
+                        const SampleOrder& values, const PaddedTiles& tiles, const Progress& progress) {
+  SampleGrid<N> grid;
+  std::copy_n(sizes.begin(), N, grid.sizes.begin());
+  std::copy_n(strides.begin(), N, grid.strides.begin());
+  return Thinning<N>(grid, values, tiles).run(progress);
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) \
-  template std::vector<Place> thin_tiles<T, N>(const Image<T, N>&, const PaddedTiles&, const Progress&);
+}  // namespace
+
+template <Value T>
+std::vector<Place> thin_tiles(const SampleView<T>& samples, const PaddedTiles& tiles, const Progress& progress) {
+  if (tiles.rows() == 0) return {};
+  constexpr std::array kThin = {thin<2>, thin<3>, thin<4>, thin<5>};
+  return kThin[static_cast<std::size_t>(samples.dim - 2)](samples.axes(), samples.strides, OrderOf<T>(samples.data),
+                                                          tiles, progress);
+}
+
+#define TEGL_INSTANTIATE(T) \
+  template std::vector<Place> thin_tiles<T>(const SampleView<T>&, const PaddedTiles&, const Progress&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

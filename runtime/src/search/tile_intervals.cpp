@@ -5,17 +5,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cstring>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "base/workers.hpp"
+#include "search/padded_ranges.hpp"
 #include "search/tile_ranges.hpp"
 
 namespace tegl::detail {
 
-template <Value T, int N>
-TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
-  const TileGrid<N> grid(task.identity.sizes);
+template <Value T>
+TileIntervals<T> gather_intervals(const IndexTask<T>& task) {
+  const TileShape& grid = task.tiles;
   if (grid.count() > std::uint64_t{std::numeric_limits<TileId>::max()} + 1)
     throw Error(ErrorCode::TooLarge, fmt::format("an image of {} tiles; expected at most 2^32 for this method (the min-"
                                                  "max tree has no such limit)",
@@ -24,10 +27,10 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
   const std::size_t parts = (grid.rows() + kPartRows - 1) / kPartRows;
   std::vector<std::size_t> first(parts + 1);
   TileIntervals<T> result;
-  Workers<TileRanges<T, N>> workers(task.options.work.threads, [&] { return TileRanges<T, N>(task.image); });
+  Workers<TileRanges<T>> workers(task.options.work.threads, [&] { return TileRanges<T>(task.samples); });
   const std::size_t along = grid.size(0);
   // count per part, then write: buffers are allocated once
-  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
+  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T>& ranges) {
     for (std::size_t part = from; part < to; ++part) {
       std::size_t count = 0;
       for (std::size_t row = part * kPartRows; row < std::min(grid.rows(), (part + 1) * kPartRows); ++row) {
@@ -44,7 +47,7 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
   result.least.resize(first[parts]);
   result.greatest.resize(first[parts]);
   // write
-  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
+  workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T>& ranges) {
     for (std::size_t part = from; part < to; ++part) {
       std::size_t next = first[part];
       for (std::size_t row = part * kPartRows; row < std::min(grid.rows(), (part + 1) * kPartRows); ++row) {
@@ -65,17 +68,25 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
 
 namespace {
 
-/// An unsigned integer with the order of the value. (-0 comes before +0; no later comparison distinguishes them.)
+/// Turns the bits of a value into an unsigned integer with the order of the value. (-0 comes before +0; no later
+/// comparison distinguishes them.)
+template <class Bits>
+struct BitOrder {
+  Bits of_negative, of_others;  ///< bits to change in values with the highest bit set, and in others
+
+  [[nodiscard]] Bits key(Bits bits) const noexcept {
+    constexpr Bits kTop = static_cast<Bits>(Bits{1} << (8 * sizeof(Bits) - 1));
+    return static_cast<Bits>(bits ^ ((bits & kTop) != 0 ? of_negative : of_others));
+  }
+};
+
 template <Value T>
-auto ordered_bits(T value) noexcept {
-  using Bits = std::conditional_t<sizeof(T) == 1, std::uint8_t,
-                                  std::conditional_t<sizeof(T) == 2, std::uint16_t,
-                                                     std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
-  constexpr Bits kSign = static_cast<Bits>(Bits{1} << (8 * sizeof(T) - 1));
-  const auto bits = std::bit_cast<Bits>(value);
-  if constexpr (std::is_floating_point_v<T>) return (bits & kSign) != 0 ? ~bits : bits | kSign;
-  if constexpr (std::is_signed_v<T>) return static_cast<Bits>(bits ^ kSign);
-  return bits;
+constexpr BitOrder<KeyOf<T>> bit_order() noexcept {
+  using Bits = KeyOf<T>;
+  constexpr Bits kTop = static_cast<Bits>(Bits{1} << (8 * sizeof(Bits) - 1));
+  if constexpr (std::is_floating_point_v<T>) return {static_cast<Bits>(~Bits{0}), kTop};
+  if constexpr (std::is_signed_v<T>) return {kTop, kTop};
+  return {0, 0};
 }
 
 template <class Bits>
@@ -84,37 +95,44 @@ struct KeyedPlace {
   TileId place;
 };
 
-}  // namespace
-
-template <Value T>
-Buffer<TileId> ascending_order(const Buffer<T>& keys) {
-  using Bits = decltype(ordered_bits(T{}));
+/// `values`: `count` values of sizeof(Bits) bytes.
+template <class Bits>
+Buffer<TileId> order_of_bits(const void* values, std::size_t count, const BitOrder<Bits>& bit_order) {
   constexpr unsigned kDigitBits = sizeof(Bits) == 1 ? 8 : 11;
   constexpr unsigned kDigits = (8 * sizeof(Bits) + kDigitBits - 1) / kDigitBits;
   constexpr std::size_t kMask = (std::size_t{1} << kDigitBits) - 1;
   std::array<std::vector<std::uint32_t>, kDigits> first;
   for (auto& digit : first) digit.resize(kMask + 1);
   // count digits
-  Buffer<KeyedPlace<Bits>> items(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Bits key = ordered_bits(keys.data()[i]);
+  Buffer<KeyedPlace<Bits>> items(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Bits bits;
+    std::memcpy(&bits, static_cast<const char*>(values) + i * sizeof(Bits), sizeof(Bits));
+    const Bits key = bit_order.key(bits);
     items.data()[i] = {key, static_cast<TileId>(i)};
     for (unsigned d = 0; d < kDigits; ++d) ++first[d].data()[std::size_t{key} >> (d * kDigitBits) & kMask];
   }
   // distribute by one digit after the other
-  Buffer<KeyedPlace<Bits>> sorted(keys.size());
+  Buffer<KeyedPlace<Bits>> sorted(count);
   for (unsigned d = 0; d < kDigits; ++d) {
     std::uint32_t* const next = first[d].data();
     // skip a digit that is equal in all keys
-    if (std::find(next, next + kMask + 1, keys.size()) != next + kMask + 1) continue;
+    if (std::find(next, next + kMask + 1, count) != next + kMask + 1) continue;
     std::uint32_t sum = 0;
     for (std::size_t digit = 0; digit <= kMask; ++digit) sum += std::exchange(next[digit], sum);
     for (const auto& item : items) sorted.data()[next[std::size_t{item.key} >> (d * kDigitBits) & kMask]++] = item;
     items.swap(sorted);
   }
-  Buffer<TileId> order(keys.size());
+  Buffer<TileId> order(count);
   for (std::size_t i = 0; i < order.size(); ++i) order.data()[i] = items.data()[i].place;
   return order;
+}
+
+}  // namespace
+
+template <Value T>
+Buffer<TileId> ascending_order(const Buffer<T>& keys) {
+  return order_of_bits(keys.data(), keys.size(), bit_order<T>());
 }
 
 template <Value T>
@@ -156,13 +174,11 @@ void require_tiles(const std::vector<TileId>& tiles, TileNumber end) {
 }
 
 #define TEGL_INSTANTIATE(T)                                                                              \
+  template TileIntervals<T> gather_intervals<T>(const IndexTask<T>&);                                    \
   template Buffer<TileId> ascending_order<T>(const Buffer<T>&);                                          \
   template void add_quantiles<T>(const Buffer<T>&, const Buffer<TileId>&, std::size_t, std::vector<T>&); \
   template void sort_unique<T>(std::vector<T>&);                                                         \
   template Buffer<std::uint32_t> cells_of<T>(const Buffer<T>&, const Buffer<TileId>&, const std::vector<T>&);
-#include "base/instantiate.hpp"
-
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template TileIntervals<T> gather_intervals<T, N>(const IndexTask<T, N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -20,8 +20,8 @@ struct TileIntervals {
 };
 
 /// Throws TooLarge if there are more tiles than TileId can number.
-template <Value T, int N>
-TileIntervals<T> gather_intervals(const IndexTask<T, N>& task);
+template <Value T>
+TileIntervals<T> gather_intervals(const IndexTask<T>& task);
 
 /// Permutation that sorts the keys in ascending order. Stable radix sort, O(keys).
 template <Value T>

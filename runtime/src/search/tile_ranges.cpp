@@ -8,31 +8,31 @@
 
 namespace tegl::detail {
 
-template <Value T, int N>
-TileRanges<T, N>::TileRanges(const Image<T, N>& image)
-    : image_(image),
-      grid_(image.grid().sizes()),
-      least_(image.size(0)),
-      greatest_(image.size(0)),
-      gathered_(image.strides()[0] == 1 ? 0 : image.size(0)) {}
+template <Value T>
+TileRanges<T>::TileRanges(const SampleView<T>& samples)
+    : samples_(samples),
+      grid_(samples.axes()),
+      least_(samples.sizes[0]),
+      greatest_(samples.sizes[0]),
+      gathered_(samples.strides[0] == 1 ? 0 : samples.sizes[0]) {}
 
-template <Value T, int N>
-void TileRanges<T, N>::load(std::size_t row) noexcept {
+template <Value T>
+void TileRanges<T>::load(std::size_t row) noexcept {
   std::ptrdiff_t at = 0;
-  for (int a = 1; a < N; ++a) {
-    at += static_cast<std::ptrdiff_t>(row % grid_.size(a)) * image_.strides()[a];
+  for (int a = 1; a < grid_.dim(); ++a) {
+    at += static_cast<std::ptrdiff_t>(row % grid_.size(a)) * samples_.strides[a];
     row /= grid_.size(a);
   }
   // combine the rows of samples
   missing_ = false;
-  for (unsigned corner = 0; corner < kRows; ++corner) {
-    const T* samples = image_.data() + at;
-    for (int a = 1; a < N; ++a)
-      if ((corner >> (a - 1) & 1u) != 0) samples += image_.strides()[a];
+  for (unsigned corner = 0; corner < 1u << (grid_.dim() - 1); ++corner) {
+    const T* samples = samples_.data + at;
+    for (int a = 1; a < grid_.dim(); ++a)
+      if ((corner >> (a - 1) & 1u) != 0) samples += samples_.strides[a];
     rows_[corner] = samples;
     if (!gathered_.empty()) {
       for (std::size_t i = 0; i < gathered_.size(); ++i)
-        gathered_[i] = samples[static_cast<std::ptrdiff_t>(i) * image_.strides()[0]];
+        gathered_[i] = samples[static_cast<std::ptrdiff_t>(i) * samples_.strides[0]];
       samples = gathered_.data();
     }
     if (corner == 0) {
@@ -50,8 +50,8 @@ void TileRanges<T, N>::load(std::size_t row) noexcept {
   if (missing_) leave_out_missing();
 }
 
-template <Value T, int N>
-void TileRanges<T, N>::merge(const T* samples) noexcept {
+template <Value T>
+void TileRanges<T>::merge(const T* samples) noexcept {
   T* const least = least_.data();
   T* const greatest = greatest_.data();
   const std::size_t count = least_.size();
@@ -65,18 +65,18 @@ void TileRanges<T, N>::merge(const T* samples) noexcept {
   missing_ = missing_ || missing != 0;
 }
 
-template <Value T, int N>
-void TileRanges<T, N>::leave_out_missing() noexcept {
-  for (const T* const samples : rows_)
+template <Value T>
+void TileRanges<T>::leave_out_missing() noexcept {
+  for (unsigned corner = 0; corner < 1u << (grid_.dim() - 1); ++corner)
     for (std::size_t i = 0; i < least_.size(); ++i) {
-      const T value = samples[static_cast<std::ptrdiff_t>(i) * image_.strides()[0]];
+      const T value = rows_[corner][static_cast<std::ptrdiff_t>(i) * samples_.strides[0]];
       if (value == value) continue;
       for (std::size_t tile = i > 0 ? i - 1 : 0; tile <= i && tile < grid_.size(0); ++tile)
         least_[tile] = greatest_[tile] = T{};
     }
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template class TileRanges<T, N>;
+#define TEGL_INSTANTIATE(T) template class TileRanges<T>;
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tegl/active_tiles.hpp"
+#include "search/sample_view.hpp"
 
 namespace tegl::detail {
 
@@ -20,12 +20,12 @@ template <Value T>
 
 /// Computes the ranges of the tiles of an image. It holds a buffer for one row: use one per thread. The samples must
 /// outlive it.
-template <Value T, int N>
+template <Value T>
 class TileRanges {
  public:
-  explicit TileRanges(const Image<T, N>& image);
+  explicit TileRanges(const SampleView<T>& samples);
 
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
+  [[nodiscard]] const TileShape& grid() const noexcept { return grid_; }
   /// Computes `least` and `greatest` for a row of tiles. A tile with a missing corner gets the empty range (0, 0].
   void load(std::size_t row) noexcept;
   /// grid().size(0) values each.
@@ -36,11 +36,9 @@ class TileRanges {
   void merge(const T* samples) noexcept;
   void leave_out_missing() noexcept;
 
-  static constexpr unsigned kRows = 1u << (N - 1);  ///< rows of samples around a row of tiles
-
-  Image<T, N> image_;
-  TileGrid<N> grid_;
-  std::array<const T*, kRows> rows_{};
+  SampleView<T> samples_;
+  TileShape grid_;
+  std::array<const T*, std::size_t{1} << (kMostAxes - 1)> rows_{};  ///< rows of samples around a row of tiles
   std::vector<T> least_, greatest_, gathered_;
   bool missing_ = false;
 };
