@@ -240,12 +240,11 @@ struct ReachedTiles {
 };
 
 /// Searches the nearest active tile and propagates from it. `with_around`: whether to list the tiles around.
-template <Value T, int N>
-ReachedTiles<N> reach_tiles(const Image<T, N>& image, double isovalue, const std::array<double, N>& at,
+template <int N>
+ReachedTiles<N> reach_tiles(const detail::TileFlood& flood, const TileGrid<N>& grid, const std::array<double, N>& at,
                             const WorkOptions& work, bool with_around) {
-  const detail::TileFlood<T, N> flood(image, isovalue);
-  ReachedTiles<N> reached{.grid = flood.grid()};
-  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(reached.report, work.progress)) return reached;
+  ReachedTiles<N> reached{.grid = grid};
+  if (grid.count() == 0 || !NearestTile<N>(flood, grid, at).find(reached.report, work.progress)) return reached;
   bool at_missing = false;
   reached.tiles = flood.run({reached.report.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, work.threads,
                             detail::part_of(work.progress, kNearestShare, kFlooded), &at_missing);
@@ -329,7 +328,8 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
   const detail::GridLocator<N> locator(image.grid());
   const std::array<double, N> at = place_in_grid(locator, image.grid(), point);
   const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
-  const ReachedTiles<N> reached = reach_tiles<T, N>(image, isovalue, at, options.work, in_tiles);
+  const detail::TileFlood flood(detail::SampleView<T>(image), isovalue);
+  const ReachedTiles<N> reached = reach_tiles<N>(flood, TileGrid<N>(image.grid().sizes()), at, options.work, in_tiles);
   const auto contour = [&](const ExtractOptions& with, const std::vector<TileNumber>* tiles) {
     return extract_in<Real>(image, isovalue, with, tiles);
   };
