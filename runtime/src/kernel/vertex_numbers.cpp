@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From counts to vertex numbers (see extract_count.hpp): prefix sums over the chunks of a layer or slab. The prefix
+// From counts to vertex numbers (see vertex_numbers.hpp): prefix sums over the chunks of a layer or slab. The prefix
 // sums over the rows of a chunk are computed while the rows are counted: offset_layer_row and offset_slab_row in
 // extract_count.cpp.
 #include "kernel/extract_count.hpp"
