@@ -12,14 +12,14 @@ namespace {
 template <class T>
 void array(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values) {
   if (values.empty()) return;
-  fmt::format_to(Out(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
+  fmt::format_to(Appender(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
   std::size_t line = text.size();
   for (const T v : values) {
     if (text.size() - line > 110 || line == text.size()) {
       text += "\n    ";
       line = text.size();
     }
-    fmt::format_to(Out(text), std::is_same_v<T, std::uint64_t> ? "{:#x}," : "{},", v);
+    fmt::format_to(Appender(text), std::is_same_v<T, std::uint64_t> ? "{:#x}," : "{},", v);
   }
   text += "};\n";
 }
@@ -27,10 +27,10 @@ void array(std::string& text, const char* type, const char* name, const char* co
 /// Writes bytes as string literals, which compilers read a hundred times faster than lists of numbers.
 void bytes(std::string& text, const char* name, const std::string& comment, const std::vector<std::uint8_t>& values,
            std::size_t per_line) {
-  fmt::format_to(Out(text), "\n// {}\nconst char {}[] =", comment, name);
+  fmt::format_to(Appender(text), "\n// {}\nconst char {}[] =", comment, name);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i % per_line == 0) text += i == 0 ? "\n    \"" : "\"\n    \"";
-    fmt::format_to(Out(text), "\\{:o}", values[i]);
+    fmt::format_to(Appender(text), "\\{:o}", values[i]);
   }
   text += values.empty() ? " \"\";\n" : "\";\n";
 }
@@ -46,13 +46,13 @@ std::string opening(const TableSet& set, const std::string& what) {
 }
 
 void lists(std::string& text, const std::vector<tables::List>& values) {
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "\n// first simplex, simplices, cone vertices, side vertices, first side mask\n"
                  "const List kLists[{}] = {{\n",
                  values.size());
   std::size_t column = 0;
   for (const tables::List& l : values) {
-    fmt::format_to(Out(text), "{}{{{},{},{},{},{}}},", column == 0 ? "    " : "", l.first_simplex, l.simplex_count,
+    fmt::format_to(Appender(text), "{}{{{},{},{},{},{}}},", column == 0 ? "    " : "", l.first_simplex, l.simplex_count,
                    l.cone_vertices, l.side_vertices, l.first_side);
     if (++column == 6) text += '\n', column = 0;
   }
@@ -80,7 +80,7 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
         static_cast<std::size_t>(table.dim) * 8);
   array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
   const auto or_null = [](const auto& values, const char* n) { return values.empty() ? "nullptr" : n; };
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "\n}}  // namespace\n\n{}const TileTable {} = {{\n    {}u, {}u, {}u, {}u, {}u, {}u, {}u, {}u,\n    "
                  "kListOf, {}, {}, "
                  "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n\n}}  // namespace "
@@ -99,12 +99,12 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
 void region_table(std::string& text, const RegionTables& table) {
   const auto suffix =
       upper_camel(triangulation_name(table.triangulation)) + upper_camel(alternative_name(table.alternative));
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "\n// first simplex, simplices, own vertices, first mask\nconst RegionList kLists{}[{}] = {{", suffix,
                  table.lists.size());
   for (std::size_t i = 0; i < table.lists.size(); ++i) {
     const tables::RegionList& l = table.lists[i];
-    fmt::format_to(Out(text), "{}{{{},{},{},{}}},", i % 8 == 0 ? "\n    " : "", l.first_simplex, l.simplex_count,
+    fmt::format_to(Appender(text), "{}{{{},{},{},{}}},", i % 8 == 0 ? "\n    " : "", l.first_simplex, l.simplex_count,
                    l.own_vertices, l.first_mask);
   }
   text += "};\n";
@@ -122,7 +122,7 @@ EmittedFile region_file(const TableSet& set) {
   for (const RegionTables& table : set.regions) {
     const auto suffix =
         upper_camel(triangulation_name(table.triangulation)) + upper_camel(alternative_name(table.alternative));
-    fmt::format_to(Out(text),
+    fmt::format_to(Appender(text),
                    "\nconst RegionTable kRegion{}{} = {{{}u, {}u, {}u, kLists{}, reinterpret_cast<const "
                    "std::uint8_t*>(kSimplices{}), {}}};\n",
                    table.dim, suffix, tables::kContractVersion, table.dim, table.max_own_vertices, suffix, suffix,
@@ -137,7 +137,7 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
       opening(set, "The cube with every ambiguity resolved freely. " + resolved_certificate(table) + ".");
   array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
   array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "\n// separate, low, high: first triangle, triangles, own vertices, first mask; polygons\n"
                  "const ResolvedEntry kEntries[{}] = {{",
                  table.entries.size());
@@ -146,13 +146,13 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
   };
   for (std::size_t i = 0; i < table.entries.size(); ++i) {
     const tables::ResolvedEntry& e = table.entries[i];
-    fmt::format_to(Out(text), "{}{{{},{},{},{}}},", i % 4 == 0 ? "\n    " : "", list(e.separate), list(e.low),
+    fmt::format_to(Appender(text), "{}{{{},{},{},{}}},", i % 4 == 0 ? "\n    " : "", list(e.separate), list(e.low),
                    list(e.high), e.components);
   }
   text += "};\n";
   bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
   array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "\n}}  // namespace\n\nconst ResolvedTable kTile3Resolved = {{\n    {}u, {}u, kFirstEntry, "
                  "kAmbiguousSquares, kEntries,\n    reinterpret_cast<const std::uint8_t*>(kTriangles), kMasks}};\n\n"
                  "}}  // namespace tegl::tables\n",
@@ -172,14 +172,14 @@ std::vector<EmittedFile> emit_cpp(const TableSet& set) {
 
 EmittedFile emit_manifest(const TableSet& set) {
   std::string text;
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "{{\n  \"dim\": {},\n  \"contract_version\": {},\n  \"command\": \"{}\",\n  \"group_order\": {},\n"
                  "  \"orbits\": {},\n  \"certified\": [",
                  set.dim, tables::kContractVersion, set.command, set.group_order, set.orbits);
   const char* separator = "\n";
   for (const CertifiedFigures& f : set.figures) {
     fmt::format_to(
-        Out(text),
+        Appender(text),
         "{}    {{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"facets\": {}, "
         "\"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, \"simplices\": {}, "
         "\"max_simplices\": {}, \"mean_simplices\": {:.4f}}}",
@@ -191,7 +191,7 @@ EmittedFile emit_manifest(const TableSet& set) {
   text += "\n  ],\n  \"tables\": [";
   separator = "\n";
   for (const TileTables& t : set.tiles) {
-    fmt::format_to(Out(text),
+    fmt::format_to(Appender(text),
                    "{}    {{\"name\": \"{}\", \"layout\": \"{}\", \"lists\": {}, \"stored_simplices\": {}, "
                    "\"max_tile_vertices\": {}, \"fnv1a\": \"{:016x}\"}}",
                    separator, variable_name(t), layout_name(t.layout), t.lists.size(),
@@ -199,12 +199,13 @@ EmittedFile emit_manifest(const TableSet& set) {
     separator = ",\n";
   }
   for (const RegionTables& t : set.regions)
-    fmt::format_to(Out(text), "{}    {{\"name\": \"kRegion{}{}{}\", \"stored_simplices\": {}, \"fnv1a\": \"{:016x}\"}}",
-                   separator, t.dim, upper_camel(triangulation_name(t.triangulation)),
+    fmt::format_to(Appender(text),
+                   "{}    {{\"name\": \"kRegion{}{}{}\", \"stored_simplices\": {}, \"fnv1a\": \"{:016x}\"}}", separator,
+                   t.dim, upper_camel(triangulation_name(t.triangulation)),
                    upper_camel(alternative_name(t.alternative)),
                    t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1), digest(t));
   if (set.resolved)
-    fmt::format_to(Out(text),
+    fmt::format_to(Appender(text),
                    "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
                    "\"{:016x}\"}}",
                    separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));

@@ -13,7 +13,7 @@ namespace {
 /// Writes `"name": [...]` in lines of about 110 columns.
 template <class T>
 void array(std::string& text, const char* name, const std::vector<T>& values) {
-  fmt::format_to(Out(text), ",\n  \"{}\": [", name);
+  fmt::format_to(Appender(text), ",\n  \"{}\": [", name);
   std::size_t line = text.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i > 0) text += ',';
@@ -21,7 +21,7 @@ void array(std::string& text, const char* name, const std::vector<T>& values) {
       text += "\n    ";
       line = text.size();
     }
-    fmt::format_to(Out(text), "{}", values[i]);
+    fmt::format_to(Appender(text), "{}", values[i]);
   }
   text += ']';
 }
@@ -29,9 +29,9 @@ void array(std::string& text, const char* name, const std::vector<T>& values) {
 /// Writes `"name": {"columns": [...], "rows": [[...], ...]}`.
 template <class T, class Row>
 void rows(std::string& text, const char* name, const char* columns, const std::vector<T>& values, const Row& row) {
-  fmt::format_to(Out(text), ",\n  \"{}\": {{\"columns\": [{}], \"rows\": [", name, columns);
+  fmt::format_to(Appender(text), ",\n  \"{}\": {{\"columns\": [{}], \"rows\": [", name, columns);
   for (std::size_t i = 0; i < values.size(); ++i)
-    fmt::format_to(Out(text), "{}{}[{}]", i == 0 ? "" : ",", i % 6 == 0 ? "\n    " : " ",
+    fmt::format_to(Appender(text), "{}{}[{}]", i == 0 ? "" : ",", i % 6 == 0 ? "\n    " : " ",
                    fmt::join(row(values[i]), ","));
   text += "]}";
 }
@@ -39,14 +39,14 @@ void rows(std::string& text, const char* name, const char* columns, const std::v
 /// The beginning of every file: an open object with the common members.
 std::string opening(const TableSet& set, const char* kind, int dim) {
   std::string text;
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  "{{\n  \"generated_by\": \"{}\",\n  \"license\": \"BSD-3-Clause\",\n  \"kind\": \"{}\",\n"
                  "  \"contract_version\": {},\n  \"dim\": {},\n  \"group_order\": {},\n  \"orbits\": {},\n"
                  "  \"certified\": [",
                  command_for(set, Language::json), kind, tables::kContractVersion, dim, set.group_order, set.orbits);
   const char* separator = "\n";
   for (const CertifiedFigures& f : set.figures) {
-    fmt::format_to(Out(text),
+    fmt::format_to(Appender(text),
                    "{}    {{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"facets\": {}, "
                    "\"spherical\": {}, \"non_spherical\": {}, \"simplices\": {}}}",
                    separator, alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures,
@@ -64,14 +64,14 @@ void shape(std::string& text, const TileTables& table) {
     corners.push_back(fmt::format("[{}]", fmt::join(x.begin(), x.begin() + table.dim, ",")));
   for (const auto& ends : table.edges) edges.push_back(fmt::format("[{}]", fmt::join(ends, ",")));
   for (const auto& face : table.faces) faces.push_back(fmt::format("[{}]", fmt::join(face, ",")));
-  fmt::format_to(Out(text), ",\n  \"tile\": \"{}\",\n  \"corners\": [{}],\n  \"edges\": [{}],\n  \"faces\": [{}]",
+  fmt::format_to(Appender(text), ",\n  \"tile\": \"{}\",\n  \"corners\": [{}],\n  \"edges\": [{}],\n  \"faces\": [{}]",
                  tile_kind_name(table.tile), fmt::join(corners, ", "), fmt::join(edges, ", "), fmt::join(faces, ", "));
 }
 
 EmittedFile json_of_tile(const TableSet& set, const TileTables& table) {
   std::string text = opening(set, "tile", table.dim);
   shape(text, table);
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  ",\n  \"triangulation\": \"{}\",\n  \"alternative\": \"low\",\n  \"layout\": \"{}\",\n"
                  "  \"fnv1a\": \"{:016x}\",\n  \"edge_count\": {},\n  \"first_tile_vertex\": {},\n"
                  "  \"permutation_stride\": {},\n  \"max_simplices\": {},\n  \"max_tile_vertices\": {}",
@@ -96,7 +96,7 @@ EmittedFile json_of_tile(const TableSet& set, const TileTables& table) {
 
 EmittedFile region_file(const TableSet& set, const RegionTables& table) {
   std::string text = opening(set, "region", table.dim);
-  fmt::format_to(Out(text),
+  fmt::format_to(Appender(text),
                  ",\n  \"triangulation\": \"{}\",\n  \"alternative\": \"{}\",\n  \"fnv1a\": \"{:016x}\",\n"
                  "  \"first_region_vertex\": {},\n  \"max_own_vertices\": {}",
                  triangulation_name(table.triangulation), alternative_name(table.alternative), digest(table),
@@ -117,7 +117,7 @@ EmittedFile json_of_resolved(const TableSet& set, const ResolvedCube& table) {
   std::string text = opening(set, "resolved", 3);
   std::vector<std::string> squares;
   for (const auto& square : table.squares) squares.push_back(fmt::format("[{}]", fmt::join(square, ",")));
-  fmt::format_to(Out(text), ",\n  \"certified_entries\": {},\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"",
+  fmt::format_to(Appender(text), ",\n  \"certified_entries\": {},\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"",
                  table.entries.size(), fmt::join(squares, ", "), digest(table));
   array(text, "first_entry", table.first_entry);
   array(text, "ambiguous_squares", table.ambiguous);

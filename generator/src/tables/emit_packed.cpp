@@ -40,13 +40,13 @@ class Writer {
   void constant(const char* name, std::uint32_t value) {
     switch (dialect_.language) {
       case Language::glsl:
-        fmt::format_to(Out(text_), "const uint {}_{} = {}u;\n", prefix_, name, value);
+        fmt::format_to(Appender(text_), "const uint {}_{} = {}u;\n", prefix_, name, value);
         break;
       case Language::wgsl:
-        fmt::format_to(Out(text_), "const {}_{} : u32 = {}u;\n", prefix_, name, value);
+        fmt::format_to(Appender(text_), "const {}_{} : u32 = {}u;\n", prefix_, name, value);
         break;
       default:
-        fmt::format_to(Out(text_), "constexpr uint32_t {}_{} = {}u;\n", prefix_, name, value);
+        fmt::format_to(Appender(text_), "constexpr uint32_t {}_{} = {}u;\n", prefix_, name, value);
     }
   }
 
@@ -54,11 +54,11 @@ class Writer {
   void words(const std::vector<std::uint32_t>& words) {
     const std::size_t count = words.size();
     if (dialect_.language == Language::glsl)
-      fmt::format_to(Out(text_), "const uint {}_words[{}] = TEGL_ARRAY_BEGIN", prefix_, count);
+      fmt::format_to(Appender(text_), "const uint {}_words[{}] = TEGL_ARRAY_BEGIN", prefix_, count);
     else if (dialect_.language == Language::wgsl)
-      fmt::format_to(Out(text_), "const {0}_words : array<u32, {1}> = array<u32, {1}>(", prefix_, count);
+      fmt::format_to(Appender(text_), "const {0}_words : array<u32, {1}> = array<u32, {1}>(", prefix_, count);
     else
-      fmt::format_to(Out(text_), "TEGL_TABLE_DATA uint32_t {}_words[{}] = {{", prefix_, count);
+      fmt::format_to(Appender(text_), "TEGL_TABLE_DATA uint32_t {}_words[{}] = {{", prefix_, count);
     std::size_t line = text_.size();
     for (std::size_t i = 0; i < count; ++i) {
       if (i > 0) text_ += ',';
@@ -66,7 +66,7 @@ class Writer {
         text_ += "\n    ";
         line = text_.size();
       }
-      fmt::format_to(Out(text_), "{}u", words[i]);
+      fmt::format_to(Appender(text_), "{}u", words[i]);
     }
     text_ += dialect_.language == Language::glsl   ? "\n    TEGL_ARRAY_END;\n"
              : dialect_.language == Language::wgsl ? ");\n"
@@ -88,7 +88,7 @@ class Writer {
                              : dialect_.language == Language::glsl
                                  ? "\n// {0}\nuint {1}_{2}({3}) {{\n"
                                  : "\n// {0}\nTEGL_TABLE_FUNCTION uint32_t {1}_{2}({3}) {{\n";
-    fmt::format_to(Out(text_), fmt::runtime(form), about, prefix_, name, list);
+    fmt::format_to(Appender(text_), fmt::runtime(form), about, prefix_, name, list);
     text_ += substituted(body) + "}\n";
   }
 

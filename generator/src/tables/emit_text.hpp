@@ -16,7 +16,7 @@
 
 namespace tegl::gen {
 
-using Out = std::back_insert_iterator<std::string>;
+using Appender = std::back_insert_iterator<std::string>;
 
 inline std::string upper_camel(const std::string& name) {
   std::string result(name);

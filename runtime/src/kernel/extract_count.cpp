@@ -535,7 +535,7 @@ void Counter<N>::clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) 
 
 namespace {
 
-/// Prefix sum over the rows of a chunk. place_layer and place_slab (vertex_numbers.cpp) add the first number of the
+/// Prefix sum over the rows of a chunk. place_layer and place_slab (first_vertices.cpp) add the first number of the
 /// chunk.
 template <class Plane>
 void offset(Plane& plane, std::size_t row, std::uint64_t& next) {

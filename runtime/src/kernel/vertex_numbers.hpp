@@ -5,7 +5,7 @@
 // Vertices are numbered layer 0, slab 0, layer 1, slab 1, ... (extract_layers.hpp); within a layer or slab by row,
 // within a row by category, within a category by bit. Every number is therefore base[row] + prefix[word] + popcount, so
 // rows are independent and all passes get the same numbers. The base of a row is the first number of its chunk
-// (Counter::place_layer and place_slab in vertex_numbers.cpp) and the row's offset in it (offset_layer_row and
+// (Counter::place_layer and place_slab in first_vertices.cpp) and the row's offset in it (offset_layer_row and
 // offset_slab_row in extract_count.cpp).
 #pragma once
 
