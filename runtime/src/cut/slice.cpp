@@ -23,17 +23,24 @@ std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Hyp
   enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on: counts as both
   std::vector<unsigned char> sides(contour.vertices.size());
   detail::in_parts(sides.size(), detail::part_of(progress, 0.0, 0.5), [&](std::size_t from, std::size_t to) {
+    // copies, because the compiler must assume that writing a char changes anything that it cannot see
+    const HyperplaneFamily<N> heights = family;
+    const auto* const points = contour.vertices.data();
+    const double at = level;
+    unsigned char* const side = sides.data();
     for (std::size_t v = from; v < to; ++v) {
-      const double height = family.height(contour.vertices[v]);
-      sides[v] = height < level ? kBelow : height > level ? kAbove : kOn;
+      const double height = heights.height(points[v]);
+      side[v] = height < at ? kBelow : height > at ? kAbove : kOn;
     }
   });
   std::vector<Index> touching;
   detail::in_parts(contour.simplices.size(), detail::part_of(progress, 0.5, 1.0),
                    [&](std::size_t from, std::size_t to) {
+                     const auto* const simplices = contour.simplices.data();
+                     const unsigned char* const side = sides.data();
                      for (std::size_t s = from; s < to; ++s) {
                        unsigned met = 0;
-                       for (const Index v : contour.simplices[s]) met |= sides[v];
+                       for (const Index v : simplices[s]) met |= side[v];
                        if (met == kOn) touching.push_back(static_cast<Index>(s));
                      }
                    });

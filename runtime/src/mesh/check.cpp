@@ -252,8 +252,25 @@ class Coordinates {
   [[nodiscard]] double operator[](std::size_t i) const noexcept {
     return singles_ != nullptr ? static_cast<double>(singles_[i]) : doubles_[i];
   }
+  /// The coordinates of D edge vectors from the first vertex of a row to the others.
+  template <int D, std::size_t Size>
+  void edges(const Index* row, int space_dim, std::array<std::array<double, Size>, D>& to) const noexcept {
+    if (singles_ != nullptr)
+      differences<D>(singles_, row, space_dim, to);
+    else
+      differences<D>(doubles_, row, space_dim, to);
+  }
 
  private:
+  template <int D, class Real, std::size_t Size>
+  static void differences(const Real* values, const Index* row, int space_dim,
+                          std::array<std::array<double, Size>, D>& to) noexcept {
+    for (int j = 0; j < D; ++j)
+      for (int a = 0; a < space_dim; ++a)
+        to[j][a] = static_cast<double>(values[std::size_t{row[j + 1]} * space_dim + a]) -
+                   static_cast<double>(values[std::size_t{row[0]} * space_dim + a]);
+  }
+
   const float* singles_ = nullptr;
   const double* doubles_ = nullptr;
   std::size_t size_;
@@ -266,10 +283,7 @@ bool is_flat(const Index* row, int space_dim, const Coordinates& coordinates) {
   constexpr int kMaxSpace = 8;
   constexpr double kFlat = 1e-14;
   std::array<std::array<double, kMaxSpace>, D> edges;
-  for (int j = 0; j < D; ++j)
-    for (int a = 0; a < space_dim; ++a)
-      edges[j][a] =
-          coordinates[std::size_t{row[j + 1]} * space_dim + a] - coordinates[std::size_t{row[0]} * space_dim + a];
+  coordinates.edges<D>(row, space_dim, edges);
   const auto dot = [space_dim](const auto& x, const auto& y) {
     double sum = 0.0;
     for (int a = 0; a < space_dim; ++a) sum += x[a] * y[a];
