@@ -98,7 +98,7 @@ void add_field(const std::string& field, std::size_t samples) {
   Case what{field, samples, {}, 1};
   add<float, N>("extract", what);
   if (field == "empty") return;
-  if (kHasThreads) add<float, N>("extract", {field, samples, {}, 4});
+  add<float, N>("extract", {field, samples, {}, 4});
   what.options.triangulation = Triangulation::barycentric;
   add<float, N>("extract", what);
   what.options.triangulation = Triangulation::compact;
@@ -112,7 +112,6 @@ template <int N>
 void add_estimators(const std::string& smooth, std::size_t samples, std::size_t samples_of_noise) {
   for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
     for (const int threads : {1, 4}) {
-      if (threads > 1 && !kHasThreads) continue;
       Case what{smooth, samples, {}, threads};
       what.options.ambiguity = ambiguity;
       add<float, N>("extract", what);
@@ -151,14 +150,12 @@ void add_types() {
 template <int N>
 void add_scaling(const std::string& field, std::initializer_list<std::size_t> sizes) {
   for (const std::size_t samples : sizes)
-    for (int threads = 1; threads <= (kHasThreads ? 4 : 1); ++threads)
-      add<float, N>("scaling", {field, samples, {}, threads});
+    for (int threads = 1; threads <= 4; ++threads) add<float, N>("scaling", {field, samples, {}, threads});
 }
 
 /// A smooth field, whose time is mostly spent on writing, and noise, whose time is spent on building tiles.
 void add_5d() {
   for (const int threads : {1, 4}) {
-    if (threads > 1 && !kHasThreads) continue;
     add<float, 5>("extract", {"sphere", 12, {}, threads});
     add<float, 5>("extract", {"sphere", 20, {}, threads});
     add<float, 5>("extract", {"noise", 4, {}, threads});

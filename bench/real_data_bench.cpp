@@ -46,7 +46,6 @@ void add_all() {
   for (const DataSet& data : sets) {
     if (!std::filesystem::exists(data.file)) continue;
     for (const int threads : {1, 4}) {
-      if (threads > 1 && !kHasThreads) continue;
       const std::string name = data.file.filename().string() + "/threads:" + std::to_string(threads);
       benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { extract_file(state, data, threads); })
           ->Unit(benchmark::kMillisecond)

@@ -44,7 +44,6 @@ std::string& last_error() {
 
 using namespace tegl::bench;
 
-int side_has_normals() { return kHasNormals ? 1 : 0; }
 const char* side_error() { return last_error().c_str(); }
 
 int side_memory_rates(int threads, double* read, double* fresh_write) {

@@ -20,8 +20,6 @@ struct SideResult {
   double stage_seconds[4] = {0, 0, 0, 0};  // tegl only: classify, find, generate, close
 };
 
-/// 1 if the library has normals, else 0.
-int side_has_normals();
 const char* side_error();
 const char* side_vtk_version();
 

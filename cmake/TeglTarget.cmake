@@ -1,5 +1,6 @@
 # Warnings and test registration, the same for every target of the project.
 
+# TEGL_OWN_WARNINGS, if the caller sets it: options after these, which change them.
 # Who builds the project only to use it is spared warnings: at -O3 GCC 12 has false alarms, of std::sort of short arrays
 # for one. Tests, and builds where warnings are errors, have them all.
 function(tegl_warnings target)
@@ -9,7 +10,8 @@ function(tegl_warnings target)
     endif()
     return()
   endif()
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+    ${TEGL_OWN_WARNINGS})
   # GCC 12 warns of overlapping copies in its own std::string (GCC bug 105651).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-restrict)

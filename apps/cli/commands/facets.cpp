@@ -80,9 +80,7 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
   for (int k = 0; k < N; ++k) result.facets.at(static_cast<std::size_t>(k)) = facets.count(k);
   Stopwatch watch;
   if (!work.no_check) {
-    const Progress progress = bar.stage("check");
-    result.report = check(facets);
-    progress(1);
+    result.report = check(facets, {.progress = bar.stage("check")});
     result.seconds.check = watch.lap();
   }
   const Progress progress = bar.stage("write");

@@ -158,9 +158,7 @@ class IndexCommand final : public Command {
       result.tiles = index.grid().count();
       result.memory_bytes = index.memory_bytes();
       result.build_seconds = watch.lap();
-      const Progress writing = bar.stage("write");
-      write_active_tiles(index, result.output);
-      writing(1);
+      write_active_tiles(index, result.output, {.progress = bar.stage("write")});
     };
     const auto of_owned = [&](const auto& owned) { write(*build_active_tiles(owned.view(), method, options)); };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);

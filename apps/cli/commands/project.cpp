@@ -148,7 +148,7 @@ class ProjectCommand final : public ContourInputCommand {
     result.wording = wording();
     attributes_.sample_to(*contour, image_options(), threads(), bar);
     Stopwatch watch;
-    result.mesh = project_as_asked(*contour, projection, bar);
+    result.mesh = projected(*contour, projection, bar);
     result.seconds.slice = watch.lap();
     if (result.mesh.simplices.empty() && !contour->simplices.empty())
       throw EmptyResult(
@@ -198,10 +198,10 @@ class ProjectCommand final : public ContourInputCommand {
     return projection;
   }
 
-  Mesh project_as_asked(const Contour<4, double>& contour, const Projection& projection, ProgressBar& bar) const {
+  Mesh projected(const Contour<4, double>& contour, const Projection& projection, ProgressBar& bar) const {
     const Progress progress = bar.stage("project");
     Mesh mesh = kind_ == "outline"      ? tegl::to_mesh(outline(contour, projection, {threads(), progress}))
-                : kind_ == "tetrahedra" ? to_mesh(project(contour, projection))
+                : kind_ == "tetrahedra" ? to_mesh(project(contour, projection, {threads(), progress}))
                                         : cuts(contour, projection, progress);
     const std::string by = mesh.vertex_attributes.back().name;
     add_colors(mesh, by);

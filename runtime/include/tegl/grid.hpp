@@ -76,7 +76,7 @@ struct Grid {
   /// True unless `linear` is the identity and `offset` is zero.
   [[nodiscard]] bool has_world_map() const { return linear != identity<N>() || offset != Vector<N>{}; }
   /// Whether the world map keeps an axis separate, so that its layers are across it: row and column `axis` of `linear`
-  /// are zero except for their common element, which is not.
+  /// are zero except for their common element, which is not. Precondition: 0 <= axis < N.
   [[nodiscard]] bool is_separate(int axis) const {
     for (int a = 0; a < N; ++a)
       if (a != axis && (linear[axis][a] != 0.0 || linear[a][axis] != 0.0)) return false;

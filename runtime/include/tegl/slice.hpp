@@ -119,8 +119,8 @@ struct LayerRange {
 };
 
 /// The layers along `axis` that `slice_image<Real>` reads for the cut across it at the world coordinate `at`, so that
-/// the samples of other layers need not be in memory. Errors: InvalidArgument if `at` is outside of the image, or if
-/// the world map mixes the axis with others. O(n) time for an axis of n samples.
+/// the samples of other layers need not be in memory. Errors: InvalidArgument if there is no such axis, if
+/// `at` is outside of the image, or if the world map mixes the axis with others. O(n) time for an axis of n samples.
 template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 3, 4>
 [[nodiscard]] LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at, const ExtractOptions& options = {});

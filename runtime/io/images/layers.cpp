@@ -182,9 +182,12 @@ OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& optio
 
 RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   require_readable_file(path);
-  if (layout.type > ValueType::float64)
+  if (!layout.type)
     fail(ErrorCode::InvalidArgument, path,
-         "values of type '{}'; expected uint8, int8, uint16, int16, int32, float or double", name_of(layout.type));
+         "no type of values; expected uint8, int8, uint16, int16, int32, float or double");
+  if (*layout.type > ValueType::float64)
+    fail(ErrorCode::InvalidArgument, path,
+         "values of type '{}'; expected uint8, int8, uint16, int16, int32, float or double", name_of(*layout.type));
   RawLayers source;
   source.grid.axes = raw_axes(layout, path);
   if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
@@ -200,7 +203,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   StoredSamples samples;
   samples.path = path;
   samples.offset = layout.offset;
-  samples.type = name_of(layout.type);
+  samples.type = name_of(*layout.type);
   samples.sizes.assign(layout.sizes.begin(), layout.sizes.end());
   samples.swapped = layout.big_endian != (std::endian::native == std::endian::big);
   source.read = [reader = std::make_shared<SampleReader>(std::move(samples)), per_layer](std::size_t first,

@@ -26,7 +26,7 @@ namespace {
 
 // Progress after each step.
 constexpr double kNearestShare = 0.1;  ///< search of the nearest tile
-constexpr double kFlooded = 0.35;
+constexpr double kPropagated = 0.35;
 constexpr double kExtracted = 0.5;
 constexpr double kLabelled = 0.6;
 constexpr double kChosen = 0.95;
@@ -43,8 +43,8 @@ std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
 template <int N>
 class NearestTile {
  public:
-  NearestTile(const detail::TileFlood& flood, const TileGrid<N>& grid, const std::array<double, N>& at)
-      : flood_(flood), grid_(grid), at_(at) {
+  NearestTile(const detail::TilePropagation& propagation, const TileGrid<N>& grid, const std::array<double, N>& at)
+      : propagation_(propagation), grid_(grid), at_(at) {
     for (int a = 0; a < N; ++a)
       centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid_.size(a)) - 1);
   }
@@ -107,14 +107,14 @@ class NearestTile {
     }
     const TileNumber tile = grid().number(at);
     if (report.found && (square > square_ || (square == square_ && tile > report.tile))) return;
-    if (!flood_.is_active(flood_.signature(tile))) return;
+    if (!propagation_.is_active(propagation_.signature(tile))) return;
     report.found = true;
     report.tile = tile;
     report.at = at;
     square_ = square;
   }
 
-  const detail::TileFlood& flood_;
+  const detail::TilePropagation& propagation_;
   const TileGrid<N>& grid_;
   std::array<double, N> at_;
   std::array<std::ptrdiff_t, N> centre_;
@@ -241,17 +241,18 @@ struct ReachedTiles {
 
 /// Searches the nearest active tile and propagates from it. `with_around`: whether to list the tiles around.
 template <int N>
-ReachedTiles<N> reach_tiles(const detail::TileFlood& flood, const TileGrid<N>& grid, const std::array<double, N>& at,
-                            const WorkOptions& work, bool with_around) {
+ReachedTiles<N> reach_tiles(const detail::TilePropagation& propagation, const TileGrid<N>& grid,
+                            const std::array<double, N>& at, const WorkOptions& work, bool with_around) {
   ReachedTiles<N> reached{.grid = grid};
-  if (grid.count() == 0 || !NearestTile<N>(flood, grid, at).find(reached.report, work.progress)) return reached;
+  if (grid.count() == 0 || !NearestTile<N>(propagation, grid, at).find(reached.report, work.progress)) return reached;
   bool at_missing = false;
-  reached.tiles = flood.run({reached.report.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, work.threads,
-                            detail::part_of(work.progress, kNearestShare, kFlooded), &at_missing);
+  reached.tiles =
+      propagation.run({reached.report.tile}, detail::PropagationRule::crossed_faces, Neighbourhood::faces, work.threads,
+                      detail::part_of(work.progress, kNearestShare, kPropagated), &at_missing);
   std::sort(reached.tiles.begin(), reached.tiles.end());
   reached.report.tiles = reached.tiles.size();
   if (at_missing && with_around)
-    reached.around = flood.beside(reached.tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
+    reached.around = propagation.beside(reached.tiles, detail::PropagationRule::crossed_faces, Neighbourhood::all);
   return reached;
 }
 
@@ -273,7 +274,7 @@ PickedComponent<N, Real> extract_reached(const ReachedTiles<N>& reached, bool in
                                          const ExtractOptions& options, const Extractors<N, Real>& extractors) {
   PickReport<N> found = reached.report;
   ExtractOptions rest = options;
-  rest.work.progress = detail::part_of(options.work.progress, kFlooded, kExtracted);
+  rest.work.progress = detail::part_of(options.work.progress, kPropagated, kExtracted);
   if (!found.found) {
     if (!options.close) {
       auto nothing = extractors.nothing(rest);
@@ -328,8 +329,9 @@ requires DimensionBetween<N, 2, 5> PickedComponent<N, Real> extract_component(
   const detail::GridLocator<N> locator(image.grid());
   const std::array<double, N> at = place_in_grid(locator, image.grid(), point);
   const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
-  const detail::TileFlood flood(detail::SampleView<T>(image), isovalue);
-  const ReachedTiles<N> reached = reach_tiles<N>(flood, TileGrid<N>(image.grid().sizes()), at, options.work, in_tiles);
+  const detail::TilePropagation propagation(detail::SampleView<T>(image), isovalue);
+  const ReachedTiles<N> reached =
+      reach_tiles<N>(propagation, TileGrid<N>(image.grid().sizes()), at, options.work, in_tiles);
   const auto contour = [&](const ExtractOptions& with, const std::vector<TileNumber>* tiles) {
     return extract_in<Real>(image, isovalue, with, tiles);
   };

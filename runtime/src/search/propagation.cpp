@@ -15,7 +15,7 @@ namespace tegl::detail {
 
 /// One bit per tile, set atomically by the first thread that reaches it. calloc provides zeroed pages on demand, so
 /// pages without visited tiles take no memory.
-class TileFlood::Seen {
+class TilePropagation::Seen {
  public:
   explicit Seen(TileNumber tiles) : words_(static_cast<Word*>(std::calloc((tiles + 63) / 64, sizeof(Word)))) {
     if (words_ == nullptr) throw std::bad_alloc();
@@ -81,21 +81,23 @@ std::function<std::uint32_t(std::ptrdiff_t)> signature_reader(const SampleView<T
 }  // namespace
 
 template <Value T>
-TileFlood::TileFlood(const SampleView<T>& samples, double isovalue)
+TilePropagation::TilePropagation(const SampleView<T>& samples, double isovalue)
     : strides_(samples.strides),
       grid_(samples.axes()),
       all_high_(static_cast<std::uint32_t>((std::uint64_t{1} << (1u << samples.dim)) - 1)),
       signature_at_(signature_reader(samples, isovalue)) {}
 
-std::uint32_t TileFlood::signature(TileNumber tile) const noexcept { return signature_at_(lowest(grid_.index(tile))); }
+std::uint32_t TilePropagation::signature(TileNumber tile) const noexcept {
+  return signature_at_(lowest(grid_.index(tile)));
+}
 
-std::ptrdiff_t TileFlood::lowest(const Index& index) const noexcept {
+std::ptrdiff_t TilePropagation::lowest(const Index& index) const noexcept {
   std::ptrdiff_t at = 0;
   for (int a = 0; a < grid_.dim(); ++a) at += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
   return at;
 }
 
-std::vector<TileFlood::Move> TileFlood::moves(Neighbourhood neighbourhood) const {
+std::vector<TilePropagation::Move> TilePropagation::moves(Neighbourhood neighbourhood) const {
   std::vector<Move> result;
   for (const Step& step : neighbour_steps(grid_.dim(), neighbourhood)) {
     Move move{step, 0, 0, all_high_};
@@ -110,13 +112,14 @@ std::vector<TileFlood::Move> TileFlood::moves(Neighbourhood neighbourhood) const
   return result;
 }
 
-void TileFlood::visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const {
+void TilePropagation::visit(TileNumber tile, const std::vector<Move>& moves, PropagationRule rule, Seen& seen,
+                            Found& found) const {
   const Index index = grid_.index(tile);
   const std::ptrdiff_t at = lowest(index);
   const std::uint32_t own = signature_at_(at);
   for (const Move& move : moves) {
     const std::uint32_t shared = own & move.face;
-    if (rule == FloodRule::crossed_faces && (shared == 0 || shared == move.face)) continue;
+    if (rule == PropagationRule::crossed_faces && (shared == 0 || shared == move.face)) continue;
     bool inside = true;
     for (int a = 0; a < grid_.dim(); ++a) {
       const std::size_t next = index[a] + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(move.along[a]));
@@ -132,8 +135,9 @@ void TileFlood::visit(TileNumber tile, const std::vector<Move>& moves, FloodRule
   }
 }
 
-std::vector<TileNumber> TileFlood::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
-                                       unsigned threads, const Progress& progress, bool* stopped) const {
+std::vector<TileNumber> TilePropagation::run(std::vector<TileNumber> from, PropagationRule rule,
+                                             Neighbourhood neighbourhood, unsigned threads, const Progress& progress,
+                                             bool* stopped) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
   // the starting tiles are the first layer
   Seen seen(grid_.count());
@@ -167,8 +171,8 @@ std::vector<TileNumber> TileFlood::run(std::vector<TileNumber> from, FloodRule r
   return std::move(all.tiles);
 }
 
-std::vector<TileNumber> TileFlood::beside(const std::vector<TileNumber>& tiles, FloodRule rule,
-                                          Neighbourhood neighbourhood) const {
+std::vector<TileNumber> TilePropagation::beside(const std::vector<TileNumber>& tiles, PropagationRule rule,
+                                                Neighbourhood neighbourhood) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
   Seen seen(grid_.count());
   for (const TileNumber tile : tiles) seen.add(tile);
@@ -177,7 +181,7 @@ std::vector<TileNumber> TileFlood::beside(const std::vector<TileNumber>& tiles, 
   return std::move(found.tiles);
 }
 
-#define TEGL_INSTANTIATE(T) template TileFlood::TileFlood(const SampleView<T>&, double);
+#define TEGL_INSTANTIATE(T) template TilePropagation::TilePropagation(const SampleView<T>&, double);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -16,16 +16,16 @@
 namespace tegl::detail {
 
 /// Which neighbours are visited.
-enum class FloodRule {
+enum class PropagationRule {
   active_neighbours,  ///< all that are active
   crossed_faces,      ///< those across a face that the contour crosses: tiles of the same contour components
 };
 
 /// Reads only the samples of the tiles that it visits. The image must outlive it.
-class TileFlood {
+class TilePropagation {
  public:
   template <Value T>
-  TileFlood(const SampleView<T>& samples, double isovalue);
+  TilePropagation(const SampleView<T>& samples, double isovalue);
 
   [[nodiscard]] const TileShape& grid() const noexcept { return grid_; }
   /// The tile's high corners, bit v for corner v; 0 if a corner is missing.
@@ -36,10 +36,11 @@ class TileFlood {
   /// All tiles reached from the active tiles `from`, which are included; each once, in no particular order. `stopped`:
   /// whether propagation met an inactive tile of the image; with `crossed_faces` such a tile has a missing corner.
   /// Errors: Cancelled.
-  [[nodiscard]] std::vector<TileNumber> run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
-                                            unsigned threads, const Progress& progress, bool* stopped = nullptr) const;
+  [[nodiscard]] std::vector<TileNumber> run(std::vector<TileNumber> from, PropagationRule rule,
+                                            Neighbourhood neighbourhood, unsigned threads, const Progress& progress,
+                                            bool* stopped = nullptr) const;
   /// The tiles one step away from the active tiles, each once, in no particular order.
-  [[nodiscard]] std::vector<TileNumber> beside(const std::vector<TileNumber>& tiles, FloodRule rule,
+  [[nodiscard]] std::vector<TileNumber> beside(const std::vector<TileNumber>& tiles, PropagationRule rule,
                                                Neighbourhood neighbourhood) const;
 
  private:
@@ -58,7 +59,7 @@ class TileFlood {
 
   [[nodiscard]] std::vector<Move> moves(Neighbourhood neighbourhood) const;
   /// Adds the neighbours of the tile that were not seen before.
-  void visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const;
+  void visit(TileNumber tile, const std::vector<Move>& moves, PropagationRule rule, Seen& seen, Found& found) const;
   /// Offset of the lowest sample of a tile, in elements of the image.
   [[nodiscard]] std::ptrdiff_t lowest(const Index& index) const noexcept;
 

@@ -25,11 +25,12 @@ class SeedIndex final : public IndexMethod {
   [[nodiscard]] std::size_t memory_bytes() const noexcept override { return seeds_.size() * sizeof(TileNumber); }
   [[nodiscard]] bool needs_image() const noexcept override { return true; }
   void collect(double isovalue, std::vector<TileNumber>& tiles) const override {
-    const TileFlood flood(samples_, isovalue);
+    const TilePropagation propagation(samples_, isovalue);
     std::vector<TileNumber> active;
     for (const TileNumber seed : seeds_)
-      if (flood.is_active(flood.signature(seed))) active.push_back(seed);
-    const auto found = flood.run(std::move(active), FloodRule::active_neighbours, kNeighbourhood, threads_, {});
+      if (propagation.is_active(propagation.signature(seed))) active.push_back(seed);
+    const auto found =
+        propagation.run(std::move(active), PropagationRule::active_neighbours, kNeighbourhood, threads_, {});
     tiles.insert(tiles.end(), found.begin(), found.end());
   }
   void write(IndexWriter& to) const override { to.array(seeds_); }

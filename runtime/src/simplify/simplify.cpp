@@ -642,18 +642,23 @@ class Simplifier {
   SimplifyStats stats_;
 };
 
-/// The contour with coordinates of another type. The rest is moved.
-template <class To, int N, class From>
-Contour<N, To> with_coordinates(Contour<N, From>&& contour) {
-  const auto converted = [](const Buffer<std::array<From, N>>& from) {
+/// The contour with coordinates of another type. The rest is copied, or moved from a temporary.
+template <class To, int N, class Source>
+Contour<N, To> with_coordinates(Source&& contour) {
+  const auto converted = [](const auto& from) {
     Buffer<std::array<To, N>> to(from.size());
     for (std::size_t v = 0; v < from.size(); ++v)
       for (int a = 0; a < N; ++a) to[v][a] = static_cast<To>(from[v][a]);
     return to;
   };
-  return {converted(contour.vertices),          std::move(contour.simplices),         converted(contour.normals),
-          std::move(contour.axis_names),        std::move(contour.axis_units),        contour.direction,
-          std::move(contour.vertex_attributes), std::move(contour.simplex_attributes)};
+  return {converted(contour.vertices),
+          std::forward<Source>(contour).simplices,
+          converted(contour.normals),
+          std::forward<Source>(contour).axis_names,
+          std::forward<Source>(contour).axis_units,
+          contour.direction,
+          std::forward<Source>(contour).vertex_attributes,
+          std::forward<Source>(contour).simplex_attributes};
 }
 
 }  // namespace
@@ -665,9 +670,9 @@ requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contou
   if constexpr (std::is_same_v<Real, double>) {
     return detail::Simplifier<N>(contour, false, options).run();
   } else {
-    const Contour<N, double> in_doubles = detail::with_coordinates<double>(Contour<N, Real>(contour));
+    const Contour<N, double> in_doubles = detail::with_coordinates<double, N>(contour);
     auto [result, stats] = detail::Simplifier<N>(in_doubles, true, options).run();
-    return {detail::with_coordinates<Real>(std::move(result)), stats};
+    return {detail::with_coordinates<Real, N>(std::move(result)), stats};
   }
 }
 

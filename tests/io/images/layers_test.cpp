@@ -214,6 +214,7 @@ TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
   EXPECT_EQ(error({{2, 2, 5, 5, 1}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
   EXPECT_THAT(error({{5, 5}, ValueType::uint32}).what(), AllOf(HasSubstr("'uint32'"), HasSubstr("uint16")));
   EXPECT_EQ(error({{5, 5}, ValueType::int64}).code(), ErrorCode::InvalidArgument);
+  EXPECT_THAT(error({.sizes = {5, 5}}).what(), HasSubstr("no type of values; expected uint8"));
   RawLayout layout{{5, 5}, ValueType::uint8};
   layout.spacing = {1.0};
   EXPECT_THAT(error(layout).what(), HasSubstr("spacings of 1 axes, and sizes of 2"));

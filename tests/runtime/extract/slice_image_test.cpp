@@ -331,6 +331,8 @@ TEST(SliceImage, ReadsOnlyTheLayersOfTheCut) {
   EXPECT_EQ(slab.first, 2u);
   EXPECT_EQ(slab.end, 4u);
   EXPECT_EQ(code_of([&] { (void)layers_of_cut(whole.grid, 3, 5.5); }, "between 0 and 5"), ErrorCode::InvalidArgument);
+  for (const int axis : {-1, 4})
+    EXPECT_EQ(code_of([&] { (void)layers_of_cut(whole.grid, axis, 1.0); }, "0 to 3"), ErrorCode::InvalidArgument);
 }
 
 TEST(SliceImage, RefusesAWorldMapThatMixesTheLastAxis) {

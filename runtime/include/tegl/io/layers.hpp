@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -48,7 +49,7 @@ struct OpenLayersResult {
 /// The layout of a headerless raw file: contiguous values, axis 0 fastest.
 struct RawLayout {
   std::vector<std::size_t> sizes = {};       ///< sizes of 2 to 4 axes
-  ValueType type = ValueType::uint8;         ///< one that images in memory may have
+  std::optional<ValueType> type = {};        ///< required; one that images in memory may have
   std::uint64_t offset = 0;                  ///< bytes before the first value
   bool big_endian = false;                   ///< byte order of values
   std::vector<double> spacing = {};          ///< distance of adjacent samples by axis, not 0; empty: 1

@@ -106,7 +106,7 @@ template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, double> to_contour(const Mesh& mesh);
 /// Takes the mesh's memory over: attributes, and arrays that hold rows as a contour has them. Other arrays are freed as
-/// soon as they are copied. After an error the mesh is unchanged.
+/// soon as they are copied (but arrays of planar meshes with the mesh). After UnsupportedData the mesh is unchanged.
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, double> to_contour(Mesh&& mesh);
