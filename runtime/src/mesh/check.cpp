@@ -249,28 +249,13 @@ class Coordinates {
   explicit Coordinates(std::span<const float> values) : singles_(values.data()), size_(values.size()) {}
   explicit Coordinates(std::span<const double> values) : doubles_(values.data()), size_(values.size()) {}
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] double operator[](std::size_t i) const noexcept {
-    return singles_ != nullptr ? static_cast<double>(singles_[i]) : doubles_[i];
-  }
-  /// The coordinates of D edge vectors from the first vertex of a row to the others.
-  template <int D, std::size_t Size>
-  void edges(const Index* row, int space_dim, std::array<std::array<double, Size>, D>& to) const noexcept {
-    if (singles_ != nullptr)
-      differences<D>(singles_, row, space_dim, to);
-    else
-      differences<D>(doubles_, row, space_dim, to);
+  /// Calls f with a pointer to the first coordinate.
+  template <class F>
+  decltype(auto) with_values(const F& f) const {
+    return singles_ != nullptr ? f(singles_) : f(doubles_);
   }
 
  private:
-  template <int D, class Real, std::size_t Size>
-  static void differences(const Real* values, const Index* row, int space_dim,
-                          std::array<std::array<double, Size>, D>& to) noexcept {
-    for (int j = 0; j < D; ++j)
-      for (int a = 0; a < space_dim; ++a)
-        to[j][a] = static_cast<double>(values[std::size_t{row[j + 1]} * space_dim + a]) -
-                   static_cast<double>(values[std::size_t{row[0]} * space_dim + a]);
-  }
-
   const float* singles_ = nullptr;
   const double* doubles_ = nullptr;
   std::size_t size_;
@@ -283,7 +268,12 @@ bool is_flat(const Index* row, int space_dim, const Coordinates& coordinates) {
   constexpr int kMaxSpace = 8;
   constexpr double kFlat = 1e-14;
   std::array<std::array<double, kMaxSpace>, D> edges;
-  coordinates.edges<D>(row, space_dim, edges);
+  coordinates.with_values([&](const auto* values) {
+    for (int j = 0; j < D; ++j)
+      for (int a = 0; a < space_dim; ++a)
+        edges[j][a] = static_cast<double>(values[std::size_t{row[j + 1]} * space_dim + a]) -
+                      static_cast<double>(values[std::size_t{row[0]} * space_dim + a]);
+  });
   const auto dot = [space_dim](const auto& x, const auto& y) {
     double sum = 0.0;
     for (int a = 0; a < space_dim; ++a) sum += x[a] * y[a];
@@ -329,12 +319,13 @@ std::uint64_t count_nonfinite(const Coordinates& coordinates, std::size_t vertic
   const std::size_t space_dim = vertices == 0 ? 0 : coordinates.size() / vertices;
   std::uint64_t count = 0;
   detail::in_parts(vertices, progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) {
-      bool all_finite = true;
-      for (std::size_t a = 0; a < space_dim; ++a)
-        all_finite = all_finite && std::isfinite(coordinates[v * space_dim + a]);
-      if (!all_finite) ++count;
-    }
+    count += coordinates.with_values([&](const auto* values) {
+      const auto is_finite = [](auto x) { return std::isfinite(x); };
+      std::uint64_t found = 0;
+      for (const auto* at = values + from * space_dim; at != values + to * space_dim; at += space_dim)
+        if (!std::all_of(at, at + space_dim, is_finite)) ++found;
+      return found;
+    });
   });
   return count;
 }
@@ -352,12 +343,14 @@ SimplexCounts count_simplices(const Complex<D>& complex, int space_dim, const Co
   SimplexCounts counts;
   detail::DisjointSets connected(complex.vertex_count);
   detail::in_parts(complex.size(), progress, [&](std::size_t from, std::size_t to) {
+    const Complex<D> local = complex;  // stays in registers
     for (std::size_t s = from; s < to; ++s) {
-      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates)) ++counts.degenerate;
-      if (complex.is_collapsed(s)) continue;
+      const bool is_collapsed = local.is_collapsed(s);
+      if (is_collapsed || is_flat<D>(local[s], space_dim, coordinates)) ++counts.degenerate;
+      if (is_collapsed) continue;
       ++counts.sound;
       for (int i = 1; i <= D; ++i)
-        if (connected.join(complex[s][0], complex[s][i])) ++counts.joins;
+        if (connected.join(local[s][0], local[s][i])) ++counts.joins;
     }
   });
   return counts;

@@ -4,7 +4,6 @@
 #include "mesh/validate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,17 +13,21 @@
 namespace tegl::detail {
 
 void require_vertex_numbers(std::span<const Index> rows, std::size_t corners, std::size_t vertices) {
-  std::array<Index, 4> highest{};  // independent maxima, which run in parallel
-  std::size_t i = 0;
-  for (; i + highest.size() <= rows.size(); i += highest.size())
-    for (std::size_t j = 0; j < highest.size(); ++j) highest[j] = std::max(highest[j], rows[i + j]);
-  for (; i < rows.size(); ++i) highest[0] = std::max(highest[0], rows[i]);
-  if (rows.empty() || *std::max_element(highest.begin(), highest.end()) < vertices) return;
-  for (std::size_t at = 0; at < rows.size(); ++at)
-    if (rows[at] >= vertices)
+  const Index* const end = rows.data() + rows.size();
+  const Index* at = rows.data();
+  Index highest = 0;
+  Index others = 0;  // independent of the other maximum, so that both run in parallel
+  for (; end - at >= 2; at += 2) {
+    highest = std::max(highest, at[0]);
+    others = std::max(others, at[1]);
+  }
+  if (at != end) highest = std::max(highest, *at);
+  if (rows.empty() || std::max(highest, others) < vertices) return;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i] >= vertices)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
-                              at / corners, rows[at], vertices));
+                              i / corners, rows[i], vertices));
 }
 
 namespace {
