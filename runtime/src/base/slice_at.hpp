@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Coordinate of a slice, used by both slicing methods.
+// Axis and coordinate of a slice, used by all slicing methods.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,13 @@
 #include "tegl/error.hpp"
 
 namespace tegl::detail {
+
+/// Throws InvalidArgument unless space of N dimensions has this axis.
+template <int N>
+void require_cut_axis(int axis) {
+  if (axis < 0 || axis >= N)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+}
 
 /// Rounds the hyperplane's coordinate to the precision of the vertices, so that it equals the coordinate of a vertex
 /// computed for the same number. Rounding is monotone, so no coordinate changes from one side of `at` to the other.

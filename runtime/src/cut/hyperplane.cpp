@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/slice_at.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/error.hpp"
 
@@ -14,8 +15,7 @@ namespace tegl {
 
 template <int N>
 requires DimensionBetween<N, 2, 4> Hyperplane<N> Hyperplane<N>::across(int axis, double at) {
-  if (axis < 0 || axis >= N)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+  detail::require_cut_axis<N>(axis);
   return {unit_vector<N>(axis), at};
 }
 

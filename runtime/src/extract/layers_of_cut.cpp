@@ -3,17 +3,12 @@
 // The layers that a cut across an axis reads, for callers that read an image layer by layer.
 #include "extract/layers_of_cut.hpp"
 
-#include <fmt/format.h>
-
-#include "tegl/error.hpp"
-
 namespace tegl {
 
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 3, 4> LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at,
                                                             const ExtractOptions& options) {
-  if (axis < 0 || axis >= N)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+  detail::require_cut_axis<N>(axis);
   return detail::with_neighbours(detail::layers_around<N, Real>(grid, axis, at), grid.axes[axis].size(), options);
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -53,7 +52,7 @@ class NearestTile {
   bool find(PickReport<N>& report, const Progress& progress) {
     std::ptrdiff_t most = 0;
     for (int a = 0; a < N; ++a)
-      most = std::max({most, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
+      most = std::max({most, centre_[a], static_cast<std::ptrdiff_t>(grid_.size(a)) - 1 - centre_[a]});
     for (radius_ = 0; radius_ <= most; ++radius_) {
       // Lower bound of the distance of the tiles of this shell.
       const double least = static_cast<double>(std::max<std::ptrdiff_t>(0, radius_ - 1));
@@ -67,8 +66,6 @@ class NearestTile {
   }
 
  private:
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
-
   /// Visits all tiles of the shell with these indices along the axes above `axis`. `on_shell`: these indices are on the
   /// shell already.
   void look(int axis, bool on_shell, std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
@@ -78,7 +75,7 @@ class NearestTile {
       look(axis - 1, on_shell || d == -radius_ || d == radius_, index, report);
     };
     const std::ptrdiff_t first = std::max(-radius_, -centre_[axis]);
-    const std::ptrdiff_t last = std::min(radius_, static_cast<std::ptrdiff_t>(grid().size(axis)) - 1 - centre_[axis]);
+    const std::ptrdiff_t last = std::min(radius_, static_cast<std::ptrdiff_t>(grid_.size(axis)) - 1 - centre_[axis]);
     if (on_shell || radius_ <= reach_below(axis)) {
       for (std::ptrdiff_t d = first; d <= last; ++d) step_to(d);
       return;
@@ -92,7 +89,7 @@ class NearestTile {
   [[nodiscard]] std::ptrdiff_t reach_below(int axis) const noexcept {
     std::ptrdiff_t reach = -1;
     for (int a = 0; a < axis; ++a)
-      reach = std::max({reach, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
+      reach = std::max({reach, centre_[a], static_cast<std::ptrdiff_t>(grid_.size(a)) - 1 - centre_[a]});
     return reach;
   }
 
@@ -105,7 +102,7 @@ class NearestTile {
       square += off * off;
       at[a] = static_cast<std::size_t>(index[a]);
     }
-    const TileNumber tile = grid().number(at);
+    const TileNumber tile = grid_.number(at);
     if (report.found && (square > square_ || (square == square_ && tile > report.tile))) return;
     if (!propagation_.is_active(propagation_.signature(tile))) return;
     report.found = true;

@@ -63,7 +63,7 @@ struct RemainingSimplices {
   std::vector<std::size_t> sources;             ///< #S: simplex of the original; empty if unknown
 };
 
-/// Works in double precision. If the contour's coordinates are in single precision, those of the result are, too.
+/// Works in double precision. The result has the precision of the contour's coordinates.
 template <int N>
 class Simplifier {
  public:
