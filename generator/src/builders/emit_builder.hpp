@@ -20,5 +20,7 @@ namespace tegl::gen {
 [[nodiscard]] BuilderTexts emit_square_builder(const BuilderRequest& request);
 /// The builder of the cube.
 [[nodiscard]] BuilderTexts emit_cube_builder(const BuilderRequest& request);
+/// The builder of the 5-cube.
+[[nodiscard]] BuilderTexts emit_five_cube_builder(const BuilderRequest& request);
 
 }  // namespace tegl::gen

@@ -62,7 +62,9 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         grid_cells_(cube_, options.close),
         finder_(shape_, options.close ? plan.closed_axes : 0),
         workers_(options.work.threads, [] { return Nothing{}; }),
-        built_(cube_, options.ambiguity == Ambiguity::high ? tile::Alternative::high : tile::Alternative::low,
+        built_(cube_,
+               {options.ambiguity == Ambiguity::high ? tile::Alternative::high : tile::Alternative::low,
+                options.triangulation, is_estimated(options.ambiguity)},
                tile_bytes, workers_.count()) {
     if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) {

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "tile/five_cube_tile.hpp"
+
 namespace tegl::detail {
 
 using tile::VertexId;
@@ -27,7 +29,7 @@ CubeFaces::CubeFaces(int n) : lattice_(tile::FaceLattice::cube(n)), numbers_(std
 
 namespace {
 
-constexpr std::uint16_t kUnused = std::numeric_limits<std::uint16_t>::max();
+constexpr std::uint16_t kUnused = BuiltTile::kNone;
 
 bool is_of_contour(VertexKind kind) {
   return kind == VertexKind::edge || kind == VertexKind::barycentre || kind == VertexKind::side;
@@ -140,11 +142,44 @@ std::size_t BuiltTile::bytes() const noexcept {
          (of.capacity() + edges.capacity() + simplices.capacity()) * sizeof(std::uint16_t);
 }
 
+namespace {
+
+/// Builds barycentric tiles by the general builder.
+class GeneralMaker final : public TileMaker {
+ public:
+  GeneralMaker(const CubeFaces& cube, tile::Alternative alternative, std::size_t max_bytes)
+      : cube_(cube), alternative_(alternative), builder_(cube.lattice(), max_bytes) {}
+
+  BuiltTile make(const TileKey& key) override {
+    choices_.clear();
+    if (key.has_choices()) {
+      choices_.assign(cube_.cells().size(), tile::Choice::separate);
+      for (std::size_t face = cube_.first_choice(); face < choices_.size(); ++face)
+        choices_[face] = key.choice(face - cube_.first_choice());
+    }
+    return too_large_as_error([&] {
+      return BuiltTile(cube_, builder_.build(key.signature, {.choices = choices_, .alternative = alternative_}));
+    });
+  }
+  [[nodiscard]] std::size_t kept_bytes() const override { return builder_.kept_bytes(); }
+
+ private:
+  const CubeFaces& cube_;
+  tile::Alternative alternative_;
+  tile::FacetBuilder builder_;
+  std::vector<tile::Choice> choices_;
+};
+
+}  // namespace
+
 BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
   const std::lock_guard lock(from_.mutex_);
   if (from_.builders_.empty()) {
     from_.builders_.reserve(from_.made_ + 1);  // so that returning a builder cannot throw
-    builder_ = std::make_unique<tile::FacetBuilder>(from_.cube_.lattice(), from_.max_builder_bytes_);
+    if (from_.kind_.triangulation == Triangulation::compact)
+      builder_ = five_cube_maker(from_.cube_, from_.kind_);
+    else
+      builder_ = std::make_unique<GeneralMaker>(from_.cube_, from_.kind_.alternative, from_.max_builder_bytes_);
     ++from_.made_;
   } else {
     builder_ = std::move(from_.builders_.back());
@@ -158,17 +193,7 @@ BuiltTiles::BuilderLoan::~BuilderLoan() {
 }
 
 BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(const TileKey& key) const {
-  std::vector<tile::Choice> choices;
-  if (key.has_choices()) {
-    const auto& cells = from_.cube_.cells();
-    choices.assign(cells.size(), tile::Choice::separate);
-    for (std::size_t face = from_.cube_.first_choice(); face < cells.size(); ++face)
-      choices[face] = key.choice(face - from_.cube_.first_choice());
-  }
-  return too_large_as_error([&] {
-    return std::make_shared<const BuiltTile>(
-        from_.cube_, builder_->build(key.signature, {.choices = choices, .alternative = from_.alternative_}));
-  });
+  return std::make_shared<const BuiltTile>(builder_->make(key));
 }
 
 std::size_t BuiltTiles::kept_bytes() {

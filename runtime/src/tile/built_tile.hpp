@@ -17,6 +17,7 @@
 
 #include "tegl/error.hpp"
 #include "tegl/tile/facets.hpp"
+#include "tegl/tile/triangulation.hpp"
 #include "tile/cube_symmetries.hpp"
 
 namespace tegl::detail {
@@ -66,9 +67,11 @@ struct BuiltTile {
   struct Vertex {
     tile::VertexKind kind;
     std::uint16_t face;                          ///< number in the lattice
-    std::uint16_t copied;                        ///< side: the vertex that it copies
-    std::uint32_t first, end;                    ///< barycentre, centre: its range in `of`
+    std::uint16_t copied;                        ///< side: the vertex that it copies; kNone: a mean
+    std::uint32_t first, end;                    ///< barycentre, centre, mean: its range in `of`
     std::uint32_t first_edge = 0, end_edge = 0;  ///< barycentre with others in its face: its range in `edges`
+    std::uint8_t repeats = 0;                    ///< mean: earlier vertices of the face with the same points
+    bool is_even = true;                         ///< mean: all points have the same weight
   };
   /// A face that has the vertices [first, first + count) of the contour.
   struct FaceVertices {
@@ -79,14 +82,19 @@ struct BuiltTile {
   /// simplex belongs.
   static constexpr std::uint16_t kIsMiddle = 0x8000;
 
+  static constexpr std::uint16_t kNone = 0xffff;
+
   std::vector<FaceVertices> faces;  ///< in lattice order
   std::vector<Vertex> vertices;
-  std::vector<std::uint16_t> of;         ///< barycentre: simplices of dim - 1 vertices; centre: vertices
+  /// Barycentre: simplices of dim - 1 vertices; centre: vertices; mean: corners, then vertices on edges, each followed
+  /// by its number in the face's own frame, in which edges are counted after the corners.
+  std::vector<std::uint16_t> of;
   std::vector<std::uint16_t> edges;      ///< vertices on edges below a barycentre
   std::vector<std::uint16_t> simplices;  ///< n vertices each; the positive side faces high corners
   bool has_sides = false;                ///< has side fillings, so it depends on the order of the axes
   bool is_settled = true;                ///< its boundary's contour is one sphere: its own choice does not matter
 
+  BuiltTile() = default;
   /// Throws Error{TooLarge} for a tile with more than 32768 vertices.
   BuiltTile(const CubeFaces& cube, const tile::TileFacets& tile);
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -126,19 +134,42 @@ struct SeenTile {
   CubeSymmetry symmetry;  ///< maps from the built tile's frame
 };
 
-/// Cache of built tiles by key. Keys without choices are stored up to symmetry if the contour is invariant, which holds
-/// if it is coned (side fillings depend on the order of the axes). Returned tiles live as long as someone holds them.
-/// In addition at most `max_bytes` are kept: half for tiles, half in equal shares for the faces that each of `builders`
-/// builders keeps.
+/// Builds tiles, one at a time.
+class TileMaker {
+ public:
+  TileMaker() = default;
+  TileMaker(const TileMaker&) = delete;
+  TileMaker& operator=(const TileMaker&) = delete;
+  virtual ~TileMaker() = default;
+  /// Throws Error{TooLarge} for a tile with too many vertices.
+  virtual BuiltTile make(const TileKey& key) = 0;
+  /// Memory that it keeps from tile to tile.
+  [[nodiscard]] virtual std::size_t kept_bytes() const = 0;
+};
+
+/// Which tiles a BuiltTiles builds.
+struct TileKind {
+  tile::Alternative alternative = tile::Alternative::low;
+  /// Compact tiles exist for N = 5 (five_cube_tile.hpp). Tiles of other dimensions are barycentric.
+  Triangulation triangulation = Triangulation::barycentric;
+  bool is_estimated = false;  ///< ambiguities are resolved from the data
+};
+
+/// Cache of built tiles by key. Keys without choices of barycentric tiles are stored up to symmetry if the contour is
+/// invariant, which holds if it is coned (side fillings depend on the order of the axes). Returned tiles live as long
+/// as someone holds them. In addition at most `max_bytes` are kept: half for tiles, half in equal shares for the faces
+/// that each of `builders` builders keeps.
 class BuiltTiles {
  public:
   using Pointer = std::shared_ptr<const BuiltTile>;
-  BuiltTiles(const CubeFaces& cube, tile::Alternative alternative, std::size_t max_bytes, std::size_t builders)
+  BuiltTiles(const CubeFaces& cube, const TileKind& kind, std::size_t max_bytes, std::size_t builders)
       : cube_(cube),
         symmetries_(cube.dim()),
-        alternative_(alternative),
+        kind_(kind),
         max_bytes_(max_bytes / 2),
-        max_builder_bytes_(max_bytes / 2 / builders) {}
+        max_builder_bytes_(max_bytes / 2 / builders) {
+    if (cube.dim() != 5) kind_.triangulation = Triangulation::barycentric;
+  }
 
   [[nodiscard]] const CubeSymmetries& symmetries() const noexcept { return symmetries_; }
   /// Bytes kept in tiles and in builders that are not in use.
@@ -153,7 +184,7 @@ class BuiltTiles {
     // keys without choices: to a common frame
     std::vector<TileKey> wanted(keys.begin(), keys.end());
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      if (keys[i].has_choices()) continue;
+      if (keys[i].has_choices() || kind_.triangulation == Triangulation::compact) continue;
       result[i].symmetry = symmetries_.to_frame_of(keys[i].signature);
       wanted[i].signature = symmetries_.before(result[i].symmetry, keys[i].signature);
     }
@@ -214,20 +245,20 @@ class BuiltTiles {
 
    private:
     BuiltTiles& from_;
-    std::unique_ptr<tile::FacetBuilder> builder_;
+    std::unique_ptr<TileMaker> builder_;
   };
   void keep(const TileKey& key, const Pointer& tile);
 
   const CubeFaces& cube_;
   CubeSymmetries symmetries_;
-  tile::Alternative alternative_;
+  TileKind kind_;
   std::size_t max_bytes_;          ///< for tiles
   std::size_t max_builder_bytes_;  ///< for each builder
   std::size_t bytes_ = 0;
   std::unordered_map<TileKey, Pointer, TileKeyHash> known_;
   std::mutex mutex_;      ///< guards the members below
   std::size_t made_ = 0;  ///< builders created, including lent ones
-  std::vector<std::unique_ptr<tile::FacetBuilder>> builders_;
+  std::vector<std::unique_ptr<TileMaker>> builders_;
 };
 
 }  // namespace tegl::detail

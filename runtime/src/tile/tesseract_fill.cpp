@@ -149,6 +149,25 @@ ResolvedSize ResolvedTesseract::size(const ResolvedKey& key, const ResolvedCubes
   return size;
 }
 
+bool ResolvedTesseract::cone_components(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
+  find_cubes(lists);
+  const bool joins = find_joined(key);
+  simplex_count_ = 0;
+  masks_.clear();
+  const auto first = components_.begin(), end = first + component_count_;
+  if (is_in_table(key) && std::all_of(first, end, [](const Component& c) { return c.is_sphere; })) {
+    for (auto c = first; c != end; ++c) c->is_coned = true;
+    take_from_table(key);
+    return key.tile != Choice::high;
+  }
+  constexpr std::size_t kMore = ResolvedCubes::kWordsBehind;
+  if (simplices_.size() < triangle_count_ + kMore) simplices_.resize(triangle_count_ + kMore);
+  const bool high = choose_cones(key, joins);
+  for (auto c = first; c != end; ++c)
+    if (c->is_coned) cone(*c);
+  return high;
+}
+
 ResolvedCubes::Lists ResolvedTesseract::lists_of(const ResolvedKey& key) const noexcept {
   const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
   ResolvedCubes::Lists lists;

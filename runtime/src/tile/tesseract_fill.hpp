@@ -97,7 +97,12 @@ class ResolvedTesseract {
   /// or one sphere. The contour is then the compact table's.
   static bool is_settled(std::uint16_t signature) noexcept;
 
+  /// Finds the components of Sigma and fills those that are cones, so that the others can be filled in another way.
+  /// Returns which side is copied to fill the others: true for high. For FiveCubeBuilder, which reads the result.
+  bool cone_components(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
+
  private:
+  friend class FiveCubeBuilder;
   using Word = std::uint32_t;  ///< four vertices
   struct Component {
     std::uint64_t vertices = 0;

@@ -109,7 +109,7 @@ class TilePlaces {
       case tile::VertexKind::centre:
         return vertex.first == vertex.end ? beside(vertex) : mean(vertex);
       case tile::VertexKind::side:
-        return pushed_inwards(vertex);
+        return vertex.copied == BuiltTile::kNone ? mean_of_points(vertex) : pushed_inwards(vertex);
       default:
         return corner_point<N>(cube_.cells()[vertex.face].base);
     }
@@ -150,6 +150,30 @@ class TilePlaces {
     Weighted<N> sum;
     for (std::size_t at = vertex.first; at < vertex.end; ++at) sum.add((*this)(tile_->of[at]), 1.0);
     return divided(sum);
+  }
+
+  /// As own_place and mask_place of 4D tiles (extract_tables.hpp), in the frame of the vertex's face: contours of a layer
+  /// agree with those of a 4D image bit by bit.
+  Point mean_of_points(const BuiltTile::Vertex& vertex) noexcept {
+    Weighted<N> sum;
+    bool has_corners = false;
+    for (std::size_t at = vertex.first; at < vertex.end; at += 2) {
+      const std::uint16_t v = tile_->of[at];
+      has_corners = has_corners || tile_->vertices[v].kind == tile::VertexKind::corner;
+      sum.add((*this)(v), vertex.is_even ? 1.0 : 1.0 + 0.01 * tile_->of[at + 1]);
+    }
+    const CubeFaces::Cell& face = cube_.cells()[vertex.face];
+    Point point = corner_point<N>(face.base);
+    int own_axis = 0;
+    for (int a = 0; a < N; ++a) {
+      if ((face.axes >> a & 1u) == 0) continue;
+      const double centre = vertex.is_even ? 0.5 : 0.487 + 0.01 * own_axis++;
+      const double share = has_corners ? 0.5 : vertex.is_even ? 0.0 : 0.1;
+      const double mean = sum.point[a] / sum.weight;
+      point[a] = share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
+      for (unsigned repeat = 0; repeat < vertex.repeats; ++repeat) point[a] += 0.0625 * (0.5 - point[a]);
+    }
+    return point;
   }
 
   /// Midpoint of a vertex and the contour's copy of it.

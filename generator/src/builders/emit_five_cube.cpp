@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Emits the builder of the 5-cube, which fills ten tesseracts and then the components of their contours.
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+
+#include "base/error.hpp"
+#include "builders/emit_builder.hpp"
+#include "builders/five_cube_faces.hpp"
+#include "builders/templates.hpp"
+
+namespace tegl::gen {
+
+BuilderTexts emit_five_cube_builder(const BuilderRequest& request) {
+  BuilderTexts texts;
+  certify_five_cube_faces();
+  texts.certificate = "faces and incidence signs against the lattice of the 5-cube";
+  const std::string name = builder_name(request);
+  const auto banner = [&](const char* what) {
+    return builder_banner(request, Language::cpp, what, texts.certificate);
+  };
+  const std::string what = banner("The contour in one 5-cube, a cell of a 5D image.");
+  texts.files.push_back({name + ".hpp", filled("builder5.hpp", {{"banner", what}})});
+  texts.files.push_back(
+      {name + ".cpp", filled("builder5.cpp", {{"banner", what}, {"name", name}, {"faces", five_cube_faces()}})});
+  return texts;
+}
+
+}  // namespace tegl::gen

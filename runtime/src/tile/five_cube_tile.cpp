@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Converts keys and contours between the numbering of the lattice, which extractions use, and that of the builder of
+// 5-cubes.
+#include "tile/five_cube_tile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "builder5.hpp"
+#include "tegl/tile/corners.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+using Id = FiveCubeBuilder::Id;
+using tile::Choice;
+
+constexpr unsigned kTile = FiveCubeBuilder::kTile;
+
+/// Number of the corners and edges of a face below a corner or an edge of it: its number in the face's own frame.
+struct Frame {
+  std::uint32_t corners = 0;
+  std::array<std::uint64_t, 2> edges{};
+
+  [[nodiscard]] unsigned number_of_corner(unsigned v) const {
+    return static_cast<unsigned>(std::popcount(corners & ((1u << v) - 1)));
+  }
+  [[nodiscard]] unsigned number_of_edge(unsigned e) const {
+    const std::uint64_t below = (std::uint64_t{1} << (e % 64)) - 1;
+    const int before =
+        e < 64 ? std::popcount(edges[0] & below) : std::popcount(edges[0]) + std::popcount(edges[1] & below);
+    return static_cast<unsigned>(std::popcount(corners) + before);
+  }
+};
+
+class FiveCubeMaker final : public TileMaker {
+ public:
+  FiveCubeMaker(const CubeFaces& cube, const TileKind& kind) : cube_(cube), kind_(kind) {
+    for (unsigned e = 0; e < 80; ++e) {
+      const auto& ends = FiveCube::kEdges[e];
+      edge_face_[e] = cube.number(ends[0], unsigned{ends[0]} ^ ends[1]);
+    }
+    std::iota(edges_.begin(), edges_.end(), std::uint8_t{0});
+    std::sort(edges_.begin(), edges_.end(), [&](unsigned a, unsigned b) { return edge_face_[a] < edge_face_[b]; });
+    for (unsigned q = 0; q < 80; ++q)
+      square_face_[q] = cube.number(FiveCube::kSquares[q].base, FiveCube::kSquares[q].axes);
+    for (unsigned c = 0; c < 40; ++c) {
+      const FiveCube::Face& face = FiveCube::kCubes[c].face;
+      cube_face_[c] = cube.number(face.base, face.axes);
+    }
+    for (unsigned f = 0; f < 10; ++f) {
+      tesseract_face_[f] = cube.number(f % 2 << f / 2, 31u ^ 1u << f / 2);
+      for (const std::uint8_t v : FiveCube::kTesseracts[f].corners) frames_[f].corners |= 1u << v;
+      for (const std::uint8_t e : FiveCube::kTesseracts[f].edges)
+        frames_[f].edges[e / 64] |= std::uint64_t{1} << (e % 64);
+    }
+    frames_[kTile] = {~std::uint32_t{0}, {~std::uint64_t{0}, 0xffff}};
+  }
+
+  BuiltTile make(const TileKey& key) override {
+    FiveKey of = key_of(key);
+    const bool is_high = kind_.alternative == tile::Alternative::high;
+    if (is_high) of.signature = ~of.signature;  // the contour of the complement, reversed
+    return too_large_as_error([&] { return converted(of, builder_.build(of), is_high); });
+  }
+  [[nodiscard]] std::size_t kept_bytes() const override { return 0; }
+
+ private:
+  [[nodiscard]] FiveKey key_of(const TileKey& key) const {
+    FiveKey result;
+    result.signature = static_cast<std::uint32_t>(key.signature);
+    if (!key.has_choices()) return result;
+    const auto choice = [&](std::size_t face) { return key.choice(face - cube_.first_choice()); };
+    for (unsigned q = 0; q < 80; ++q)
+      if (choice(square_face_[q]) == Choice::high) result.high_squares[q / 64] |= std::uint64_t{1} << (q % 64);
+    for (unsigned c = 0; c < 40; ++c) {
+      const Choice of = choice(cube_face_[c]);
+      if (of == Choice::low) result.low_cubes |= std::uint64_t{1} << c;
+      if (of == Choice::high) result.high_cubes |= std::uint64_t{1} << c;
+    }
+    for (unsigned f = 0; f < 10; ++f) {
+      const Choice of = choice(tesseract_face_[f]);
+      if (of == Choice::low) result.low_tesseracts = static_cast<std::uint16_t>(result.low_tesseracts | 1u << f);
+      if (of == Choice::high) result.high_tesseracts = static_cast<std::uint16_t>(result.high_tesseracts | 1u << f);
+    }
+    result.tile = choice(cube_.tile());
+    return result;
+  }
+
+  /// Appends a vertex; without a face among `faces`, only positions depend on it.
+  static std::uint16_t add(BuiltTile& tile, tile::VertexKind kind, std::size_t face, bool is_of_contour) {
+    const auto number = static_cast<std::uint16_t>(tile.vertices.size());
+    const auto at = static_cast<std::uint16_t>(face);
+    tile.vertices.push_back({kind, at, BuiltTile::kNone, 0, 0});
+    if (!is_of_contour) return number;
+    if (tile.faces.empty() || tile.faces.back().face != at) tile.faces.push_back({at, number, 0, false});
+    ++tile.faces.back().count;
+    return number;
+  }
+
+  /// Lists the vertices inside of cubes, tesseracts and the 5-cube, by face.
+  void find_inner(const FiveCubeBuilder::Contour& contour) {
+    by_face_.clear();
+    for (unsigned c = 0; c < 40; ++c)
+      for (unsigned j = 0; j < builder_.cube_vertices(c); ++j)
+        by_face_.emplace_back(cube_face_[c],
+                              static_cast<Id>(FiveCubeBuilder::kFirstOfCubes + ResolvedCubes::kMostOwn * c + j));
+    for (std::size_t i = 0; i < contour.own.size(); ++i) {
+      const unsigned f = contour.own[i].face;
+      by_face_.emplace_back(f == kTile ? static_cast<std::uint16_t>(cube_.tile()) : tesseract_face_[f],
+                            static_cast<Id>(FiveCubeBuilder::kFirstOwn + i));
+    }
+    std::sort(by_face_.begin(), by_face_.end());
+  }
+
+  BuiltTile converted(const FiveKey& key, const FiveCubeBuilder::Contour& contour, bool is_reversed) {
+    BuiltTile tile;
+    tile.is_settled = contour.is_settled;
+    number_.assign(FiveCubeBuilder::kFirstOwn + contour.own.size(), BuiltTile::kNone);
+    corner_.fill(BuiltTile::kNone);
+    // the contour's vertices by face, ascending: on edges, then inside of faces
+    std::size_t critical = 0;
+    for (const auto& ends : FiveCube::kEdges) critical += (key.signature >> ends[0] ^ key.signature >> ends[1]) & 1u;
+    find_inner(contour);
+    tile.vertices.reserve(critical + by_face_.size());
+    tile.faces.reserve(critical + by_face_.size());
+    for (const unsigned e : edges_) {
+      const auto& ends = FiveCube::kEdges[e];
+      if (((key.signature >> ends[0] ^ key.signature >> ends[1]) & 1u) != 0)
+        number_[e] = add(tile, tile::VertexKind::edge, edge_face_[e], true);
+    }
+    for (const auto& [face, id] : by_face_) number_[id] = add(tile, tile::VertexKind::side, face, true);
+    // their positions
+    for (const auto& [face, id] : by_face_)
+      id < FiveCubeBuilder::kFirstOwn ? place_in_cube(tile, id)
+                                      : place_own(tile, id, contour.own[id - FiveCubeBuilder::kFirstOwn], key);
+    tile.of.shrink_to_fit();
+    // simplices
+    tile.simplices.reserve(5 * contour.simplices.size());
+    for (FiveCubeBuilder::Simplex s : contour.simplices) {
+      if (is_reversed) std::swap(s[3], s[4]);
+      for (const Id v : s) tile.simplices.push_back(number_[v]);
+    }
+    return tile;
+  }
+
+  std::uint16_t corner(BuiltTile& tile, unsigned v) {
+    if (corner_[v] == BuiltTile::kNone) corner_[v] = add(tile, tile::VertexKind::corner, cube_.number(v, 0), false);
+    return corner_[v];
+  }
+
+  void place_in_cube(BuiltTile& tile, Id id) {
+    const unsigned cube = (id - FiveCubeBuilder::kFirstOfCubes) / ResolvedCubes::kMostOwn;
+    const unsigned j = (id - FiveCubeBuilder::kFirstOfCubes) % ResolvedCubes::kMostOwn;
+    const auto first = static_cast<std::uint32_t>(tile.of.size());
+    for (std::uint32_t rest = builder_.cube_mask(cube, j); rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(rest));
+      const FiveCube::Cube& of = FiveCube::kCubes[cube];
+      tile.of.push_back(i < 8 ? corner(tile, of.corners[i]) : number_[of.edges[i - 8]]);
+      tile.of.push_back(static_cast<std::uint16_t>(i));
+    }
+    BuiltTile::Vertex& vertex = tile.vertices[number_[id]];
+    vertex.first = first, vertex.end = static_cast<std::uint32_t>(tile.of.size());
+    vertex.is_even = false;
+  }
+
+  void place_own(BuiltTile& tile, Id id, const FiveCubeBuilder::Own& own, const FiveKey& key) {
+    const auto first = static_cast<std::uint32_t>(tile.of.size());
+    const Frame& frame = frames_[own.face];
+    for (std::uint32_t rest = own.points.corners; rest != 0; rest &= rest - 1) {
+      const auto v = static_cast<unsigned>(std::countr_zero(rest));
+      tile.of.push_back(corner(tile, v));
+      tile.of.push_back(static_cast<std::uint16_t>(frame.number_of_corner(v)));
+    }
+    for (unsigned word = 0; word < 2; ++word)
+      for (std::uint64_t rest = own.points.edges[word]; rest != 0; rest &= rest - 1) {
+        const unsigned e = 64 * word + static_cast<unsigned>(std::countr_zero(rest));
+        tile.of.push_back(number_[e]);
+        tile.of.push_back(static_cast<std::uint16_t>(frame.number_of_edge(e)));
+      }
+    BuiltTile::Vertex& vertex = tile.vertices[number_[id]];
+    vertex.first = first, vertex.end = static_cast<std::uint32_t>(tile.of.size());
+    vertex.repeats = own.repeat;
+    vertex.is_even = is_even(own, key);
+  }
+
+  /// Barycentres of the 5-cube are plain means, which keeps the second order of smooth contours. In a tesseract, as in
+  /// 4D images: if it is resolved from the data, the mean is uneven.
+  [[nodiscard]] bool is_even(const FiveCubeBuilder::Own& own, const FiveKey& key) const {
+    if (own.face == kTile) return own.points.corners == 0;
+    return !kind_.is_estimated || ResolvedTesseract::is_settled(FiveCube::signatures(key.signature)[own.face]);
+  }
+
+  const CubeFaces& cube_;
+  TileKind kind_;
+  FiveCubeBuilder builder_;
+  std::array<std::uint16_t, 80> edge_face_{}, square_face_{};
+  std::array<std::uint8_t, 80> edges_{};  ///< in lattice order
+  std::array<std::uint16_t, 40> cube_face_{};
+  std::array<std::uint16_t, 10> tesseract_face_{};
+  std::array<Frame, 11> frames_{};
+  // The current tile.
+  std::vector<std::uint16_t> number_;  ///< by the builder's vertex
+  std::array<std::uint16_t, 32> corner_{};
+  std::vector<std::pair<std::uint16_t, Id>> by_face_;
+};
+
+}  // namespace
+
+std::unique_ptr<TileMaker> five_cube_maker(const CubeFaces& cube, const TileKind& kind) {
+  return std::make_unique<FiveCubeMaker>(cube, kind);
+}
+
+}  // namespace tegl::detail
