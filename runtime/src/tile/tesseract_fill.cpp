@@ -149,23 +149,34 @@ ResolvedSize ResolvedTesseract::size(const ResolvedKey& key, const ResolvedCubes
   return size;
 }
 
-bool ResolvedTesseract::cone_components(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
+ResolvedTesseract::Cones ResolvedTesseract::find_cones(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
   find_cubes(lists);
   const bool joins = find_joined(key);
   simplex_count_ = 0;
   masks_.clear();
-  const auto first = components_.begin(), end = first + component_count_;
-  if (is_in_table(key) && std::all_of(first, end, [](const Component& c) { return c.is_sphere; })) {
-    for (auto c = first; c != end; ++c) c->is_coned = true;
+  const std::span<Component> components(components_.data(), component_count_);
+  bool copies_high = key.tile != Choice::high;
+  if (is_in_table(key) && std::all_of(components.begin(), components.end(), [](auto& c) { return c.is_sphere; })) {
+    for (Component& c : components) c.is_coned = true;
     take_from_table(key);
-    return key.tile != Choice::high;
+  } else {
+    constexpr std::size_t kMore = ResolvedCubes::kWordsBehind;
+    if (simplices_.size() < triangle_count_ + kMore) simplices_.resize(triangle_count_ + kMore);
+    copies_high = choose_cones(key, joins);
+    for (const Component& c : components)
+      if (c.is_coned) cone(c);
   }
-  constexpr std::size_t kMore = ResolvedCubes::kWordsBehind;
-  if (simplices_.size() < triangle_count_ + kMore) simplices_.resize(triangle_count_ + kMore);
-  const bool high = choose_cones(key, joins);
-  for (auto c = first; c != end; ++c)
-    if (c->is_coned) cone(*c);
-  return high;
+  return {components,
+          {reinterpret_cast<const std::uint8_t*>(simplices_.data()), 4 * simplex_count_},
+          masks_,
+          copies_high};
+}
+
+std::span<const ResolvedTesseract::Component> ResolvedTesseract::find_beside(const ResolvedKey& key, bool high) {
+  const std::span<Component> components(components_.data(), component_count_);
+  for (Component& c : components) c.region = 0;
+  find_regions(key, high);
+  return components;
 }
 
 ResolvedCubes::Lists ResolvedTesseract::lists_of(const ResolvedKey& key) const noexcept {

@@ -97,13 +97,7 @@ class ResolvedTesseract {
   /// or one sphere. The contour is then the compact table's.
   static bool is_settled(std::uint16_t signature) noexcept;
 
-  /// Finds the components of Sigma and fills those that are cones, so that the others can be filled in another way.
-  /// Returns which side is copied to fill the others: true for high. For FiveCubeBuilder, which reads the result.
-  bool cone_components(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
-
- private:
-  friend class FiveCubeBuilder;
-  using Word = std::uint32_t;  ///< four vertices
+  /// A component of Sigma.
   struct Component {
     std::uint64_t vertices = 0;
     std::uint32_t parts = 0;  ///< bit set of parts
@@ -111,6 +105,24 @@ class ResolvedTesseract {
     std::uint32_t region = 0;  ///< corners of the adjacent region whose copy may fill it
     bool is_sphere = false, is_coned = false;
   };
+  /// The components of Sigma, and the fillings of those that are cones.
+  struct Cones {
+    std::span<const Component> components;
+    std::span<const std::uint8_t> simplices;  ///< as in ResolvedView
+    std::span<const std::uint64_t> masks;     ///< as in ResolvedView
+    bool copies_high;                         ///< the side that is copied to fill the other components
+  };
+  /// For builders that fill the other components in another way. Valid until the next call.
+  Cones find_cones(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
+  /// By component of the last find_cones with this key: the corners of the region beside it, on one side.
+  std::span<const Component> find_beside(const ResolvedKey& key, bool high);
+  /// The lists of the cubes.
+  [[nodiscard]] ResolvedCubes::Lists lists_of(const ResolvedKey& key) const noexcept;
+  /// Whether a region of a cube belongs to the region of the tesseract's boundary with these corners.
+  [[nodiscard]] static bool is_in(unsigned cube, const CubeRegions::Region& region, unsigned corners) noexcept;
+
+ private:
+  using Word = std::uint32_t;  ///< four vertices
 
   /// Fields of the compact table that are read, by signature.
   struct InTable {
@@ -120,7 +132,6 @@ class ResolvedTesseract {
   static const std::vector<InTable>& in_table();
   [[nodiscard]] const CubeRegions& regions();
 
-  [[nodiscard]] ResolvedCubes::Lists lists_of(const ResolvedKey& key) const noexcept;
   [[nodiscard]] const ResolvedCubes::Part& part(unsigned i) const noexcept { return cubes_.part(parts_[i]); }
   void find_cubes(const ResolvedCubes::Lists& lists);
   void find_components(std::uint64_t vertices, std::uint32_t connected);
@@ -133,7 +144,6 @@ class ResolvedTesseract {
   [[nodiscard]] unsigned apex_of(const Component& component) const;
   void cone(const Component& component);
   void add_region_size(unsigned corners, bool high, ResolvedSize& size);
-  [[nodiscard]] static bool is_in(unsigned cube, const CubeRegions::Region& region, unsigned corners) noexcept;
   void find_regions(const ResolvedKey& key, bool high);
   [[nodiscard]] bool is_alone(unsigned component) const;
   void fill_region(unsigned corners, bool high);
