@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The emitted builder of 5-cubes: its tiles pass the certificate, join what the general builder joins, and have the
+// components of the definition. The tests of copies with faults show that each of these checks can fail.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "five_cube_checks.hpp"
+#include "five_cube_high_side.hpp"
+#include "five_cube_map.hpp"
+#include "five_cube_sign.hpp"
+#include "five_cube_square.hpp"
+#include "share.hpp"
+
+namespace tegl::test {
+namespace {
+
+using Checks = FiveCubeChecks<builders::FiveCubeBuilder, builders::FiveKey, builders::FiveCube>;
+
+// Sanitizers make it ten times as slow, and a few tiles show them all there is.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t kShare = 100;
+#else
+constexpr std::size_t kShare = 1000;
+#endif
+
+TEST(FiveCubeBuilder, RandomTilesPassTheCertificateAndAgreeWithTheGeneralBuilder) {
+  const std::size_t tiles = cases_to_test(100'000, kShare);
+  for (const FiveKeys how : kAllFiveKeys)
+    EXPECT_EQ(Checks().fault_of_random(how, tiles / kAllFiveKeys.size()), "") << static_cast<int>(how);
+}
+
+TEST(FiveCubeBuilder, ComponentsAreThoseOfTheDefinition) {
+  Checks checks;
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 20'000; ++i) ASSERT_EQ(checks.fault_by_definition(static_cast<std::uint32_t>(random())), "");
+}
+
+TEST(FiveCubeBuilder, OneHighCornerIsCutOffByOneSimplex) {
+  builders::FiveCubeBuilder builder;
+  for (unsigned v = 0; v < 32; ++v) {
+    builders::FiveKey key;
+    key.signature = 1u << v;
+    const auto contour = builder.build(key);
+    EXPECT_EQ(contour.simplices.size(), 1u);
+    EXPECT_TRUE(contour.own.empty());
+    EXPECT_TRUE(contour.is_settled);
+  }
+}
+
+/// Whether a copy of the builder with a fault fails for one of a few tiles.
+template <class Builder, class Key, class Cube>
+bool is_found() {
+  for (const FiveKeys how : kAllFiveKeys) try {
+      if (!FiveCubeChecks<Builder, Key, Cube>().fault_of_random(how, 40).empty()) return true;
+    } catch (const std::exception&) {
+      return true;  // Sigma is no closed manifold
+    }
+  return false;
+}
+
+#define TEGL_IS_FOUND(fault) \
+  is_found<builders::fault::FiveCubeBuilder, builders::fault::FiveKey, builders::fault::FiveCube>()
+
+TEST(FaultyBuilder, OfThe5CubeIsFound) {
+  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_map));
+  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_sign));
+  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_square));
+  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_high_side));
+}
+
+}  // namespace
+}  // namespace tegl::test
