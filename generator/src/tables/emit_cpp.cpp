@@ -2,48 +2,12 @@
 //
 // Emits the C++ tables and the manifest.
 #include "tables/emit.hpp"
-#include "tables/emit_text.hpp"
+#include "tables/emit_arrays.hpp"
+#include "tables/emit_rows.hpp"
 
 namespace tegl::gen {
 
 namespace {
-
-/// Writes `const TYPE NAME[] = {...};` in lines of about 110 columns.
-template <class T>
-void array(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values) {
-  if (values.empty()) return;
-  fmt::format_to(Appender(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
-  std::size_t line = text.size();
-  for (const T v : values) {
-    if (text.size() - line > 110 || line == text.size()) {
-      text += "\n    ";
-      line = text.size();
-    }
-    fmt::format_to(Appender(text), std::is_same_v<T, std::uint64_t> ? "{:#x}," : "{},", v);
-  }
-  text += "};\n";
-}
-
-/// Writes bytes as string literals, which compilers read a hundred times faster than lists of numbers.
-void bytes(std::string& text, const char* name, const std::string& comment, const std::vector<std::uint8_t>& values,
-           std::size_t per_line) {
-  fmt::format_to(Appender(text), "\n// {}\nconst char {}[] =", comment, name);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i % per_line == 0) text += i == 0 ? "\n    \"" : "\"\n    \"";
-    fmt::format_to(Appender(text), "\\{:o}", values[i]);
-  }
-  text += values.empty() ? " \"\";\n" : "\";\n";
-}
-
-/// The beginning of every C++ file of tables: banner, include, version check.
-std::string opening(const TableSet& set, const std::string& what) {
-  const char* const header = set.tile == TileKind::cube ? "tegl/generated/tables.hpp" : "tegl/table_contract.hpp";
-  return banner(set, Language::cpp, what) +
-         fmt::format(
-             "\n#include \"{}\"\n\nnamespace tegl::tables {{\n\n"
-             "static_assert(kContractVersion == {}u, \"tables of another contract version\");\n\nnamespace {{\n",
-             header, tables::kContractVersion);
-}
 
 void lists(std::string& text, const std::vector<tables::List>& values) {
   fmt::format_to(Appender(text),
@@ -79,11 +43,19 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
   bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
         static_cast<std::size_t>(table.dim) * 8);
   array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
+  std::string rows;
+  for (const NamedRows& named : set.rows) {
+    if (named.of != table.triangulation) continue;
+    row_arrays(text, named.rows, named.name.substr(1));
+    fmt::format_to(Appender(rows), "\nconst RowTable {} = {};\n", named.name,
+                   row_initialiser(named.rows, named.name.substr(1), "&" + name,
+                                   "reinterpret_cast<const std::uint8_t*>(kSimplices)"));
+  }
   const auto or_null = [](const auto& values, const char* n) { return values.empty() ? "nullptr" : n; };
   fmt::format_to(Appender(text),
                  "\n}}  // namespace\n\n{}const TileTable {} = {{\n    {}u, {}u, {}u, {}u, {}u, {}u, {}u, {}u,\n    "
                  "kListOf, {}, {}, "
-                 "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n\n}}  // namespace "
+                 "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n{}\n}}  // namespace "
                  "tegl::tables\n",
                  set.tile == TileKind::cube ? "" : fmt::format("extern const TileTable {};\n", name), name,
                  tables::kContractVersion, table.dim, table.lists.size(),
@@ -91,7 +63,7 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
                  table.permutation_stride, table.max_simplices, table.max_tile_vertices,
                  or_null(table.element_of, "kElementOf"), or_null(table.slot_swaps, "kSlotSwaps"),
                  or_null(table.permutations, "kPermutations"), or_null(table.reverses, "kReverses"),
-                 or_null(table.side_masks, "kSideMasks"));
+                 or_null(table.side_masks, "kSideMasks"), rows);
   return {fmt::format("{}_{}.cpp", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
           std::move(text)};
 }
@@ -167,6 +139,7 @@ std::vector<EmittedFile> emit_cpp(const TableSet& set) {
   for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
   if (!set.regions.empty()) files.push_back(region_file(set));
   if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
+  if (set.tile == TileKind::cube) files.push_back(emit_variants(set));
   return files;
 }
 
@@ -209,6 +182,15 @@ EmittedFile emit_manifest(const TableSet& set) {
                    "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
                    "\"{:016x}\"}}",
                    separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));
+  for (const NamedRows& rows : set.rows)
+    fmt::format_to(Appender(text), "{}    {{\"name\": \"{}\", \"entries\": {}, \"fnv1a\": \"{:016x}\"}}", separator,
+                   rows.name, rows.rows.entries.size(), digest(rows.rows));
+  for (const VariantTables& t : set.variants)
+    fmt::format_to(Appender(text),
+                   "{}    {{\"name\": \"{}Variants\", \"lists\": {}, \"stored_simplices\": {}, \"fnv1a\": "
+                   "\"{:016x}\", \"rows_fnv1a\": \"{:016x}\"}}",
+                   separator, variable_name(t.tile), t.tile.lists.size(),
+                   t.tile.simplices.size() / static_cast<std::size_t>(set.dim), digest(t.tile), digest(t.rows));
   text += "\n  ]\n}\n";
   return {set.tile == TileKind::cube ? fmt::format("manifest{}.json", set.dim)
                                      : fmt::format("manifest_{}.json", tile_name(set.tile, set.dim)),

@@ -365,7 +365,7 @@ template <int N>
       // replace the table's size by the filling's
       const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
       count.simplices += filling.simplices;
-      count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
+      count.simplices -= rows_->entries[signature] & RowTable::kCountMask;
       count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
       // record its cubes that own vertices, each by one tile only
       if (found == nullptr || tile.with_vertices == 0) continue;

@@ -159,7 +159,7 @@ void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
 
 /// Takes triangles, masks and summary of the list numbered last from the table of 3D contours.
 void ResolvedCubes::take_barycentric() {
-  const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
+  const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile;
   const tables::List& list = table.lists[table.list_of[key_of_.back().bits()]];
   const std::uint8_t* const first = table.simplices + 3 * std::size_t{list.first_simplex};
   const std::span<const std::uint8_t> triangles(first, 3 * std::size_t{list.simplex_count});

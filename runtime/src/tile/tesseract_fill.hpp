@@ -95,7 +95,7 @@ class ResolvedTesseract {
 
   /// Whether neither signs nor choices matter: no square is ambiguous, no cube has several polygons, and Sigma is empty
   /// or one sphere. The contour is then the compact table's.
-  static bool is_settled(std::uint16_t signature) noexcept;
+  static bool is_settled(std::uint16_t signature) noexcept { return !tables::kAmbiguous4[signature]; }
 
  private:
   using Word = std::uint32_t;  ///< four vertices
@@ -159,8 +159,5 @@ class ResolvedTesseract {
   std::vector<std::uint64_t> masks_;
   ResolvedView view_{};
 };
-
-/// The compact table of 4D tiles. Every tile that may be resolved from the data is marked as having own vertices.
-const RowTable& estimated_tesseracts(Triangulation triangulation);
 
 }  // namespace tegl::detail

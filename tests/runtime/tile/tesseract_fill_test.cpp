@@ -81,7 +81,7 @@ std::span<const std::uint8_t> triangles_of(const ResolvedKey& key, unsigned cube
   const unsigned signature = cube_signature(key.signature, cube);
   for (unsigned number = 0; number < lists.size(); ++number) {
     if (lists[number].signature != signature || lists[number].list->first_triangle != list.first_triangle) continue;
-    const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
+    const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile;
     const tables::List& of_key = table.lists[table.list_of[cubes.key(number).bits()]];
     return {table.simplices + 3 * std::size_t{of_key.first_simplex}, 3 * std::size_t{of_key.simplex_count}};
   }
