@@ -102,6 +102,11 @@ void set_triangulation(Options& options, std::string_view given) {
                         Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}});
 }
 
+void set_leaf(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, Leaf>;
+  options.leaf = choose("--leaf", given, std::array{Pair{"table", Leaf::table}, Pair{"edges", Leaf::edges}});
+}
+
 /// Parses names separated by commas, in any order, each at most once.
 void set_languages(Options& options, std::string_view given) {
   options.languages.clear();
@@ -134,6 +139,7 @@ constexpr unsigned kClasses = bit(Command::Classes);
 constexpr unsigned kCertify = bit(Command::Certify);
 constexpr unsigned kOut = bit(Command::Out);
 constexpr unsigned kCases = bit(Command::Cases);
+constexpr unsigned kBuilder = bit(Command::Builder);
 
 struct OptionSpec {
   std::string_view name;
@@ -149,9 +155,12 @@ constexpr std::array kOptions{
     OptionSpec{"--transversal", false, Command::Transversal, 0, nullptr},
     OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
-    OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
+    OptionSpec{"--out", true, Command::Out, kBuilder, [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--cases", true, Command::Cases, 0, [](Options& o, std::string_view given) { o.out = given; }},
-    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut | kCases, set_dim},
+    OptionSpec{"--builder", false, Command::Builder, 0, nullptr},
+    OptionSpec{"--leaf", true, std::nullopt, kBuilder, set_leaf},
+    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut | kCases | kBuilder,
+               set_dim},
     OptionSpec{"--tile", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_tile},
     OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kCertify, set_group},
     OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
@@ -167,7 +176,7 @@ constexpr std::array kOptions{
     OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kClasses | kCertify,
                [](Options& o, std::string_view) { o.json = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
-    OptionSpec{"--language", true, std::nullopt, kOut, set_languages},
+    OptionSpec{"--language", true, std::nullopt, kOut | kBuilder, set_languages},
     OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
 };
 
@@ -217,11 +226,17 @@ std::vector<Given> split(std::span<const std::string_view> arguments) {
   return result;
 }
 
+/// Whether the option, also a command, only names the folder of another command: `--out` with `--builder`.
+bool is_folder_of_builder(const Given& option, const std::vector<Given>& given) {
+  return option.spec->command == Command::Out &&
+         std::any_of(given.begin(), given.end(), [](const Given& g) { return g.spec->command == Command::Builder; });
+}
+
 /// The only option that is a command; refuses none and several.
 const OptionSpec& command_of(const std::vector<Given>& given) {
   const OptionSpec* command = nullptr;
   for (const Given& option : given) {
-    if (!option.spec->command) {
+    if (!option.spec->command || is_folder_of_builder(option, given)) {
       continue;
     }
     if (command != nullptr && command != option.spec) {
@@ -238,6 +253,8 @@ const OptionSpec& command_of(const std::vector<Given>& given) {
 
 /// Highest dimension in which single tiles can be built.
 constexpr int kMaxSampledDim = 6;
+/// Highest dimension that has a builder.
+constexpr int kMaxBuilderDim = 5;
 
 /// Checks --dim against the range of the command.
 void check_dim(const Options& options, std::string_view command) {
@@ -249,6 +266,7 @@ void check_dim(const Options& options, std::string_view command) {
   const bool sample = options.sample > 0 && options.tile == TileKind::cube;
   const int highest = count                                           ? kMaxDim
                       : options.command == Command::Transversal       ? kMaxSignatureDim
+                      : options.command == Command::Builder           ? kMaxBuilderDim
                       : options.command == Command::Certify && sample ? kMaxSampledDim
                                                                       : kMaxEnumeratedDim;
   if (options.dim < lowest || options.dim > highest) {
@@ -373,6 +391,8 @@ commands (one of)
                    that has one entry per class
   --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
   --cases DIR      writes the catalogue of cases (N = 2 ... 4) into DIR: a Markdown page and its pictures
+  --builder        certifies, then prints source code that builds the contour of one tile by recursion over its
+                   faces, each ambiguity resolved by its caller (N = 2 ... 5); with --out DIR, writes it into DIR
   --help, -h       this text
   --version        version of the program and of the tables' layout
 
@@ -415,6 +435,11 @@ options of --out
   --language cpp|json|glsl|wgsl|cuda
                                     language of the tables (default cpp); several with commas: json,glsl
 
+options of --builder
+  --out DIR                         writes the source and a manifest with its digest into DIR
+  --leaf edges|table                contours of the faces by recursion down to the edges, or by table (default)
+  --language cpp|glsl|wgsl          language of the source (default cpp); several with commas. N = 2, 3; N = 4, 5: cpp
+
 Facets are cycles of edges, each written as a ternary number, axis N-1 first, with e for the axis along the edge: in 3D
 1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, on the
 side of the right-hand normal in 3D.
@@ -429,6 +454,7 @@ examples
   gen --dim 4 --certify --all
   gen --dim 5 --certify --sample 10000 --seed 7
   gen --dim 4 --out tables
+  gen --dim 3 --builder --leaf edges
   gen --dim 3 --certify --group rotations --inversion --table-by-class
 
 exit status

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `gen --classes`, `--out` and `--cases`.
+// `gen --classes`, `--out`, `--cases` and `--builder`.
 #include "program/commands.hpp"
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "builders/emit_builder.hpp"
 #include "filling/facets.hpp"
 #include "pictures/cases.hpp"
 #include "program/print_figures.hpp"
@@ -172,6 +173,19 @@ int run_cases(const Options& options) {
   for (EmittedFile& file : emit_cases(options.dim)) files.push_back({std::move(file), 0.0});
   write_files(options.out, files);
   fmt::print("wrote {} and {} pictures\n", files.front().file.name, files.size() - 1);
+  return 0;
+}
+
+int run_builder(const Options& options) {
+  const std::vector<EmittedFile> emitted = emit_builder({options.dim, options.leaf, options.languages});
+  if (options.out.empty()) {
+    for (std::size_t i = 0; i + 1 < emitted.size(); ++i) fmt::print("{}{}", i == 0 ? "" : "\n", emitted[i].text);
+    return 0;
+  }
+  std::vector<TimedFile> files;
+  for (const EmittedFile& file : emitted) files.push_back({file, 0.0});
+  write_files(options.out, files);
+  for (const TimedFile& timed : files) fmt::print("wrote {}: {} bytes\n", timed.file.name, timed.file.text.size());
   return 0;
 }
 

@@ -34,4 +34,9 @@ int run_out(const Options& options);
 /// `--cases DIR`: writes the catalogue's page and pictures of a dimension into DIR. Errors: WriteFailed.
 int run_cases(const Options& options);
 
+/// `--builder`: certifies, then prints the source of the builder of a tile or, with `out`, writes it and its manifest
+/// into the folder `out`. Uses `leaf` and `languages`. Errors: InvalidArgument for a language that the dimension does
+/// not have, CertificateFailed (nothing is written), WriteFailed.
+int run_builder(const Options& options);
+
 }  // namespace tegl::gen

@@ -40,6 +40,8 @@ int dispatch(const Options& options) {
       return tegl::gen::run_out(options);
     case Command::Cases:
       return tegl::gen::run_cases(options);
+    case Command::Builder:
+      return tegl::gen::run_builder(options);
   }
   throw Error(ErrorCode::Internal, fmt::format("command {} is not dispatched", static_cast<int>(options.command)));
 }

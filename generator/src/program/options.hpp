@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/lattice.hpp"
+#include "builders/builder_request.hpp"
 #include "filling/tile_contour.hpp"
 #include "symmetry/symmetry.hpp"
 #include "tables/language.hpp"
@@ -25,6 +26,7 @@ enum class Command {
   Certify,      ///< --certify, dim 2 ... 4, with --sample 2 ... 6
   Out,          ///< --out DIR, dim 2 ... 4
   Cases,        ///< --cases DIR, dim 2 ... 4
+  Builder,      ///< --builder, dim 2 ... 5
 };
 
 /// How emitted tables are stored.
@@ -52,10 +54,11 @@ struct Options {
   bool list = false;                                             ///< --list; --transversal only
   bool json = false;                                             ///< --json; not for --out and --cases, not with --list
   Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
-  std::string out;                                               ///< DIR of --out and --cases
+  std::string out;                                               ///< DIR of --out and --cases; of --builder, or empty
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
   TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
-  std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out only
+  std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out, --builder
+  Leaf leaf = Leaf::table;                                       ///< --leaf; --builder only
 };
 
 }  // namespace tegl::gen

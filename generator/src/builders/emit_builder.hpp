@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Emits the builders of tiles as source text. The text depends only on the request.
+//
+// Based on: M. Liversage, thesis, 1994, sections 7.6 and 10.5.5 (recursion over dimension, generated code).
+#pragma once
+
+#include <vector>
+
+#include "builders/builder_request.hpp"
+
+namespace tegl::gen {
+
+/// Certifies and emits the builder of a dimension in the requested languages; the last file is the manifest,
+/// `builderN_manifest.json`: the command, the certificate, and size and digest of each text. Errors: InvalidArgument
+/// for a dimension or language without a builder, CertificateFailed.
+[[nodiscard]] std::vector<EmittedFile> emit_builder(const BuilderRequest& request);
+
+/// The builder of the square.
+[[nodiscard]] BuilderTexts emit_square_builder(const BuilderRequest& request);
+/// The builder of the cube.
+[[nodiscard]] BuilderTexts emit_cube_builder(const BuilderRequest& request);
+
+}  // namespace tegl::gen

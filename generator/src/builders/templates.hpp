@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The texts of generator/templates, embedded into the program, and their placeholders `@name@`.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace tegl::gen {
+
+/// The text of generator/templates/NAME.in. Throws Error{Internal} if there is none.
+[[nodiscard]] std::string_view template_text(std::string_view name);
+
+/// The name of a placeholder, without its signs, and the text that replaces it.
+using Placeholder = std::pair<std::string_view, std::string>;
+
+/// The template with all placeholders replaced. A placeholder that stands alone on its line is replaced together with
+/// its indentation and the line's end, so its text consists of complete lines, or is empty. Lines of text that stand
+/// within the placeholder's indentation are indented like it. Throws Error{Internal} for a placeholder without text and
+/// for a text without placeholder.
+[[nodiscard]] std::string filled(std::string_view name, std::initializer_list<Placeholder> texts);
+
+}  // namespace tegl::gen
