@@ -389,6 +389,7 @@ void certify(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Trian
         if (j != i) in_link[k] = tetrahedron[j], face[k++] = tetrahedron[j];
       count(face, i % 2 == 0 ? 1 : -1);
       ++faces[set_of(face)];
+      tile::sort_vertices(in_link);
       links[tetrahedron[i]].push_back(in_link);
     }
   std::set<Set> on_surface;

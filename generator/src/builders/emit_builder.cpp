@@ -21,9 +21,11 @@ BuilderTexts texts_of(const BuilderRequest& request) {
       return emit_square_builder(request);
     case 3:
       return emit_cube_builder(request);
+    case 4:
+      return emit_tesseract_builder(request);
     default:
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--dim {}: --builder does not emit this dimension yet; expected 2 or 3", request.dim));
+                  fmt::format("--dim {}: --builder does not emit this dimension yet; expected 2, 3 or 4", request.dim));
   }
 }
 

@@ -20,5 +20,7 @@ namespace tegl::gen {
 [[nodiscard]] BuilderTexts emit_square_builder(const BuilderRequest& request);
 /// The builder of the cube.
 [[nodiscard]] BuilderTexts emit_cube_builder(const BuilderRequest& request);
+/// The builder of the tesseract. Its third file has the arrays.
+[[nodiscard]] BuilderTexts emit_tesseract_builder(const BuilderRequest& request);
 
 }  // namespace tegl::gen

@@ -14,7 +14,8 @@ namespace tegl::gen {
 
 /// Writes `const TYPE NAME[] = {...};` in lines of about 110 columns.
 template <class T>
-void array(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values) {
+void write_array(std::string& text, const char* type, const char* name, const char* comment,
+                 const std::vector<T>& values) {
   if (values.empty()) return;
   fmt::format_to(Appender(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
   std::size_t line = text.size();
@@ -29,8 +30,8 @@ void array(std::string& text, const char* type, const char* name, const char* co
 }
 
 /// Writes bytes as string literals, which compilers read a hundred times faster than lists of numbers.
-inline void bytes(std::string& text, const char* name, const std::string& comment,
-                  const std::vector<std::uint8_t>& values, std::size_t per_line) {
+inline void write_bytes(std::string& text, const char* name, const std::string& comment,
+                        const std::vector<std::uint8_t>& values, std::size_t per_line) {
   fmt::format_to(Appender(text), "\n// {}\nconst char {}[] =", comment, name);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i % per_line == 0) text += i == 0 ? "\n    \"" : "\"\n    \"";
@@ -41,8 +42,8 @@ inline void bytes(std::string& text, const char* name, const std::string& commen
 
 /// Writes `const TYPE NAME[] = {...};` with one element as `write` formats it, several in a line.
 template <class T, class Write>
-void records(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values,
-             const Write& write) {
+void write_records(std::string& text, const char* type, const char* name, const char* comment,
+                   const std::vector<T>& values, const Write& write) {
   fmt::format_to(Appender(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
   std::size_t line = text.size();
   for (const T& v : values) {

@@ -33,16 +33,17 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
   std::string text =
       opening(set, fmt::format("Contours of the {}-tile, low-connected alternative, {} triangulation, {} layout.",
                                table.dim, triangulation_name(table.triangulation), layout_name(table.layout)));
-  array(text, "std::uint16_t", "kListOf", "signature -> list", table.list_of);
-  array(text, "std::uint16_t", "kElementOf", "signature -> group element", table.element_of);
-  array(text, "std::uint8_t", "kSlotSwaps", "signature -> cubes whose barycentre slots change places",
-        table.slot_swaps);
-  array(text, "std::uint8_t", "kPermutations", "group element x (corners, edges, cube slots)", table.permutations);
-  array(text, "std::uint8_t", "kReverses", "group element -> does it reverse the orientation", table.reverses);
+  write_array(text, "std::uint16_t", "kListOf", "signature -> list", table.list_of);
+  write_array(text, "std::uint16_t", "kElementOf", "signature -> group element", table.element_of);
+  write_array(text, "std::uint8_t", "kSlotSwaps", "signature -> cubes whose barycentre slots change places",
+              table.slot_swaps);
+  write_array(text, "std::uint8_t", "kPermutations", "group element x (corners, edges, cube slots)",
+              table.permutations);
+  write_array(text, "std::uint8_t", "kReverses", "group element -> does it reverse the orientation", table.reverses);
   lists(text, table.lists);
-  bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
-        static_cast<std::size_t>(table.dim) * 8);
-  array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
+  write_bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
+              static_cast<std::size_t>(table.dim) * 8);
+  write_array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
   std::string rows;
   for (const NamedRows& named : set.rows) {
     if (named.of != table.triangulation) continue;
@@ -80,9 +81,10 @@ void region_table(std::string& text, const RegionTables& table) {
                    l.own_vertices, l.first_mask);
   }
   text += "};\n";
-  bytes(text, fmt::format("kSimplices{}", suffix).c_str(), fmt::format("#simplices x {}, octal", table.dim + 1),
-        table.simplices, (static_cast<std::size_t>(table.dim) + 1) * 8);
-  array(text, "std::uint32_t", fmt::format("kMasks{}", suffix).c_str(), "own vertex -> corners and edges", table.masks);
+  write_bytes(text, fmt::format("kSimplices{}", suffix).c_str(), fmt::format("#simplices x {}, octal", table.dim + 1),
+              table.simplices, (static_cast<std::size_t>(table.dim) + 1) * 8);
+  write_array(text, "std::uint32_t", fmt::format("kMasks{}", suffix).c_str(), "own vertex -> corners and edges",
+              table.masks);
 }
 
 EmittedFile region_file(const TableSet& set) {
@@ -107,8 +109,8 @@ EmittedFile region_file(const TableSet& set) {
 EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
   std::string text =
       opening(set, "The cube with every ambiguity resolved freely. " + resolved_certificate(table) + ".");
-  array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
-  array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
+  write_array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
+  write_array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
   fmt::format_to(Appender(text),
                  "\n// separate, low, high: first triangle, triangles, own vertices, first mask; polygons\n"
                  "const ResolvedEntry kEntries[{}] = {{",
@@ -122,8 +124,8 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
                    list(e.high), e.components);
   }
   text += "};\n";
-  bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
-  array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
+  write_bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
+  write_array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
   fmt::format_to(Appender(text),
                  "\n}}  // namespace\n\nconst ResolvedTable kTile3Resolved = {{\n    {}u, {}u, kFirstEntry, "
                  "kAmbiguousSquares, kEntries,\n    reinterpret_cast<const std::uint8_t*>(kTriangles), kMasks}};\n\n"

@@ -15,15 +15,16 @@ std::string pointer(bool is_empty, const std::string& name) { return is_empty ? 
 void variants(std::string& text, const VariantTables& table, std::string& definitions) {
   const TileTables& tile = table.tile;
   const std::string suffix = upper_camel(triangulation_name(tile.triangulation)) + "Variants";
-  array(text, "std::uint16_t", ("kListOf" + suffix).c_str(), "key -> list", tile.list_of);
-  records(text, "List", ("kLists" + suffix).c_str(),
-          "first simplex, simplices, cone vertices, side vertices, first side mask", tile.lists,
-          [](const tables::List& l) {
-            return fmt::format("{{{},{},{},{},{}}}", l.first_simplex, l.simplex_count, l.cone_vertices, l.side_vertices,
-                               l.first_side);
-          });
-  array(text, "std::uint8_t", ("kSimplices" + suffix).c_str(), "local vertices", tile.simplices);
-  array(text, "std::uint64_t", ("kSideMasks" + suffix).c_str(), "side vertex -> corners and edges", tile.side_masks);
+  write_array(text, "std::uint16_t", ("kListOf" + suffix).c_str(), "key -> list", tile.list_of);
+  write_records(text, "List", ("kLists" + suffix).c_str(),
+                "first simplex, simplices, cone vertices, side vertices, first side mask", tile.lists,
+                [](const tables::List& l) {
+                  return fmt::format("{{{},{},{},{},{}}}", l.first_simplex, l.simplex_count, l.cone_vertices,
+                                     l.side_vertices, l.first_side);
+                });
+  write_array(text, "std::uint8_t", ("kSimplices" + suffix).c_str(), "local vertices", tile.simplices);
+  write_array(text, "std::uint64_t", ("kSideMasks" + suffix).c_str(), "side vertex -> corners and edges",
+              tile.side_masks);
   row_arrays(text, table.rows, suffix);
   const std::string name =
       fmt::format("kTile{}{}Variants", tile.dim, upper_camel(triangulation_name(tile.triangulation)));
@@ -57,16 +58,19 @@ std::string joins_definition(const std::vector<tables::CubeJoin>& joins) {
 }  // namespace
 
 void row_arrays(std::string& text, const RowTables& rows, const std::string& suffix) {
-  array(text, "std::uint32_t", ("kEntries" + suffix).c_str(), "entries: simplices, flag, first simplex", rows.entries);
-  array(text, "std::uint8_t", ("kCounts" + suffix).c_str(), "signature -> simplices", rows.counts);
-  array(text, "std::uint8_t", ("kShuffles" + suffix).c_str(), "2 orientations x 32 keys x 16 bytes", rows.shuffles);
-  array(text, "std::uint16_t", ("kPlaces" + suffix).c_str(), "signature -> first entry of its variants",
-        rows.variant_places);
+  write_array(text, "std::uint32_t", ("kEntries" + suffix).c_str(), "entries: simplices, flag, first simplex",
+              rows.entries);
+  write_array(text, "std::uint8_t", ("kCounts" + suffix).c_str(), "signature -> simplices", rows.counts);
+  write_array(text, "std::uint8_t", ("kShuffles" + suffix).c_str(), "2 orientations x 32 keys x 16 bytes",
+              rows.shuffles);
+  write_array(text, "std::uint16_t", ("kPlaces" + suffix).c_str(), "signature -> first entry of its variants",
+              rows.variant_places);
   if (rows.variants.empty()) return;
-  records(text, "Variant", ("kVariants" + suffix).c_str(), "resolved entry x choice: key, more simplices, own vertices",
-          rows.variants, [](const tables::Variant& v) {
-            return fmt::format("{{{},{},{}}}", v.key, v.more_simplices, v.more_own_vertices);
-          });
+  write_records(text, "Variant", ("kVariants" + suffix).c_str(),
+                "resolved entry x choice: key, more simplices, own vertices", rows.variants,
+                [](const tables::Variant& v) {
+                  return fmt::format("{{{},{},{}}}", v.key, v.more_simplices, v.more_own_vertices);
+                });
 }
 
 std::string row_initialiser(const RowTables& rows, const std::string& suffix, const std::string& table,

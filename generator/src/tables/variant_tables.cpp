@@ -68,6 +68,7 @@ tile::Simplices simplices_of(const std::vector<std::uint8_t>& triangles) {
   for (std::size_t t = 0; t < triangles.size(); t += 3) {
     tile::Simplex& simplex = result.emplace_back(tile::kNoSimplex);
     for (std::size_t j = 0; j < 3; ++j) simplex[j] = triangles[t + j];
+    tile::sort_vertices(simplex);
   }
   return result;
 }
