@@ -1,10 +1,9 @@
-# Joins the manifests of the three dimensions into one JSON array.
+# Joins the manifests of the tables of three dimensions and of the builders into one JSON array.
 set(text "[\n")
-foreach(dim 2 3 4)
-  file(READ ${TABLES}/manifest${dim}.json part)
-  string(APPEND text "${part}")
-  if(dim LESS 4)
-    string(APPEND text ",\n")
-  endif()
+set(separator "")
+foreach(manifest manifest2 manifest3 manifest4 builder2_manifest builder3_manifest)
+  file(READ ${TABLES}/${manifest}.json part)
+  string(APPEND text "${separator}${part}")
+  set(separator ",\n")
 endforeach()
 file(WRITE ${OUT} "${text}]\n")

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -83,6 +84,9 @@ std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {
                 fmt::format("--dim {}: --builder does not emit {}; expected {}", request.dim, language_name(language),
                             request.dim <= 3 ? "cpp, glsl or wgsl" : "cpp"));
   }
+  const auto is_shader = [](Language language) { return language != Language::cpp; };
+  if (request.leaf == Leaf::edges && std::any_of(request.languages.begin(), request.languages.end(), is_shader))
+    throw Error(ErrorCode::InvalidArgument, "--leaf edges: shaders look up a table; expected --leaf table or cpp only");
   BuilderTexts texts = texts_of(request);
   EmittedFile last = manifest(request, texts);
   texts.files.push_back(std::move(last));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -44,76 +45,147 @@ std::vector<std::string> as_items(const std::vector<Number>& numbers) {
   return items;
 }
 
-/// Triangles and masks of all fillings of a builder.
+/// Triangles and masks of a builder, as one array each.
 struct Arrays {
-  std::vector<std::string> triangles, masks;
+  std::vector<CubeTriangle> triangles;
+  std::vector<std::uint32_t> masks;
 
+  /// Appends a filling whose own vertices are numbered from `own_vertices` on.
   void add(const CubeFilling& filling, std::size_t own_vertices) {
-    for (const CubeTriangle& t : filling.triangles) {
-      const auto vertex = [own_vertices](std::size_t v) { return v < 12 ? v : v + own_vertices; };
-      triangles.push_back(fmt::format("{{{}, {}, {}}}", vertex(t[0]), vertex(t[1]), vertex(t[2])));
+    for (CubeTriangle t : filling.triangles) {
+      for (std::uint8_t& v : t) v = static_cast<std::uint8_t>(v < 12 ? v : v + own_vertices);
+      triangles.push_back(t);
     }
-    for (const std::uint32_t mask : filling.masks) masks.push_back(fmt::format("{:#x}", mask));
+    masks.insert(masks.end(), filling.masks.begin(), filling.masks.end());
+  }
+  [[nodiscard]] std::string triangle_rows() const {
+    std::vector<std::string> items;
+    for (const CubeTriangle& t : triangles) items.push_back(fmt::format("{{{}}}", fmt::join(t, ", ")));
+    return in_lines(items);
+  }
+  [[nodiscard]] std::string mask_rows() const {
+    std::vector<std::string> items;
+    for (const std::uint32_t mask : masks) items.push_back(fmt::format("{:#x}", mask));
+    return in_lines(items);
   }
 };
 
-/// Limits of a contour.
-struct Limits {
-  std::size_t facets = 0, triangles = 0, own_vertices = 0;
+/// A contour by its part of the arrays.
+struct List {
+  std::size_t first_triangle, triangles, own_vertices, first_mask;
+  std::vector<std::size_t> facet_end;
 };
 
-Limits limits_of(const ResolvedCube& table) {
-  Limits limits;
-  for (const tables::ResolvedEntry& entry : table.entries)
-    for (const tables::ResolvedList& list : {entry.separate, entry.low, entry.high}) {
-      limits.facets = std::max(limits.facets, fillings_of(table, list).size());
-      limits.triangles = std::max<std::size_t>(limits.triangles, list.triangle_count);
-      limits.own_vertices = std::max<std::size_t>(limits.own_vertices, list.own_vertices);
-    }
-  return limits;
-}
-
-std::string by_table(const ResolvedCube& table, const Limits& limits, const std::string& banner,
-                     const std::string& name, const std::string& space) {
+/// The table of all contours, each stored once.
+struct Lists {
+  std::vector<std::array<std::size_t, 3>> list_of;  ///< by entry: separate, low, high
+  std::vector<List> lists;
   Arrays arrays;
-  std::vector<std::string> lists, list_of;
-  std::map<std::string, std::size_t> known;  // the fillings of a list as text -> its number
+  std::size_t max_facets = 0, max_triangles = 0, max_own_vertices = 0;
+};
+
+Lists lists_of(const ResolvedCube& table) {
+  Lists result;
+  std::map<std::pair<std::vector<CubeTriangle>, std::vector<std::uint32_t>>, std::size_t> known;
   for (const tables::ResolvedEntry& entry : table.entries) {
-    std::vector<std::size_t> numbers;
+    auto number = result.list_of.emplace_back().begin();
     for (const tables::ResolvedList& list : {entry.separate, entry.low, entry.high}) {
-      const std::vector<CubeFilling> fillings = fillings_of(table, list);
-      const std::size_t first_triangle = arrays.triangles.size(), first_mask = arrays.masks.size();
       Arrays added;
       std::vector<std::size_t> ends;
-      for (const CubeFilling& filling : fillings) {
+      for (const CubeFilling& filling : fillings_of(table, list)) {
         added.add(filling, added.masks.size());
         ends.push_back(added.triangles.size());
       }
-      ends.resize(limits.facets);
-      const std::string text = fmt::format("{} {}", fmt::join(added.triangles, ""), fmt::join(added.masks, " "));
-      const auto [at, is_new] = known.try_emplace(text, lists.size());
-      numbers.push_back(at->second);
+      const auto [at, is_new] = known.try_emplace({added.triangles, added.masks}, result.lists.size());
+      *number++ = at->second;
       if (!is_new) continue;
-      lists.push_back(fmt::format("{{{}, {}, {}, {}, {}, {{{}}}}}", first_triangle, list.triangle_count,
-                                  list.own_vertices, fillings.size(), first_mask, fmt::join(ends, ", ")));
-      arrays.triangles.insert(arrays.triangles.end(), added.triangles.begin(), added.triangles.end());
-      arrays.masks.insert(arrays.masks.end(), added.masks.begin(), added.masks.end());
+      Arrays& all = result.arrays;
+      result.lists.push_back(
+          {all.triangles.size(), added.triangles.size(), added.masks.size(), all.masks.size(), ends});
+      all.triangles.insert(all.triangles.end(), added.triangles.begin(), added.triangles.end());
+      all.masks.insert(all.masks.end(), added.masks.begin(), added.masks.end());
+      result.max_facets = std::max(result.max_facets, ends.size());
+      result.max_triangles = std::max(result.max_triangles, added.triangles.size());
+      result.max_own_vertices = std::max(result.max_own_vertices, added.masks.size());
     }
-    list_of.push_back(fmt::format("{{{}}}", fmt::join(numbers, ", ")));
+  }
+  return result;
+}
+
+std::string by_table(const ResolvedCube& table, const Lists& lists, const std::string& banner, const std::string& name,
+                     const std::string& space) {
+  std::vector<std::string> rows, list_of;
+  for (const auto& of_entry : lists.list_of) list_of.push_back(fmt::format("{{{}}}", fmt::join(of_entry, ", ")));
+  for (const List& list : lists.lists) {
+    std::vector<std::size_t> ends = list.facet_end;
+    ends.resize(lists.max_facets);
+    rows.push_back(fmt::format("{{{}, {}, {}, {}, {}, {{{}}}}}", list.first_triangle, list.triangles, list.own_vertices,
+                               list.facet_end.size(), list.first_mask, fmt::join(ends, ", ")));
   }
   return filled("builder3.cpp", {{"banner", banner},
                                  {"name", name},
                                  {"namespace", space},
                                  {"ambiguous", in_lines(as_items(table.ambiguous))},
                                  {"first_entry", in_lines(as_items(table.first_entry))},
-                                 {"entries", fmt::format("{}", list_of.size())},
+                                 {"entries", std::to_string(list_of.size())},
                                  {"list_of", in_lines(list_of)},
-                                 {"lists", fmt::format("{}", lists.size())},
-                                 {"list_rows", in_lines(lists)},
-                                 {"triangles", fmt::format("{}", arrays.triangles.size())},
-                                 {"triangle_rows", in_lines(arrays.triangles)},
-                                 {"masks", fmt::format("{}", arrays.masks.size())},
-                                 {"mask_rows", in_lines(arrays.masks)}});
+                                 {"lists", std::to_string(rows.size())},
+                                 {"list_rows", in_lines(rows)},
+                                 {"triangles", std::to_string(lists.arrays.triangles.size())},
+                                 {"triangle_rows", lists.arrays.triangle_rows()},
+                                 {"masks", std::to_string(lists.arrays.masks.size())},
+                                 {"mask_rows", lists.arrays.mask_rows()}});
+}
+
+/// The words of shaders, as builder3.glsl.in describes them.
+struct Words {
+  std::vector<std::uint32_t> words;
+  std::size_t entries = 0, lists = 0, triangles = 0, masks = 0;  ///< index of the first word of each part
+};
+
+Words words_of(const ResolvedCube& table, const Lists& lists) {
+  Words result;
+  std::vector<std::uint32_t>& words = result.words;
+  for (std::size_t s = 0; s < 256; ++s)
+    words.push_back(table.first_entry[s] | static_cast<std::uint32_t>(table.ambiguous[s]) << 16);
+  const auto fits = [](std::size_t value, unsigned bits) {
+    if (value >> bits != 0) throw Error(ErrorCode::Internal, fmt::format("{} needs more than {} bits", value, bits));
+    return static_cast<std::uint32_t>(value);
+  };
+  result.entries = words.size();
+  for (const auto& [separate, low, high] : lists.list_of)
+    words.push_back(fits(separate, 10) | fits(low, 10) << 10 | fits(high, 10) << 20);
+  result.lists = words.size();
+  for (const List& list : lists.lists)
+    words.push_back(fits(list.first_triangle, 13) | fits(list.triangles, 5) << 13 | fits(list.own_vertices, 2) << 18 |
+                    fits(list.first_mask, 12) << 20);
+  result.triangles = words.size();
+  for (std::size_t t = 0; t < lists.arrays.triangles.size(); ++t) {
+    const CubeTriangle& triangle = lists.arrays.triangles[t];
+    if (t % 2 == 0) words.push_back(0);
+    words.back() |= (fits(triangle[0], 4) | fits(triangle[1], 4) << 4 | fits(triangle[2], 4) << 8) << (16 * (t % 2));
+  }
+  result.masks = words.size();
+  words.insert(words.end(), lists.arrays.masks.begin(), lists.arrays.masks.end());
+  return result;
+}
+
+std::string shader(const Words& words, const Lists& lists, const std::string& banner, Language language) {
+  std::vector<std::string> items;
+  for (const std::uint32_t word : words.words) items.push_back(fmt::format("{}u", word));
+  std::string rows = in_lines(items);
+  rows.erase(rows.size() - 2, 1);  // GLSL allows no comma at the end of a constructor's arguments
+  return filled(fmt::format("builder3.{}", language_name(language)),
+                {{"banner", banner},
+                 {"max_triangles", std::to_string(lists.max_triangles)},
+                 {"max_vertices", std::to_string(3 * lists.max_triangles)},
+                 {"max_own", std::to_string(lists.max_own_vertices)},
+                 {"words_count", std::to_string(words.words.size())},
+                 {"words", rows},
+                 {"entries_at", std::to_string(words.entries)},
+                 {"lists_at", std::to_string(words.lists)},
+                 {"triangles_at", std::to_string(words.triangles)},
+                 {"masks_at", std::to_string(words.masks)}});
 }
 
 /// One call per square: corners, edges and sign, by axis and side.
@@ -184,10 +256,10 @@ std::string by_edges(const std::vector<FillingRow>& rule, const std::string& ban
                                        {"ends", in_lines(ends)},
                                        {"fillings", fmt::format("{}", rule.size())},
                                        {"filling_rows", rows},
-                                       {"triangles", fmt::format("{}", arrays.triangles.size())},
-                                       {"triangle_rows", in_lines(arrays.triangles)},
-                                       {"masks", fmt::format("{}", arrays.masks.size())},
-                                       {"mask_rows", in_lines(arrays.masks)}});
+                                       {"triangles", std::to_string(arrays.triangles.size())},
+                                       {"triangle_rows", arrays.triangle_rows()},
+                                       {"masks", std::to_string(arrays.masks.size())},
+                                       {"mask_rows", arrays.mask_rows()}});
 }
 
 }  // namespace
@@ -195,24 +267,27 @@ std::string by_edges(const std::vector<FillingRow>& rule, const std::string& ban
 BuilderTexts emit_cube_builder(const BuilderRequest& request) {
   const ResolvedCube table = make_resolved_cube();
   const std::vector<FillingRow> rule = make_filling_rule(table);
-  const Limits limits = limits_of(table);
+  const Lists lists = lists_of(table);
   BuilderTexts texts;
   texts.certificate = fmt::format("{} resolutions of 256 signatures, {} ways each", table.entries.size(), 3);
   const std::string name = builder_name(request), space = builder_namespace(request);
   for (const Language language : request.languages) {
-    if (language != Language::cpp)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--dim 3: --builder does not emit {} yet; expected cpp", language_name(language)));
     const auto banner = [&](const char* what) { return builder_banner(request, language, what, texts.certificate); };
-    texts.files.push_back({name + ".hpp", filled("builder3.hpp", {{"banner", banner("The contour in one cube.")},
-                                                                  {"namespace", space},
-                                                                  {"max_facets", std::to_string(limits.facets)},
-                                                                  {"max_triangles", std::to_string(limits.triangles)},
-                                                                  {"max_own", std::to_string(limits.own_vertices)}})});
+    if (language != Language::cpp) {
+      texts.files.push_back({fmt::format("{}.{}", name, language_name(language)),
+                             shader(words_of(table, lists), lists, banner("The contour in one cube."), language)});
+      continue;
+    }
+    texts.files.push_back(
+        {name + ".hpp", filled("builder3.hpp", {{"banner", banner("The contour in one cube.")},
+                                                {"namespace", space},
+                                                {"max_facets", std::to_string(lists.max_facets)},
+                                                {"max_triangles", std::to_string(lists.max_triangles)},
+                                                {"max_own", std::to_string(lists.max_own_vertices)}})});
     texts.files.push_back(
         {name + ".cpp",
          request.leaf == Leaf::table
-             ? by_table(table, limits, banner("The contour in one cube, by table."), name, space)
+             ? by_table(table, lists, banner("The contour in one cube, by table."), name, space)
              : by_edges(rule, banner("The contour in one cube, by recursion over its squares."), name, space)});
   }
   return texts;

@@ -37,6 +37,19 @@ std::string table_rows() {
   return text;
 }
 
+/// The words of shaders: by sign of the centre and signature, the number of segments and four bits for each vertex.
+std::string table_words() {
+  std::string text;
+  for (unsigned i = 0; i < 32; ++i) {
+    const std::vector<SquareSegment> segments = square_segments(i % 16, i >= 16);
+    std::uint32_t word = static_cast<std::uint32_t>(segments.size());
+    for (std::size_t s = 0; s < segments.size(); ++s)
+      word |= (std::uint32_t{segments[s][0]} | std::uint32_t{segments[s][1]} << 4) << (8 * s + 4);
+    text += fmt::format("{}u{}", word, i == 31 ? "\n" : i % 8 == 7 ? ",\n" : ", ");
+  }
+  return text;
+}
+
 }  // namespace
 
 BuilderTexts emit_square_builder(const BuilderRequest& request) {
@@ -45,10 +58,13 @@ BuilderTexts emit_square_builder(const BuilderRequest& request) {
   texts.certificate = "16 signatures, both signs of the centre";
   const std::string name = builder_name(request), space = builder_namespace(request);
   for (const Language language : request.languages) {
-    if (language != Language::cpp)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--dim 2: --builder does not emit {} yet; expected cpp", language_name(language)));
     const auto banner = [&](const char* what) { return builder_banner(request, language, what, texts.certificate); };
+    if (language != Language::cpp) {
+      texts.files.push_back({fmt::format("{}.{}", name, language_name(language)),
+                             filled(fmt::format("builder2.{}", language_name(language)),
+                                    {{"banner", banner("The contour in one square.")}, {"words", table_words()}})});
+      continue;
+    }
     texts.files.push_back({name + ".hpp", filled("builder2.hpp", {{"banner", banner("The contour in one square.")},
                                                                   {"namespace", space}})});
     const std::string what = banner(request.leaf == Leaf::table ? "The contour in one square, by table."

@@ -96,4 +96,55 @@ function check(name) {
   console.log(`${name}: ${chosen.length} signatures agree`);
 }
 
+/// The builder of the cube against the table of all resolutions: [triangles, own vertices, vertices..., masks...].
+function checkCubeBuilder() {
+  const table = JSON.parse(fs.readFileSync(path.join(folder, 'tile3_resolved.json'), 'utf8'));
+  const text = fs.readFileSync(path.join(folder, 'builder3.wgsl'), 'utf8');
+  const chosen = [];
+  const expected = [];
+  for (let s = 0; s < 256; ++s) {
+    const ambiguous = table.ambiguous_squares[s];
+    let entry = table.first_entry[s];
+    for (let high = 0, first = true; first || high !== 0; high = (high - ambiguous) & ambiguous, first = false) {
+      const row = table.entries.rows[entry++];
+      for (let centre = 0; centre < 3; ++centre) {
+        const [from, count, own, mask] = row.slice(1 + 4 * centre);
+        chosen.push(s, high, centre);
+        expected.push([count, own, ...table.triangles.slice(3 * from, 3 * (from + count)),
+          ...table.masks.slice(mask, mask + own)]);
+      }
+    }
+  }
+  const stride = 2 + 3 * 16 + 3;
+  const result = new Uint32Array(expected.length * stride);
+  const shader = `${text}
+  @group(0) @binding(0) var<storage, read_write> result : array<u32>;
+  @group(0) @binding(1) var<storage, read> chosen : array<u32>;
+  @compute @workgroup_size(1) fn main(@builtin(global_invocation_id) id : vec3<u32>) {
+    let contour = tegl_builder3_build(chosen[3u * id.x], chosen[3u * id.x + 1u], chosen[3u * id.x + 2u]);
+    var at = id.x * ${stride}u;
+    result[at] = contour.triangles;
+    result[at + 1u] = contour.own_vertices;
+    at = at + 2u;
+    for (var i = 0u; i < 3u * contour.triangles; i = i + 1u) {
+      result[at] = contour.vertices[i];
+      at = at + 1u;
+    }
+    for (var j = 0u; j < contour.own_vertices; j = j + 1u) {
+      result[at] = contour.masks[j];
+      at = at + 1u;
+    }
+  }`;
+  const program = new WgslExec(new WgslParser().parse(shader));
+  program.dispatchWorkgroups('main', expected.length, { 0: { 0: result, 1: new Uint32Array(chosen) } });
+  expected.forEach((numbers, i) => {
+    const actual = Array.from(result.subarray(i * stride, i * stride + numbers.length));
+    if (actual.join() !== numbers.join()) {
+      throw new Error(`builder3, ${chosen.slice(3 * i, 3 * i + 3)}: got ${actual}, expected ${numbers}`);
+    }
+  });
+  console.log(`builder3: ${expected.length} contours agree`);
+}
+
+checkCubeBuilder();
 for (const dim of [2, 3, 4]) for (const t of ['barycentric', 'compact']) check(`tile${dim}_${t}`);

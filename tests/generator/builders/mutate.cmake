@@ -1,0 +1,20 @@
+# Writes a copy of an emitted builder with one fault, in a namespace of its own inside of the builder's:
+#   cmake -DFOLDER=tables -DNAME=builder3_edges -DFAULT=swapped_map -DFROM=text -DTO=text -DOUT=folder -P mutate.cmake
+# Replaces the first FROM in NAME.cpp by TO, and writes OUT/FAULT.hpp and OUT/FAULT.cpp.
+file(READ ${FOLDER}/${NAME}.hpp header)
+file(READ ${FOLDER}/${NAME}.cpp source)
+string(FIND "${source}" "${FROM}" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "${NAME}.cpp: no '${FROM}'; expected it for the fault ${FAULT}")
+endif()
+string(LENGTH "${FROM}" length)
+string(SUBSTRING "${source}" 0 ${at} before)
+math(EXPR rest "${at} + ${length}")
+string(SUBSTRING "${source}" ${rest} -1 after)
+set(source "${before}${TO}${after}")
+foreach(text header source)
+  string(REGEX REPLACE "namespace (tegl::[a-z:]+)" "namespace \\1::${FAULT}" ${text} "${${text}}")
+  string(REPLACE "\"${NAME}.hpp\"" "\"${FAULT}.hpp\"" ${text} "${${text}}")
+endforeach()
+file(WRITE ${OUT}/${FAULT}.hpp "${header}")
+file(WRITE ${OUT}/${FAULT}.cpp "${source}")
