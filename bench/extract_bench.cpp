@@ -119,6 +119,9 @@ void add_estimators(const std::string& smooth, std::size_t samples, std::size_t 
       what.samples = samples_of_noise;
       add<float, N>("extract", what);
     }
+  // beside them in one run; other sizes of noise are in add_field
+  if (N == 4)
+    for (const int threads : {1, 4}) add<float, N>("extract", {"noise", samples_of_noise, {}, threads});
 }
 
 /// Barycentric 4D tiles resolved from the data, which are assembled from their cubes, to compare with table tiles: a

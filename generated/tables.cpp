@@ -13,6 +13,19 @@ const TileTable& tile_table(int dim, Triangulation triangulation) noexcept {
   return *kTables[dim - 2][static_cast<std::size_t>(triangulation)];
 }
 
+const RowTable* row_table(int dim, Triangulation triangulation) noexcept {
+  static constexpr const RowTable* kTables[3][2] = {{&kTile2BarycentricRows, &kTile2CompactRows},
+                                                    {&kTile3BarycentricRows, &kTile3CompactRows},
+                                                    {nullptr, &kTile4CompactRows}};
+  return kTables[dim - 2][static_cast<std::size_t>(triangulation)];
+}
+
+const VariantTable& variant_table(int dim, Triangulation triangulation) noexcept {
+  static constexpr const VariantTable* kTables[2][2] = {{&kTile2BarycentricVariants, &kTile2CompactVariants},
+                                                        {&kTile3BarycentricVariants, &kTile3CompactVariants}};
+  return *kTables[dim - 2][static_cast<std::size_t>(triangulation)];
+}
+
 const RegionTable& region_table(int k, Triangulation triangulation, tile::Alternative alternative) noexcept {
   static constexpr const RegionTable* kTables[3][2][2] = {
       {{&kRegion1BarycentricLow, &kRegion1BarycentricHigh}, {&kRegion1CompactLow, &kRegion1CompactHigh}},

@@ -22,11 +22,12 @@ BuilderTexts texts_of(const BuilderRequest& request) {
       return emit_square_builder(request);
     case 3:
       return emit_cube_builder(request);
+    case 4:
+      return emit_tesseract_builder(request);
     case 5:
       return emit_five_cube_builder(request);
     default:
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--dim {}: --builder does not emit this dimension yet; expected 2, 3 or 5", request.dim));
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--dim {}: --builder expects 2 to 5", request.dim));
   }
 }
 

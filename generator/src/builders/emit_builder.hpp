@@ -22,5 +22,7 @@ namespace tegl::gen {
 [[nodiscard]] BuilderTexts emit_cube_builder(const BuilderRequest& request);
 /// The builder of the 5-cube.
 [[nodiscard]] BuilderTexts emit_five_cube_builder(const BuilderRequest& request);
+/// The builder of the tesseract. Its third file has the arrays.
+[[nodiscard]] BuilderTexts emit_tesseract_builder(const BuilderRequest& request);
 
 }  // namespace tegl::gen

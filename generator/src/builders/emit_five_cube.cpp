@@ -17,14 +17,16 @@ BuilderTexts emit_five_cube_builder(const BuilderRequest& request) {
   BuilderTexts texts;
   certify_five_cube_faces();
   texts.certificate = "faces and incidence signs against the lattice of the 5-cube";
-  const std::string name = builder_name(request);
-  const auto banner = [&](const char* what) {
-    return builder_banner(request, Language::cpp, what, texts.certificate);
-  };
+  const std::string name = builder_name(request), space = builder_namespace(request);
+  const BuilderRequest faces{4, request.leaf, request.languages};
+  const auto banner = [&](const char* what) { return builder_banner(request, Language::cpp, what, texts.certificate); };
   const std::string what = banner("The contour in one 5-cube, a cell of a 5D image.");
-  texts.files.push_back({name + ".hpp", filled("builder5.hpp", {{"banner", what}})});
   texts.files.push_back(
-      {name + ".cpp", filled("builder5.cpp", {{"banner", what}, {"name", name}, {"faces", five_cube_faces()}})});
+      {name + ".hpp",
+       filled("builder5.hpp", {{"banner", what}, {"builder4", builder_name(faces)}, {"namespace", space}})});
+  texts.files.push_back(
+      {name + ".cpp",
+       filled("builder5.cpp", {{"banner", what}, {"name", name}, {"namespace", space}, {"faces", five_cube_faces()}})});
   return texts;
 }
 

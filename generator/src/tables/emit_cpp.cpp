@@ -2,48 +2,12 @@
 //
 // Emits the C++ tables and the manifest.
 #include "tables/emit.hpp"
-#include "tables/emit_text.hpp"
+#include "tables/emit_arrays.hpp"
+#include "tables/emit_rows.hpp"
 
 namespace tegl::gen {
 
 namespace {
-
-/// Writes `const TYPE NAME[] = {...};` in lines of about 110 columns.
-template <class T>
-void array(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values) {
-  if (values.empty()) return;
-  fmt::format_to(Appender(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
-  std::size_t line = text.size();
-  for (const T v : values) {
-    if (text.size() - line > 110 || line == text.size()) {
-      text += "\n    ";
-      line = text.size();
-    }
-    fmt::format_to(Appender(text), std::is_same_v<T, std::uint64_t> ? "{:#x}," : "{},", v);
-  }
-  text += "};\n";
-}
-
-/// Writes bytes as string literals, which compilers read a hundred times faster than lists of numbers.
-void bytes(std::string& text, const char* name, const std::string& comment, const std::vector<std::uint8_t>& values,
-           std::size_t per_line) {
-  fmt::format_to(Appender(text), "\n// {}\nconst char {}[] =", comment, name);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i % per_line == 0) text += i == 0 ? "\n    \"" : "\"\n    \"";
-    fmt::format_to(Appender(text), "\\{:o}", values[i]);
-  }
-  text += values.empty() ? " \"\";\n" : "\";\n";
-}
-
-/// The beginning of every C++ file of tables: banner, include, version check.
-std::string opening(const TableSet& set, const std::string& what) {
-  const char* const header = set.tile == TileKind::cube ? "tegl/generated/tables.hpp" : "tegl/table_contract.hpp";
-  return banner(set, Language::cpp, what) +
-         fmt::format(
-             "\n#include \"{}\"\n\nnamespace tegl::tables {{\n\n"
-             "static_assert(kContractVersion == {}u, \"tables of another contract version\");\n\nnamespace {{\n",
-             header, tables::kContractVersion);
-}
 
 void lists(std::string& text, const std::vector<tables::List>& values) {
   fmt::format_to(Appender(text),
@@ -69,21 +33,30 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
   std::string text =
       opening(set, fmt::format("Contours of the {}-tile, low-connected alternative, {} triangulation, {} layout.",
                                table.dim, triangulation_name(table.triangulation), layout_name(table.layout)));
-  array(text, "std::uint16_t", "kListOf", "signature -> list", table.list_of);
-  array(text, "std::uint16_t", "kElementOf", "signature -> group element", table.element_of);
-  array(text, "std::uint8_t", "kSlotSwaps", "signature -> cubes whose barycentre slots change places",
-        table.slot_swaps);
-  array(text, "std::uint8_t", "kPermutations", "group element x (corners, edges, cube slots)", table.permutations);
-  array(text, "std::uint8_t", "kReverses", "group element -> does it reverse the orientation", table.reverses);
+  write_array(text, "std::uint16_t", "kListOf", "signature -> list", table.list_of);
+  write_array(text, "std::uint16_t", "kElementOf", "signature -> group element", table.element_of);
+  write_array(text, "std::uint8_t", "kSlotSwaps", "signature -> cubes whose barycentre slots change places",
+              table.slot_swaps);
+  write_array(text, "std::uint8_t", "kPermutations", "group element x (corners, edges, cube slots)",
+              table.permutations);
+  write_array(text, "std::uint8_t", "kReverses", "group element -> does it reverse the orientation", table.reverses);
   lists(text, table.lists);
-  bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
-        static_cast<std::size_t>(table.dim) * 8);
-  array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
+  write_bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
+              static_cast<std::size_t>(table.dim) * 8);
+  write_array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
+  std::string rows;
+  for (const NamedRows& named : set.rows) {
+    if (named.of != table.triangulation) continue;
+    row_arrays(text, named.rows, named.name.substr(1));
+    fmt::format_to(Appender(rows), "\nconst RowTable {} = {};\n", named.name,
+                   row_initialiser(named.rows, named.name.substr(1), "&" + name,
+                                   "reinterpret_cast<const std::uint8_t*>(kSimplices)"));
+  }
   const auto or_null = [](const auto& values, const char* n) { return values.empty() ? "nullptr" : n; };
   fmt::format_to(Appender(text),
                  "\n}}  // namespace\n\n{}const TileTable {} = {{\n    {}u, {}u, {}u, {}u, {}u, {}u, {}u, {}u,\n    "
                  "kListOf, {}, {}, "
-                 "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n\n}}  // namespace "
+                 "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n{}\n}}  // namespace "
                  "tegl::tables\n",
                  set.tile == TileKind::cube ? "" : fmt::format("extern const TileTable {};\n", name), name,
                  tables::kContractVersion, table.dim, table.lists.size(),
@@ -91,7 +64,7 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
                  table.permutation_stride, table.max_simplices, table.max_tile_vertices,
                  or_null(table.element_of, "kElementOf"), or_null(table.slot_swaps, "kSlotSwaps"),
                  or_null(table.permutations, "kPermutations"), or_null(table.reverses, "kReverses"),
-                 or_null(table.side_masks, "kSideMasks"));
+                 or_null(table.side_masks, "kSideMasks"), rows);
   return {fmt::format("{}_{}.cpp", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
           std::move(text)};
 }
@@ -108,9 +81,10 @@ void region_table(std::string& text, const RegionTables& table) {
                    l.own_vertices, l.first_mask);
   }
   text += "};\n";
-  bytes(text, fmt::format("kSimplices{}", suffix).c_str(), fmt::format("#simplices x {}, octal", table.dim + 1),
-        table.simplices, (static_cast<std::size_t>(table.dim) + 1) * 8);
-  array(text, "std::uint32_t", fmt::format("kMasks{}", suffix).c_str(), "own vertex -> corners and edges", table.masks);
+  write_bytes(text, fmt::format("kSimplices{}", suffix).c_str(), fmt::format("#simplices x {}, octal", table.dim + 1),
+              table.simplices, (static_cast<std::size_t>(table.dim) + 1) * 8);
+  write_array(text, "std::uint32_t", fmt::format("kMasks{}", suffix).c_str(), "own vertex -> corners and edges",
+              table.masks);
 }
 
 EmittedFile region_file(const TableSet& set) {
@@ -135,8 +109,8 @@ EmittedFile region_file(const TableSet& set) {
 EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
   std::string text =
       opening(set, "The cube with every ambiguity resolved freely. " + resolved_certificate(table) + ".");
-  array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
-  array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
+  write_array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
+  write_array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
   fmt::format_to(Appender(text),
                  "\n// separate, low, high: first triangle, triangles, own vertices, first mask; polygons\n"
                  "const ResolvedEntry kEntries[{}] = {{",
@@ -150,8 +124,8 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
                    list(e.high), e.components);
   }
   text += "};\n";
-  bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
-  array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
+  write_bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
+  write_array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
   fmt::format_to(Appender(text),
                  "\n}}  // namespace\n\nconst ResolvedTable kTile3Resolved = {{\n    {}u, {}u, kFirstEntry, "
                  "kAmbiguousSquares, kEntries,\n    reinterpret_cast<const std::uint8_t*>(kTriangles), kMasks}};\n\n"
@@ -167,6 +141,7 @@ std::vector<EmittedFile> emit_cpp(const TableSet& set) {
   for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
   if (!set.regions.empty()) files.push_back(region_file(set));
   if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
+  if (set.tile == TileKind::cube) files.push_back(emit_variants(set));
   return files;
 }
 
@@ -209,6 +184,15 @@ EmittedFile emit_manifest(const TableSet& set) {
                    "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
                    "\"{:016x}\"}}",
                    separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));
+  for (const NamedRows& rows : set.rows)
+    fmt::format_to(Appender(text), "{}    {{\"name\": \"{}\", \"entries\": {}, \"fnv1a\": \"{:016x}\"}}", separator,
+                   rows.name, rows.rows.entries.size(), digest(rows.rows));
+  for (const VariantTables& t : set.variants)
+    fmt::format_to(Appender(text),
+                   "{}    {{\"name\": \"{}Variants\", \"lists\": {}, \"stored_simplices\": {}, \"fnv1a\": "
+                   "\"{:016x}\", \"rows_fnv1a\": \"{:016x}\"}}",
+                   separator, variable_name(t.tile), t.tile.lists.size(),
+                   t.tile.simplices.size() / static_cast<std::size_t>(set.dim), digest(t.tile), digest(t.rows));
   text += "\n  ]\n}\n";
   return {set.tile == TileKind::cube ? fmt::format("manifest{}.json", set.dim)
                                      : fmt::format("manifest_{}.json", tile_name(set.tile, set.dim)),

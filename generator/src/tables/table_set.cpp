@@ -8,7 +8,10 @@
 #include <map>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "base/error.hpp"
+#include "filling/ambiguity.hpp"
 #include "filling/facets.hpp"
 #include "filling/regions.hpp"
 #include "symmetry/counting.hpp"
@@ -43,6 +46,24 @@ std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourB
   return contours;
 }
 
+/// Adds row tables, resolved squares and cubes, and the sets of ambiguous tiles.
+void add_resolved_tiles(TableSet& set) {
+  if (set.dim == 3) set.ambiguous = ambiguous_cubes(*set.resolved), set.joins = make_cube_joins(*set.resolved);
+  if (set.dim == 4) set.ambiguous = ambiguous_tesseracts();
+  for (const TileTables& table : set.tiles) {
+    if (!has_row_tables(table)) continue;
+    const std::string name =
+        table.triangulation == Triangulation::compact ? "Compact" : "Barycentric";  // in the name of the variable
+    set.rows.push_back({table.triangulation, fmt::format("kTile{}{}Rows", set.dim, name), make_row_tables(table)});
+    if (set.dim == 2) set.variants.push_back(make_square_variants(table));
+    if (set.dim == 3) set.variants.push_back(make_cube_variants(table, *set.resolved));
+    if (set.dim != 4) continue;
+    set.rows.push_back({table.triangulation, "kTile4EstimatedCompactRows", make_estimated_rows(table, set.ambiguous)});
+    set.rows.push_back({table.triangulation, "kTile4EstimatedBarycentricRows",
+                        make_estimated_rows(table, std::vector<bool>(set.ambiguous.size(), true))});
+  }
+}
+
 }  // namespace
 
 Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation) {
@@ -75,7 +96,9 @@ TableSet make_table_set(const TableRequest& request) {
       set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, style), t, a));
     }
   }
-  if (request.tile == TileKind::cube && request.dim == 3) set.resolved = make_resolved_cube();
+  if (request.tile != TileKind::cube) return set;
+  if (request.dim == 3) set.resolved = make_resolved_cube();
+  add_resolved_tiles(set);
   return set;
 }
 

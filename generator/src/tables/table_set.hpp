@@ -13,8 +13,16 @@
 #include "base/lattice.hpp"
 #include "filling/resolved_cube.hpp"
 #include "tables/tile_tables.hpp"
+#include "tables/variant_tables.hpp"
 
 namespace tegl::gen {
+
+/// A row table and the table that it belongs to.
+struct NamedRows {
+  Triangulation of = Triangulation::compact;  ///< triangulation of the TileTables with its lists
+  std::string name;                           ///< of the variable
+  RowTables rows;                             ///< the entries
+};
 
 /// The data that one run of `gen --dim N --out DIR` writes.
 struct TableSet {
@@ -27,6 +35,10 @@ struct TableSet {
   std::vector<TileTables> tiles;           ///< one per triangulation
   std::vector<RegionTables> regions;       ///< regions of the (dim - 1)-tile
   std::optional<ResolvedCube> resolved{};  ///< for 3D cubes
+  std::vector<NamedRows> rows;             ///< for cubes
+  std::vector<VariantTables> variants;     ///< for 2D and 3D cubes
+  std::vector<bool> ambiguous;             ///< for 3D and 4D cubes: by signature, whether the data affect the tile
+  std::vector<tables::CubeJoin> joins;     ///< for 3D cubes, by entry of `resolved`
 };
 
 /// The layout that measured faster for a dimension and triangulation: by class if the triangulation is equivariant and

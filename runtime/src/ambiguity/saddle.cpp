@@ -243,90 +243,6 @@ struct Pair {
 constexpr std::array<Pair, 6> kPairs = {
     {{0, 6, 2, 4, 1}, {2, 4, 0, 6, 1}, {0, 5, 1, 4, 2}, {1, 4, 0, 5, 2}, {0, 3, 1, 2, 4}, {1, 2, 0, 3, 4}}};
 
-/// For an entry of kTile3Resolved, by sign: 1 + the pair that can join two regions; 0: no pair can.
-struct Joins {
-  std::uint8_t high = 0, low = 0;
-};
-
-/// Regions of the corners of one sign, as the cube's surface joins them.
-class Regions {
- public:
-  Regions(unsigned corners, unsigned ambiguous, unsigned joined_squares) {
-    for (std::uint8_t v = 0; v < 8; ++v) region_[v] = v;
-    for (unsigned v = 0; v < 8; ++v)
-      for (unsigned step = 1; step < 8; step *= 2)
-        if (((corners >> v) & 1u) != 0 && ((corners >> (v ^ step)) & 1u) != 0) join(v, v ^ step);
-    for (unsigned q = 0; q < 6; ++q) {
-      if (((ambiguous & joined_squares) >> q & 1u) == 0) continue;
-      const auto& s = kSquares[q];
-      if ((corners >> s[0] & 1u) != 0)
-        join(s[0], s[3]);
-      else
-        join(s[1], s[2]);
-    }
-  }
-  [[nodiscard]] std::uint8_t operator[](unsigned corner) const { return region_[corner]; }
-
-  void join(unsigned v, unsigned w) {
-    const std::uint8_t from = region_[v], to = region_[w];
-    std::replace(region_.begin(), region_.end(), from, to);
-  }
-  /// Number of regions among the given corners.
-  [[nodiscard]] int count(unsigned corners) const {
-    unsigned seen = 0;
-    for (unsigned v = 0; v < 8; ++v)
-      if ((corners >> v & 1u) != 0) seen |= 1u << region_[v];
-    return std::popcount(seen);
-  }
-
- private:
-  std::array<std::uint8_t, 8> region_{};
-};
-
-/// Whether a pair of edges could join two regions. `corners`: all of the regions' sign.
-bool could_join(const Pair& pair, unsigned corners, const Regions& regions) {
-  const auto has = [&](unsigned v) { return (corners >> v & 1u) != 0; };
-  const auto end_of = [&](unsigned v) { return has(v) ? v : v + pair.step; };
-  const auto stays = [&](unsigned v) { return has(v) && has(v + pair.step); };
-  const unsigned a = end_of(pair.a), c = end_of(pair.c);
-  return has(a) && has(c) && !stays(pair.b) && !stays(pair.d) && regions[a] != regions[c];
-}
-
-/// 1 + the pair that decides whether regions are joined; 0: none are. See "Third" above.
-std::uint8_t deciding_pair(unsigned corners, unsigned ambiguous, unsigned joined_squares) {
-  const Regions regions(corners, ambiguous, joined_squares);
-  if (regions.count(corners) != 2) return 0;
-  std::uint8_t deciding = 0;
-  for (std::uint8_t axis = 0; axis < 3; ++axis) {
-    const bool first = could_join(kPairs[2 * axis], corners, regions);
-    const bool second = could_join(kPairs[2 * axis + 1], corners, regions);
-    if (!first && !second) return 0;
-    if (first != second) deciding = static_cast<std::uint8_t>(2 * axis + (first ? 1 : 2));
-  }
-  return deciding;
-}
-
-/// Deciding pairs of all entries.
-struct JoinTable {
-  std::array<Joins, 656> of;
-
-  JoinTable() {
-    for (unsigned s = 0; s < 256; ++s) {
-      const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[s];
-      unsigned entry = tables::kTile3Resolved.first_entry[s], high = 0;
-      do {
-        of[entry++] = {deciding_pair(s, ambiguous, high), deciding_pair(~s & 0xffu, ambiguous, ~high)};
-        high = (high - ambiguous) & ambiguous;
-      } while (high != 0);
-    }
-  }
-};
-
-const Joins& joins_of(unsigned entry) noexcept {
-  static const JoinTable table;
-  return table.of[entry];
-}
-
 /// Whether A and C of a pair of edges are joined inside the cube. See "Fourth" above.
 struct PairQuestion {
   Pair pair;
@@ -355,9 +271,9 @@ struct CentreDecider {
   template <class Values>
   bool operator()(const Values& f, Choice& result) const noexcept {
     result = Choice::separate;
-    const Joins& joins = joins_of(entry);
+    const CubeJoin& joins = tables::kCubeJoins[entry];
     for (const bool high : {true, false}) {
-      const std::uint8_t pair = high ? joins.high : joins.low;
+      const std::uint8_t pair = high ? joins.high_pair : joins.low_pair;
       if (pair == 0) continue;
       const Answer is_joined = PairQuestion{kPairs[pair - 1u], high}(f);
       if (is_joined == Answer::unsure) return false;
@@ -446,26 +362,6 @@ bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue
 
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept {
   return decide<CubeDecision>(values, isovalue, CubeDecider{signature});
-}
-
-const std::array<CubeJoin, 656>& cube_joins() noexcept {
-  static const auto kJoins = [] {
-    std::array<CubeJoin, 656> result{};
-    for (unsigned entry = 0; entry < result.size(); ++entry) {
-      const Joins& joins = joins_of(entry);
-      CubeJoin& join = result[entry];
-      join.pairs = static_cast<std::uint8_t>((joins.high != 0) + (joins.low != 0));
-      if (join.pairs != 1) continue;
-      join.high = joins.high != 0;
-      const Pair& pair = kPairs[(join.high ? joins.high : joins.low) - 1u];
-      unsigned at = 0;
-      for (const std::uint8_t lower : {pair.a, pair.c, pair.b, pair.d})
-        for (const unsigned end : {unsigned{lower}, unsigned{lower} + pair.step})
-          join.corners[at++] = static_cast<std::uint8_t>(end);
-    }
-    return result;
-  }();
-  return kJoins;
 }
 
 Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "tegl/generated/tables.hpp"
 #include "tegl/saddle.hpp"
 
 namespace tegl::detail {
@@ -16,13 +17,9 @@ namespace tegl::detail {
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
 /// The test for a connection inside a cube, by entry of tables::kTile3Resolved (the signature with its squares
-/// decided): a pair of diagonal edges, if there is one, and for some entries one of each sign.
-struct CubeJoin {
-  std::uint8_t pairs = 0;                 ///< number of pairs; with 0 the centre is `separate`
-  bool high = false;                      ///< for one pair: whether it joins high corners
-  std::array<std::uint8_t, 8> corners{};  ///< for one pair: the lower and upper end of each of its edges A, C, B, D
-};
-const std::array<CubeJoin, 656>& cube_joins() noexcept;
+/// decided). Without a pair of edges the centre is `separate`.
+using tables::CubeJoin;
+inline const std::array<CubeJoin, 656>& cube_joins() noexcept { return tables::kCubeJoins; }
 /// The centre choice of a cube with this entry.
 tile::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
 /// Without the floating-point filter, for tests: all signs by exact arithmetic.

@@ -212,7 +212,7 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
   for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
     const auto f = static_cast<unsigned>(std::countr_zero(rest));
-    tile.cubes[f] = cubes.key(tile.lists[f]).bits();
+    tile.cubes[f] = cubes.key(tile.lists[f]);
   }
   return true;
 }

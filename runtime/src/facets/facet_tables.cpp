@@ -125,11 +125,12 @@ void FacetTables::add_cube(unsigned number) {
   join_parts(3, types, all);
 
   // connected parts of the triangle list
-  std::vector<Triangle> triangles(of.list->triangle_count);
+  const std::span<const std::uint8_t> vertices = cubes.triangles_of(number);
+  std::vector<Triangle> triangles(vertices.size() / 3);
   BasicDisjointSets<Index> connected;  // by vertex of the list
   connected.reset(kCubeEdges + ResolvedCubes::kMostOwn);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::uint8_t* const v = tables::kTile3Resolved.triangles + 3 * (of.list->first_triangle + t);
+    const std::uint8_t* const v = vertices.data() + 3 * t;
     triangles[t] = {v[0], v[1], v[2]};
     connected.join(v[0], v[1]);
     connected.join(v[0], v[2]);

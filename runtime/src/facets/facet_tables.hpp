@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "tegl/extract.hpp"
-#include "tile/cube_subcases.hpp"
+#include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
 

@@ -10,7 +10,7 @@
 #include "kernel/contour_output.hpp"
 #include "kernel/extract_generate.hpp"
 #include "tegl/tile/corners.hpp"
-#include "tile/cube_regions.hpp"
+#include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
 namespace {

@@ -147,7 +147,11 @@ class Counter {
     std::array<CubePlane, N - 1>& in_slab;
   };
   void resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
-                          ResolvedTesseract& tesseract, const FoundCubes* found) const;
+                          ResolvedTesseract& tesseract, std::uint8_t* plans, const FoundCubes* found) const;
+  /// Destination of the plans of a row's tiles, or null.
+  [[nodiscard]] std::uint8_t* plans(Slab<N>& slab, std::size_t row) const noexcept {
+    return keeps_tiles() && lists_cubes_ ? slab.plans.data() + slab.first_tile[row] : nullptr;
+  }
   template <unsigned Axes>
   void list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
   [[nodiscard]] bool keeps_tiles() const noexcept { return keeps_tiles_ && quick_; }

@@ -82,6 +82,7 @@ class TileWriter {
     BitWalk active;
     Index next;                   ///< number of the next own vertex
     RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
+    const std::uint8_t* plans;    ///< with `tesseracts`: ResolvedSize::plan by tile of the row; null: not kept
 
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
@@ -91,7 +92,8 @@ class TileWriter {
       if constexpr (N == 4)
         if (own.writer.is_estimated_tile(key))
           return own.writer.write_resolved(own.view, own.row, own.index, key,
-                                           own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key), ids,
+                                           own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
+                                           own.plans != nullptr ? own.plans[ordinal] : ResolvedTesseract::kOther, ids,
                                            own.next, own.vertices, *own.scratch.tesseract, out);
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
@@ -116,6 +118,7 @@ class TileWriter {
                              vertices,
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
                              view.slab->first_own(row),
+                             nullptr,
                              nullptr};
     // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
@@ -128,6 +131,8 @@ class TileWriter {
                                           const RowTiles& tiles, TilesWithOwnVertices& own) const noexcept {
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
     own.tesseracts = &tesseracts;
+    const Slab<N>& slab = *own.view.slab;
+    own.plans = slab.plans.size() != 0 ? slab.plans.data() + slab.first_tile[own.row] : nullptr;
     write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }
 
@@ -157,8 +162,8 @@ class TileWriter {
         edges.ids(bit, ids.data());
         if constexpr (N == 4)
           if (is_estimated_tile(signature)) {
-            out = write_resolved(view, row, index, signature, tile_of(scratch.answers, index, signature), ids, own,
-                                 vertices, *scratch.tesseract, out);
+            out = write_resolved(view, row, index, signature, tile_of(scratch.answers, index, signature),
+                                 ResolvedTesseract::kOther, ids, own, vertices, *scratch.tesseract, out);
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
@@ -262,13 +267,13 @@ class TileWriter {
     return tile_of(own.scratch.answers, own.index, signature);
   }
 
-  /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `ids`: numbers of its
-  /// edges' vertices.
+  /// Writes a resolved 4D tile, of which `plan` is known or kOther. Its own vertices are numbered from `own` on; `own`
+  /// is advanced. `ids`: numbers of its edges' vertices.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
-                          unsigned signature, const ResolvedTile& tile, Ids& ids, Index& own,
+                          unsigned signature, const ResolvedTile& tile, std::uint8_t plan, Ids& ids, Index& own,
                           VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
-    const ResolvedView& filling = tesseract.find(tile.key, tile.lists);
+    const ResolvedView& filling = tesseract.find(tile.key, tile.lists, plan);
     // numbers of the cubes' vertices
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
       const auto cube = static_cast<unsigned>(std::countr_zero(rest));

@@ -74,13 +74,10 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         selection_(plan.selection),
         shape_(grid.sizes()),
         tables_(tables),
-        rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
-                                                                        : std::nullopt),
-        row_table_(rows_ ? &*rows_ : tables.rows),
         placement_(grid, N == 4 || plan.keeps_off_layers),
         estimator_(make_estimator(source, grid, options, plan)),
-        counter_(shape_, tables, row_table_, options.close, estimator_.get()),
-        tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
+        counter_(shape_, tables, tables.rows, options.close, estimator_.get()),
+        tiles_(source, tables, tables.rows, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes() && !counter_.lists_cubes()),
         nonmanifold_(shape_, counter_),
         workers_(options.work.threads,
@@ -407,7 +404,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   }
 
   [[nodiscard]] const tables::TileTable& cubes_by_key() const {
-    return variant_table<3>(estimator_->triangulation()).tile();
+    return variant_table<3>(estimator_->triangulation()).tile;
   }
 
   void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
@@ -480,8 +477,6 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   const TileSelection* selection_;
   RowShape<N> shape_;
   TableSet<N> tables_;
-  std::optional<RowTable> rows_;
-  const RowTable* row_table_;
   Placement<N, Real> placement_;
   std::unique_ptr<FaceEstimator<N>> estimator_;  ///< null: the tables decide
   Counter<N> counter_;

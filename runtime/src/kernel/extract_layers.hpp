@@ -230,8 +230,9 @@ struct TileLists {
 /// Counts of a slab.
 template <int N>
 struct SlabPlanes {
-  std::vector<Word> active;  ///< rows x words: valid tiles with high and low corners
-  TileLists tiles;           ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
+  std::vector<Word> active;    ///< rows x words: valid tiles with high and low corners
+  TileLists tiles;             ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
+  Buffer<std::uint8_t> plans;  ///< with `tiles`, N = 4, resolved from the data: ResolvedSize::plan by tile
   std::vector<std::size_t> first_tile;      ///< by row
   std::vector<std::uint32_t> active_count;  ///< by row
   EdgePlane edges;                          ///< along the last axis

@@ -205,11 +205,11 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     store(out, [&](int half)
                    HWY_ATTR { return _mm512_or_si512(half_of(low, half), _mm512_slli_epi16(half_of(high, half), 8)); });
     std::uint32_t simplices = 0;
-    for (unsigned i = 0; i < count; ++i) simplices += table.entries()[out[i]] & RowTable::kCountMask;
+    for (unsigned i = 0; i < count; ++i) simplices += table.entries[out[i]] & RowTable::kCountMask;
     return simplices;
   } else {
     store(out, [&](int half) HWY_ATTR { return half_of(low, half); });
-    return sum_of_entries(low, table.counts());  // unused lanes have signature 0, which has no simplices
+    return sum_of_entries(low, table.counts);  // unused lanes have signature 0, which has no simplices
   }
 }
 
@@ -234,7 +234,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     room.signatures[at] = static_cast<std::uint16_t>(signature);
     // few tiles: gather the corners of each
     room.at[at++] = static_cast<std::uint16_t>(first + bit);
-    simplices += table.entries()[signature] & RowTable::kCountMask;
+    simplices += table.entries[signature] & RowTable::kCountMask;
   };
   if (static_cast<unsigned>(std::popcount(mixed)) <= kFew) {
     for (; mixed != 0; mixed &= mixed - 1) {
@@ -374,10 +374,10 @@ HWY_INLINE typename TileOutput<N>::Simplex* write_plain(const std::uint8_t* loca
   return out;
 }
 
-/// Index of a key's entry in RowTable::entries().
+/// Index of a key's entry in RowTable::entries.
 template <int N, bool Variants>
 HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
-  if constexpr (N == 3 && Variants) return table.place_of(CubeKey(key));
+  if constexpr (N == 3 && Variants) return table.place_of(key);
   return key;
 }
 
@@ -418,8 +418,8 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
   constexpr std::uint32_t kNext = next_edges<N>();
   constexpr unsigned kAtOnce = 16 / N;  // simplices
   constexpr auto kAllLocal = static_cast<__mmask16>((1u << (kAtOnce * N)) - 1);
-  const std::uint32_t* const entries = table.entries();
-  const std::uint8_t* const simplices = table.simplices();
+  const std::uint32_t* const entries = table.entries;
+  const std::uint8_t* const simplices = table.simplices;
   Lanes<N> lanes(row.first);
   auto* out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
@@ -477,8 +477,8 @@ template <int N, bool Variants>
 HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
   constexpr std::uint32_t kNext = next_edges<N>();
   constexpr unsigned kEdges = (TileOutput<N>::kEdges + 7) / 8 * 8;  // rounded up to whole registers
-  const std::uint32_t* const entries = table.entries();
-  const std::uint8_t* const simplices = table.simplices();
+  const std::uint32_t* const entries = table.entries;
+  const std::uint8_t* const simplices = table.simplices;
   alignas(64) Index first[kEdges] = {};
   alignas(64) Index ids[kEdges];
   std::copy(row.first.begin(), row.first.end(), first);
@@ -521,7 +521,7 @@ void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTi
   }();
   const hn::FixedTag<Index, 4> d;
   const hn::FixedTag<std::uint8_t, 16> bytes;
-  const std::uint32_t* const entries = table.entries();
+  const std::uint32_t* const entries = table.entries;
   auto first = hn::LoadU(d, row.first.data());
   TileOutput<2> last = row;
   // Each store writes two segments; the next tile overwrites a superfluous second one. The last tile is written
@@ -559,7 +559,7 @@ HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, con
   if constexpr (N == 2) return write_segments(row, table, own);
 #endif
   if constexpr (N < 4)
-    if (table.has_variants()) return write_by<N, true>(row, table, own);
+    if (table.more_keys) return write_by<N, true>(row, table, own);
   return write_by<N, false>(row, table, own);
 }
 

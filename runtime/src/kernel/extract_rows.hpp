@@ -19,6 +19,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/corners.hpp"
+#include "tile/cube_key.hpp"
 #include "tile/row_table.hpp"
 
 namespace tegl::detail {

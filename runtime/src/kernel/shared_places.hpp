@@ -162,7 +162,7 @@ class ResolvedPlaces {
   }
 
   void find_cube(unsigned cube) noexcept {
-    const SimplexList<3> list(variant_table<3>(Triangulation::barycentric).tile(), cubes_.key(lists_[cube]).bits());
+    const SimplexList<3> list(variant_table<3>(Triangulation::barycentric).tile, cubes_.key(lists_[cube]));
     std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points{};
     own_places<3>(
         list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data());

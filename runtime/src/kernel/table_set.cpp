@@ -3,28 +3,11 @@
 // Selects the generated tables for an extraction's options.
 #include "kernel/table_set.hpp"
 
-#include <optional>
-
 #include "ambiguity/face_estimator.hpp"
 #include "tegl/generated/tables.hpp"
-#include "tile/tesseract_fill.hpp"
 #include "tile/variant_table.hpp"
 
 namespace tegl::detail {
-
-namespace {
-
-/// Flat table, built once, as it takes 256 KiB in 4D. Null if the fast path cannot use the table.
-template <int N, Triangulation T>
-const RowTable* row_table() {
-  static const auto table = [] {
-    const tables::TileTable& tile = tables::tile_table(N, T);
-    return RowTable::can_use(tile) ? std::make_optional<RowTable>(tile) : std::nullopt;
-  }();
-  return table ? &*table : nullptr;
-}
-
-}  // namespace
 
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options) {
@@ -33,16 +16,17 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   const Alternative alternative = options.ambiguity == Ambiguity::high ? Alternative::high : Alternative::low;
   TableSet<N> set;
   set.tile = &tables::tile_table(N, triangulation);
-  set.rows = triangulation == Triangulation::barycentric ? row_table<N, Triangulation::barycentric>()
-                                                         : row_table<N, Triangulation::compact>();
+  set.rows = tables::row_table(N, triangulation);
   set.compact = triangulation == Triangulation::compact;
   if constexpr (N == 4)
-    if (is_estimated(options.ambiguity)) set.rows = &estimated_tesseracts(triangulation);
+    if (is_estimated(options.ambiguity))
+      set.rows = triangulation == Triangulation::barycentric ? &tables::kTile4EstimatedBarycentricRows
+                                                             : &tables::kTile4EstimatedCompactRows;
   if constexpr (N < 4)
     if (is_estimated(options.ambiguity)) {
-      const VariantTable<N>& variants = variant_table<N>(triangulation);
-      set.tile = &variants.tile();
-      set.rows = &variants.rows();
+      const tables::VariantTable& variants = variant_table<N>(triangulation);
+      set.tile = &variants.tile;
+      set.rows = &variants.rows;
       if (options.close) set.high_face = &tables::region_table(N - 1, triangulation, Alternative::high);
     }
   if (N == 4) set.cube = &tables::tile_table(3, triangulation);

@@ -19,6 +19,11 @@ namespace tegl::detail {
 
 namespace {
 
+using builders::FiveCube;
+using builders::FiveCubeBuilder;
+using builders::FiveKey;
+using builders::ResolvedCubes;
+using builders::ResolvedTesseract;
 using Id = FiveCubeBuilder::Id;
 using tile::Choice;
 

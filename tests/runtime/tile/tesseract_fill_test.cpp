@@ -22,7 +22,6 @@
 #include "tegl/tile/corners.hpp"
 #include "tegl/tile/facets.hpp"
 #include "tegl/tile_facets.hpp"
-#include "tile/cube_regions.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -69,6 +68,13 @@ const tables::ResolvedList& list_of(const ResolvedKey& key, unsigned cube) {
   return choice == Choice::separate ? lists.separate : choice == Choice::low ? lists.low : lists.high;
 }
 
+/// Whether a list was numbered for an entry and a choice with these triangles.
+bool has_list(const CubeList& number, const tables::ResolvedList& list) {
+  const tables::ResolvedEntry& entry = tables::kTile3Resolved.entries[number.entry];
+  const tables::ResolvedList& of = number.choice == 0 ? entry.separate : number.choice == 1 ? entry.low : entry.high;
+  return of.first_triangle == list.first_triangle;
+}
+
 /// The triangles of a cube.
 std::span<const std::uint8_t> triangles_of(const ResolvedKey& key, unsigned cube, Triangulation triangulation) {
   const tables::ResolvedList& list = list_of(key, cube);
@@ -80,9 +86,9 @@ std::span<const std::uint8_t> triangles_of(const ResolvedKey& key, unsigned cube
   const auto& lists = cubes.lists();
   const unsigned signature = cube_signature(key.signature, cube);
   for (unsigned number = 0; number < lists.size(); ++number) {
-    if (lists[number].signature != signature || lists[number].list->first_triangle != list.first_triangle) continue;
-    const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile();
-    const tables::List& of_key = table.lists[table.list_of[cubes.key(number).bits()]];
+    if (lists[number].signature != signature || !has_list(lists[number], list)) continue;
+    const tables::TileTable& table = variant_table<3>(Triangulation::barycentric).tile;
+    const tables::List& of_key = table.lists[table.list_of[cubes.key(number)]];
     return {table.simplices + 3 * std::size_t{of_key.first_simplex}, 3 * std::size_t{of_key.simplex_count}};
   }
   return {};

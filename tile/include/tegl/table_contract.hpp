@@ -34,6 +34,7 @@
 // low-connected one of ~s with reversed orientation, for every n and triangulation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "tegl/tile/triangulation.hpp"
@@ -158,6 +159,75 @@ struct ResolvedTable {
   const ResolvedEntry* entries;           ///< entry_count
   const std::uint8_t* triangles;          ///< x 3 local vertices
   const std::uint32_t* masks;             ///< own vertex: bit v: corner v; bit 8 + e: edge e
+};
+
+/// A resolved cube: its key (VariantTable), and the differences in size from the unresolved cube of its signature.
+struct Variant {
+  std::uint16_t key;
+  std::int8_t more_simplices, more_own_vertices;
+};
+
+/// A tile table in the flat layout, in the form that loops over many tiles read.
+struct RowTable {
+  /// Layout of an entry, from low bits to high: number of simplices, flag for own vertices, first simplex.
+  static constexpr unsigned kCountBits = 6;
+  static constexpr std::uint32_t kCountMask = (1u << kCountBits) - 1;
+  static constexpr std::uint32_t kOwnFlag = 1u << kCountBits;
+  static constexpr unsigned kFirstShift = kCountBits + 1;
+
+  const TileTable* table;               ///< the lists; by key if there are variants
+  const std::uint32_t* entries;         ///< by signature; n = 2: by key; n = 3 with variants: by place_of(key)
+  const std::uint8_t* simplices;        ///< as TileTable::simplices
+  const std::uint8_t* counts;           ///< n = 2, 3: number of simplices by signature, 256; n = 4: null
+  const std::uint8_t* shuffles;         ///< n = 2: 2 x 32 x 16 bytes (see segment_bytes); else null
+  const std::uint16_t* variant_places;  ///< n = 3 with variants: first entry of each signature's variants; else null
+  const tables::Variant* variants;      ///< with variant_places: four for each entry of ResolvedTable; else null
+  bool more_keys;                       ///< whether there are more keys than signatures
+
+  /// n = 3 with variants: index of a key's entry. Entries have no gaps, as only few of all possible keys occur.
+  [[nodiscard]] constexpr std::uint32_t place_of(unsigned key) const noexcept {
+    return variant_places[key & 255u] + (key >> 8);
+  }
+  /// Entry of a signature or key.
+  [[nodiscard]] constexpr std::uint32_t entry(unsigned key) const noexcept {
+    return entries[variants == nullptr ? key : place_of(key)];
+  }
+  /// The cube of an entry of ResolvedTable. `choice`: tile::Choice of its centre, if that matters.
+  [[nodiscard]] constexpr const tables::Variant& variant(unsigned resolved, unsigned choice) const noexcept {
+    return variants[4 * resolved + choice];
+  }
+  /// n = 2: byte shuffle of a tile's four vertex numbers that yields two segments, by signature. If the tile has only
+  /// one segment, the second is undefined. `flip`: orientation opposite to the table's.
+  [[nodiscard]] constexpr const std::uint8_t* segment_bytes(unsigned signature, bool flip) const noexcept {
+    return shuffles + 16 * (signature + (flip ? 32u : 0u));
+  }
+  /// Whether any tile has own vertices.
+  [[nodiscard]] constexpr bool has_own_vertices() const noexcept { return table->max_tile_vertices != 0; }
+  /// Number of vertices that the tile of a signature or key owns.
+  [[nodiscard]] constexpr unsigned own_vertices(unsigned key) const noexcept {
+    const List& list = table->lists[table->list_of[key]];
+    return unsigned{list.cone_vertices} + list.side_vertices;
+  }
+};
+
+/// Squares and cubes with resolved ambiguities, n = 2 or 3, in the form of the other tables.
+///
+/// Keys of squares: `signature | 16` if the square is ambiguous and its centre high. Keys of cubes: `signature |
+/// variant << 8`. Variant 0 is the unresolved cube of the plain table. Variant 1 + 3 r + choice has resolution r of the
+/// ambiguous squares (ResolvedTable) and the choice of the cube's centre (tile::Choice). In the barycentric
+/// triangulation, discs of more than one triangle are coned from their barycentres; tunnels are not.
+struct VariantTable {
+  TileTable tile;  ///< by key
+  RowTable rows;   ///< by key
+};
+
+/// The diagonal edges through which regions of a cube with resolved squares may be joined inside it.
+struct CubeJoin {
+  /// If `pairs` is 1: the lower and the upper end of each of the edges A, C, B, D.
+  std::array<std::uint8_t, 8> corners;
+  std::uint8_t pairs;                ///< number of pairs that may join
+  bool high;                         ///< if `pairs` is 1: whether it may join high regions
+  std::uint8_t high_pair, low_pair;  ///< 1 + the pair that may join high, or low, regions; 0: none
 };
 
 }  // namespace tegl::tables

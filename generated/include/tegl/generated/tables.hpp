@@ -3,6 +3,8 @@
 // Declares the generated tables, by name and by dimension. `gen` writes their definitions into the build tree.
 #pragma once
 
+#include <array>
+
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/choices.hpp"
 #include "tegl/tile/triangulation.hpp"
@@ -20,8 +22,34 @@ extern const RegionTable kRegion1BarycentricLow, kRegion1BarycentricHigh, kRegio
 extern const RegionTable kRegion2BarycentricLow, kRegion2BarycentricHigh, kRegion2CompactLow, kRegion2CompactHigh;
 extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegion3CompactLow, kRegion3CompactHigh;
 
+/// Plain tables for loops over many tiles. The barycentric table of 4D tiles has no such form.
+extern const RowTable kTile2BarycentricRows, kTile2CompactRows;
+extern const RowTable kTile3BarycentricRows, kTile3CompactRows;
+extern const RowTable kTile4CompactRows;
+/// The compact table of 4D tiles, in which the tiles that the data may change are marked as having own vertices. These
+/// are all tiles in the barycentric triangulation, and those of kAmbiguous4 in the compact one.
+extern const RowTable kTile4EstimatedBarycentricRows, kTile4EstimatedCompactRows;
+
+/// Squares and cubes with resolved ambiguities.
+extern const VariantTable kTile2BarycentricVariants, kTile2CompactVariants;
+extern const VariantTable kTile3BarycentricVariants, kTile3CompactVariants;
+
+/// Whether a tile depends on the data beyond its signature: a square is ambiguous, or it may have several facets. By
+/// signature. In 4D: if false, Sigma is empty or one sphere.
+extern const std::array<bool, 256> kAmbiguous3;
+extern const std::array<bool, 65536> kAmbiguous4;
+
+/// By entry of kTile3Resolved.
+extern const std::array<CubeJoin, 656> kCubeJoins;
+
 /// The table of the dim-tile's contours, dim = 2, 3, 4.
 const TileTable& tile_table(int dim, Triangulation triangulation) noexcept;
+
+/// The same table for loops over many tiles, or null.
+const RowTable* row_table(int dim, Triangulation triangulation) noexcept;
+
+/// Squares or cubes with resolved ambiguities, dim = 2, 3.
+const VariantTable& variant_table(int dim, Triangulation triangulation) noexcept;
 
 /// The table of the k-tile's high regions, k = 1, 2, 3.
 const RegionTable& region_table(int k, Triangulation triangulation, tile::Alternative alternative) noexcept;

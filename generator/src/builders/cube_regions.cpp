@@ -6,19 +6,26 @@
 // ring divide it into two balls.
 //
 // Theory: side filling; regions that contain the cube's centre are star-shaped, the others are collars.
-#include "tile/cube_regions.hpp"
+#include "builders/cube_regions.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
+#include "base/error.hpp"
+#include "tegl/tile/complex.hpp"
 #include "tegl/tile/corners.hpp"
 
-namespace tegl::detail {
+namespace tegl::gen {
+
 namespace {
+
+using detail::edge_number;
+using detail::face_corners;
+using detail::face_edges;
+using detail::face_sign;
 
 using Triangle = std::array<std::uint8_t, 3>;
 using Tetrahedron = CubeRegions::Tetrahedron;
@@ -183,7 +190,7 @@ class RegionMaker {
   std::uint8_t add_centre(Set around) {
     centres.push_back(static_cast<std::uint32_t>(around & (bit(kFirstOwn) - 1)));
     if (CubeRegions::kFirstCentre + centres.size() > CubeRegions::kVertices)
-      throw std::logic_error("a region of a cube with too many centres");
+      throw Error(ErrorCode::Internal, "a region of a cube with too many centres");
     return static_cast<std::uint8_t>(CubeRegions::kFirstCentre + centres.size() - 1);
   }
 
@@ -201,7 +208,7 @@ class RegionMaker {
       std::vector<const Curve*> chosen;
       if (choose(surface, polygons, count, 0, 0, chosen)) return;
     }
-    throw std::logic_error("a collar in a cube that is not cut into balls");
+    throw Error(ErrorCode::CertificateFailed, "a collar in a cube that is not cut into balls");
   }
 
   /// Searches for `count` disjoint curves that cut the collar into balls, and fills it with them.
@@ -361,38 +368,68 @@ class RegionMaker {
   std::vector<Curve> curves_;
 };
 
+/// The certificate of a region: its boundary is the surface, with orientations; the link of every vertex is a disc, or
+/// a sphere for a vertex that is not on the surface; an edge or triangle in a square belongs to the surface.
+void certify(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Triangle>& surface) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw Error(ErrorCode::CertificateFailed, std::string("a region of a cube: ") + what);
+  };
+  std::map<Triangle, int> boundary;  // by sorted triangle
+  const auto count = [&](Triangle t, int sign) {
+    const int parity = tile::sort_vertices(t);
+    boundary[t] += parity * sign;
+  };
+  std::map<std::uint8_t, tile::Simplices> links;
+  std::map<Set, int> faces;
+  for (const Tetrahedron& tetrahedron : tetrahedra)
+    for (std::size_t i = 0; i < 4; ++i) {
+      Triangle face{};
+      tile::Simplex in_link = tile::kNoSimplex;
+      for (std::size_t j = 0, k = 0; j < 4; ++j)
+        if (j != i) in_link[k] = tetrahedron[j], face[k++] = tetrahedron[j];
+      count(face, i % 2 == 0 ? 1 : -1);
+      ++faces[set_of(face)];
+      tile::sort_vertices(in_link);
+      links[tetrahedron[i]].push_back(in_link);
+    }
+  std::set<Set> on_surface;
+  Set surface_vertices = 0;
+  for (const Triangle& t : surface) {
+    count(t, -1);
+    on_surface.insert(set_of(t));
+    surface_vertices |= set_of(t);
+    for (unsigned i = 0; i < 3; ++i) on_surface.insert(bit(t[i]) | bit(t[(i + 1) % 3]));
+  }
+  for (const auto& [t, sum] : boundary) require(sum == 0, "its boundary is not its surface");
+  for (const auto& [face, incident] : faces) {
+    require(incident <= 2, "a triangle in three tetrahedra");
+    require(!in_one_square(face) || on_surface.contains(face), "a triangle in a square that is not the square's");
+    for (Set rest = face; rest != 0; rest &= rest - 1) {
+      const Set pair = face & ~(rest & (0 - rest));
+      require(!in_one_square(pair) || on_surface.contains(pair), "an edge in a square that is not the square's");
+    }
+  }
+  for (const auto& [vertex, link] : links)
+    require(tile::shape_of(link) == ((surface_vertices >> vertex & 1u) != 0 ? tile::Shape::ball : tile::Shape::sphere),
+            "a link that is neither a disc nor a sphere");
+}
+
 }  // namespace
 
-const CubeRegions& CubeRegions::instance(Triangulation triangulation) {
-  if (triangulation == Triangulation::barycentric) {
-    static const CubeRegions barycentric(Triangulation::barycentric, false);
-    return barycentric;
-  }
-  static const CubeRegions compact(Triangulation::compact, false);
-  return compact;
-}
-
-const CubeRegions& CubeRegions::of_caps(Triangulation triangulation) {
-  if (triangulation == Triangulation::compact) return instance(Triangulation::compact);
-  static const CubeRegions barycentric(Triangulation::barycentric, true);
-  return barycentric;
-}
-
-CubeRegions::CubeRegions(Triangulation triangulation, bool has_square_centres) {
-  const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
-  const std::vector<CubeList>& lists = cubes.lists();
-  whole_ = static_cast<unsigned>(lists.size());
-  for (unsigned number = 0; number <= whole_; ++number)
+CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
+  CubeRegions result;
+  const std::size_t whole = lists.lists.size();
+  for (std::size_t number = 0; number <= whole; ++number)
     for (const bool high : {false, true}) {
-      first_region_.push_back(static_cast<std::uint32_t>(regions_.size()));
-      const bool is_whole = number == whole_;
+      result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
+      const bool is_whole = number == whole;
       // boundary of the side
-      const Side side{is_whole ? (high ? 255u : 0u) : lists[number].signature,
-                      is_whole ? 0u : lists[number].high_squares, high, has_square_centres};
+      const Side side{is_whole ? (high ? 255u : 0u) : lists.lists[number].signature,
+                      is_whole ? 0u : lists.lists[number].high_squares, high, has_square_centres};
       std::vector<Triangle> surface, contour;
       for (unsigned q = 0; q < 6; ++q) side.add_square(q, surface);
       if (!is_whole) {
-        const std::span<const std::uint8_t> triangles = cubes.triangles_of(number);
+        const std::span<const std::uint8_t> triangles = lists.triangles_of(number);
         for (std::size_t t = 0; t < triangles.size(); t += 3)
           contour.push_back({static_cast<std::uint8_t>(kFirstEdge + triangles[t]),
                              static_cast<std::uint8_t>(kFirstEdge + triangles[t + 1]),
@@ -401,20 +438,21 @@ CubeRegions::CubeRegions(Triangulation triangulation, bool has_square_centres) {
       }
       // regions
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
-        RegionMaker maker(triangulation == Triangulation::barycentric);
+        RegionMaker maker(lists.triangulation == Triangulation::barycentric);
         maker.fill(part, contour);
+        certify(maker.tetrahedra, part);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);
-        regions_.push_back(
+        result.regions.push_back(
             {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(maker.centres.size()),
-             static_cast<std::uint16_t>(maker.tetrahedra.size()), static_cast<std::uint32_t>(tetrahedra_.size()),
-             static_cast<std::uint32_t>(centres_.size())});
-        tetrahedra_.insert(tetrahedra_.end(), maker.tetrahedra.begin(), maker.tetrahedra.end());
-        centres_.insert(centres_.end(), maker.centres.begin(), maker.centres.end());
+             static_cast<std::uint16_t>(maker.tetrahedra.size()), static_cast<std::uint32_t>(result.tetrahedra.size()),
+             static_cast<std::uint32_t>(result.centres.size())});
+        result.tetrahedra.insert(result.tetrahedra.end(), maker.tetrahedra.begin(), maker.tetrahedra.end());
+        result.centres.insert(result.centres.end(), maker.centres.begin(), maker.centres.end());
       }
     }
-  first_region_.push_back(static_cast<std::uint32_t>(regions_.size()));
-  tetrahedra_.resize(tetrahedra_.size() + kMoreTetrahedra);
+  result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
+  return result;
 }
 
-}  // namespace tegl::detail
+}  // namespace tegl::gen

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The high and the low part of a cube, divided into tetrahedra, for each list of the resolved cube: data of the
+// tesseract's builder, which combines copies of one side of a tesseract's boundary from these parts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "builders/cube_lists.hpp"
+
+namespace tegl::gen {
+
+/// The connected components of the low and the high side of a cube, by list; last those of a cube of one sign. Any
+/// simplex whose vertices all belong to the list is a simplex of the list. Any simplex in a square belongs to that
+/// square's triangulation, which depends on the square only. The regions of all cubes around a tesseract therefore
+/// match.
+struct CubeRegions {
+  static constexpr unsigned kFirstEdge = 8;                                  ///< after the corners
+  static constexpr unsigned kFirstOwn = kFirstEdge + CubeLists::kCubeEdges;  ///< own vertices of the list
+  static constexpr unsigned kFirstCentre = kFirstOwn + CubeLists::kMostOwn;  ///< vertices that the region adds
+  static constexpr unsigned kVertices = 32;                                  ///< maximum, not counting square centres
+  static constexpr unsigned kFirstSquare = kVertices;                        ///< barycentres of squares' high parts
+  using Tetrahedron = std::array<std::uint8_t, 4>;
+
+  struct Region {
+    std::uint8_t corners, centre_count;
+    std::uint16_t tetrahedron_count;
+    std::uint32_t first_tetrahedron, first_centre;
+  };
+
+  std::vector<std::uint32_t> first_region;  ///< by 2 * list + side
+  std::vector<Region> regions;
+  std::vector<Tetrahedron> tetrahedra;  ///< oriented so that they induce the list's triangles
+  std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near
+};
+
+/// `has_square_centres`: squares are triangulated as in tables::region_table of the barycentric triangulation, to close
+/// contours at the image border; else each polygon in a square is a fan from its lowest corner. Certifies every region.
+/// Throws Error{CertificateFailed}.
+[[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres);
+
+}  // namespace tegl::gen
