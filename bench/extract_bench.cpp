@@ -158,11 +158,20 @@ void add_scaling(const std::string& field, std::initializer_list<std::size_t> si
 
 /// A smooth field, whose time is mostly spent on writing, and noise, whose time is spent on building tiles.
 void add_5d() {
-  for (const int threads : {1, 4}) {
-    add<float, 5>("extract", {"sphere", 12, {}, threads});
-    add<float, 5>("extract", {"sphere", 20, {}, threads});
-    add<float, 5>("extract", {"noise", 4, {}, threads});
-  }
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+    for (const int threads : {1, 4}) {
+      Case what{"sphere", 12, {}, threads};
+      what.options.triangulation = triangulation;
+      add<float, 5>("extract", what);
+      what.samples = 20;
+      add<float, 5>("extract", what);
+      what.field = "noise";
+      what.samples = 4;
+      for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle}) {
+        what.options.ambiguity = ambiguity;
+        add<float, 5>("extract", what);
+      }
+    }
 }
 
 /// The facets of a 5D tile: one corner cut off, a plane, random signatures, and random signatures with random signs of

@@ -139,14 +139,22 @@ void write_cubes(const Faces& faces, std::string& text) {
   text += "}};\n\n";
 }
 
+/// Numbers separated by commas, 16 to a line; further lines are indented by six.
+std::string wrapped(const std::vector<unsigned>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : i % 16 == 0 ? ",\n      " : ", ", numbers[i]);
+  return text;
+}
+
 void write_tesseracts(const Faces& faces, std::string& text) {
   text += "const std::array<FiveCube::Tesseract, 10> FiveCube::kTesseracts{{\n";
   for (unsigned f = 0; f < kTesseracts; ++f) {
     const TesseractFace& t = faces.tesseracts[f];
     fmt::format_to(std::back_inserter(text),
                    "    // {}: {}, x{} = {}\n    {{{{{}}},\n     {{{}}},\n     {{{}}},\n     {{{}}},\n     {}}},\n", f,
-                   name_of(t.face), f / 2, f % 2, fmt::join(t.corners, ", "), fmt::join(t.edges, ", "),
-                   fmt::join(t.squares, ", "), fmt::join(t.cubes, ", "), t.is_reversed);
+                   name_of(t.face), f / 2, f % 2, wrapped(t.corners), wrapped(t.edges), wrapped(t.squares),
+                   wrapped(t.cubes), t.is_reversed);
   }
   text += "}};\n\n";
 }

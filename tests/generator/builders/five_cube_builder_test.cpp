@@ -60,14 +60,15 @@ bool is_found() {
   return false;
 }
 
-#define TEGL_IS_FOUND(fault) \
-  is_found<builders::fault::FiveCubeBuilder, builders::fault::FiveKey, builders::fault::FiveCube>()
+// The templates of is_found for the fault in namespace `space`.
+#define TEGL_FAULT(space) \
+  is_found<builders::space::FiveCubeBuilder, builders::space::FiveKey, builders::space::FiveCube>
 
 TEST(FaultyBuilder, OfThe5CubeIsFound) {
-  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_map));
-  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_sign));
-  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_square));
-  EXPECT_TRUE(TEGL_IS_FOUND(five_cube_high_side));
+  EXPECT_TRUE((TEGL_FAULT(five_cube_map)()));
+  EXPECT_TRUE((TEGL_FAULT(five_cube_sign)()));
+  EXPECT_TRUE((TEGL_FAULT(five_cube_square)()));
+  EXPECT_TRUE((TEGL_FAULT(five_cube_high_side)()));
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ constexpr std::size_t kSamples = N == 2   ? 12
                                  : N == 4 ? 4
                                           : 2;
 
-/// 5D images have only one triangulation.
+/// Two in 5D: cells are built one by one, and take longer.
 template <int N>
 std::vector<ExtractOptions> variants_in() {
   auto result = variants();
