@@ -7,8 +7,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <map>
 #include <string>
 #include <tuple>
 #include <vector>

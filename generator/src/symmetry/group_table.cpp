@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <functional>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <string_view>
