@@ -561,6 +561,8 @@ TEST(GenCli, BuilderRefusesOptionsOfOtherCommands) {
   expect_refused({"--dim", "3", "--builder", "--leaf", "corners"}, {"--leaf corners", "table or edges"});
   expect_refused({"--dim", "3", "--builder", "--language", "cuda"}, {"does not emit cuda", "cpp, glsl or wgsl"});
   expect_refused({"--dim", "3", "--builder", "--leaf", "edges", "--language", "glsl"}, {"--leaf edges", "table"});
+  expect_refused({"--dim", "3", "--builder", "--triangulation", "all"},
+                 {"--triangulation all", "barycentric or compact"});
   expect_refused({"--dim", "3", "--builder", "--layout", "flat"}, {"--layout does not go with --builder"});
   expect_refused({"--dim", "3", "--count", "--leaf", "table"}, {"--leaf does not go with --count"});
   expect_refused({"--dim", "3", "--builder", "--count"}, {"--builder and --count were both given"});
