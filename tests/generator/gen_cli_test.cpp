@@ -130,6 +130,124 @@ TEST(GenCli, TransversalCountsRepresentativesByOrbitLength) {
   EXPECT_EQ(gen({"--dim", "3", "--transversal", "--inversion"}).status, 2);
 }
 
+// Tables 6.8 and 6.9 of the thesis.
+TEST(GenCli, SymmetriesOfTheSquareAreTheThesissTables) {
+  const Outcome run = gen({"--dim", "2", "--symmetries", "--group", "rotations"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, R"(dimension   2
+group       rotations, order 4
+generators  rho     quarter turn from x to y
+
+element  kind          fixed  signatures
+1        identity         16  {0, 1, ..., 15}
+rho      quarter turn      2  {0, 15}
+rho^2    half turn         4  {0, 6, 9, 15}
+rho^3    quarter turn      2  {0, 15}
+
+24 fixed points in all = 4 elements x 6 classes (Burnside's lemma)
+
+high corners  signature  orbit  order  isotropy group
+           0          0      1      4  G
+           1          1      4      1  {1}
+           2          3      4      1  {1}
+           2          6      2      2  {1, rho^2}
+           3          7      4      1  {1}
+           4         15      1      4  G
+)");
+}
+
+TEST(GenCli, SymmetriesAsJsonHoldAllElementsAndClasses) {
+  struct Expected {
+    const char* dim;
+    const char* group;
+    bool inversion;
+    std::size_t order, classes;
+  };
+  for (const Expected& expected :
+       {Expected{"2", "full", true, 16, 4}, Expected{"3", "full", false, 48, 22},
+        Expected{"3", "rotations", true, 48, 15}, Expected{"4", "rotations", false, 192, 496}}) {
+    const Outcome run =
+        expected.inversion
+            ? gen({"--dim", expected.dim, "--symmetries", "--group", expected.group, "--inversion", "--json"})
+            : gen({"--dim", expected.dim, "--symmetries", "--group", expected.group, "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json table = json::parse(run.out);
+    EXPECT_EQ(table.at("group"), expected.group);
+    EXPECT_EQ(table.at("inversion"), expected.inversion);
+    EXPECT_EQ(table.at("order"), expected.order);
+    ASSERT_EQ(table.at("elements").size(), expected.order);
+    ASSERT_EQ(table.at("classes").size(), expected.classes);
+    std::size_t fixed = 0;
+    std::set<std::string> words;
+    for (const json& element : table.at("elements")) {
+      fixed += element.at("fixed").get<std::size_t>();
+      words.insert(element.at("word"));
+      EXPECT_EQ(element.contains("signatures"), table.at("dim") != 4);
+      EXPECT_EQ(element.at("kind").is_null(), table.at("dim") == 4);
+    }
+    EXPECT_EQ(fixed, expected.order * expected.classes);
+    EXPECT_EQ(fixed, table.at("fixed_sum"));
+    EXPECT_EQ(words.size(), expected.order);
+    for (const json& found : table.at("classes")) {
+      const json& isotropy = found.at("isotropy");
+      EXPECT_EQ(isotropy.at("elements").size(), isotropy.at("order"));
+      EXPECT_EQ(isotropy.at("order").get<std::size_t>() * found.at("orbit_length").get<std::size_t>(), expected.order);
+      for (const json& word : isotropy.at("elements")) EXPECT_TRUE(words.contains(word)) << word;
+    }
+  }
+}
+
+TEST(GenCli, SymmetriesOf4dAreListedByConjugacyClass) {
+  const Outcome run = gen({"--dim", "4", "--symmetries"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("154368 fixed points in all = 384 elements x 402 classes"));
+  EXPECT_THAT(run.out, HasSubstr("\n+2 +2         +1      2        12        1024  rho_xy^2 rho_xz rho_yt\n"));
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 9 + 1 + 1 + 20 + 3 + 1 + 402);
+}
+
+TEST(GenCli, ADimensionWithoutACommandIsCertifiedAndSummarised) {
+  const Outcome text = gen({"--dim", "2"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  for (const char* const line :
+       {"2-tile: 4 corners, 16 signatures\n", "      6       4  rotations\n",
+        "low         barycentric          16      16             0        16       2       128",
+        "Every signature is certified, and every pair of neighbours matches.\n",
+        "tile2_compact                  flat     16        16       256\n"}) {
+    EXPECT_THAT(text.out, HasSubstr(line));
+  }
+  const Outcome run = gen({"--dim", "3", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json summary = json::parse(run.out);
+  std::vector<int> classes;
+  for (const json& group : summary.at("groups")) classes.push_back(group.at("classes"));
+  EXPECT_EQ(classes, (std::vector<int>{22, 23, 14, 15}));
+  ASSERT_EQ(summary.at("certified").size(), 4U);
+  for (const json& figures : summary.at("certified")) {
+    EXPECT_EQ(figures.at("passed"), 256);
+    EXPECT_EQ(figures.at("pairs"), 3 * 16 * 16 * 16);
+    EXPECT_EQ(figures.at("unmatched_pairs"), 0);
+  }
+  std::set<std::string> names;
+  for (const json& table : summary.at("tables")) {
+    names.insert(table.at("name"));
+    EXPECT_GT(table.at("bytes"), table.at("simplices"));
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"tile3_barycentric", "tile3_compact", "region2_barycentric_low",
+                                          "region2_barycentric_high", "region2_compact_low", "region2_compact_high",
+                                          "tile3_resolved"}));
+}
+
+TEST(GenCli, OtherTilesAreSummarisedWithoutNeighbours) {
+  const Outcome run = gen({"--dim", "3", "--tile", "simplex"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("3-simplex: 4 corners, 16 signatures\n"));
+  EXPECT_THAT(run.out, HasSubstr("Every signature is certified.\n"));
+  EXPECT_THAT(run.out, HasSubstr("simplex3_compact"));
+  const Outcome wrong = gen({"--dim", "5", "--tile", "simplex"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, testing::Not(HasSubstr("--transversal")));
+}
+
 TEST(GenCli, OptionsMayComeInAnyOrderAndWithEqualsSigns) {
   EXPECT_EQ(gen({"--json", "--group=rotations", "--dim=3", "--inversion", "--count"}).out,
             gen({"--dim", "3", "--count", "--group", "rotations", "--inversion", "--json"}).out);
@@ -139,8 +257,9 @@ TEST(GenCli, HelpListsCommandsExamplesAndExitCodesAndWinsOverTheRest) {
   const Outcome run = gen({"--help"});
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.err, "");
-  for (const char* const text : {"--count", "--classes", "--certify", "--out DIR", "--group full|rotations", "examples",
-                                 "exit status", "--layout class|flat|auto"}) {
+  for (const char* const text :
+       {"--count", "--symmetries", "--classes", "--certify", "--out DIR", "gen --dim N [--tile T] [--json]",
+        "--group full|rotations", "examples", "exit status", "--layout class|flat|auto"}) {
     EXPECT_THAT(run.out, HasSubstr(text));
   }
   EXPECT_EQ(gen({"-h"}).out, run.out);
@@ -153,9 +272,9 @@ TEST(GenCli, VersionNamesProgramAndContract) {
   EXPECT_THAT(run.out, testing::MatchesRegex("gen [0-9]+\\.[0-9]+\\.[0-9]+ \\(table contract [0-9]+\\)\n"));
 }
 
-TEST(GenCli, RefusesNoCommandAndSeveral) {
-  expect_refused({}, {"no command", "--count", "--help"});
-  expect_refused({"--dim", "3"}, {"no command"});
+TEST(GenCli, RefusesNeitherCommandNorDimensionAndSeveralCommands) {
+  expect_refused({}, {"no command", "--dim N", "--count", "--help"});
+  expect_refused({"--json"}, {"no command", "--dim N", "--count"});
   expect_refused({"--dim", "3", "--count", "--classes"}, {"--count and --classes", "expected one command"});
   expect_refused({"--dim", "3", "--count", "--out", "tables"}, {"--count and --out"});
 }
@@ -193,6 +312,8 @@ TEST(GenCli, RefusesDimensionsOutsideOfTheCommandsRange) {
   }
   for (const char* const dim : {"1", "5"}) {
     expect_refused({"--dim", dim, "--classes"}, {"--classes expects 2 to 4"});
+    expect_refused({"--dim", dim, "--symmetries"}, {"--symmetries expects 2 to 4"});
+    expect_refused({"--dim", dim}, {"expected 2 to 4", "--count (1 to 8)", "--transversal (2 to 5)", "(2 to 6)"});
     expect_refused({"--dim", dim, "--certify"}, {"--certify expects 2 to 4"});
     expect_refused({"--dim", dim, "--out", "tables"}, {"--out expects 2 to 4"});
     expect_refused({"--dim", dim, "--cases", "docs"}, {"--cases expects 2 to 4"});
@@ -203,6 +324,9 @@ TEST(GenCli, RefusesOptionsThatTheCommandWouldIgnore) {
   expect_refused({"--dim", "3", "--classes", "--inversion"}, {"--inversion does not go with --classes", "--json"});
   expect_refused({"--dim", "3", "--certify", "--group", "full"}, {"--group does not go with --certify"});
   expect_refused({"--dim", "3", "--count", "--layout", "flat"}, {"--layout does not go with --count"});
+  expect_refused({"--dim", "3", "--symmetries", "--list"}, {"--list does not go with --symmetries", "--inversion"});
+  expect_refused({"--dim", "3", "--symmetries", "--tile", "simplex"}, {"--tile does not go with --symmetries"});
+  expect_refused({"--dim", "3", "--inversion"}, {"--inversion without a command", "--tile, --json", "--symmetries"});
   expect_refused({"--dim", "3", "--certify", "--language", "json"}, {"--language does not go with --certify"});
   expect_refused({"--dim", "3", "--out", "tables", "--json"}, {"--json does not go with --out"});
   expect_refused({"--version", "--dim", "3"}, {"--dim does not go with --version", "nothing else"});
