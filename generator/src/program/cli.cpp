@@ -181,7 +181,7 @@ constexpr std::array kOptions{
                [](Options& o, std::string_view) { o.json = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
     OptionSpec{"--language", true, std::nullopt, kOut | kBuilder, set_languages},
-    OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
+    OptionSpec{"--triangulation", true, std::nullopt, kOut | kBuilder, set_triangulation},
 };
 
 /// Names of the options for which `wanted` holds, for messages.
@@ -396,6 +396,10 @@ Options parse(std::span<const std::string_view> arguments) {
   check_dim(options, name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
   check_certify(options, seen);
+  const bool has_triangulation =
+      std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--triangulation"; });
+  if (options.command == Command::Builder && has_triangulation && options.triangulation == TriangulationChoice::All)
+    refuse("--triangulation all does not go with --builder: expected barycentric or compact");
   check_tile(options);
   return options;
 }
@@ -479,6 +483,8 @@ options of --out
 
 options of --builder
   --out DIR                         writes the source and a manifest with its digest into DIR
+  --triangulation barycentric|compact
+                                    N = 3: polygons coned from their barycentre, or cut as in the compact tables (default)
   --leaf edges|table                contours of the faces by recursion down to the edges, or by table (default)
   --language cpp|glsl|wgsl          language of the source (default cpp); several with commas. N = 2, 3; N = 4, 5: cpp
 

@@ -58,7 +58,7 @@ struct Options {
   Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
   std::string out;                                               ///< DIR of --out and --cases; of --builder, or empty
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
-  TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
+  TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out; --builder: All is compact
   std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out, --builder
   Leaf leaf = Leaf::table;                                       ///< --leaf; --builder only
 };
