@@ -155,7 +155,7 @@ TEST(ExtractTiles, VolumesHaveTheContoursOfTheTables) {
 
 TEST(ExtractTiles, ResolvedFromTheDataPlaneImagesHaveTheContoursOfTheTables) {
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     const auto image = noise<float, 2>(70, 5);
     EXPECT_TRUE(same_surface(rounded(extract_tile_by_tile(image.view(), 0.5, options)),
@@ -165,7 +165,7 @@ TEST(ExtractTiles, ResolvedFromTheDataPlaneImagesHaveTheContoursOfTheTables) {
 
 TEST(ExtractTiles, ResolvedFromTheDataVolumesHaveTheTopologyOfTheTables) {
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider})
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       options.ambiguity = ambiguity;
       options.close = seed % 2 == 0;
@@ -273,7 +273,8 @@ TEST(Extract5d, TubesAroundACircleAndASphereHaveTheirEulerCharacteristics) {
 TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
   const auto image = noise<float, 5>(3, 5);
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity :
+       {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     const auto contour = extract<double>(image.view(), 0.5, options);
     EXPECT_EQ(expect_oriented_manifold(contour).degenerate_simplices, 0u);
@@ -340,7 +341,8 @@ void expect_contour_of_layer(const ExtractOptions& options) {
 
 TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity :
+       {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     expect_contour_of_layer(options);
   }
@@ -350,7 +352,7 @@ TEST(Extract5d, ResolvedFromTheDataNoiseIsClosedByCapsAndTheSameForAnyNumberOfTh
   const auto image = noise<std::int16_t, 5>({3, 4, 3, 3, 3}, 11);
   ExtractOptions options;
   options.close = true;
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     options.work.threads = 1;
     const auto one = extract<float>(image.view(), 0.5, options);
