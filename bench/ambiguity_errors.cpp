@@ -20,8 +20,12 @@ namespace {
 using namespace tegl;
 using namespace tegl::test;
 
-constexpr std::array<std::pair<const char*, Ambiguity>, 4> kWays{
-    {{"low", Ambiguity::low}, {"high", Ambiguity::high}, {"mean", Ambiguity::mean}, {"saddle", Ambiguity::saddle}}};
+constexpr std::array<std::pair<const char*, Ambiguity>, 6> kWays{{{"low", Ambiguity::low},
+                                                                  {"high", Ambiguity::high},
+                                                                  {"mean", Ambiguity::mean},
+                                                                  {"saddle", Ambiguity::saddle},
+                                                                  {"squares", Ambiguity::squares},
+                                                                  {"decider", Ambiguity::decider}}};
 
 template <int N>
 void measure(const char* name, std::size_t count, std::size_t samples, bool padded) {

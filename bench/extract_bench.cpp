@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -73,7 +74,8 @@ void add(const std::string& group, const Case& what) {
   std::string name = group + "/" + what.field + "/" + std::to_string(what.samples) + "^" + std::to_string(N);
   if (what.options.triangulation == Triangulation::barycentric) name += "/barycentric";
   if (what.options.close) name += "/closed";
-  if (what.options.ambiguity != Ambiguity::low) name += what.options.ambiguity == Ambiguity::mean ? "/mean" : "/saddle";
+  constexpr std::array<const char*, 6> kRules = {"", "/high", "/mean", "/saddle", "/squares", "/decider"};
+  name += kRules[static_cast<std::size_t>(what.options.ambiguity)];
   if constexpr (!std::is_same_v<T, float>)
     name += std::is_same_v<T, double> ? "/double"
                                       : (std::is_signed_v<T> ? "/int" : "/uint") + std::to_string(8 * sizeof(T));
@@ -110,7 +112,7 @@ void add_field(const std::string& field, std::size_t samples) {
 /// ambiguity, and noise.
 template <int N>
 void add_estimators(const std::string& smooth, std::size_t samples, std::size_t samples_of_noise) {
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider})
     for (const int threads : {1, 4}) {
       Case what{smooth, samples, {}, threads};
       what.options.ambiguity = ambiguity;

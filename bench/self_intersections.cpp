@@ -136,5 +136,7 @@ int main(int argc, char** argv) {
     measure(count, Ambiguity::high, triangulation, std::string("high ") + suffix);
     measure(count, Ambiguity::mean, triangulation, std::string("mean ") + suffix);
     measure(count, Ambiguity::saddle, triangulation, std::string("saddle ") + suffix);
+    measure(count, Ambiguity::squares, triangulation, std::string("squares ") + suffix);
+    measure(count, Ambiguity::decider, triangulation, std::string("decider ") + suffix);
   }
 }

@@ -282,18 +282,19 @@ int main(int argc, char** argv) {
   constexpr auto barycentric = Triangulation::barycentric;
   constexpr Way kLow{"low", Ambiguity::low, compact}, kHigh{"high", Ambiguity::high, compact};
   constexpr Way kMean{"mean", Ambiguity::mean, compact}, kSaddle{"saddle", Ambiguity::saddle, compact};
+  constexpr Way kSquares{"squares", Ambiguity::squares, compact}, kDecider{"decider", Ambiguity::decider, compact};
   constexpr Way kLowEven{"low", Ambiguity::low, barycentric}, kMeanEven{"mean", Ambiguity::mean, barycentric};
   constexpr Way kSaddleEven{"saddle", Ambiguity::saddle, barycentric};
   std::printf("dimension,ambiguity,triangulation,samples along an axis,share of noise,share of its negative,sum\n");
-  for (const Way& way : {kLow, kLowEven, kMean, kMeanEven, kSaddle, kSaddleEven}) {
+  for (const Way& way : {kLow, kLowEven, kMean, kMeanEven, kSaddle, kSaddleEven, kSquares, kDecider}) {
     enclosed<3>(way, 48);
     enclosed<4>(way, 12);
   }
   std::printf("dimension,ambiguity,triangulation,distances,tiles of balls,hit,other tiles,hit\n");
   for (const Distances kind : {Distances::uniform, Distances::log_uniform}) {
-    for (const Way& way : {kLow, kMean, kSaddle, kMeanEven}) count_tiles<3>(way, kind, tiles);
+    for (const Way& way : {kLow, kMean, kSaddle, kSquares, kDecider, kMeanEven}) count_tiles<3>(way, kind, tiles);
     count_tiles<4>(kLow, kind, tiles);
-    for (const Way& way : {kMean, kSaddle}) count_tiles<4>(way, kind, tiles / 20);
+    for (const Way& way : {kMean, kSaddle, kSquares, kDecider}) count_tiles<4>(way, kind, tiles / 20);
     count_tiles<4>(kLowEven, kind, tiles / 20);
   }
   for (const Way& way : {kLow, kHigh, kLowEven}) count_tiles<4>(way, Distances::alike, 0);

@@ -83,9 +83,13 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
   result.triangulation =
       named<Triangulation>("triangulation", text("triangulation"),
                            {{"compact", Triangulation::compact}, {"barycentric", Triangulation::barycentric}});
-  result.ambiguity = named<Ambiguity>(
-      "ambiguity", text("ambiguity"),
-      {{"low", Ambiguity::low}, {"high", Ambiguity::high}, {"mean", Ambiguity::mean}, {"saddle", Ambiguity::saddle}});
+  result.ambiguity = named<Ambiguity>("ambiguity", text("ambiguity"),
+                                      {{"low", Ambiguity::low},
+                                       {"high", Ambiguity::high},
+                                       {"mean", Ambiguity::mean},
+                                       {"saddle", Ambiguity::saddle},
+                                       {"squares", Ambiguity::squares},
+                                       {"decider", Ambiguity::decider}});
   result.direction = named<GradientDirection>("direction", text("direction"), gradient_directions());
   const std::string normals = text("normals");
   result.normals = normals == "gradient" ? Normals::differences : normals == "sobel" ? Normals::sobel : Normals::none;

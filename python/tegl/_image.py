@@ -48,7 +48,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         "compact", or "barycentric": more simplices, none of them flat unless points coincide.
     ambiguity
         The rule for ambiguous cells: "low" separates and "high" joins the samples inside; "mean" and "saddle" decide by
-        the values.
+        the values, "squares" and "decider" also, but only in squares. See docs/ambiguity.md.
     direction
         The direction of simplices and normals: "descent", towards lower values, or "ascent".
     close

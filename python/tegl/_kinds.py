@@ -4,7 +4,7 @@
 import typing
 
 Triangulation = typing.Literal["compact", "barycentric"]
-Ambiguity = typing.Literal["low", "high", "mean", "saddle"]
+Ambiguity = typing.Literal["low", "high", "mean", "saddle", "squares", "decider"]
 Direction = typing.Literal["descent", "ascent"]
 #: Of vertices along the array's gradient, by differences or by the Sobel kernel, or from the simplices around them; or of
 #: simplices.

@@ -211,7 +211,9 @@ def test_the_options_reach_the_library():
     sobel = tegl.contour(array, 0.5, normals=True, gradient="sobel").normals
     assert not np.array_equal(sobel, tegl.contour(array, 0.5, normals=True).normals)
     assert low.normals is None
-    assert tegl.contour(array, 0.5, ambiguity="saddle").check().is_manifold
+    rules = {rule: tegl.contour(array, 0.5, ambiguity=rule) for rule in ("mean", "saddle", "squares", "decider")}
+    assert all(contour.check().is_manifold for contour in rules.values())
+    assert rules["squares"].check().euler != rules["mean"].check().euler  # tunnels in cells
     for threads in (1, 3):
         assert_same(tegl.contour(array, 0.0, threads=threads), low)
 
@@ -234,7 +236,8 @@ def test_a_contour_says_what_it_is():
     (dict(level=np.inf), ValueError, "inf"),
     (dict(epsilon=0.5), ValueError, "0.5"),
     (dict(triangulation="other"), ValueError, "triangulation is 'other'; expected one of 'compact', 'barycentric'"),
-    (dict(ambiguity="other"), ValueError, "ambiguity is 'other'; expected one of 'low', 'high', 'mean', 'saddle'"),
+    (dict(ambiguity="other"), ValueError,
+     "ambiguity is 'other'; expected one of 'low', 'high', 'mean', 'saddle', 'squares', 'decider'"),
     (dict(direction="up"), ValueError, "direction is 'up'; expected one of 'descent', 'ascent'"),
     (dict(gradient="central"), ValueError, "gradient is 'central'"),
     (dict(dtype=np.int32), ValueError, "dtype is int32; expected float32 or float64"),

@@ -248,6 +248,9 @@ TEST_F(Contour, OptionsChangeTheResultAsTheySay) {
   EXPECT_EQ(barycentric["euler"], plain["euler"]);
   const nlohmann::json high = contour(file, "128", "high.ply", {"--ambiguity", "high"});
   EXPECT_NE(high["euler"], plain["euler"]);
+  const auto by = [&](const std::string& rule) { return contour(file, "128", rule + ".ply", {"--ambiguity", rule}); };
+  EXPECT_GT(by("squares")["euler"], by("mean")["euler"]) << "a tunnel takes 2";
+  EXPECT_GE(by("decider")["euler"], by("saddle")["euler"]);
   const nlohmann::json closed = contour(file, "128", "closed.ply", {"--close"});
   EXPECT_GT(plain["boundary_simplices"], 0);
   EXPECT_EQ(closed["boundary_simplices"], 0);

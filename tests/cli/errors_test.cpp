@@ -91,7 +91,8 @@ TEST_F(Errors, WrongUsageExitsWith2) {
   expect_failure(2, {"contour", "--iso", "0", "-o", out}, {"FILE"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--colour"}, {"--colour", "tegl contour --help"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--triangulation", "fine"}, {"fine", "compact"});
-  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--ambiguity", "median"}, {"median", "low"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--ambiguity", "median"},
+                 {"median", "low,high,mean,saddle,squares,decider"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--precision", "half"}, {"half", "double"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--gradient-direction", "up"}, {"up", "descent"});
   expect_failure(2, {"slice", ball_file(), "--iso", "0", "-o", out, "--at", "7.3"}, {"7.3", "t=7.3"});

@@ -136,7 +136,7 @@ TEST_F(Program, HasAManualPageThatFormattersReadWithoutAWarning) {
     EXPECT_EQ(text, "");
     EXPECT_EQ(status, 0);
     const std::string shown = run("mandoc -T ascii -O width=78 " + page + " | col -bx").first;
-    EXPECT_THAT(shown, HasSubstr("--ambiguity low|high|mean|saddle"));
+    EXPECT_THAT(shown, HasSubstr("--ambiguity low|high|mean|saddle|squares|decider"));
     expect_narrow(shown);
     any = true;
   }
@@ -154,7 +154,7 @@ TEST_F(Program, CompletesInBash) {
   };
   EXPECT_EQ(complete("con"), "contour\n");
   EXPECT_EQ(complete("contour --tri"), "--triangulation\n");
-  EXPECT_EQ(complete("contour a.nii --ambiguity s"), "saddle\n");
+  EXPECT_EQ(complete("contour a.nii --ambiguity sa"), "saddle\n");
   EXPECT_EQ(complete("check --require c"), "closed\n");
   EXPECT_EQ(complete("contour --triangulation = ba"), "barycentric\n") << "= breaks words";
   EXPECT_THAT(complete("contour --triangulation ="), HasSubstr("compact barycentric"));
@@ -240,7 +240,7 @@ zpty -d shell
     return run("timeout 30 zsh -f " + driver + " '" + line + "'").first;
   };
   EXPECT_THAT(complete("tegl con"), HasSubstr("-> <contour> <end>"));
-  EXPECT_THAT(complete("tegl contour a.nii --ambiguity s"), HasSubstr("-> <saddle> <end>"));
+  EXPECT_THAT(complete("tegl contour a.nii --ambiguity sa"), HasSubstr("-> <saddle> <end>"));
   EXPECT_THAT(complete("tegl contour --triangulation=ba"), HasSubstr("<--triangulation=barycentric> <end>"));
   EXPECT_THAT(complete("tegl contour --tri"), HasSubstr("-> <--triangulation> <end>"));
   EXPECT_THAT(complete("tegl info " + file.substr(0, file.size() - 2)),

@@ -263,7 +263,7 @@ TEST_F(Slice, OfNoiseAtAWholeTimeIsTheContourOfThatStepFromTheImageAndFromASaved
     std::sort(list.begin(), list.end());
     return list;
   };
-  for (const char* ambiguity : {"low", "mean", "saddle"})
+  for (const char* ambiguity : {"low", "mean", "saddle", "squares", "decider"})
     for (const char* triangulation : {"compact", "barycentric"}) {
       const std::vector<std::string> how = {"--iso",           "2",           "--ambiguity", ambiguity,
                                             "--triangulation", triangulation, "--close"};

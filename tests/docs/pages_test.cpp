@@ -156,7 +156,7 @@ TEST(ComingFromCornelius, ElementsOfAllCellsComeAtOnceAndCloseUp) {
   // [cornelius]
   // instead of init(), and of find_surface_4d(), get_centroid_elem() and get_normal_elem() for each cell
   tegl::ExtractOptions options;
-  options.ambiguity = tegl::Ambiguity::mean;  // as Cornelius decides ambiguous squares
+  options.ambiguity = tegl::Ambiguity::squares;  // as in Cornelius: the mean in squares, nothing joined in cells
   const auto contour = tegl::extract<double>(tegl::Image<float, 4>(values.data(), grid), freeze_out, options);
   const tegl::Elements<4> elements = tegl::elements_by_cell(contour, grid);
   for (std::size_t e = 0; e < elements.centroids.size(); ++e) integrate(elements.centroids[e], elements.normals[e]);

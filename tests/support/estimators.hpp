@@ -51,9 +51,10 @@ struct NamedOptions {
 
 /// The library's estimators and the two above.
 inline std::vector<NamedOptions> all_estimators() {
-  return {{"low", by_ambiguity(Ambiguity::low)},   {"high", by_ambiguity(Ambiguity::high)},
-          {"mean", by_ambiguity(Ambiguity::mean)}, {"saddle", by_ambiguity(Ambiguity::saddle)},
-          {"mid-range", by_estimator(mid_range)},  {"random", by_estimator(random_choice)}};
+  return {{"low", by_ambiguity(Ambiguity::low)},         {"high", by_ambiguity(Ambiguity::high)},
+          {"mean", by_ambiguity(Ambiguity::mean)},       {"saddle", by_ambiguity(Ambiguity::saddle)},
+          {"squares", by_ambiguity(Ambiguity::squares)}, {"decider", by_ambiguity(Ambiguity::decider)},
+          {"mid-range", by_estimator(mid_range)},        {"random", by_estimator(random_choice)}};
 }
 
 /// Each estimator in each triangulation, with one thread: for many small images.

@@ -35,10 +35,12 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
                                      : "compact: few simplices; barycentric: more and evener ones")
           ->check(triangulations)
           ->capture_default_str(),
-      app.add_option("--ambiguity", ambiguity_,
-                     "ambiguous cells: inside samples across a diagonal are separate (low), joined (high) or resolved "
-                     "from the data, by the mean of the samples (mean) or the multilinear interpolant (saddle)")
-          ->check(CLI::IsMember({"low", "high", "mean", "saddle"}))
+      app.add_option(
+             "--ambiguity", ambiguity_,
+             "ambiguous cells: inside samples across a diagonal are separate (low), joined (high) or resolved "
+             "from the data, by the mean of the samples (mean) or the multilinear interpolant (saddle); or only "
+             "in squares, by the mean (squares) or the bilinear interpolant (decider), without tunnels in cells")
+          ->check(CLI::IsMember({"low", "high", "mean", "saddle", "squares", "decider"}))
           ->capture_default_str(),
       app.add_flag("--close", close_, "close the contour at the image's border"),
       app.add_flag("--normals{gradient}", normals_,
@@ -110,10 +112,12 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
                                                         triangulation_));
   ExtractOptions options;
   options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
-  options.ambiguity = ambiguity_ == "low"    ? Ambiguity::low
-                      : ambiguity_ == "high" ? Ambiguity::high
-                      : ambiguity_ == "mean" ? Ambiguity::mean
-                                             : Ambiguity::saddle;
+  options.ambiguity = ambiguity_ == "low"       ? Ambiguity::low
+                      : ambiguity_ == "high"    ? Ambiguity::high
+                      : ambiguity_ == "mean"    ? Ambiguity::mean
+                      : ambiguity_ == "saddle"  ? Ambiguity::saddle
+                      : ambiguity_ == "squares" ? Ambiguity::squares
+                                                : Ambiguity::decider;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
   options.normals = normals_ == "gradient" ? Normals::differences

@@ -2,8 +2,10 @@
 //
 // Ambiguous faces of tiles, and how they are resolved: by a fixed rule or from the data.
 //
-// Based on: M. Liversage, thesis, 1994, sections 6.3 and 7.3 (the consistent method; the estimation method, for squares
-// and for cubes with two opposite corners); G. M. Nielson and B. Hamann, "The asymptotic decider", 1991.
+// Based on: M. Liversage, thesis, 1994, sections 6.3, 7.3 and 7.6 (the consistent method; the estimation method, for
+// squares and for cubes with two opposite corners; cubes always separate); G. M. Nielson and B. Hamann, "The asymptotic
+// decider", 1991; Zhu J., Meng P. and Wang C., "An improved marching cubes algorithm", Journal of Image and Graphics
+// 13(7), 2008 (that decider without a test inside cubes).
 #pragma once
 
 #include <array>
@@ -27,12 +29,20 @@ namespace tegl {
 ///   the rounded sum of the corners divided by 1024 is compared; with infinities of both signs the centre is high.
 /// - saddle: the exact topology of the multilinear interpolant in squares and cubes (tegl/saddle.hpp). Faces of higher
 ///   dimension use the sign of their centre, as `mean` does.
+/// - squares: the rule of the thesis's program (6.3.5, 7.6.7, 10.5.3). Squares are resolved as by `mean`; in cubes and
+///   larger faces, components of the contour on the boundary stay separate.
+/// - decider: the asymptotic decider without an interior test. Squares are resolved as by `saddle`; in cubes and larger
+///   faces, components of the contour on the boundary stay separate.
 /// - custom: by ExtractOptions::estimator.
 ///
+/// In 2D, squares gives the same bytes as mean, and decider the same as saddle. In 3D, every polygon of squares and
+/// decider is a disc, as with low and high. In 4D and 5D, a component on a face's boundary that is not a sphere is
+/// filled as if the face's centre were low.
+///
 /// Unambiguous faces always come from the tables. If few faces are ambiguous, as in smooth images, all rules cost about
-/// the same. In noise, mean and saddle read the samples again (docs/ambiguity.md), and `count`, which otherwise reads
-/// bits only, takes many times as long as with low.
-enum class Ambiguity { low, high, mean, saddle, custom };
+/// the same. In noise, rules that use the data read the samples again (docs/ambiguity.md), and `count`, which otherwise
+/// reads bits only, takes many times as long as with low.
+enum class Ambiguity { low, high, mean, saddle, squares, decider, custom };
 
 namespace detail {
 struct FaceSurroundings;

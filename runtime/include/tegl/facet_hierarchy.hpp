@@ -35,10 +35,10 @@ struct FacetPlace {
 /// in a cube, a polyhedron in a tesseract. Points, segments and polygons are balls; polyhedra are balls or solid tori
 /// (see facet_euler).
 ///
-/// If ambiguities are resolved from the data (Ambiguity::mean, saddle, custom), a cube's contour may have a tunnel,
-/// which is not a ball. Its triangles are the polygons there, and the points and segments between them are 0- and
-/// 1-facets inside the cube. Polyhedra may be balls with any number of handles and have a boundary of several
-/// components.
+/// With Ambiguity::mean, saddle and custom, a cube's contour may have a tunnel, which is not a ball. Its triangles are
+/// the polygons there, and the points and segments between them are 0- and 1-facets inside the cube. Polyhedra may have
+/// a boundary of several components. With every rule except low and high, polyhedra may be balls with any number of
+/// handles.
 ///
 /// Facets of each dimension are numbered from 0. The order is by layers of the image along its last axis: first the
 /// facets in a layer, then those between it and the next layer; within them row by row, for rows along axis 0; in a row

@@ -83,14 +83,15 @@ struct CubeMeans {
   }
 };
 
-/// Decides a cube with an ambiguous signature by means. Returns false if rounding could decide.
-bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigned signature,
+/// Decides the squares of a cube with an ambiguous signature, and its centre unless `separates`, by means. Returns
+/// false if rounding could decide.
+bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigned signature, bool separates,
                      CubeDecision& decision) noexcept {
   const auto& table = tables::kTile3Resolved;
   const unsigned ambiguous = table.ambiguous_squares[signature];
   const CubeMeans means(values, isovalue);
   const unsigned r = packed_squares(means.high, ambiguous);
-  const bool has_choice = table.entries[table.first_entry[signature] + r].components > 1;
+  const bool has_choice = !separates && table.entries[table.first_entry[signature] + r].components > 1;
   decision.high_squares = static_cast<std::uint8_t>(means.high & ambiguous);
   const auto centre = (means.high >> 6) != 0 ? tile::Choice::high : tile::Choice::low;
   decision.centre = has_choice ? centre : tile::Choice::separate;
@@ -101,13 +102,16 @@ bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigne
 template <int N>
 CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
                     std::span<const double, 8> values, unsigned signature) noexcept {
-  if (estimator.is_by_cubes()) {
+  if (estimator.is_by_saddles()) {
     std::array<double, 8> corners;
     std::copy(values.begin(), values.end(), corners.begin());
-    return detail::decide_cube(corners, estimator.isovalue(), static_cast<std::uint8_t>(signature));
+    return estimator.separates() ? detail::decide_squares(corners, estimator.isovalue(), signature)
+                                 : detail::decide_cube(corners, estimator.isovalue(), signature);
   }
   CubeDecision decision;
-  if (estimator.is_by_means() && decide_by_means(values, estimator.isovalue(), signature, decision)) return decision;
+  if (estimator.is_by_means() &&
+      decide_by_means(values, estimator.isovalue(), signature, estimator.separates(), decision))
+    return decision;
   decision = {};
   const auto& table = tables::kTile3Resolved;
   const unsigned ambiguous = table.ambiguous_squares[signature];
@@ -190,7 +194,9 @@ std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, u
 void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
              TilesOfWord& tiles) noexcept {
   const auto& resolved = tables::kTile3Resolved;
-  const bool by_means = estimator.is_by_means();
+  // Cubes are decided by means, by the interpolant, or not at all.
+  const bool by_means = estimator.is_by_means() && !estimator.separates();
+  const bool by_joins = estimator.is_by_saddles() && !estimator.separates();
   const auto& joins = cube_joins();
   JoinQuestions questions;
   std::array<std::uint8_t, kWordBits> asked;
@@ -204,7 +210,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
     tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
     if (block.unsure[bit] != 0) {
       tiles.variants[j] = {};
-    } else if (!by_means && joins[entry].pairs == 1) {
+    } else if (by_joins && joins[entry].pairs == 1) {
       for (std::size_t e = 0; e < 8; ++e) {
         const unsigned corner = joins[entry].corners[e];
         questions.ends[e][questions.count] = block.samples[corner >> 1][bit + (corner & 1u)];
@@ -212,7 +218,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
       questions.sign[questions.count] = joins[entry].high ? 1.0 : -1.0;
       entries[questions.count] = static_cast<std::uint16_t>(entry);
       asked[questions.count++] = static_cast<std::uint8_t>(j);
-    } else if (!by_means && joins[entry].pairs > 1) {
+    } else if (by_joins && joins[entry].pairs > 1) {
       const auto centre = detail::decide_centre(corners_of_cube<3, 7>(block, bit, 0), estimator.isovalue(), entry);
       tiles.variants[j] = table.variant(entry, static_cast<unsigned>(centre));
     }

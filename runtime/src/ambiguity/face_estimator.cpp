@@ -146,7 +146,7 @@ template <int N>
 FaceEstimator<N>::FaceEstimator(const CornerValues<N>& source, const Index& sizes, const ExtractOptions& options,
                                 PartOfImage part)
     : source_(source),
-      ambiguity_(options.ambiguity),
+      rule_(face_rule(options.ambiguity)),
       estimator_(options.estimator),
       triangulation_(options.triangulation),
       isovalue_(source.isovalue()) {
@@ -166,16 +166,16 @@ FaceEstimator<N>::FaceEstimator(const CornerValues<N>& source, const Index& size
 template <int N>
 bool FaceEstimator<N>::is_square_high(const Index& base, unsigned axes,
                                       std::span<const double, 4> values) const noexcept {
-  if (ambiguity_ == Ambiguity::mean) return is_mean_high(values, isovalue_);
-  if (ambiguity_ == Ambiguity::saddle) return tegl::square_is_high<double>(values, isovalue_);
+  if (is_by_means()) return is_mean_high(values, isovalue_);
+  if (is_by_saddles()) return tegl::square_is_high<double>(values, isovalue_);
   return ask(base, axes, values) == tile::Choice::high;
 }
 
 template <int N>
 tile::Choice FaceEstimator<N>::choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
-  if (ambiguity_ == Ambiguity::custom) return ask(base, axes, values);
-  if (ambiguity_ == Ambiguity::saddle && values.size() == 8)
-    return tegl::cube_choice<double>(values.first<8>(), isovalue_);
+  if (is_callers()) return ask(base, axes, values);
+  if (separates()) return tile::Choice::separate;
+  if (is_by_saddles() && values.size() == 8) return tegl::cube_choice<double>(values.first<8>(), isovalue_);
   return is_mean_high(values, isovalue_) ? tile::Choice::high : tile::Choice::low;
 }
 

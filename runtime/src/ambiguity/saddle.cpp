@@ -285,7 +285,8 @@ struct CentreDecider {
   }
 };
 
-/// Decides the squares and the centre of a cube. Returns false if an answer is unsure.
+/// Decides the squares of a cube and, if `kCentre`, its centre. Returns false if an answer is unsure.
+template <bool kCentre>
 struct CubeDecider {
   unsigned signature;
 
@@ -301,7 +302,8 @@ struct CubeDecider {
       result.high_squares = static_cast<std::uint8_t>(result.high_squares | is_joined << q);
       entry += is_joined * bit;
     }
-    return CentreDecider{entry}(f, result.centre);
+    if constexpr (kCentre) return CentreDecider{entry}(f, result.centre);
+    return true;
   }
 };
 
@@ -361,7 +363,11 @@ bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue
 }
 
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept {
-  return decide<CubeDecision>(values, isovalue, CubeDecider{signature});
+  return decide<CubeDecision>(values, isovalue, CubeDecider<true>{signature});
+}
+
+CubeDecision decide_squares(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept {
+  return decide<CubeDecision>(values, isovalue, CubeDecider<false>{signature});
 }
 
 Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept {
@@ -369,7 +375,7 @@ Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsig
 }
 
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {
-  return decide_exactly<CubeDecision>(values, isovalue, CubeDecider{signature_of(values, isovalue)});
+  return decide_exactly<CubeDecision>(values, isovalue, CubeDecider<true>{signature_of(values, isovalue)});
 }
 
 }  // namespace tegl::detail

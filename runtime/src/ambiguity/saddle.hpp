@@ -16,6 +16,8 @@ namespace tegl::detail {
 /// v is high.
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
+/// The squares as decide_cube decides them; the centre is `separate`.
+CubeDecision decide_squares(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
 /// The test for a connection inside a cube, by entry of tables::kTile3Resolved (the signature with its squares
 /// decided). Without a pair of edges the centre is `separate`.
 using tables::CubeJoin;

@@ -174,16 +174,17 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.key = {};
   tile.key.signature = static_cast<std::uint16_t>(signature);
   tile.key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
-  tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
   // entries of the cubes
   const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
   std::array<std::uint16_t, 8> entries;
   for (unsigned f = 0; f < 8; ++f)
     entries[f] = static_cast<std::uint16_t>(cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
                                                         static_cast<unsigned>(squares >> (8 * f) & 63)));
-  // choices of the cubes
+  // choices of the tile and its cubes: all `separate` if the rule says so
+  const bool separates = estimator.separates();
+  if (!separates) tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
   std::array<tile::Choice, 8> choices{};
-  if (estimator.is_by_means()) {
+  if (!separates && estimator.is_by_means()) {
     unsigned with_choice = 0;
     for (unsigned f = 0; f < 8; ++f) {
       const auto is_high = static_cast<unsigned>(high >> (kFirstCube<4> + f) & 1u);
@@ -194,7 +195,7 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
     const auto high_cubes = static_cast<unsigned>(high >> kFirstCube<4>);
     tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & high_cubes);
     tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~high_cubes);
-  } else {
+  } else if (!separates) {
     if (!decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
     unsigned low = 0, joined = 0;
     for (unsigned f = 0; f < 8; ++f) {

@@ -44,6 +44,14 @@ SampledField<N> random_box(std::mt19937_64& bits, const std::array<std::size_t, 
   return field;
 }
 
+/// Whether barycentric contours are equivariant triangle by triangle: if no rule makes tunnels, and no 4D cell has own
+/// vertices that depend on the data.
+template <int N>
+bool moves_simplices(Ambiguity ambiguity) {
+  const bool separates = ambiguity == Ambiguity::squares || ambiguity == Ambiguity::decider;
+  return ambiguity == Ambiguity::low || ambiguity == Ambiguity::high || (N < 4 && separates);
+}
+
 /// `every`: tests one of this number of symmetries. Small bounds cause ties; epsilon keeps the vertices inside their
 /// edges.
 template <int N>
@@ -62,7 +70,7 @@ void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t s
         const auto expected = moved<N>(contour, symmetries[s], sizes);
         const auto found = extract<double>(view_of(moved(image, symmetries[s])), 0.0, options);
         ASSERT_EQ(tile_pieces(found), tile_pieces(expected)) << "symmetry " << s;
-        if (name == "low, barycentric" || name == "high, barycentric") {
+        if (options.triangulation == Triangulation::barycentric && moves_simplices<N>(options.ambiguity)) {
           ASSERT_TRUE(same_surface(rounded(found), rounded(expected))) << "symmetry " << s;
         }
       }

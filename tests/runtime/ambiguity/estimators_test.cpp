@@ -29,10 +29,11 @@
 namespace tegl::test {
 namespace {
 
-constexpr Ambiguity kEstimated[] = {Ambiguity::mean, Ambiguity::saddle, Ambiguity::custom};
+constexpr Ambiguity kEstimated[] = {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider,
+                                    Ambiguity::custom};
 
 const char* name_of(Ambiguity ambiguity) {
-  constexpr const char* kNames[] = {"low", "high", "mean", "saddle", "custom"};
+  constexpr const char* kNames[] = {"low", "high", "mean", "saddle", "squares", "decider", "custom"};
   return kNames[static_cast<int>(ambiguity)];
 }
 
@@ -71,10 +72,22 @@ void expect_same_bytes(const Contour<N, Real>& a, const Contour<N, Real>& b) {
   EXPECT_TRUE(std::equal(a.normals.begin(), a.normals.end(), b.normals.begin(), b.normals.end()));
 }
 
-/// The contour built tile by tile by FacetBuilder with the sign of the mean for every face. Vertices are identified by
+/// A straightforward choice by mean, squares or decider, for faces of dimension 2 or more.
+tile::Choice simple_choice(Ambiguity ambiguity, std::span<const double> values, double isovalue) {
+  if (values.size() > 4 && ambiguity != Ambiguity::mean) return tile::Choice::separate;
+  bool is_high = has_high_mean(values, isovalue);
+  if (values.size() == 4 && ambiguity == Ambiguity::decider) {
+    const double one = (values[0] - isovalue) * (values[3] - isovalue);
+    const double other = (values[1] - isovalue) * (values[2] - isovalue);
+    is_high = values[0] >= isovalue ? one >= other : other >= one;
+  }
+  return is_high ? tile::Choice::high : tile::Choice::low;
+}
+
+/// The contour built tile by tile by FacetBuilder with simple_choice for every face. Vertices are identified by
 /// the face of the grid that contains them and their number there; their positions have no meaning.
 template <Value T, int N>
-Contour<N, float> by_tiles(const OwnedImage<T, N>& image, double isovalue) {
+Contour<N, float> by_tiles(const OwnedImage<T, N>& image, double isovalue, Ambiguity ambiguity) {
   tile::FacetBuilder builder(tile::FaceLattice::cube(N));
   const auto& faces = builder.lattice().faces();
   std::map<std::array<std::size_t, N + 2>, Index> numbers;
@@ -96,7 +109,7 @@ Contour<N, float> by_tiles(const OwnedImage<T, N>& image, double isovalue) {
       std::vector<double> corners;
       for (std::uint64_t rest = faces[f].corners; rest != 0; rest &= rest - 1)
         corners.push_back(values[static_cast<std::size_t>(std::countr_zero(rest))]);
-      choices[f] = has_high_mean(corners, isovalue) ? tile::Choice::high : tile::Choice::low;
+      choices[f] = simple_choice(ambiguity, corners, isovalue);
     }
     const tile::TileFacets& tile = builder.build(signature, {.choices = choices});
     std::vector<Index> ids(tile.vertices.size());
@@ -224,7 +237,7 @@ TYPED_TEST(Estimators, GiveClosedManifoldsOnNoise) {
       }
 }
 
-TYPED_TEST(Estimators, DrawWhatTilesWithTheSignsOfMeansAre) {
+TYPED_TEST(Estimators, DrawWhatTilesWithTheChoicesOfTheRuleAre) {
   constexpr int N = TypeParam::kDim;
   using T = typename TypeParam::Value;
   for (const std::uint64_t seed : {1u, 2u}) {
@@ -237,10 +250,13 @@ TYPED_TEST(Estimators, DrawWhatTilesWithTheSignsOfMeansAre) {
                                                                            : 4),
                                                       seed, 4);
     const double isovalue = seed == 1 ? noise_isovalue<T>() : 2.0;
-    const MeshReport expected = check(by_tiles(image, isovalue));
-    const MeshReport found = check(extract(image.view(), isovalue, with(Ambiguity::mean)));
-    EXPECT_EQ(found.euler, expected.euler);
-    EXPECT_EQ(found.components, expected.components);
+    for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::squares, Ambiguity::decider}) {
+      SCOPED_TRACE(name_of(ambiguity));
+      const MeshReport expected = check(by_tiles(image, isovalue, ambiguity));
+      const MeshReport found = check(extract(image.view(), isovalue, with(ambiguity)));
+      EXPECT_EQ(found.euler, expected.euler);
+      EXPECT_EQ(found.components, expected.components);
+    }
   }
 }
 

@@ -296,7 +296,10 @@ TEST(Saddle, FilteredDecisionsAreTheExactOnes) {
   for (int i = 0; i < 400000; ++i) {
     const double isovalue = i % 3 == 0 ? 0.0 : std::ldexp(static_cast<double>(random() % 1000), -(i % 7) - 3);
     const Values values = nearly_degenerate(random, isovalue);
-    differ += !(decide_cube<double>(values, isovalue) == detail::decide_cube_exactly(values, isovalue));
+    const CubeDecision exact = detail::decide_cube_exactly(values, isovalue);
+    differ += !(decide_cube<double>(values, isovalue) == exact);
+    differ += !(detail::decide_squares(values, isovalue, signature_of(values, isovalue)) ==
+                CubeDecision{exact.high_squares, Choice::separate});
     for (const auto& s : kSquares) {
       const std::array<double, 4> square = {values[s[0]], values[s[1]], values[s[2]], values[s[3]]};
       if (is_ambiguous(signature_of(values, isovalue), s))

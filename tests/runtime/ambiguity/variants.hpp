@@ -24,7 +24,8 @@ inline std::vector<ExtractOptions> variants() {
 
 inline std::string describe(const ExtractOptions& options) {
   std::string text = options.triangulation == Triangulation::compact ? "compact" : "barycentric";
-  constexpr const char* kAmbiguities[] = {", low", ", high", ", mean", ", saddle", ", custom"};
+  constexpr const char* kAmbiguities[] = {", low",     ", high",    ", mean",  ", saddle",
+                                          ", squares", ", decider", ", custom"};
   text += kAmbiguities[static_cast<int>(options.ambiguity)];
   if (options.close) text += ", closed";
   return text;

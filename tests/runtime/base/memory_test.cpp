@@ -19,7 +19,7 @@ namespace {
 /// The kinds of tables, and an estimator from the data in both triangulations.
 std::vector<ExtractOptions> all_variants() {
   auto result = variants();
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     result.push_back(result.front());
     result.back().ambiguity = ambiguity;
   }

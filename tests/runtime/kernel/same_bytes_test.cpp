@@ -130,7 +130,7 @@ TEST(SameBytes, HolesAndInfinitiesWhateverTheProcessorAndTheThreads) {
 }
 
 TEST(SameBytes, OfFacesThatTheDataDecide) {
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     ExtractOptions options;
     options.ambiguity = ambiguity;
     expect_same_bytes<float>(view_of(noise<float, 3>({130, 6, 7}, 94)), 0.5, options);

@@ -155,7 +155,7 @@ TEST(ExtractTiles, VolumesHaveTheContoursOfTheTables) {
 
 TEST(ExtractTiles, ResolvedFromTheDataPlaneImagesHaveTheContoursOfTheTables) {
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     const auto image = noise<float, 2>(70, 5);
     EXPECT_TRUE(same_surface(rounded(extract_tile_by_tile(image.view(), 0.5, options)),
@@ -165,7 +165,7 @@ TEST(ExtractTiles, ResolvedFromTheDataPlaneImagesHaveTheContoursOfTheTables) {
 
 TEST(ExtractTiles, ResolvedFromTheDataVolumesHaveTheTopologyOfTheTables) {
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider})
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       options.ambiguity = ambiguity;
       options.close = seed % 2 == 0;
@@ -274,7 +274,8 @@ TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
   const auto image = noise<float, 5>(3, 5);
   ExtractOptions options;
   for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
-    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}) {
+    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle,
+                                      Ambiguity::squares, Ambiguity::decider}) {
       options.triangulation = triangulation;
       options.ambiguity = ambiguity;
       const auto contour = extract<double>(image.view(), 0.5, options);
@@ -294,7 +295,8 @@ TEST(Extract5d, CompactContoursHaveTheTopologyOfBarycentricOnesAndFewerSimplices
     EXPECT_EQ(a.euler, b.euler);
   };
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity :
+       {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     expect_same_topology(noise<float, 5>(3, 14), 0.5, options, 0.55);
     expect_same_topology(noise<float, 5>(4, 15), 0.93, options, 0.55);
@@ -367,7 +369,8 @@ TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
     return 0.5 + std::sin(1.9 * x[0] + 1.1 * x[1] - x[2]) * std::cos(1.3 * x[3] - 0.8 * x[4] + 0.4 * x[1]);
   });
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity :
+       {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     options.triangulation = Triangulation::barycentric;
     const auto by_tile = [](const auto&... arguments) { return extract_tile_by_tile(arguments...); };
@@ -384,7 +387,7 @@ TEST(Extract5d, ResolvedFromTheDataNoiseIsClosedByCapsAndTheSameForAnyNumberOfTh
   const auto image = noise<std::int16_t, 5>({3, 4, 3, 3, 3}, 11);
   ExtractOptions options;
   options.close = true;
-  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
     options.ambiguity = ambiguity;
     options.work.threads = 1;
     const auto one = extract<float>(image.view(), 0.5, options);

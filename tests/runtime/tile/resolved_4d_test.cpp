@@ -18,7 +18,7 @@
 namespace tegl::test {
 namespace {
 
-constexpr Ambiguity kEstimators[] = {Ambiguity::mean, Ambiguity::saddle};
+constexpr Ambiguity kEstimators[] = {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider};
 
 /// Coordinates rounded to 2^-30, to remove differences by rounding errors.
 Contour<3, double> rounded(Contour<3, double> contour) {
