@@ -222,7 +222,6 @@ BuilderTexts emit_tesseract_builder(const BuilderRequest& request) {
                                  {"squares_of_cubes", squares_of_cubes()},
                                  {"parts_of_cube", fmt::format("{}u", arrays.lists.front().parts_of_cube)},
                                  {"reversed_cubes", fmt::format("{:#04x}", reversed_cubes())},
-                                 {"choice_count", fmt::format("{}", arrays.lists.front().list_of.size())},
                                  {"entry_count", fmt::format("{}", arrays.cube.entries.size())},
                                  {"class", class_text(request)}})});
   }

@@ -110,13 +110,21 @@ void define_frames(std::string& text, const TesseractArrays& arrays) {
       },
       "{{", "}}");
   const CubeLists& lists = arrays.lists.front();
+  std::vector<std::size_t> entries(arrays.cube.entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = i;
   define(
-      text, class_array(fmt::format("std::array<std::uint16_t, {}>", lists.list_of.size()).c_str(), "kListOf"),
-      lists.list_of, [&](std::uint16_t list) { return list == CubeLists::kNone ? std::string("kNone") : number(list); },
+      text, class_array(fmt::format("std::array<ResolvedCubes::Entry, {}>", entries.size()).c_str(), "kEntries"),
+      entries,
+      [&](std::size_t entry) {
+        std::array<std::size_t, 3> by_choice{};
+        for (std::size_t choice = 0; choice < 3; ++choice) {
+          const std::uint16_t list = lists.list_of[3 * entry + choice];
+          by_choice[choice] = list == CubeLists::kNone ? lists.lists.size() : list;
+        }
+        return fmt::format("{{{{{}}},{}}}", fmt::join(by_choice, ","),
+                           arrays.cube.entries[entry].components > 1 ? 1 : 0);
+      },
       "{{", "}}");
-  define(
-      text, class_array(fmt::format("std::array<std::uint8_t, {}>", arrays.cube.entries.size()).c_str(), "kHasChoice"),
-      arrays.cube.entries, [](const tables::ResolvedEntry& e) { return number(e.components > 1 ? 1 : 0); }, "{{", "}}");
   // frames
   std::array<std::uint64_t, 32> beside{};
   std::array<std::uint32_t, 8> edges{};

@@ -91,8 +91,8 @@ requires DimensionBetween<N, 2, 5>
 ///
 /// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for 5D images
 /// with missing values. Time: one pass over the samples, plus the output. Working memory up to 4D: 1/16 of the size of
-/// a float image, or 128 KiB if that is more, and at least the bits and lists of one slab (docs/cost.md). Real: float
-/// or double.
+/// a float image, or 128 KiB (192 KiB in 4D with ambiguities resolved from the data) if that is more, and at least the
+/// bits and lists of one slab (docs/cost.md). Real: float or double.
 ///
 /// 5D has no tables. A tile is built when its signature first occurs, out of its ten tesseracts: in about 0.02 ms for
 /// smooth images, 0.1 ms for noise. In the barycentric triangulation, whose contours have three to four times as many

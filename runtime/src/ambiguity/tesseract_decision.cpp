@@ -68,6 +68,32 @@ std::array<std::size_t, 4> moved(std::array<std::size_t, 4> base, unsigned corne
 
 }  // namespace
 
+KeptTile::KeptTile(const ResolvedTile& tile, std::uint8_t plan) noexcept {
+  for (unsigned f = 0; f < 6; ++f) words_[0] |= std::uint64_t{tile.lists[f]} << (kListBits * f);
+  words_[1] = std::uint64_t{tile.lists[6]} | std::uint64_t{tile.lists[7]} << kListBits |
+              std::uint64_t{tile.key.low_cubes} << 20 | std::uint64_t{tile.key.high_cubes} << 28 |
+              std::uint64_t{tile.with_vertices} << 36 | std::uint64_t{plan} << 44 |
+              std::uint64_t{static_cast<unsigned>(tile.key.tile)} << 52;
+}
+
+ResolvedTile KeptTile::tile(unsigned signature) const noexcept {
+  constexpr unsigned kMask = (1u << kListBits) - 1;
+  ResolvedTile result;
+  result.key.signature = static_cast<std::uint16_t>(signature);
+  for (unsigned f = 0; f < 8; ++f)
+    result.lists[f] = static_cast<std::uint16_t>(words_[f / 6] >> (kListBits * (f % 6)) & kMask);
+  result.key.low_cubes = static_cast<std::uint8_t>(words_[1] >> 20);
+  result.key.high_cubes = static_cast<std::uint8_t>(words_[1] >> 28);
+  result.with_vertices = static_cast<std::uint8_t>(words_[1] >> 36);
+  result.key.tile = static_cast<tile::Choice>(words_[1] >> 52 & 3);
+  if (plan() != ResolvedTesseract::kOther) return result;  // others do not need the squares
+  const auto lists = ResolvedCubes::instance().lists();
+  for (unsigned f = 0; f < 8; ++f)
+    if (result.lists[f] != ResolvedCubes::kNone)
+      result.key.squares |= kSquaresOfCubes[f][lists[result.lists[f]].high_squares];
+  return result;
+}
+
 /// A tile without anything to decide.
 static ResolvedTile settled_tile(const ResolvedCubes& cubes, unsigned signature) noexcept {
   ResolvedTile tile;
@@ -174,42 +200,42 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.key = {};
   tile.key.signature = static_cast<std::uint16_t>(signature);
   tile.key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
-  // entries of the cubes
-  const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
-  std::array<std::uint16_t, 8> entries;
-  for (unsigned f = 0; f < 8; ++f)
-    entries[f] = static_cast<std::uint16_t>(cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
-                                                        static_cast<unsigned>(squares >> (8 * f) & 63)));
-  // choices of the tile and its cubes: all `separate` if the rule says so
   const bool separates = estimator.separates();
   if (!separates) tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
-  std::array<tile::Choice, 8> choices{};
-  if (!separates && estimator.is_by_means()) {
+  const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
+  const auto entry_of = [&](unsigned f) {
+    return cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
+                       static_cast<unsigned>(squares >> (8 * f) & 63));
+  };
+  // choices and lists of the cubes
+  unsigned low = 0, joined = 0;
+  if (separates) {
+    for (unsigned f = 0; f < 8; ++f) tile.lists[f] = cubes.list_of_entry(entry_of(f), tile::Choice::separate);
+  } else if (estimator.is_by_means()) {
     unsigned with_choice = 0;
-    for (unsigned f = 0; f < 8; ++f) {
-      const auto is_high = static_cast<unsigned>(high >> (kFirstCube<4> + f) & 1u);
-      const unsigned has_choice = cubes.has_choice(entries[f]) ? 1 : 0;
-      choices[f] = static_cast<tile::Choice>(has_choice * (1 + is_high));
-      with_choice |= has_choice << f;
-    }
     const auto high_cubes = static_cast<unsigned>(high >> kFirstCube<4>);
-    tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & high_cubes);
-    tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~high_cubes);
-  } else if (!separates) {
+    for (unsigned f = 0; f < 8; ++f) {
+      const ResolvedCubes::Entry entry = cubes.at_entry(entry_of(f));
+      tile.lists[f] = entry.lists[entry.has_choice * (1 + (high_cubes >> f & 1u))];
+      with_choice |= unsigned{entry.has_choice} << f;
+    }
+    joined = with_choice & high_cubes;
+    low = with_choice & ~high_cubes;
+  } else {
+    std::array<std::uint16_t, 8> entries;
+    std::array<tile::Choice, 8> choices{};
+    for (unsigned f = 0; f < 8; ++f) entries[f] = static_cast<std::uint16_t>(entry_of(f));
     if (!decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
-    unsigned low = 0, joined = 0;
     for (unsigned f = 0; f < 8; ++f) {
       low |= (choices[f] == tile::Choice::low ? 1u : 0u) << f;
       joined |= (choices[f] == tile::Choice::high ? 1u : 0u) << f;
+      tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
     }
-    tile.key.low_cubes = static_cast<std::uint8_t>(low);
-    tile.key.high_cubes = static_cast<std::uint8_t>(joined);
   }
+  tile.key.low_cubes = static_cast<std::uint8_t>(low);
+  tile.key.high_cubes = static_cast<std::uint8_t>(joined);
   unsigned with_vertices = 0;  // without branches: few cubes have vertices, which is hard to predict
-  for (unsigned f = 0; f < 8; ++f) {
-    tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
-    with_vertices |= (cubes.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
-  }
+  for (unsigned f = 0; f < 8; ++f) with_vertices |= (cubes.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
   tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
   for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
     const auto f = static_cast<unsigned>(std::countr_zero(rest));

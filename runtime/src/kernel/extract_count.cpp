@@ -52,7 +52,10 @@ void Counter<N>::allocate(SlabPlanes<N>& planes) const {
   if (keeps_tiles()) {
     planes.tiles.allocate(shape_.rows() * shape_.size(0));
     planes.first_tile.assign(shape_.rows(), 0);
-    if (lists_cubes_) planes.plans.resize(shape_.rows() * shape_.size(0));
+    if (lists_cubes_ && keeps_resolved_)
+      planes.resolved.resize(shape_.rows() * shape_.size(0));
+    else if (lists_cubes_)
+      planes.plans.resize(shape_.rows() * shape_.size(0));
   }
   planes.edges.allocate(shape_.rows(), shape_.words());
   if (has_cubes_)
@@ -96,7 +99,7 @@ std::size_t Counter<N>::cube_row_bytes() const noexcept {
 template <int N>
 std::size_t Counter<N>::slab_planes_bytes() const noexcept {
   constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
-  const std::size_t plans = lists_cubes_ ? shape_.size(0) : 0;
+  const std::size_t plans = lists_cubes_ ? shape_.size(0) * (keeps_resolved_ ? sizeof(KeptTile) : 1) : 0;
   const std::size_t tiles = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + plans + sizeof(std::size_t) : 0;
   return shape_.rows() * (shape_.words() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.words()) +
                           (N - 1) * cube_row_bytes());
@@ -350,8 +353,8 @@ template <int N>
 
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
-                                                      TileCount& count, ResolvedTesseract& tesseract,
-                                                      std::uint8_t* plans, const FoundCubes* found) const {
+                                                      TileCount& count, ResolvedTesseract& tesseract, const Kept& kept,
+                                                      const FoundCubes* found) const {
   if constexpr (N == 4) {
     const bool is_listed = shape_.size(0) <= kMostListed;
     BitWalk walk(room.active);
@@ -366,7 +369,8 @@ template <int N>
       const ResolvedTile tile = tiles.resolve(base, i, signature);
       // replace the table's size by the filling's
       const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
-      if (plans != nullptr) plans[i] = filling.plan;
+      if (kept.resolved != nullptr) kept.resolved[i] = KeptTile(tile, filling.plan);
+      if (kept.plans != nullptr) kept.plans[i] = filling.plan;
       count.simplices += filling.simplices;
       count.simplices -= rows_->entries[signature] & RowTable::kCountMask;
       count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
@@ -435,7 +439,7 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   if (rows_ != nullptr) {
     const TileRoom room = tile_room(slab, row, scratch);
     TileCount count = find_tiles(view, row, room);
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, plans(slab, row), nullptr);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, kept(slab, row), nullptr);
     keep_count(count, slab, row);
     return;
   }
@@ -497,7 +501,7 @@ void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>
     const TileRoom room = tile_room(slab, row, scratch);
     count = find_tiles(view, row, room);
     const FoundCubes found{upper.cubes, slab.cubes};
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, plans(slab, row), &found);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, kept(slab, row), &found);
   }
   keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];

@@ -49,6 +49,9 @@ class Counter {
   /// Whether slabs keep the lists of their active tiles (4 bytes per sample). Otherwise each list is computed twice. In
   /// 4D, where slabs are large, the lists would be most of the working storage.
   void keep_tiles(bool keep) noexcept { keeps_tiles_ = keep; }
+  /// Whether slabs with lists keep 4D tiles resolved from the data too (16 bytes per sample). Otherwise they keep how
+  /// each is filled (1 byte), and resolve each tile twice.
+  void keep_resolved(bool keep) noexcept { keeps_resolved_ = keep; }
 
   /// Allocate a layer's bits, the counts of a layer or slab, and the bits of missing values (only if any is missing).
   void allocate(Layer<N>& layer) const;
@@ -141,16 +144,22 @@ class Counter {
   /// Finds the active tiles of a row. Ambiguous tiles are replaced by their keys (N < 4).
   [[nodiscard]] TileCount find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const;
   void resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const;
+  /// Destinations, each may be null, of a row's resolved tiles and of their plans.
+  struct Kept {
+    KeptTile* resolved = nullptr;
+    std::uint8_t* plans = nullptr;
+  };
   /// Destination of cubes that resolve_tesseracts finds.
   struct FoundCubes {
     CubePlane& in_layer;
     std::array<CubePlane, N - 1>& in_slab;
   };
   void resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
-                          ResolvedTesseract& tesseract, std::uint8_t* plans, const FoundCubes* found) const;
-  /// Destination of the plans of a row's tiles, or null.
-  [[nodiscard]] std::uint8_t* plans(Slab<N>& slab, std::size_t row) const noexcept {
-    return keeps_tiles() && lists_cubes_ ? slab.plans.data() + slab.first_tile[row] : nullptr;
+                          ResolvedTesseract& tesseract, const Kept& kept, const FoundCubes* found) const;
+  [[nodiscard]] Kept kept(Slab<N>& slab, std::size_t row) const noexcept {
+    if (!keeps_tiles() || !lists_cubes_) return {};
+    if (keeps_resolved_) return {slab.resolved.data() + slab.first_tile[row], nullptr};
+    return {nullptr, slab.plans.data() + slab.first_tile[row]};
   }
   template <unsigned Axes>
   void list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
@@ -164,6 +173,7 @@ class Counter {
   bool ranks_;
   bool quick_ = false;
   bool keeps_tiles_ = true;
+  bool keeps_resolved_ = true;
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
   bool lists_cubes_ = false;

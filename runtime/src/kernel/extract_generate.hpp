@@ -82,6 +82,7 @@ class TileWriter {
     BitWalk active;
     Index next;                   ///< number of the next own vertex
     RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
+    const KeptTile* resolved;     ///< with `tesseracts`: by tile of the row; null: not kept
     const std::uint8_t* plans;    ///< with `tesseracts`: ResolvedSize::plan by tile of the row; null: not kept
 
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
@@ -90,11 +91,16 @@ class TileWriter {
       Ids ids;
       std::copy_n(edge_ids, tables::edge_count(N), ids.data());
       if constexpr (N == 4)
-        if (own.writer.is_estimated_tile(key))
+        if (own.writer.is_estimated_tile(key)) {
+          if (own.resolved != nullptr)
+            return own.writer.write_resolved(own.view, own.row, own.index, key, own.resolved[ordinal].tile(key),
+                                             own.resolved[ordinal].plan(), ids, own.next, own.vertices,
+                                             *own.scratch.tesseract, out);
           return own.writer.write_resolved(own.view, own.row, own.index, key,
                                            own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
                                            own.plans != nullptr ? own.plans[ordinal] : ResolvedTesseract::kOther, ids,
                                            own.next, own.vertices, *own.scratch.tesseract, out);
+        }
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
       own.writer.write_own(list, places, own.index, own.next, own.vertices);
@@ -119,6 +125,7 @@ class TileWriter {
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
                              view.slab->first_own(row),
                              nullptr,
+                             nullptr,
                              nullptr};
     // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
@@ -132,7 +139,8 @@ class TileWriter {
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
     own.tesseracts = &tesseracts;
     const Slab<N>& slab = *own.view.slab;
-    own.plans = slab.plans.size() != 0 ? slab.plans.data() + slab.first_tile[own.row] : nullptr;
+    if (slab.plans.size() != 0) own.plans = slab.plans.data() + slab.first_tile[own.row];
+    if (slab.resolved.size() != 0) own.resolved = slab.resolved.data() + slab.first_tile[own.row];
     write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }
 

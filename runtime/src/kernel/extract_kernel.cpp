@@ -35,7 +35,8 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
   // Share of the image's bytes. The rest of 1/16 is for storage that does not grow with slabs. 4D has few slabs and
   // needs two per batch, so it keeps the larger share.
   const double share = ahead && N < 4 ? 0.05 : 0.057;
-  constexpr double kLittle = 1u << 17;  // bytes; allowed for any image size
+  // Bytes; allowed for any image size. 4D tiles resolved from the data are kept from counting to writing.
+  const double little = counter.lists_cubes() ? 3u << 16 : 1u << 17;
   // Minimum slabs that must fit together with their tile lists in 4D. If fewer fit, lists are not kept but computed
   // twice.
   const std::size_t few = threads > 1 ? 2 : 1;
@@ -52,9 +53,10 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
     // 2D does not reuse planes (take_planes), so each of two batches needs its own.
     const std::size_t planes = (ahead && N == 2 ? 2 : 1) * (counter.layer_planes_bytes() + counter.slab_planes_bytes());
     const auto each = static_cast<double>(bits + planes + (ahead ? 2 : 1) * kBookkeeping);
-    const double most = (std::max(kLittle, share * image) - fixed) / each;
+    const double most = (std::max(little, share * image) - fixed) / each;
     return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
   };
+  if (N == 4 && fit() < std::min(wanted, few)) counter.keep_resolved(false);
   if (N == 4 && fit() < std::min(wanted, few)) counter.keep_tiles(false);
   return std::max<std::size_t>(1, fit());
 }

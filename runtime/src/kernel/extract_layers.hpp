@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "ambiguity/tesseract_decision.hpp"
 #include "image/bitplanes.hpp"
 #include "image/sample_source.hpp"
 #include "kernel/vertex_numbers.hpp"
@@ -233,6 +234,7 @@ struct SlabPlanes {
   std::vector<Word> active;    ///< rows x words: valid tiles with high and low corners
   TileLists tiles;             ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
   Buffer<std::uint8_t> plans;  ///< with `tiles`, N = 4, resolved from the data: ResolvedSize::plan by tile
+  Buffer<KeptTile> resolved;   ///< instead of `plans`, if they fit (Counter::keep_resolved)
   std::vector<std::size_t> first_tile;      ///< by row
   std::vector<std::uint32_t> active_count;  ///< by row
   EdgePlane edges;                          ///< along the last axis

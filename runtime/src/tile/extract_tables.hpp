@@ -214,6 +214,21 @@ TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& 
   return sum.point;
 }
 
+/// Corners of a k-tile.
+template <int K>
+inline constexpr auto kCornerPoints = [] {
+  std::array<TilePoint<K>, std::size_t{1} << K> result{};
+  for (unsigned v = 0; v < result.size(); ++v) result[v] = corner_point<K>(v);
+  return result;
+}();
+
+/// Weights of mask_place, by bit of the mask.
+inline constexpr auto kUnevenWeights = [] {
+  std::array<double, 64> result{};
+  for (unsigned v = 0; v < result.size(); ++v) result[v] = 1.0 + 0.01 * v;
+  return result;
+}();
+
 /// Position of an own vertex from its mask (bit v: corner v, bit 2^K + e: edge e). With edges only, it is their mean;
 /// with corners, half way from the tile's centre to the mean of all. `corner(v)`: maps a corner to the current frame.
 ///
@@ -223,10 +238,16 @@ TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& 
 /// own vertices.
 template <int K, class Corner, class Place>
 TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
+  constexpr unsigned kCorners = 1u << K;
+  const auto weight = [uneven](unsigned v) { return uneven ? kUnevenWeights[v] : 1.0; };
   Weighted<K> sum;
-  for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
+  for (std::uint64_t rest = mask & ((std::uint64_t{1} << kCorners) - 1); rest != 0; rest &= rest - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(rest));
-    sum.add(v < (1u << K) ? corner_point<K>(corner(v)) : place(v - (1u << K)), uneven ? 1.0 + 0.01 * v : 1.0);
+    sum.add(kCornerPoints<K>[corner(v)], weight(v));
+  }
+  for (std::uint64_t rest = mask >> kCorners; rest != 0; rest &= rest - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(rest));
+    sum.add(place(e), weight(kCorners + e));
   }
   const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
   TilePoint<K> point;
