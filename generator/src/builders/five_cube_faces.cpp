@@ -199,6 +199,38 @@ void write_signatures(std::string& text) {
   text += "  return result;\n}\n";
 }
 
+/// Sets of corners of squares and cubes, the two tesseracts around each cube, and the three cubes around each square.
+void write_incidences(const Faces& faces, std::string& text) {
+  const auto write = [&](const char* what, const char* type, const char* name, const auto& all, const auto& set) {
+    fmt::format_to(std::back_inserter(text), "/// {}\nconstexpr std::array<{}, {}> {}{{{{\n", what, type, all.size(),
+                   name);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      fmt::format_to(std::back_inserter(text), "{}{:#x},{}", i % 8 == 0 ? "    " : " ", set(all[i]),
+                     i % 8 == 7 ? "\n" : "");
+    text += "}};\n\n";
+  };
+  const auto corners_of = [](const CubeFace& face) {
+    std::uint64_t set = 0;
+    for (unsigned v = 0; v < 1u << kDim; ++v)
+      if ((v & ~face.axes) == face.base) set |= std::uint64_t{1} << v;
+    return set;
+  };
+  const auto around = [&](const auto& larger, const CubeFace& face) {
+    std::uint64_t set = 0;
+    for (std::size_t i = 0; i < larger.size(); ++i)
+      if ((corners_of(face) & ~corners_of(larger[i])) == 0) set |= std::uint64_t{1} << i;
+    return set;
+  };
+  std::vector<CubeFace> tesseracts;
+  for (const TesseractFace& t : faces.tesseracts) tesseracts.push_back(t.face);
+  write("Corners of each square.", "std::uint32_t", "kCornersOfSquares", faces.squares, corners_of);
+  write("Corners of each cube.", "std::uint32_t", "kCornersOfCubes", faces.cubes, corners_of);
+  write("The cubes around each square.", "std::uint64_t", "kCubesOfSquares", faces.squares,
+        [&](const CubeFace& square) { return around(faces.cubes, square); });
+  write("The tesseracts around each cube.", "std::uint32_t", "kTesseractsOfCubes", faces.cubes,
+        [&](const CubeFace& cube) { return around(tesseracts, cube); });
+}
+
 /// The signatures of tesseracts with a component that is not a sphere, in the low-connected contour.
 void write_tori(std::string& text) {
   tile::FacetBuilder builder(tile::FaceLattice::cube(4));
@@ -226,6 +258,7 @@ std::string five_cube_faces() {
   write_cubes(faces, text);
   write_tesseracts(faces, text);
   write_edges(faces, text);
+  write_incidences(faces, text);
   write_tori(text);
   write_signatures(text);
   return text;
