@@ -107,7 +107,7 @@ TEST(CubeBuilder, BarycentricHasAsManyTrianglesAsTheBarycentricTable) {
 }
 
 /// The figures of docs/builders.md.
-TEST(CubeBuilder, FillingIsAFunctionOfThePolygonsForAllBut70SetsOfThem) {
+TEST(CubeBuilder, FillingIsAFunctionOfThePolygonsExceptFor70SetsOfThem) {
   std::map<std::uint64_t, unsigned> fillings;
   std::map<std::size_t, unsigned> polygons;
   for (const gen::FillingRow& row : gen::make_filling_rule(gen::make_resolved_cube()))
