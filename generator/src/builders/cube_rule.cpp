@@ -59,6 +59,22 @@ CubeFilling cone_over(const CubePolygon& polygon) {
   return cone;
 }
 
+/// The set of a facet's edges, by its polygons and by its triangles.
+unsigned edges_of(const std::vector<CubePolygon>& polygons) {
+  unsigned edges = 0;
+  for (const CubePolygon& polygon : polygons)
+    for (const std::uint8_t e : polygon) edges |= 1u << e;
+  return edges;
+}
+
+unsigned edges_of(const CubeFilling& filling) {
+  unsigned edges = 0;
+  for (const CubeTriangle& t : filling.triangles)
+    for (const std::uint8_t v : t)
+      if (v < kEdges) edges |= 1u << v;
+  return edges;
+}
+
 [[noreturn]] void fail(unsigned signature, unsigned high, const char* why) {
   throw Error(ErrorCode::CertificateFailed,
               fmt::format("builder of the cube, signature {}, high squares {:#x}: {}", signature, high, why));
@@ -233,6 +249,7 @@ std::vector<FillingRow> make_filling_rule(const ResolvedCube& table) {
       for (std::size_t f = 0; f < facets.size(); ++f) {
         std::vector<CubePolygon> around;
         for (const std::size_t p : facets[f]) around.push_back(polygons[p]);
+        if (edges_of(around) != edges_of(fillings[f])) fail(signature, high, "another order of facets");
         const std::uint64_t key = polygon_key(around);
         if (const auto known = row_of.find({key, kind}); known != row_of.end()) {
           if (rows[known->second].filling != fillings[f]) fail(signature, high, "two fillings of the same polygons");

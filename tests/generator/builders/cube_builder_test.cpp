@@ -3,7 +3,9 @@
 // The emitted builders of the cube, as compiled.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "builder3.hpp"
@@ -11,6 +13,8 @@
 #include "builder3_barycentric_edges.hpp"
 #include "builder3_edges.hpp"
 #include "builder_checks.hpp"
+#include "builders/cube_rule.hpp"
+#include "filling/resolved_cube.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::test {
@@ -100,6 +104,18 @@ TEST(CubeBuilder, BarycentricHasAsManyTrianglesAsTheBarycentricTable) {
     EXPECT_EQ(contour.triangles, list.simplex_count);
     EXPECT_EQ(contour.own_vertices, list.cone_vertices);
   }
+}
+
+/// The figures of docs/builders.md.
+TEST(CubeBuilder, FillingIsAFunctionOfThePolygonsExceptFor70SetsOfThem) {
+  std::map<std::uint64_t, unsigned> fillings;
+  std::map<std::size_t, unsigned> polygons;
+  for (const gen::FillingRow& row : gen::make_filling_rule(gen::make_resolved_cube()))
+    if (fillings[row.key]++ == 0) ++polygons[row.polygons.size()];
+  EXPECT_EQ(fillings.size(), 646u);
+  EXPECT_EQ(polygons, (std::map<std::size_t, unsigned>{{1, 338}, {2, 264}, {3, 40}, {4, 4}}));
+  EXPECT_EQ(std::count_if(fillings.begin(), fillings.end(), [](const auto& f) { return f.second == 2; }), 70);
+  EXPECT_TRUE(std::all_of(fillings.begin(), fillings.end(), [](const auto& f) { return f.second <= 2; }));
 }
 
 }  // namespace
