@@ -107,6 +107,15 @@ std::vector<TimedFile> emit_all(const TableSet& set, const std::vector<Language>
   return files;
 }
 
+bool has_text(const std::filesystem::path& path, const std::string& text) {
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) != text.size() || error) return false;
+  std::ifstream in(path, std::ios::binary);
+  std::string found(text.size(), '\0');
+  in.read(found.data(), static_cast<std::streamsize>(found.size()));
+  return in && found == text;
+}
+
 /// Writes all files under temporary names beside their targets and renames them at the end, so a failure while writing
 /// leaves no incomplete table. Adds the writing times.
 void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& files) {
@@ -134,10 +143,14 @@ void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& fi
     if (!out) fail(target, "cannot be written");
     timed.seconds += watch.lap();
   }
-  // rename
+  // rename; a file that has this text stays as it is, so that a build does not compile it again
   for (const TimedFile& timed : files) {
-    std::filesystem::rename(part(timed), folder / timed.file.name, error);
-    if (error) fail(folder / timed.file.name, error.message());
+    const auto target = folder / timed.file.name;
+    if (has_text(target, timed.file.text))
+      std::filesystem::remove(part(timed), error);
+    else
+      std::filesystem::rename(part(timed), target, error);
+    if (error) fail(target, error.message());
   }
 }
 
