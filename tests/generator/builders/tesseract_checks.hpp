@@ -238,4 +238,15 @@ std::string fault_of_tesseracts(Builder& builder, Triangulation triangulation, i
   return "";
 }
 
+/// All numbers of a filling: size, plan, simplices and masks.
+template <class Builder>
+std::vector<std::uint64_t> tesseract_numbers(Builder& builder, const ResolvedKey& key) {
+  const auto size = builder.size(key);
+  const builders::ResolvedView view = builder.find(key, Builder::lists_of(key), size.plan);
+  std::vector<std::uint64_t> numbers{size.simplices, size.own_vertices, size.plan};
+  numbers.insert(numbers.end(), view.simplices, view.simplices + 4 * std::size_t{view.simplex_count});
+  if (view.own_vertices != 0) numbers.insert(numbers.end(), view.masks, view.masks + view.own_vertices);
+  return numbers;
+}
+
 }  // namespace tegl::test
