@@ -3,7 +3,8 @@
 """What README.md and docs/ show is what works.
 
     docs_test.py commands SOURCE BIN    runs every block marked ```sh in a scratch checkout, BIN first in the PATH
-    docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
+    docs_test.py snippets SOURCE        every ```cpp, ```glsl and ```cmake block stands in a file that the build compiles
+    docs_test.py emitted SOURCE BIN     every ```c++ block stands in a builder that gen emits
     docs_test.py links SOURCE           every link leads to a file, every anchor to a heading, and the front page to all pages
     docs_test.py transcripts SOURCE BIN [--update]
                                         the ```console blocks of getting-started.md, guides.md and the tutorials: what is behind each $ runs,
@@ -123,7 +124,9 @@ def commands(source, programs):
 
 def snippets(source, _=None):
     """Looks for each snippet, as it is but for its indentation, in the compiled sources."""
-    compiled = {"cpp": [*sorted((source / "examples").glob("*.cpp")), source / "tests/docs/pages_test.cpp"],
+    compiled = {"cpp": [*sorted((source / "examples").glob("*.cpp")), source / "tests/docs/pages_test.cpp",
+                        source / "tests/generator/builders/cell_example_test.cpp"],
+                "glsl": [source / "tests/generator/builders/builders.comp"],
                 "cmake": [source / "tests/install/consumer/CMakeLists.txt"]}
     squeeze = lambda text: "\n".join(line.strip() for line in text.strip().splitlines())
     texts = {language: [squeeze(file.read_text(encoding="utf-8")) for file in files]
@@ -137,6 +140,32 @@ def snippets(source, _=None):
             count += 1
     assert count > 0, "no snippets found: the pages have lost their blocks"
     print(f"{count} snippets are compiled elsewhere")
+
+
+def stand_in(lines, chunks):
+    """Whether the chunks of lines stand in the lines, one behind the other."""
+    at = 0
+    for chunk in chunks:
+        at = next((first + len(chunk) for first in range(at, len(lines)) if lines[first:first + len(chunk)] == chunk), None)
+        if at is None:
+            return False
+    return True
+
+
+def emitted(source, programs):
+    """Looks for each ```c++ block in the builders that gen emits from the edges. A line `// ...` stands for any lines."""
+    rows_of = lambda text: [line.strip() for line in text.strip().splitlines()]
+    texts = [rows_of(subprocess.run([f"{programs}/gen", "--dim", dim, "--builder", "--leaf", "edges"], text=True,
+                                    capture_output=True, check=True).stdout) for dim in ("2", "3")]
+    count = 0
+    for page in pages(source):
+        for line, _, text in blocks(page, ("c++",)):
+            chunks = [rows_of(part) for part in text.replace("// ...\n", "\0").split("\0")]
+            if not any(stand_in(rows, chunks) for rows in texts):
+                sys.exit(f"{page}:{line}: gen emits no such lines:\n{text}")
+            count += 1
+    assert count > 0, "no emitted lines found: the pages have lost their blocks"
+    print(f"{count} blocks are what gen emits")
 
 
 def links(source, _=None):

@@ -8,15 +8,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <iomanip>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -127,6 +130,124 @@ TEST(GenCli, TransversalCountsRepresentativesByOrbitLength) {
   EXPECT_EQ(gen({"--dim", "3", "--transversal", "--inversion"}).status, 2);
 }
 
+// Tables 6.8 and 6.9 of the thesis.
+TEST(GenCli, SymmetriesOfTheSquareAreTheThesissTables) {
+  const Outcome run = gen({"--dim", "2", "--symmetries", "--group", "rotations"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, R"(dimension   2
+group       rotations, order 4
+generators  rho     quarter turn from x to y
+
+element  kind          fixed  signatures
+1        identity         16  {0, 1, ..., 15}
+rho      quarter turn      2  {0, 15}
+rho^2    half turn         4  {0, 6, 9, 15}
+rho^3    quarter turn      2  {0, 15}
+
+24 fixed points in all = 4 elements x 6 classes (Burnside's lemma)
+
+high corners  signature  orbit  order  isotropy group
+           0          0      1      4  G
+           1          1      4      1  {1}
+           2          3      4      1  {1}
+           2          6      2      2  {1, rho^2}
+           3          7      4      1  {1}
+           4         15      1      4  G
+)");
+}
+
+TEST(GenCli, SymmetriesAsJsonHoldAllElementsAndClasses) {
+  struct Expected {
+    const char* dim;
+    const char* group;
+    bool inversion;
+    std::size_t order, classes;
+  };
+  for (const Expected& expected :
+       {Expected{"2", "full", true, 16, 4}, Expected{"3", "full", false, 48, 22},
+        Expected{"3", "rotations", true, 48, 15}, Expected{"4", "rotations", false, 192, 496}}) {
+    const Outcome run =
+        expected.inversion
+            ? gen({"--dim", expected.dim, "--symmetries", "--group", expected.group, "--inversion", "--json"})
+            : gen({"--dim", expected.dim, "--symmetries", "--group", expected.group, "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json table = json::parse(run.out);
+    EXPECT_EQ(table.at("group"), expected.group);
+    EXPECT_EQ(table.at("inversion"), expected.inversion);
+    EXPECT_EQ(table.at("order"), expected.order);
+    ASSERT_EQ(table.at("elements").size(), expected.order);
+    ASSERT_EQ(table.at("classes").size(), expected.classes);
+    std::size_t fixed = 0;
+    std::set<std::string> words;
+    for (const json& element : table.at("elements")) {
+      fixed += element.at("fixed").get<std::size_t>();
+      words.insert(element.at("word"));
+      EXPECT_EQ(element.contains("signatures"), table.at("dim") != 4);
+      EXPECT_EQ(element.at("kind").is_null(), table.at("dim") == 4);
+    }
+    EXPECT_EQ(fixed, expected.order * expected.classes);
+    EXPECT_EQ(fixed, table.at("fixed_sum"));
+    EXPECT_EQ(words.size(), expected.order);
+    for (const json& found : table.at("classes")) {
+      const json& isotropy = found.at("isotropy");
+      EXPECT_EQ(isotropy.at("elements").size(), isotropy.at("order"));
+      EXPECT_EQ(isotropy.at("order").get<std::size_t>() * found.at("orbit_length").get<std::size_t>(), expected.order);
+      for (const json& word : isotropy.at("elements")) EXPECT_TRUE(words.contains(word)) << word;
+    }
+  }
+}
+
+TEST(GenCli, SymmetriesOf4dAreListedByConjugacyClass) {
+  const Outcome run = gen({"--dim", "4", "--symmetries"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("154368 fixed points in all = 384 elements x 402 classes"));
+  EXPECT_THAT(run.out, HasSubstr("\n+2 +2         +1      2        12        1024  rho_xy^2 rho_xz rho_yt\n"));
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 9 + 1 + 1 + 20 + 3 + 1 + 402);
+}
+
+TEST(GenCli, ADimensionWithoutACommandIsCertifiedAndSummarised) {
+  const Outcome text = gen({"--dim", "2"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  for (const char* const line :
+       {"2-tile: 4 corners, 16 signatures\n", "      6       4  rotations\n",
+        "low         barycentric          16      16             0        16       2       128",
+        "Every signature is certified, and every pair of neighbours matches.\n",
+        "tile2_compact                  flat     16        16       256\n"}) {
+    EXPECT_THAT(text.out, HasSubstr(line));
+  }
+  const Outcome run = gen({"--dim", "3", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json summary = json::parse(run.out);
+  std::vector<int> classes;
+  for (const json& group : summary.at("groups")) classes.push_back(group.at("classes"));
+  EXPECT_EQ(classes, (std::vector<int>{22, 23, 14, 15}));
+  ASSERT_EQ(summary.at("certified").size(), 4U);
+  for (const json& figures : summary.at("certified")) {
+    EXPECT_EQ(figures.at("passed"), 256);
+    EXPECT_EQ(figures.at("pairs"), 3 * 16 * 16 * 16);
+    EXPECT_EQ(figures.at("unmatched_pairs"), 0);
+  }
+  std::set<std::string> names;
+  for (const json& table : summary.at("tables")) {
+    names.insert(table.at("name"));
+    EXPECT_GT(table.at("bytes"), table.at("simplices"));
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"tile3_barycentric", "tile3_compact", "region2_barycentric_low",
+                                          "region2_barycentric_high", "region2_compact_low", "region2_compact_high",
+                                          "tile3_resolved"}));
+}
+
+TEST(GenCli, OtherTilesAreSummarisedWithoutNeighbours) {
+  const Outcome run = gen({"--dim", "3", "--tile", "simplex"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("3-simplex: 4 corners, 16 signatures\n"));
+  EXPECT_THAT(run.out, HasSubstr("Every signature is certified.\n"));
+  EXPECT_THAT(run.out, HasSubstr("simplex3_compact"));
+  const Outcome wrong = gen({"--dim", "5", "--tile", "simplex"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, testing::Not(HasSubstr("--transversal")));
+}
+
 TEST(GenCli, OptionsMayComeInAnyOrderAndWithEqualsSigns) {
   EXPECT_EQ(gen({"--json", "--group=rotations", "--dim=3", "--inversion", "--count"}).out,
             gen({"--dim", "3", "--count", "--group", "rotations", "--inversion", "--json"}).out);
@@ -136,8 +257,9 @@ TEST(GenCli, HelpListsCommandsExamplesAndExitCodesAndWinsOverTheRest) {
   const Outcome run = gen({"--help"});
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.err, "");
-  for (const char* const text : {"--count", "--classes", "--certify", "--out DIR", "--group full|rotations", "examples",
-                                 "exit status", "--layout class|flat|auto"}) {
+  for (const char* const text :
+       {"--count", "--symmetries", "--classes", "--certify", "--out DIR", "gen --dim N [--tile T] [--json]",
+        "--group full|rotations", "examples", "exit status", "--layout class|flat|auto"}) {
     EXPECT_THAT(run.out, HasSubstr(text));
   }
   EXPECT_EQ(gen({"-h"}).out, run.out);
@@ -150,9 +272,9 @@ TEST(GenCli, VersionNamesProgramAndContract) {
   EXPECT_THAT(run.out, testing::MatchesRegex("gen [0-9]+\\.[0-9]+\\.[0-9]+ \\(table contract [0-9]+\\)\n"));
 }
 
-TEST(GenCli, RefusesNoCommandAndSeveral) {
-  expect_refused({}, {"no command", "--count", "--help"});
-  expect_refused({"--dim", "3"}, {"no command"});
+TEST(GenCli, RefusesNeitherCommandNorDimensionAndSeveralCommands) {
+  expect_refused({}, {"no command", "--dim N", "--count", "--help"});
+  expect_refused({"--json"}, {"no command", "--dim N", "--count"});
   expect_refused({"--dim", "3", "--count", "--classes"}, {"--count and --classes", "expected one command"});
   expect_refused({"--dim", "3", "--count", "--out", "tables"}, {"--count and --out"});
 }
@@ -190,6 +312,8 @@ TEST(GenCli, RefusesDimensionsOutsideOfTheCommandsRange) {
   }
   for (const char* const dim : {"1", "5"}) {
     expect_refused({"--dim", dim, "--classes"}, {"--classes expects 2 to 4"});
+    expect_refused({"--dim", dim, "--symmetries"}, {"--symmetries expects 2 to 4"});
+    expect_refused({"--dim", dim}, {"expected 2 to 4", "--count (1 to 8)", "--transversal (2 to 5)", "(2 to 6)"});
     expect_refused({"--dim", dim, "--certify"}, {"--certify expects 2 to 4"});
     expect_refused({"--dim", dim, "--out", "tables"}, {"--out expects 2 to 4"});
     expect_refused({"--dim", dim, "--cases", "docs"}, {"--cases expects 2 to 4"});
@@ -200,6 +324,9 @@ TEST(GenCli, RefusesOptionsThatTheCommandWouldIgnore) {
   expect_refused({"--dim", "3", "--classes", "--inversion"}, {"--inversion does not go with --classes", "--json"});
   expect_refused({"--dim", "3", "--certify", "--group", "full"}, {"--group does not go with --certify"});
   expect_refused({"--dim", "3", "--count", "--layout", "flat"}, {"--layout does not go with --count"});
+  expect_refused({"--dim", "3", "--symmetries", "--list"}, {"--list does not go with --symmetries", "--inversion"});
+  expect_refused({"--dim", "3", "--symmetries", "--tile", "simplex"}, {"--tile does not go with --symmetries"});
+  expect_refused({"--dim", "3", "--inversion"}, {"--inversion without a command", "--tile, --json", "--symmetries"});
   expect_refused({"--dim", "3", "--certify", "--language", "json"}, {"--language does not go with --certify"});
   expect_refused({"--dim", "3", "--out", "tables", "--json"}, {"--json does not go with --out"});
   expect_refused({"--version", "--dim", "3"}, {"--dim does not go with --version", "nothing else"});
@@ -497,6 +624,73 @@ TEST(GenCli, OutThatCannotBeWrittenFailsAndLeavesNothingHalfWritten) {
   for (const auto& [name, text] : contents(folder.file("tables"))) {
     EXPECT_THAT(name, testing::Not(HasSubstr(".part")));
   }
+}
+
+std::string hexadecimal(std::uint64_t number) {
+  std::ostringstream text;
+  text << std::hex << std::setw(16) << std::setfill('0') << number;
+  return text.str();
+}
+
+/// FNV-1a of 64 bits.
+std::uint64_t digest_of(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+TEST(GenCli, BuilderIsPrintedOrWrittenWithItsManifest) {
+  const Folder folder;
+  for (const char* const dim : {"2", "3"})
+    for (const char* const leaf : {"table", "edges"}) {
+      const std::string name = std::string("builder") + dim + (std::string(leaf) == "edges" ? "_edges" : "");
+      const Outcome printed = gen({"--dim", dim, "--builder", "--leaf", leaf});
+      ASSERT_EQ(printed.status, 0) << printed.err;
+      const Outcome written = gen({"--dim", dim, "--builder", "--leaf", leaf, "--out", folder.file(name)});
+      ASSERT_EQ(written.status, 0) << written.err;
+      EXPECT_THAT(written.out, HasSubstr("wrote " + name + ".hpp"));
+      const auto files = contents(folder.file(name));
+      ASSERT_EQ(files.size(), 3u);
+      EXPECT_EQ(printed.out, files.at(name + ".hpp") + "\n" + files.at(name + ".cpp"));
+      const json manifest = json::parse(files.at(name + "_manifest.json"));
+      EXPECT_EQ(manifest.at("builder"), std::stoi(dim));
+      EXPECT_EQ(manifest.at("leaf"), leaf);
+      ASSERT_EQ(manifest.at("texts").size(), 2u);
+      for (const json& text : manifest.at("texts")) {
+        const std::string& content = files.at(text.at("name"));
+        EXPECT_EQ(text.at("bytes"), content.size());
+        EXPECT_EQ(text.at("fnv1a"), hexadecimal(digest_of(content)));
+      }
+    }
+}
+
+TEST(GenCli, BuilderIsTheOneOfTheBuildInEveryLanguage) {
+  const Folder folder;
+  for (const char* const dim : {"2", "3"}) {
+    ASSERT_EQ(gen({"--builder", "--dim", dim, "--language", "cpp,glsl,wgsl", "--out", folder.file("all")}).status, 0);
+    const auto files = contents(folder.file("all"));
+    const std::string name = std::string("builder") + dim;
+    for (const char* const suffix : {".hpp", ".cpp", ".glsl", ".wgsl", "_manifest.json"}) {
+      std::ifstream in(std::string(TEGL_TABLE_DIR) + "/" + name + suffix, std::ios::binary);
+      EXPECT_EQ(files.at(name + suffix), (std::string{std::istreambuf_iterator<char>(in), {}})) << name << suffix;
+    }
+  }
+  for (const auto& [name, text] : contents(folder.file("all")))
+    for (std::size_t first = 0; first < text.size(); first = text.find('\n', first) + 1)
+      ASSERT_LE(text.find('\n', first) - first, 120u) << name << ": " << text.substr(first, 120);
+}
+
+TEST(GenCli, BuilderRefusesOptionsOfOtherCommands) {
+  expect_refused({"--dim", "6", "--builder"}, {"--dim 6", "--builder expects 2 to 5"});
+  expect_refused({"--dim", "3", "--builder", "--leaf", "corners"}, {"--leaf corners", "table or edges"});
+  expect_refused({"--dim", "3", "--builder", "--language", "cuda"}, {"does not emit cuda", "cpp, glsl or wgsl"});
+  expect_refused({"--dim", "3", "--builder", "--leaf", "edges", "--language", "glsl"}, {"--leaf edges", "table"});
+  expect_refused({"--dim", "3", "--builder", "--triangulation", "all"},
+                 {"--triangulation all", "barycentric or compact"});
+  expect_refused({"--dim", "3", "--builder", "--layout", "flat"}, {"--layout does not go with --builder"});
+  expect_refused({"--dim", "3", "--count", "--leaf", "table"}, {"--leaf does not go with --count"});
+  expect_refused({"--dim", "3", "--builder", "--count"}, {"--builder and --count were both given"});
+  expect_refused({"--dim", "3", "--builder", "--out", "a", "--cases", "b"}, {"--builder and --cases were both given"});
 }
 
 }  // namespace

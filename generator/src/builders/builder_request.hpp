@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tables/language.hpp"
+#include "tegl/tile/triangulation.hpp"
 
 namespace tegl::gen {
 
@@ -19,9 +20,10 @@ const char* leaf_name(Leaf leaf) noexcept;  ///< "table", "edges"
 
 /// Arguments of emit_builder.
 struct BuilderRequest {
-  int dim = 0;                                     ///< dimension of the tile, 2 to 5
-  Leaf leaf = Leaf::table;                         ///< contours of the faces
-  std::vector<Language> languages{Language::cpp};  ///< cpp; for dim 2 and 3 also glsl and wgsl
+  int dim = 0;                                           ///< dimension of the tile, 2 to 5
+  Leaf leaf = Leaf::table;                               ///< contours of the faces
+  std::vector<Language> languages{Language::cpp};        ///< cpp; for dim 2 and 3 also glsl and wgsl
+  Triangulation triangulation = Triangulation::compact;  ///< dim 3: of polygons; squares have none
 };
 
 /// The sources of one builder.
@@ -30,10 +32,11 @@ struct BuilderTexts {
   std::string certificate;         ///< the certificate in words, without a period; also in the banner of each file
 };
 
-/// Name of a builder's C++ files without suffix: "builder3"; "builder3_edges" for Leaf::edges.
+/// Name of a builder's files without suffix: "builder3", followed by "_barycentric" and by "_edges" for Leaf::edges.
 std::string builder_name(const BuilderRequest& request);
 
-/// Innermost namespace of a builder: "builders"; "builders::edges" for Leaf::edges. So a program can have both.
+/// Namespace of a builder within tegl: "builders", followed by "::edges" for Leaf::edges and by "::barycentric". So a
+/// program can have all of them.
 std::string builder_namespace(const BuilderRequest& request);
 
 /// The command line that writes `language`.

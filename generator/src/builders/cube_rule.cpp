@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/lattice.hpp"
 #include "builders/square_contours.hpp"
+#include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
 
@@ -43,6 +45,34 @@ unsigned region_of(unsigned corner, unsigned inside, unsigned inside_centres) {
 
 const tables::ResolvedList& list_of(const tables::ResolvedEntry& entry, Choice choice) {
   return choice == Choice::separate ? entry.separate : choice == Choice::low ? entry.low : entry.high;
+}
+
+/// A polygon coned from its barycentre, or its only triangle.
+CubeFilling cone_over(const CubePolygon& polygon) {
+  if (polygon.size() == 3) return {{{polygon[0], polygon[1], polygon[2]}}, {}};
+  CubeFilling cone;
+  cone.masks = {std::uint32_t{1} << kBarycentreBit};
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    cone.triangles.push_back({kEdges, polygon[i], polygon[(i + 1) % polygon.size()]});
+    cone.masks[0] |= std::uint32_t{1} << (8 + polygon[i]);
+  }
+  return cone;
+}
+
+/// The set of a facet's edges, by its polygons and by its triangles.
+unsigned edges_of(const std::vector<CubePolygon>& polygons) {
+  unsigned edges = 0;
+  for (const CubePolygon& polygon : polygons)
+    for (const std::uint8_t e : polygon) edges |= 1u << e;
+  return edges;
+}
+
+unsigned edges_of(const CubeFilling& filling) {
+  unsigned edges = 0;
+  for (const CubeTriangle& t : filling.triangles)
+    for (const std::uint8_t v : t)
+      if (v < kEdges) edges |= 1u << v;
+  return edges;
 }
 
 [[noreturn]] void fail(unsigned signature, unsigned high, const char* why) {
@@ -139,6 +169,72 @@ std::vector<CubeFilling> fillings_of(const ResolvedCube& table, const tables::Re
   return fillings;
 }
 
+ResolvedCube coned(const ResolvedCube& table) {
+  ResolvedCube result = table;
+  result.triangles.clear(), result.masks.clear();
+  std::size_t number = 0;
+  for_each_resolution(table, [&](unsigned signature, unsigned high, const tables::ResolvedEntry& entry) {
+    tables::ResolvedEntry& changed = result.entries[number++];
+    const std::vector<CubePolygon> polygons = cube_polygons(signature, high);
+    for (const Choice choice : kChoices) {
+      const auto facets = cube_facets(signature, high, choice, polygons);
+      std::vector<CubeFilling> fillings = fillings_of(table, list_of(entry, choice));
+      tables::ResolvedList list{static_cast<std::uint16_t>(result.triangles.size() / 3), 0, 0,
+                                static_cast<std::uint16_t>(result.masks.size())};
+      for (std::size_t f = 0; f < facets.size(); ++f) {
+        if (facets[f].size() == 1) fillings[f] = cone_over(polygons[facets[f][0]]);
+        for (const CubeTriangle& t : fillings[f].triangles)
+          for (const std::uint8_t v : t)
+            result.triangles.push_back(static_cast<std::uint8_t>(v < kEdges ? v : v + list.own_vertices));
+        list.triangle_count = static_cast<std::uint8_t>(list.triangle_count + fillings[f].triangles.size());
+        list.own_vertices = static_cast<std::uint8_t>(list.own_vertices + fillings[f].masks.size());
+        result.masks.insert(result.masks.end(), fillings[f].masks.begin(), fillings[f].masks.end());
+      }
+      (choice == Choice::separate ? changed.separate : choice == Choice::low ? changed.low : changed.high) = list;
+    }
+  });
+  return result;
+}
+
+void certify_lists(const ResolvedCube& table) {
+  const tile::FaceLattice lattice = tile::FaceLattice::cube(3);
+  tile::FacetBuilder builder(lattice);
+  tile::Certifier certifier;
+  std::vector<Choice> choices(lattice.faces().size(), Choice::separate);
+  std::map<Signature, std::uint8_t> edge_of;  // by its two corners
+  for (std::uint8_t e = 0; e < kEdges; ++e)
+    edge_of[Signature{1} << cube().edges[e][0] | Signature{1} << cube().edges[e][1]] = e;
+  for_each_resolution(table, [&](unsigned signature, unsigned high, const tables::ResolvedEntry& entry) {
+    for (std::size_t q = 0; q < 6; ++q)
+      choices[lattice.find(cube().faces[q].corners()).value()] = (high >> q & 1u) != 0 ? Choice::high : Choice::low;
+    for (const Choice choice : kChoices) {
+      choices.back() = choice;
+      tile::TileFacets built = builder.build(signature, {choices, tile::Alternative::low}, tile::Geometry::without);
+      const std::vector<CubeFilling> fillings = fillings_of(table, list_of(entry, choice));
+      if (built.facets.size() != fillings.size()) fail(signature, high, "not the facets of the general builder");
+      std::vector<tile::VertexId> edge_point(kEdges, tile::kNoVertex);
+      for (tile::VertexId v = 0; v < built.vertices.size(); ++v)
+        if (built.vertices[v].kind == tile::VertexKind::edge)
+          edge_point[edge_of.at(lattice.faces()[built.vertices[v].face].corners)] = v;
+      built.facets.clear();
+      for (const CubeFilling& filling : fillings) {
+        std::vector<tile::VertexId> id = edge_point;
+        for (std::size_t j = 0; j < filling.masks.size(); ++j) {
+          id.push_back(static_cast<tile::VertexId>(built.vertices.size()));
+          built.vertices.push_back({tile::VertexKind::side, lattice.tile(), id.back(), tile::kNoVertex, {}});
+        }
+        tile::Facet& facet = built.facets.emplace_back();
+        for (const CubeTriangle& t : filling.triangles) {
+          tile::Simplex& simplex = facet.simplices.emplace_back(tile::kNoSimplex);
+          for (std::size_t i = 0; i < 3; ++i) simplex[i] = id[t[i]];
+        }
+      }
+      if (const tile::Fault fault = certifier.certify(lattice, built); fault != tile::Fault::none)
+        fail(signature, high, std::string(tile::name_of(fault)).c_str());
+    }
+  });
+}
+
 std::vector<FillingRow> make_filling_rule(const ResolvedCube& table) {
   std::vector<FillingRow> rows;
   std::map<std::pair<std::uint64_t, Squares>, std::size_t> row_of;
@@ -153,6 +249,7 @@ std::vector<FillingRow> make_filling_rule(const ResolvedCube& table) {
       for (std::size_t f = 0; f < facets.size(); ++f) {
         std::vector<CubePolygon> around;
         for (const std::size_t p : facets[f]) around.push_back(polygons[p]);
+        if (edges_of(around) != edges_of(fillings[f])) fail(signature, high, "another order of facets");
         const std::uint64_t key = polygon_key(around);
         if (const auto known = row_of.find({key, kind}); known != row_of.end()) {
           if (rows[known->second].filling != fillings[f]) fail(signature, high, "two fillings of the same polygons");

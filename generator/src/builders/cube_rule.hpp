@@ -62,6 +62,14 @@ struct FillingRow {
 /// gives every list of the table, triangle by triangle. Errors: CertificateFailed.
 [[nodiscard]] std::vector<FillingRow> make_filling_rule(const ResolvedCube& table);
 
+/// The table in the barycentric triangulation: every facet of one polygon with more than three edges is coned from its
+/// barycentre, whose mask has kBarycentreBit and the polygon's edges. Joined polygons are filled as in the table.
+[[nodiscard]] ResolvedCube coned(const ResolvedCube& table);
+inline constexpr unsigned kBarycentreBit = 20;
+
+/// Certifies the contour of every list of the table in its cube, with all facets. Errors: CertificateFailed.
+void certify_lists(const ResolvedCube& table);
+
 /// The fillings of a list of the table, one per facet.
 [[nodiscard]] std::vector<CubeFilling> fillings_of(const ResolvedCube& table, const tables::ResolvedList& list);
 

@@ -30,6 +30,11 @@ BuilderTexts texts_of(const BuilderRequest& request) {
   }
 }
 
+/// Squares have the same segments in every triangulation.
+bool is_barycentric(const BuilderRequest& request) {
+  return request.dim > 2 && request.triangulation == Triangulation::barycentric;
+}
+
 std::uint64_t digest(const std::string& text) {
   Fnv hash;
   for (const char c : text) hash.add(c);
@@ -57,15 +62,18 @@ EmittedFile manifest(const BuilderRequest& request, const BuilderTexts& texts) {
 const char* leaf_name(Leaf leaf) noexcept { return leaf == Leaf::table ? "table" : "edges"; }
 
 std::string builder_name(const BuilderRequest& request) {
-  return fmt::format("builder{}{}", request.dim, request.leaf == Leaf::edges ? "_edges" : "");
+  return fmt::format("builder{}{}{}", request.dim, is_barycentric(request) ? "_barycentric" : "",
+                     request.leaf == Leaf::edges ? "_edges" : "");
 }
 
 std::string builder_namespace(const BuilderRequest& request) {
-  return request.leaf == Leaf::edges ? "builders::edges" : "builders";
+  return fmt::format("builders{}{}", request.leaf == Leaf::edges ? "::edges" : "",
+                     is_barycentric(request) ? "::barycentric" : "");
 }
 
 std::string builder_command(const BuilderRequest& request, Language language) {
-  return fmt::format("gen --dim {} --builder{}{}", request.dim, request.leaf == Leaf::edges ? " --leaf edges" : "",
+  return fmt::format("gen --dim {} --builder{}{}{}", request.dim, request.leaf == Leaf::edges ? " --leaf edges" : "",
+                     is_barycentric(request) ? " --triangulation barycentric" : "",
                      language == Language::cpp ? "" : fmt::format(" --language {}", language_name(language)));
 }
 
@@ -87,6 +95,9 @@ std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {
   const auto is_shader = [](Language language) { return language != Language::cpp; };
   if (request.leaf == Leaf::edges && std::any_of(request.languages.begin(), request.languages.end(), is_shader))
     throw Error(ErrorCode::InvalidArgument, "--leaf edges: shaders look up a table; expected --leaf table or cpp only");
+  if (request.dim > 3 && is_barycentric(request))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--dim {}: --builder emits the compact triangulation only", request.dim));
   BuilderTexts texts = texts_of(request);
   EmittedFile last = manifest(request, texts);
   texts.files.push_back(std::move(last));

@@ -16,6 +16,7 @@
 #include "builders/emit_builder.hpp"
 #include "builders/templates.hpp"
 #include "filling/resolved_cube.hpp"
+#include "filling/tile_contour.hpp"
 
 namespace tegl::gen {
 
@@ -137,6 +138,16 @@ std::string by_table(const ResolvedCube& table, const Lists& lists, const std::s
                                  {"mask_rows", lists.arrays.mask_rows()}});
 }
 
+/// Lines of comment on the masks that only the barycentric triangulation has.
+std::string mask_note(bool barycentric, const char* comment) {
+  if (!barycentric) return "";
+  return fmt::format(
+      "{0}With bit {1}, it is the barycentre of the polygon through its points: the mean of the midpoints of the\n"
+      "{0}sides, weighted by the length of the sides. It is the first vertex of its triangles (v, a, b), and the\n"
+      "{0}segments from a to b are the sides.\n",
+      comment, kBarycentreBit);
+}
+
 /// The words of shaders, as builder3.glsl.in describes them.
 struct Words {
   std::vector<std::uint32_t> words;
@@ -157,8 +168,8 @@ Words words_of(const ResolvedCube& table, const Lists& lists) {
     words.push_back(fits(separate, 10) | fits(low, 10) << 10 | fits(high, 10) << 20);
   result.lists = words.size();
   for (const List& list : lists.lists)
-    words.push_back(fits(list.first_triangle, 13) | fits(list.triangles, 5) << 13 | fits(list.own_vertices, 2) << 18 |
-                    fits(list.first_mask, 12) << 20);
+    words.push_back(fits(list.first_triangle, 14) | fits(list.triangles, 5) << 14 | fits(list.own_vertices, 2) << 19 |
+                    fits(list.first_mask, 11) << 21);
   result.triangles = words.size();
   for (std::size_t t = 0; t < lists.arrays.triangles.size(); ++t) {
     const CubeTriangle& triangle = lists.arrays.triangles[t];
@@ -170,13 +181,15 @@ Words words_of(const ResolvedCube& table, const Lists& lists) {
   return result;
 }
 
-std::string shader(const Words& words, const Lists& lists, const std::string& banner, Language language) {
+std::string shader(const Words& words, const Lists& lists, bool barycentric, const std::string& banner,
+                   Language language) {
   std::vector<std::string> items;
   for (const std::uint32_t word : words.words) items.push_back(fmt::format("{}u", word));
   std::string rows = in_lines(items);
   rows.erase(rows.size() - 2, 1);  // GLSL allows no comma at the end of a constructor's arguments
   return filled(fmt::format("builder3.{}", language_name(language)),
                 {{"banner", banner},
+                 {"mask_note", mask_note(barycentric, "// ")},
                  {"max_triangles", std::to_string(lists.max_triangles)},
                  {"max_vertices", std::to_string(3 * lists.max_triangles)},
                  {"max_own", std::to_string(lists.max_own_vertices)},
@@ -265,22 +278,27 @@ std::string by_edges(const std::vector<FillingRow>& rule, const std::string& ban
 }  // namespace
 
 BuilderTexts emit_cube_builder(const BuilderRequest& request) {
-  const ResolvedCube table = make_resolved_cube();
+  const bool barycentric = request.triangulation == Triangulation::barycentric;
+  const ResolvedCube table = barycentric ? coned(make_resolved_cube()) : make_resolved_cube();
+  certify_lists(table);
   const std::vector<FillingRow> rule = make_filling_rule(table);
   const Lists lists = lists_of(table);
   BuilderTexts texts;
-  texts.certificate = fmt::format("{} resolutions of 256 signatures, {} ways each", table.entries.size(), 3);
+  texts.certificate = fmt::format("{} triangulation, {} resolutions of 256 signatures, 3 ways each",
+                                  triangulation_name(request.triangulation), table.entries.size());
   const std::string name = builder_name(request), space = builder_namespace(request);
   for (const Language language : request.languages) {
     const auto banner = [&](const char* what) { return builder_banner(request, language, what, texts.certificate); };
     if (language != Language::cpp) {
-      texts.files.push_back({fmt::format("{}.{}", name, language_name(language)),
-                             shader(words_of(table, lists), lists, banner("The contour in one cube."), language)});
+      texts.files.push_back(
+          {fmt::format("{}.{}", name, language_name(language)),
+           shader(words_of(table, lists), lists, barycentric, banner("The contour in one cube."), language)});
       continue;
     }
     texts.files.push_back(
         {name + ".hpp", filled("builder3.hpp", {{"banner", banner("The contour in one cube.")},
                                                 {"namespace", space},
+                                                {"mask_note", mask_note(barycentric, "/// ")},
                                                 {"max_facets", std::to_string(lists.max_facets)},
                                                 {"max_triangles", std::to_string(lists.max_triangles)},
                                                 {"max_own", std::to_string(lists.max_own_vertices)}})});

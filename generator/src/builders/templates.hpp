@@ -16,10 +16,9 @@ namespace tegl::gen {
 /// The name of a placeholder, without its signs, and the text that replaces it.
 using Placeholder = std::pair<std::string_view, std::string>;
 
-/// The template with all placeholders replaced. A placeholder that stands alone on its line is replaced together with
-/// its indentation and the line's end, so its text consists of complete lines, or is empty. Lines of text that stand
-/// within the placeholder's indentation are indented like it. Throws Error{Internal} for a placeholder without text and
-/// for a text without placeholder.
+/// The template with all placeholders replaced. The text of a placeholder that is alone on its line consists of
+/// complete lines, or is empty; each line gets the placeholder's indentation, and the placeholder's line disappears.
+/// Throws Error{Internal} for a placeholder without text and for a text without placeholder.
 [[nodiscard]] std::string filled(std::string_view name, std::initializer_list<Placeholder> texts);
 
 }  // namespace tegl::gen

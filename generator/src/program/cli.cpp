@@ -140,6 +140,8 @@ constexpr unsigned kCertify = bit(Command::Certify);
 constexpr unsigned kOut = bit(Command::Out);
 constexpr unsigned kCases = bit(Command::Cases);
 constexpr unsigned kBuilder = bit(Command::Builder);
+constexpr unsigned kSymmetries = bit(Command::Symmetries);
+constexpr unsigned kSummary = bit(Command::Summary);
 
 struct OptionSpec {
   std::string_view name;
@@ -153,18 +155,20 @@ constexpr std::array kOptions{
     OptionSpec{"--version", false, Command::Version, 0, nullptr},
     OptionSpec{"--count", false, Command::Count, 0, nullptr},
     OptionSpec{"--transversal", false, Command::Transversal, 0, nullptr},
+    OptionSpec{"--symmetries", false, Command::Symmetries, 0, nullptr},
     OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
     OptionSpec{"--out", true, Command::Out, kBuilder, [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--cases", true, Command::Cases, 0, [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--builder", false, Command::Builder, 0, nullptr},
     OptionSpec{"--leaf", true, std::nullopt, kBuilder, set_leaf},
-    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut | kCases | kBuilder,
+    OptionSpec{"--dim", true, std::nullopt,
+               kCount | kTransversal | kSymmetries | kClasses | kCertify | kOut | kCases | kBuilder | kSummary,
                set_dim},
-    OptionSpec{"--tile", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_tile},
-    OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kCertify, set_group},
+    OptionSpec{"--tile", true, std::nullopt, kCount | kClasses | kCertify | kOut | kSummary, set_tile},
+    OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kSymmetries | kCertify, set_group},
     OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
-    OptionSpec{"--inversion", false, std::nullopt, kCount | kCertify,
+    OptionSpec{"--inversion", false, std::nullopt, kCount | kSymmetries | kCertify,
                [](Options& o, std::string_view) { o.inversion = true; }},
     OptionSpec{"--table-by-class", false, std::nullopt, kCertify,
                [](Options& o, std::string_view) { o.table_by_class = true; }},
@@ -173,11 +177,11 @@ constexpr std::array kOptions{
     OptionSpec{"--seed", true, std::nullopt, kCertify, set_seed},
     OptionSpec{"--threads", true, std::nullopt, kCertify, set_threads},
     OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
-    OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kClasses | kCertify,
+    OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kSymmetries | kClasses | kCertify | kSummary,
                [](Options& o, std::string_view) { o.json = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
     OptionSpec{"--language", true, std::nullopt, kOut | kBuilder, set_languages},
-    OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
+    OptionSpec{"--triangulation", true, std::nullopt, kOut | kBuilder, set_triangulation},
 };
 
 /// Names of the options for which `wanted` holds, for messages.
@@ -232,8 +236,9 @@ bool is_folder_of_builder(const Given& option, const std::vector<Given>& given) 
          std::any_of(given.begin(), given.end(), [](const Given& g) { return g.spec->command == Command::Builder; });
 }
 
-/// The only option that is a command; refuses none and several.
-const OptionSpec& command_of(const std::vector<Given>& given) {
+/// The only option that is a command, or null if there is none but a dimension, which selects the summary. Refuses
+/// several, and none without a dimension.
+const OptionSpec* command_of(const std::vector<Given>& given) {
   const OptionSpec* command = nullptr;
   for (const Given& option : given) {
     if (!option.spec->command || is_folder_of_builder(option, given)) {
@@ -244,11 +249,13 @@ const OptionSpec& command_of(const std::vector<Given>& given) {
     }
     command = option.spec;
   }
-  if (command == nullptr) {
-    refuse(fmt::format("no command was given: expected one of --help, {}",
+  const bool has_dim =
+      std::any_of(given.begin(), given.end(), [](const Given& option) { return option.spec->name == "--dim"; });
+  if (command == nullptr && !has_dim) {
+    refuse(fmt::format("no command was given: expected --dim N for a summary, or one of --help, {}",
                        names_of([](const OptionSpec& spec) { return spec.command.has_value(); })));
   }
-  return *command;
+  return command;
 }
 
 /// Highest dimension in which single tiles can be built.
@@ -256,9 +263,27 @@ constexpr int kMaxSampledDim = 6;
 /// Highest dimension that has a builder.
 constexpr int kMaxBuilderDim = 5;
 
+/// Checks --dim without a command. The message names the commands that go further.
+void check_summary_dim(const Options& options) {
+  if (options.dim >= 2 && options.dim <= kMaxEnumeratedDim) {
+    return;
+  }
+  refuse(fmt::format("--dim {} without a command: expected 2 to {}, where all tables are certified{}", options.dim,
+                     kMaxEnumeratedDim,
+                     options.tile != TileKind::cube
+                         ? ""
+                         : fmt::format(", or one of --count (1 to {}), --transversal (2 to {}), --certify --sample "
+                                       "COUNT (2 to {})",
+                                       kMaxDim, kMaxSignatureDim, kMaxSampledDim)));
+}
+
 /// Checks --dim against the range of the command.
 void check_dim(const Options& options, std::string_view command) {
   if (options.command == Command::Version) {
+    return;
+  }
+  if (options.command == Command::Summary) {
+    check_summary_dim(options);
     return;
   }
   const bool count = options.command == Command::Count;
@@ -339,8 +364,9 @@ Options parse(std::span<const std::string_view> arguments) {
   }
   // the command
   const std::vector<Given> given = split(arguments);
-  const OptionSpec& command = command_of(given);
-  options.command = *command.command;
+  const OptionSpec* const command = command_of(given);
+  options.command = command == nullptr ? Command::Summary : *command->command;
+  const std::string_view name = command == nullptr ? std::string_view() : command->name;
   // its options, each at most once
   std::vector<const OptionSpec*> seen;
   for (const Given& option : given) {
@@ -351,7 +377,11 @@ Options parse(std::span<const std::string_view> arguments) {
     if (!option.spec->command && (option.spec->known_to & bit(options.command)) == 0) {
       const unsigned command_bit = bit(options.command);
       const std::string known = names_of([=](const OptionSpec& spec) { return (spec.known_to & command_bit) != 0; });
-      refuse(fmt::format("{} does not go with {}: expected {}", option.spec->name, command.name,
+      if (command == nullptr) {
+        refuse(fmt::format("{} without a command: expected only {}, or one of {}", option.spec->name, known,
+                           names_of([](const OptionSpec& spec) { return spec.command.has_value(); })));
+      }
+      refuse(fmt::format("{} does not go with {}: expected {}", option.spec->name, name,
                          known.empty() ? "nothing else" : "only " + known));
     }
     if (option.spec->apply != nullptr) {
@@ -361,11 +391,15 @@ Options parse(std::span<const std::string_view> arguments) {
   // values that depend on each other
   const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
   if (!has_dim && options.command != Command::Version) {
-    refuse(fmt::format("{} without --dim: expected --dim N", command.name));
+    refuse(fmt::format("{} without --dim: expected --dim N", name));
   }
-  check_dim(options, command.name);
+  check_dim(options, name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
   check_certify(options, seen);
+  const bool has_triangulation =
+      std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--triangulation"; });
+  if (options.command == Command::Builder && has_triangulation && options.triangulation == TriangulationChoice::All)
+    refuse("--triangulation all does not go with --builder: expected barycentric or compact");
   check_tile(options);
   return options;
 }
@@ -378,12 +412,19 @@ std::string help_text() {
   return R"(gen: counts, proves and writes the tables for contours of n-dimensional images.
 
 usage: gen --dim N COMMAND [OPTIONS]
+       gen --dim N [--tile T] [--json]
+
+Without a command, gen makes and certifies all tables of dimension N (2 ... 4), writes nothing, and prints a summary:
+classes by group, certified signatures and pairs of neighbours, non-spherical classes, sizes of the tables.
 
 commands (one of)
   --count          orbits of the 2^(2^N) signatures under the cube's symmetries, by Burnside's lemma (N = 1 ... 8)
                    and, for N up to 4, by enumeration too: the two must agree
   --transversal    the smallest signature of every class and its orbit's length (N = 2 ... 5), checked by Burnside's
                    lemma and by the sum of the lengths; prints the number of classes for each length
+  --symmetries     the elements of a group (N = 2 ... 4; in 4D by kind) as words in quarter turns and mirrors, with the
+                   signatures that each fixes, and every class with its isotropy group: the elements that fix its
+                   smallest signature
   --classes        every class of signatures under all 2^N N! symmetries (N = 2 ... 4): its smallest signature,
                    orbit length, stabiliser order, facets, components, Euler characteristics, ambiguous faces
   --certify        proves every signature of both alternatives (N = 2 ... 4): closed, manifold, oriented, matching
@@ -396,7 +437,7 @@ commands (one of)
   --help, -h       this text
   --version        version of the program and of the tables' layout
 
-options of --count, --classes, --certify, --out
+options of --count, --classes, --certify, --out, and without a command
   --tile cube|simplex|octahedron    shape of the tile (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
                                     4, the octahedron has N = 3; their tables are written as C++ and JSON
 
@@ -410,6 +451,11 @@ options of --transversal
   --group full|rotations            all symmetries (default) or those of determinant +1
   --list                            prints the signatures instead, ascending, each with its orbit's length
   --json                            the same as JSON
+
+options of --symmetries
+  --group full|rotations            all symmetries (default) or those of determinant +1
+  --inversion                       also the exchange of high and low
+  --json                            all elements and classes as JSON
 
 options of --classes
   --alternative low|high            corners that are connected in an ambiguous face (default low)
@@ -437,6 +483,8 @@ options of --out
 
 options of --builder
   --out DIR                         writes the source and a manifest with its digest into DIR
+  --triangulation barycentric|compact
+                                    N = 3: polygons coned from their barycentre, or cut as in the compact tables (default)
   --leaf edges|table                contours of the faces by recursion down to the edges, or by table (default)
   --language cpp|glsl|wgsl          language of the source (default cpp); several with commas. N = 2, 3; N = 4, 5: cpp
 
@@ -444,10 +492,15 @@ Facets are cycles of edges, each written as a ternary number, axis N-1 first, wi
 1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, on the
 side of the right-hand normal in 3D.
 
+Words name quarter turns rho, mirrors mu and the exchange of high and low iota. Their first letter is applied first:
+rho_x^2 rho_y turns twice about x, then once about y.
+
 examples
+  gen --dim 3                                        certifies all tables of cubes and prints a summary
   gen --dim 3 --count                                the 22 classes of marching cubes
   gen --dim 3 --count --group rotations --inversion  its 15 classes
   gen --dim 8 --count --json
+  gen --dim 2 --symmetries --group rotations         the four rotations of the square
   gen --dim 3 --classes
   gen --dim 3 --tile octahedron --classes
   gen --dim 4 --certify

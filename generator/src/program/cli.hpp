@@ -13,8 +13,8 @@ namespace tegl::gen {
 
 /// Parses the arguments (without the program's name). `--name value` and `--name=value` are equivalent, the order does
 /// not matter, and `--help` or `-h` anywhere overrides all other arguments. Errors: InvalidArgument, with actual and
-/// expected text, for an unknown or repeated option, a missing or invalid value, no command or two, and an option that
-/// the command does not accept.
+/// expected text, for an unknown or repeated option, a missing or invalid value, no command without --dim or two
+/// commands, and an option that the command does not accept.
 [[nodiscard]] Options parse(std::span<const std::string_view> arguments);
 
 /// The text of `--help`: usage, options, examples, exit codes.

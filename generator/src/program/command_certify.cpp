@@ -23,18 +23,6 @@ namespace tegl::gen {
 
 namespace {
 
-std::string figures_json(const CertifiedFigures& f) {
-  return fmt::format(
-      "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
-      "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
-      "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
-      "\"mean_simplices\": {:.4f}, \"pairs\": {}, \"unmatched_pairs\": {}}}",
-      alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
-      f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
-      f.highest_genus, f.simplices, f.max_simplices,
-      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
-}
-
 /// `--certify --table-by-class`: prints the figures of all pairs, then throws if any pair leaves a hole.
 int certify_by_class(const Options& options) {
   const CubeLattice lattice(options.dim);
@@ -173,6 +161,18 @@ void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
   fmt::print("  simplices    {}: {:.2f} per signature, at most {}\n", f.simplices,
              static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.max_simplices);
   if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);
+}
+
+std::string figures_json(const CertifiedFigures& f) {
+  return fmt::format(
+      "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
+      "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
+      "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
+      "\"mean_simplices\": {:.4f}, \"pairs\": {}, \"unmatched_pairs\": {}}}",
+      alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
+      f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
+      f.highest_genus, f.simplices, f.max_simplices,
+      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
 }
 
 int run_certify(const Options& options) {

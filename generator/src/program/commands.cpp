@@ -177,7 +177,10 @@ int run_cases(const Options& options) {
 }
 
 int run_builder(const Options& options) {
-  const std::vector<EmittedFile> emitted = emit_builder({options.dim, options.leaf, options.languages});
+  const std::vector<EmittedFile> emitted =
+      emit_builder({options.dim, options.leaf, options.languages,
+                    options.triangulation == TriangulationChoice::Barycentric ? Triangulation::barycentric
+                                                                              : Triangulation::compact});
   if (options.out.empty()) {
     for (std::size_t i = 0; i + 1 < emitted.size(); ++i) fmt::print("{}{}", i == 0 ? "" : "\n", emitted[i].text);
     return 0;

@@ -9,6 +9,11 @@
 
 namespace tegl::gen {
 
+/// No command: makes and certifies all tables as `--out` and `--certify` do, writes nothing, and prints the numbers of
+/// classes, the certificates' figures and the tables' sizes. Uses `tile` and `json`. Errors: CountMismatch,
+/// CertificateFailed.
+int run_summary(const Options& options);
+
 /// `--count`: number of orbits of signatures by Burnside's lemma and, for dim <= 4, by enumeration. Errors:
 /// CountMismatch if the two differ.
 int run_count(const Options& options);
@@ -17,6 +22,10 @@ int run_count(const Options& options);
 /// `json`. Errors: CountMismatch if the number of classes differs from Burnside's, or the orbit lengths do not sum to
 /// the number of signatures.
 int run_transversal(const Options& options);
+
+/// `--symmetries`: the elements of a group as words, with the signatures that they fix, and the isotropy group of every
+/// class. Uses `group`, `inversion` and `json`. Errors: CountMismatch if the fixed points contradict the classes.
+int run_symmetries(const Options& options);
 
 /// `--classes`: every class with its signature, orbit length, stabiliser, facets, components, Euler characteristics and
 /// ambiguous faces. Uses `alternative` and `json`.

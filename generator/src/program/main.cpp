@@ -28,6 +28,10 @@ int dispatch(const Options& options) {
     case Command::Version:
       fmt::print("{}", tegl::gen::version_text());
       return 0;
+    case Command::Summary:
+      return tegl::gen::run_summary(options);
+    case Command::Symmetries:
+      return tegl::gen::run_symmetries(options);
     case Command::Count:
       return tegl::gen::run_count(options);
     case Command::Transversal:

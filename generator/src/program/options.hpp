@@ -16,12 +16,14 @@
 
 namespace tegl::gen {
 
-/// The command; exactly one per command line.
+/// The command; at most one per command line.
 enum class Command {
   Help,         ///< --help
+  Summary,      ///< no command, dim 2 ... 4
   Version,      ///< --version
   Count,        ///< --count, dim 1 ... 8
   Transversal,  ///< --transversal, dim 2 ... 5
+  Symmetries,   ///< --symmetries, dim 2 ... 4
   Classes,      ///< --classes, dim 2 ... 4
   Certify,      ///< --certify, dim 2 ... 4, with --sample 2 ... 6
   Out,          ///< --out DIR, dim 2 ... 4
@@ -43,9 +45,9 @@ enum class TriangulationChoice { Barycentric, Compact, All };
 struct Options {
   Command command = Command::Help;                               ///< the command
   int dim = 0;                                                   ///< --dim; 0 for --help and --version
-  TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal
-  GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class
-  bool inversion = false;                                        ///< --inversion; --count, table_by_class
+  TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal, --symmetries
+  GroupKind group = GroupKind::Full;                             ///< --group; with four commands
+  bool inversion = false;                                        ///< --inversion; --count, --symmetries, table_by_class
   bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3
   bool all_resolutions = false;                                  ///< --all; --certify only
   std::uint64_t sample = 0;                                      ///< --sample; --certify only, not with --all; 0: none
@@ -56,7 +58,7 @@ struct Options {
   Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
   std::string out;                                               ///< DIR of --out and --cases; of --builder, or empty
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
-  TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
+  TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out; --builder: All is compact
   std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out, --builder
   Leaf leaf = Leaf::table;                                       ///< --leaf; --builder only
 };

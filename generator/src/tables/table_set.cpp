@@ -87,7 +87,8 @@ TableSet make_table_set(const TableRequest& request) {
   for (const Triangulation t : request.triangulations) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
-    const auto contours = certified_low(low, high, classes.classes, false, set.figures);
+    const auto contours =
+        certified_low(low, high, classes.classes, request.pairs && request.tile == TileKind::cube, set.figures);
     set.tiles.push_back(make_tile_tables(
         low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t), classes));
     if (request.tile != TileKind::cube) continue;  // regions close contours of images, whose tiles are cubes

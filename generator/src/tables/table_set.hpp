@@ -52,6 +52,7 @@ struct TableRequest {
   std::vector<Triangulation> triangulations{Triangulation::barycentric, Triangulation::compact};  ///< all to make
   std::function<Layout(Triangulation)> layout;  ///< empty: preferred_layout
   std::string command;                          ///< for the banner
+  bool pairs = false;                           ///< also certify every pair of neighbouring cubes
 };
 
 /// Builds and certifies the tables. Throws Error{CertificateFailed} or Error{Internal}; writes no files.

@@ -12,9 +12,9 @@ void main() {
   uint first = 8u * gl_GlobalInvocationID.x;
   float square[4];
   for (uint v = 0u; v < 4u; ++v) square[v] = samples[first + v];
+  tegl_builder2_contour segments = tegl_builder2_build_values(square, 0.5, tegl_builder2_MEAN);
   float cube[8];
   for (uint v = 0u; v < 8u; ++v) cube[v] = samples[first + v];
-  tegl_builder2_contour segments = tegl_builder2_build_values(square, 0.5, tegl_builder2_MEAN);
   tegl_builder3_contour triangles = tegl_builder3_build_values(cube, 0.5, tegl_builder3_DECIDER);
   tegl_builder3_contour tunnel = tegl_builder3_build(129u, 0u, tegl_builder3_CENTRE_HIGH);
   result[first] = segments.segments + segments.vertices[0];

@@ -26,6 +26,7 @@
 #include "wrong_filling.hpp"
 #include "wrong_kind.hpp"
 #include "wrong_mask.hpp"
+#include "wrong_own_vertices.hpp"
 #include "wrong_plane.hpp"
 #include "wrong_resolution.hpp"
 #include "wrong_run.hpp"
@@ -70,6 +71,7 @@ TEST(FaultyBuilder, OfTheCubeIsFound) {
   EXPECT_NE(fault_of_cubes(TEGL_CUBE(builders::edges::wrong_kind)), "");
   EXPECT_NE(fault_of_cubes(TEGL_CUBE(builders::wrong_triangle)), "");
   EXPECT_NE(fault_of_cubes(TEGL_CUBE(builders::wrong_resolution)), "");
+  EXPECT_NE(fault_of_barycentric_cubes(TEGL_CUBE(builders::edges::barycentric::wrong_own_vertices)), "");
 }
 
 /// A builder with keys of its own type.

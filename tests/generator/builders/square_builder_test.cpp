@@ -14,37 +14,38 @@
 namespace tegl::test {
 namespace {
 
-builders::SquareContour by_table(unsigned signature, bool centre_high) {
+builders::SquareContour square_by_table(unsigned signature, bool centre_high) {
   builders::SquareContour contour;
   builders::build_square(signature, centre_high, contour);
   return contour;
 }
 
-builders::edges::SquareContour by_edges(unsigned signature, bool centre_high) {
+builders::edges::SquareContour square_by_edges(unsigned signature, bool centre_high) {
   builders::edges::SquareContour contour;
   builders::edges::build_square(signature, centre_high, contour);
   return contour;
 }
 
 TEST(SquareBuilder, ByTableIsTheContourOfTheGeneralBuilderAndOfTheDefinition) {
-  EXPECT_EQ(fault_of_squares(by_table), "");
+  EXPECT_EQ(fault_of_squares(square_by_table), "");
 }
 
 TEST(SquareBuilder, ByEdgesIsTheContourOfTheGeneralBuilderAndOfTheDefinition) {
-  EXPECT_EQ(fault_of_squares(by_edges), "");
+  EXPECT_EQ(fault_of_squares(square_by_edges), "");
 }
 
 TEST(SquareBuilder, TableAndEdgesGiveTheSameBytes) {
   for (unsigned signature = 0; signature < 16; ++signature)
     for (const bool high : {false, true})
-      EXPECT_EQ(facets_of_square(by_table(signature, high)), facets_of_square(by_edges(signature, high))) << signature;
+      EXPECT_EQ(facets_of_square(square_by_table(signature, high)), facets_of_square(square_by_edges(signature, high)))
+          << signature;
 }
 
 TEST(SquareBuilder, WithLowCentreItHasTheSegmentsOfTheTable) {
   const tables::TileTable& table = tables::kTile2Compact;
   for (unsigned signature = 0; signature < 16; ++signature) {
     const tables::List& list = table.lists[table.list_of[signature]];
-    const builders::SquareContour contour = by_table(signature, false);
+    const builders::SquareContour contour = square_by_table(signature, false);
     ASSERT_EQ(contour.count, list.simplex_count);
     EXPECT_TRUE(std::equal(contour.segments[0], contour.segments[0] + 2 * contour.count,
                            table.simplices + 2 * std::size_t{list.first_simplex}))
@@ -54,8 +55,8 @@ TEST(SquareBuilder, WithLowCentreItHasTheSegmentsOfTheTable) {
 
 TEST(SquareBuilder, TwoSignaturesAreAmbiguous) {
   for (unsigned signature = 0; signature < 16; ++signature)
-    EXPECT_EQ(builders::is_ambiguous_square(signature),
-              facets_of_square(by_table(signature, false)) != facets_of_square(by_table(signature, true)));
+    EXPECT_EQ(builders::is_ambiguous_square(signature), facets_of_square(square_by_table(signature, false)) !=
+                                                            facets_of_square(square_by_table(signature, true)));
 }
 
 }  // namespace

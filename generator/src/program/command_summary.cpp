@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// `gen --dim N` without a command: makes and certifies all tables of a dimension in memory and prints a summary.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "program/commands.hpp"
+#include "program/print_figures.hpp"
+#include "symmetry/tile_symmetry.hpp"
+#include "symmetry/transversal.hpp"
+#include "tables/emit_text.hpp"
+#include "tables/table_set.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+/// A group of the tile's symmetries and its classes of signatures.
+struct GroupCount {
+  GroupKind kind;
+  bool inversion;
+  std::size_t order = 0;
+  std::size_t classes = 0;
+};
+
+/// Counts the classes of all four groups by enumeration and by Burnside's lemma. Throws Error{CountMismatch} if the two
+/// differ.
+std::vector<GroupCount> count_classes(const Tile& tile) {
+  std::vector<GroupCount> counts{
+      {GroupKind::Full, false}, {GroupKind::Rotations, false}, {GroupKind::Full, true}, {GroupKind::Rotations, true}};
+  for (GroupCount& count : counts) {
+    Transversal classes;
+    if (tile.kind == TileKind::cube) {
+      const std::vector<Element> elements = group(tile.dim, count.kind, count.inversion);
+      classes = transversal(tile.dim, elements);
+      require_burnside_count(classes, tile.dim, count.kind, count.inversion);
+      count.order = elements.size();
+    } else {
+      const std::vector<TileSymmetry> elements = symmetries(tile, count.kind, count.inversion);
+      classes = transversal(tile, elements);
+      require_burnside_count(classes, elements);
+      count.order = elements.size();
+    }
+    count.classes = classes.representatives.size();
+  }
+  return counts;
+}
+
+/// The size of a table's data in memory.
+struct TableSize {
+  std::string name;
+  const char* layout;
+  std::size_t lists;
+  std::size_t simplices;
+  std::size_t bytes;
+};
+
+template <typename... Entries>
+std::size_t bytes_of(const std::vector<Entries>&... arrays) {
+  return (... + (arrays.size() * sizeof(Entries)));
+}
+
+std::vector<TableSize> sizes(const TableSet& set) {
+  std::vector<TableSize> result;
+  for (const TileTables& t : set.tiles)
+    result.push_back({tile_name(t.tile, t.dim) + "_" + triangulation_name(t.triangulation), layout_name(t.layout),
+                      t.lists.size(), t.simplices.size() / static_cast<std::size_t>(t.dim),
+                      bytes_of(t.list_of, t.element_of, t.slot_swaps, t.permutations, t.reverses, t.lists, t.simplices,
+                               t.side_masks)});
+  for (const RegionTables& t : set.regions)
+    result.push_back(
+        {fmt::format("region{}_{}_{}", t.dim, triangulation_name(t.triangulation), alternative_name(t.alternative)),
+         layout_name(Layout::flat), t.lists.size(), t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1),
+         bytes_of(t.lists, t.simplices, t.masks)});
+  if (set.resolved)
+    result.push_back({"tile3_resolved", layout_name(Layout::flat), 3 * set.resolved->entries.size(),
+                      set.resolved->triangles.size() / 3,
+                      bytes_of(set.resolved->first_entry, set.resolved->ambiguous, set.resolved->entries,
+                               set.resolved->triangles, set.resolved->masks)});
+  return result;
+}
+
+void print_classes(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts) {
+  fmt::print("{}-{}: {} corners, {} signatures\n\nclasses   order  group\n", options.dim,
+             options.tile == TileKind::cube ? "tile" : tile_kind_name(options.tile), tile.corner_count(),
+             std::uint64_t{1} << tile.corner_count());
+  for (const GroupCount& count : counts)
+    fmt::print("{:>7} {:>7}  {}{}\n", count.classes, count.order,
+               count.kind == GroupKind::Full ? "all symmetries" : "rotations",
+               count.inversion ? ", with the exchange of high and low" : "");
+  fmt::print("The classes are counted by enumeration and by Burnside's lemma.\n");
+  std::fflush(stdout);  // certifying takes half a minute in 4D
+}
+
+void print_figures_of(const TableSet& set) {
+  fmt::print("\n{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>9}\n", "alternative", "triangulation", "certified",
+             "facets", "non-spherical", "simplices", "at most", "pairs");
+  bool non_spherical = false, pairs = false;
+  for (const CertifiedFigures& f : set.figures) {
+    fmt::print("{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>9}\n", alternative_name(f.alternative),
+               triangulation_name(f.triangulation), f.signatures, f.facets, f.others, f.simplices, f.max_simplices,
+               f.pairs.pairs == 0 ? "-" : std::to_string(f.pairs.pairs));
+    non_spherical |= f.others != 0;
+    pairs |= f.pairs.pairs != 0;
+  }
+  fmt::print("Every signature is certified{}.\n", pairs ? ", and every pair of neighbours matches" : "");
+  if (!non_spherical) return;
+  fmt::print("\n");
+  for (const CertifiedFigures& f : set.figures)  // the same in both triangulations
+    if (f.triangulation == set.figures.front().triangulation)
+      fmt::print("{} classes with a non-spherical facet, {} alternative (genus up to {}):\n  {}\n",
+                 f.classes_with_others.size(), alternative_name(f.alternative), f.highest_genus,
+                 fmt::join(f.classes_with_others, " "));
+}
+
+void print_sizes(const TableSet& set) {
+  std::size_t bytes = 0;
+  fmt::print("\n{:<28} {:>6} {:>6} {:>9} {:>9}\n", "table", "layout", "lists", "simplices", "bytes");
+  for (const TableSize& size : sizes(set)) {
+    fmt::print("{:<28} {:>6} {:>6} {:>9} {:>9}\n", size.name, size.layout, size.lists, size.simplices, size.bytes);
+    bytes += size.bytes;
+  }
+  fmt::print("{:<28} {:>33}\n", "all", bytes);
+}
+
+void print_json(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts, const TableSet& set,
+                double seconds) {
+  std::vector<std::string> groups, figures, tables;
+  for (const GroupCount& count : counts)
+    groups.push_back(fmt::format("{{\"group\": \"{}\", \"inversion\": {}, \"order\": {}, \"classes\": {}}}",
+                                 count.kind == GroupKind::Full ? "full" : "rotations", count.inversion, count.order,
+                                 count.classes));
+  for (const CertifiedFigures& f : set.figures) figures.push_back(figures_json(f));
+  for (const TableSize& size : sizes(set))
+    tables.push_back(
+        fmt::format("{{\"name\": \"{}\", \"layout\": \"{}\", \"lists\": {}, \"simplices\": {}, \"bytes\": {}}}",
+                    size.name, size.layout, size.lists, size.simplices, size.bytes));
+  fmt::print(
+      "{{\"tile\": \"{}\", \"dim\": {}, \"corners\": {}, \"signatures\": {}, \"groups\": [\n  {}\n], \"certified\": [\n"
+      "  {}\n], \"tables\": [\n  {}\n], \"seconds\": {:.2f}}}\n",
+      tile_kind_name(options.tile), options.dim, tile.corner_count(), std::uint64_t{1} << tile.corner_count(),
+      fmt::join(groups, ",\n  "), fmt::join(figures, ",\n  "), fmt::join(tables, ",\n  "), seconds);
+}
+
+}  // namespace
+
+int run_summary(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Lattice lattice(options.tile, options.dim);
+  const Tile& tile = lattice.tile(options.dim);
+  const std::vector<GroupCount> counts = count_classes(tile);
+  if (!options.json) print_classes(options, tile, counts);
+  TableRequest request;
+  request.tile = options.tile;
+  request.dim = options.dim;
+  request.pairs = true;
+  const TableSet set = make_table_set(request);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (options.json) {
+    print_json(options, tile, counts, set, seconds);
+    return 0;
+  }
+  print_figures_of(set);
+  print_sizes(set);
+  fmt::print("\nMade and certified in {:.2f} s.\n", seconds);
+  return 0;
+}
+
+}  // namespace tegl::gen
