@@ -248,6 +248,19 @@ ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads
   return figures;
 }
 
+void for_each_resolution(TileKind kind, int n, const TakeResolution& take) {
+  const Lattice tiles(kind, n);
+  const FaceLattice lattice = face_lattice(kind, n);
+  const TileClasses of_tile = tile_classes(tiles.tile(n));
+  for (const std::uint32_t signature : of_tile.classes.representatives) {
+    const std::vector<std::uint32_t> polygons = ambiguous_polygons(lattice, signature);
+    const ResolutionOrbits orbits(lattice, signature, polygons, of_tile.symmetries);
+    for (std::uint64_t r = 0; r < std::uint64_t{1} << polygons.size(); ++r)
+      if (orbits.length_if_smallest(static_cast<std::uint32_t>(r)) != 0)
+        take(signature, polygons, static_cast<std::uint32_t>(r));
+  }
+}
+
 ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed, unsigned threads,
                                  const Progress& progress) {
   const FaceLattice lattice = face_lattice(kind, n);

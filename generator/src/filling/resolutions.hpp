@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <vector>
 
 #include "base/lattice.hpp"
 #include "tegl/tile/facets.hpp"
@@ -47,6 +48,14 @@ using Progress = std::function<void(double)>;
 /// CertificateFailed, with signature, resolution and fault.
 [[nodiscard]] ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed,
                                                unsigned threads, const Progress& progress = {});
+
+/// Receives a signature, its ambiguous polygons, and the set of those with a high centre.
+using TakeResolution =
+    std::function<void(Signature signature, const std::vector<std::uint32_t>& polygons, std::uint32_t high)>;
+
+/// Calls `take` for one pair (signature, resolution of its ambiguous polygons) of each orbit of such pairs under all
+/// symmetries of a tile: the pairs that certify_all_resolutions builds. n = 2 to 4.
+void for_each_resolution(TileKind kind, int n, const TakeResolution& take);
 
 /// The face lattice of a tile of a kind, in the generator's numbering.
 [[nodiscard]] tile::FaceLattice face_lattice(TileKind kind, int n);

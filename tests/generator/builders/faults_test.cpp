@@ -7,17 +7,31 @@
 
 #include "builder_checks.hpp"
 #include "missing_axis.hpp"
+#include "missing_cube.hpp"
+#include "missing_neighbours.hpp"
+#include "repeated_cube.hpp"
+#include "swapped_corners.hpp"
+#include "swapped_cubes.hpp"
+#include "swapped_ends.hpp"
+#include "swapped_frame.hpp"
 #include "swapped_map.hpp"
+#include "swapped_pair.hpp"
+#include "swapped_part.hpp"
 #include "swapped_ring.hpp"
+#include "swapped_squares.hpp"
+#include "tesseract_checks.hpp"
 #include "wrong_corners.hpp"
+#include "wrong_edges.hpp"
 #include "wrong_end.hpp"
 #include "wrong_filling.hpp"
 #include "wrong_kind.hpp"
 #include "wrong_mask.hpp"
 #include "wrong_own_vertices.hpp"
+#include "wrong_plane.hpp"
 #include "wrong_resolution.hpp"
 #include "wrong_run.hpp"
 #include "wrong_segment.hpp"
+#include "wrong_side.hpp"
 #include "wrong_sign.hpp"
 #include "wrong_square.hpp"
 #include "wrong_triangle.hpp"
@@ -58,6 +72,67 @@ TEST(FaultyBuilder, OfTheCubeIsFound) {
   EXPECT_NE(fault_of_cubes(TEGL_CUBE(builders::wrong_triangle)), "");
   EXPECT_NE(fault_of_cubes(TEGL_CUBE(builders::wrong_resolution)), "");
   EXPECT_NE(fault_of_barycentric_cubes(TEGL_CUBE(builders::edges::barycentric::wrong_own_vertices)), "");
+}
+
+/// A builder with keys of its own type.
+template <class Tesseract, class Key>
+class Copied {
+ public:
+  auto size(const ResolvedKey& key) { return builder_.size(converted(key)); }
+  builders::ResolvedView find(const ResolvedKey& key) { return converted(builder_.find(converted(key))); }
+  builders::ResolvedView find(const ResolvedKey& key, const builders::ResolvedCubes::Lists& lists, std::uint8_t plan) {
+    return converted(builder_.find(converted(key), lists, plan));
+  }
+  static builders::ResolvedCubes::Lists lists_of(const ResolvedKey& key) { return Tesseract::lists_of(converted(key)); }
+
+ private:
+  static Key converted(const ResolvedKey& key) {
+    return {key.squares, key.signature, key.low_cubes, key.high_cubes, key.tile};
+  }
+  template <class View>
+  static builders::ResolvedView converted(const View& view) {
+    return {view.simplices, view.simplex_count, view.own_vertices, view.masks};
+  }
+
+  Tesseract builder_;
+};
+
+/// Whether a fault is found in the first 3 000 random tiles.
+template <class Builder>
+bool is_found(Builder builder) {
+  return !fault_of_tesseracts(builder, Triangulation::compact, 3000).empty();
+}
+#define TEGL_COPY(space) Copied<builders::space::ResolvedTesseract, builders::space::ResolvedKey>()
+
+TEST(FaultyBuilder, OfTheTesseractIsFound) {
+  EXPECT_TRUE(is_found(builders::edges::swapped_corners::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::swapped_cubes::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::swapped_squares::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::swapped_ends::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::wrong_plane::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::missing_neighbours::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::repeated_cube::ResolvedTesseract()));
+  EXPECT_TRUE(is_found(builders::edges::missing_cube::ResolvedTesseract()));
+}
+
+TEST(FaultyBuilder, OfTheTesseractWithItsArraysIsFound) {
+  EXPECT_TRUE(is_found(TEGL_COPY(wrong_side)));
+  EXPECT_TRUE(is_found(TEGL_COPY(swapped_frame)));
+  EXPECT_TRUE(is_found(TEGL_COPY(swapped_pair)));
+  EXPECT_TRUE(is_found(TEGL_COPY(swapped_part)));
+}
+
+/// Only masks depend on these edges: the numbers differ from those by table.
+TEST(FaultyBuilder, OfTheTesseractDiffersFromTheTable) {
+  builders::edges::wrong_edges::ResolvedTesseract wrong_edges;
+  builders::ResolvedTesseract right;
+  RandomKeys keys(3);
+  bool differs = false;
+  for (int i = 0; i < 3000; ++i) {
+    const ResolvedKey key = keys();
+    differs = differs || tesseract_numbers(wrong_edges, key) != tesseract_numbers(right, key);
+  }
+  EXPECT_TRUE(differs);
 }
 
 }  // namespace
