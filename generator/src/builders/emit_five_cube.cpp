@@ -18,7 +18,7 @@ BuilderTexts emit_five_cube_builder(const BuilderRequest& request) {
   certify_five_cube_faces();
   texts.certificate = "faces and incidence signs against the lattice of the 5-cube";
   const std::string name = builder_name(request), space = builder_namespace(request);
-  const BuilderRequest faces{4, request.leaf, request.languages};
+  const BuilderRequest faces{.dim = 4, .leaf = request.leaf};
   const auto banner = [&](const char* what) { return builder_banner(request, Language::cpp, what, texts.certificate); };
   const std::string what = banner("The contour in one 5-cube, a cell of a 5D image.");
   texts.files.push_back(

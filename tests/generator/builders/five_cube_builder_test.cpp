@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "builder5_edges.hpp"
 #include "five_cube_checks.hpp"
 #include "five_cube_high_side.hpp"
 #include "five_cube_map.hpp"
@@ -46,6 +47,34 @@ TEST(FiveCubeBuilder, OneHighCornerIsCutOffByOneSimplex) {
     EXPECT_EQ(contour.simplices.size(), 1u);
     EXPECT_TRUE(contour.own.empty());
     EXPECT_TRUE(contour.is_settled);
+  }
+}
+
+/// A key with the faces of another.
+builders::edges::FiveKey as_edges(const builders::FiveKey& key) {
+  return {key.signature,      key.high_squares,    key.low_cubes, key.high_cubes,
+          key.low_tesseracts, key.high_tesseracts, key.tile};
+}
+
+TEST(FiveCubeBuilder, FromTheEdgesIsTheSameAsByTables) {
+  builders::FiveCubeBuilder by_tables;
+  builders::edges::FiveCubeBuilder from_edges;
+  for (const FiveKeys how : kAllFiveKeys) {
+    std::mt19937_64 random(11);
+    for (int i = 0; i < 2000; ++i) {
+      const auto key = random_five_key<builders::FiveKey>(random, how);
+      const auto expected = by_tables.build(key);
+      const auto contour = from_edges.build(as_edges(key));
+      ASSERT_TRUE(std::equal(contour.simplices.begin(), contour.simplices.end(), expected.simplices.begin(),
+                             expected.simplices.end()))
+          << key.signature;
+      ASSERT_EQ(contour.own.size(), expected.own.size());
+      for (std::size_t v = 0; v < contour.own.size(); ++v) {
+        ASSERT_EQ(contour.own[v].points.corners, expected.own[v].points.corners);
+        ASSERT_EQ(contour.own[v].points.edges, expected.own[v].points.edges);
+        ASSERT_EQ(contour.own[v].repeat, expected.own[v].repeat);
+      }
+    }
   }
 }
 
