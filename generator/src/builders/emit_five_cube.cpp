@@ -25,8 +25,11 @@ BuilderTexts emit_five_cube_builder(const BuilderRequest& request) {
       {name + ".hpp",
        filled("builder5.hpp", {{"banner", what}, {"builder4", builder_name(faces)}, {"namespace", space}})});
   texts.files.push_back(
-      {name + ".cpp",
-       filled("builder5.cpp", {{"banner", what}, {"name", name}, {"namespace", space}, {"faces", five_cube_faces()}})});
+      {name + ".cpp", filled("builder5.cpp", {{"banner", what},
+                                              {"name", name},
+                                              {"namespace", space},
+                                              {"reads_table", request.leaf == Leaf::table ? "true" : "false"},
+                                              {"faces", five_cube_faces()}})});
   return texts;
 }
 
