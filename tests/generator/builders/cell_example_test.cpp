@@ -5,12 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "builder3.hpp"
+#include "builder5.hpp"
 
 namespace {
 
@@ -61,6 +64,21 @@ tegl::builders::CubeContour contour_of_cell(const std::array<float, 8>& values, 
   return contour;
 }
 // [/cell]
+
+// [five]
+/// Number of 4-simplices of the contour in a 5D cell whose high corners are the bits of `signature`, all faces separate.
+std::size_t simplices_of_cell(std::uint32_t signature) {
+  thread_local tegl::builders::FiveCubeBuilder builder;
+  tegl::builders::FiveKey key;
+  key.signature = signature;
+  return builder.build(key).simplices.size();
+}
+// [/five]
+
+TEST(CellExample, OneHighCornerOfA5DCellIsCutOffByOneSimplex) {
+  EXPECT_EQ(simplices_of_cell(1), 1u);
+  EXPECT_EQ(simplices_of_cell(0), 0u);
+}
 
 TEST(BuilderPage, CellsOfNoiseMakeAClosedContour) {
   constexpr int kSize = 9;
