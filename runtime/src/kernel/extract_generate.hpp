@@ -80,10 +80,10 @@ class TileWriter {
     typename RowShape<N>::Index index;  ///< of the current tile
     VertexRun<Vertex> vertices;
     BitWalk active;
-    Index next;                   ///< number of the next own vertex
-    RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
-    const KeptTile* resolved;     ///< with `tesseracts`, by tile of the row; null: not kept
-    const std::uint8_t* plans;    ///< ResolvedSize::plan, as `resolved`
+    Index next;                             ///< number of the next own vertex
+    RowOfTesseracts* tesseracts = nullptr;  ///< N = 4, if resolved from the data without a caller's estimator
+    const KeptTile* resolved = nullptr;     ///< with `tesseracts`, by tile of the row; null: not kept
+    const std::uint8_t* plans = nullptr;    ///< ResolvedSize::plan, as `resolved`
 
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
@@ -121,10 +121,7 @@ class TileWriter {
                              start,
                              vertices,
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
-                             view.slab->first_own(row),
-                             {},
-                             {},
-                             {}};
+                             view.slab->first_own(row)};
     // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
       if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
