@@ -80,10 +80,10 @@ class TileWriter {
     typename RowShape<N>::Index index;  ///< of the current tile
     VertexRun<Vertex> vertices;
     BitWalk active;
-    Index next;                   ///< number of the next own vertex
-    RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
-    const KeptTile* resolved;     ///< with `tesseracts`: by tile of the row; null: not kept
-    const std::uint8_t* plans;    ///< with `tesseracts`: ResolvedSize::plan by tile of the row; null: not kept
+    Index next;                             ///< number of the next own vertex
+    RowOfTesseracts* tesseracts = nullptr;  ///< N = 4, if resolved from the data without a caller's estimator
+    const KeptTile* resolved = nullptr;     ///< with `tesseracts`, by tile of the row; null: not kept
+    const std::uint8_t* plans = nullptr;    ///< ResolvedSize::plan, as `resolved`
 
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
@@ -92,14 +92,12 @@ class TileWriter {
       std::copy_n(edge_ids, tables::edge_count(N), ids.data());
       if constexpr (N == 4)
         if (own.writer.is_estimated_tile(key)) {
-          if (own.resolved != nullptr)
-            return own.writer.write_resolved(own.view, own.row, own.index, key, own.resolved[ordinal].tile(key),
-                                             own.resolved[ordinal].plan(), ids, own.next, own.vertices,
-                                             *own.scratch.tesseract, out);
-          return own.writer.write_resolved(own.view, own.row, own.index, key,
-                                           own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
-                                           own.plans != nullptr ? own.plans[ordinal] : ResolvedTesseract::kOther, ids,
-                                           own.next, own.vertices, *own.scratch.tesseract, out);
+          const KeptTile* const kept = own.resolved != nullptr ? own.resolved + ordinal : nullptr;
+          const auto plan = own.plans != nullptr ? own.plans[ordinal] : ResolvedTesseract::kOther;
+          return own.writer.write_resolved(
+              own.view, own.row, own.index, key,
+              kept != nullptr ? kept->tile(key) : own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
+              kept != nullptr ? kept->plan() : plan, ids, own.next, own.vertices, *own.scratch.tesseract, out);
         }
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
@@ -123,10 +121,7 @@ class TileWriter {
                              start,
                              vertices,
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
-                             view.slab->first_own(row),
-                             nullptr,
-                             nullptr,
-                             nullptr};
+                             view.slab->first_own(row)};
     // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
       if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
