@@ -158,7 +158,10 @@ unsigned reversed_cubes() {
 
 std::string class_text(const BuilderRequest& request) {
   if (request.leaf == Leaf::table)
-    return filled("builder4_class.hpp", {{"part", "cubes_.part(parts_[i])"}, {"members", ""}});
+    return filled("builder4_class.hpp", {{"part", "cubes_.part(parts_[i])"},
+                                         {"members",
+                                          "  std::array<std::uint32_t, 32 + ResolvedCubes::kMostParts> parts_{};  ///< "
+                                          "numbers of the parts of its cubes\n"}});
   return filled("builder4_class.hpp", {{"part", "parts_of_cubes_[i]"},
                                        {"members", std::string(template_text("builder4_edges_members.hpp"))}});
 }
