@@ -579,6 +579,24 @@ TEST(GenCli, OutSaysHowLargeEachFileIsAndHowLongItTook) {
                                                 " bytes in [0-9]+\\.[0-9]+ s"));
 }
 
+TEST(GenCli, KeepLeavesFilesThatHaveTheirText) {
+  const Folder folder;
+  const std::string file = folder.file("out/tile2_compact.cpp");
+  ASSERT_EQ(gen({"--dim", "2", "--out", folder.file("out")}).status, 0);
+  const auto long_ago = std::filesystem::last_write_time(file) - std::chrono::hours(1);
+  const auto write_again = [&](std::vector<std::string> arguments) {
+    std::filesystem::last_write_time(file, long_ago);
+    EXPECT_EQ(gen(arguments).status, 0);
+    return std::filesystem::last_write_time(file) != long_ago;
+  };
+  EXPECT_FALSE(write_again({"--dim", "2", "--out", folder.file("out"), "--keep"}));
+  EXPECT_TRUE(write_again({"--dim", "2", "--out", folder.file("out")}));
+  std::ofstream(file, std::ios::app) << " ";
+  EXPECT_TRUE(write_again({"--dim", "2", "--out", folder.file("out"), "--keep"}));
+  EXPECT_EQ(contents(folder.file("out")).size(), 6U) << "a temporary file is left";
+  expect_refused({"--dim", "2", "--builder", "--keep"}, {"--keep", "--out"});
+}
+
 TEST(GenCli, OutOf4dOnOneProcessorIsWhatTheBuildWroteOnAll) {
   if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   const Folder folder;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A spanning tree of the tetrahedra across triangles removes all tetrahedra but leaves the homotopy type of the
-// manifold without a ball. Triangles with a free edge are collapsed until none is left. Since a closed 3-manifold has
-// Euler characteristic 0, what remains without triangles is a tree.
+// manifold without a ball. Then triangles with a free edge are collapsed. If all are, a graph remains; it is a tree, as
+// the Euler characteristic of a closed 3-manifold is 0.
 #include "tegl/tile/three_sphere.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace tegl::tile {
 
 bool ThreeSphereTest::operator()(std::span<const Tetrahedron> tetrahedra) {
   constexpr unsigned kTries = 8;
-  if (tetrahedra.size() > 16384) throw std::invalid_argument("more than 16384 tetrahedra");
+  if (tetrahedra.size() > 16384) throw std::length_error("more than 16384 tetrahedra in a component of Sigma");
   renumber(tetrahedra);
   if (tetrahedra.size() == 5 && vertex_count_ == 5) return true;  // the boundary of a 4-simplex
   find_triangles();

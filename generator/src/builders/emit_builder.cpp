@@ -98,7 +98,8 @@ std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {
     throw Error(ErrorCode::InvalidArgument, "--leaf edges: shaders look up a table; expected --leaf table or cpp only");
   if (request.dim > 3 && is_barycentric(request))
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--dim {}: --builder emits the compact triangulation only", request.dim));
+                fmt::format("--dim {}: --triangulation does not go with this builder{}", request.dim,
+                            request.dim == 4 ? ", which has both triangulations" : ", which is compact"));
   BuilderTexts texts = texts_of(request);
   EmittedFile last = manifest(request, texts);
   texts.files.push_back(std::move(last));

@@ -179,6 +179,8 @@ constexpr std::array kOptions{
     OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
     OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kSymmetries | kClasses | kCertify | kSummary,
                [](Options& o, std::string_view) { o.json = true; }},
+    OptionSpec{"--keep", false, std::nullopt, kOut | kBuilder,
+               [](Options& o, std::string_view) { o.keeps_same = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
     OptionSpec{"--language", true, std::nullopt, kOut | kBuilder, set_languages},
     OptionSpec{"--triangulation", true, std::nullopt, kOut | kBuilder, set_triangulation},
@@ -400,6 +402,7 @@ Options parse(std::span<const std::string_view> arguments) {
       std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--triangulation"; });
   if (options.command == Command::Builder && has_triangulation && options.triangulation == TriangulationChoice::All)
     refuse("--triangulation all does not go with --builder: expected barycentric or compact");
+  if (options.keeps_same && options.out.empty()) refuse("--keep does not go with --builder without --out");
   check_tile(options);
   return options;
 }
@@ -480,11 +483,14 @@ options of --out
                                     triangulations to write (default all)
   --language cpp|json|glsl|wgsl|cuda
                                     language of the tables (default cpp); several with commas: json,glsl
+  --keep                            leaves a file that has its text already as it is, with its time
 
 options of --builder
-  --out DIR                         writes the source and a manifest with its digest into DIR
+  --out DIR                         writes the source and a manifest with its digest into DIR; advised for N = 4, whose
+                                    text has 4.6 MB
+  --keep                            as above, with --out
   --triangulation barycentric|compact
-                                    N = 3: polygons coned from their barycentre, or cut as in the compact tables (default)
+                                    N = 3: polygons coned from their barycentre, or as in the compact tables (default)
   --leaf edges|table                contours of the faces by recursion down to the edges, or by table (default)
   --language cpp|glsl|wgsl          language of the source (default cpp); several with commas. N = 2, 3; N = 4, 5: cpp
 

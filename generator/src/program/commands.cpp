@@ -117,8 +117,9 @@ bool has_text(const std::filesystem::path& path, const std::string& text) {
 }
 
 /// Writes all files under temporary names beside their targets and renames them at the end, so a failure while writing
-/// leaves no incomplete table. Adds the writing times.
-void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& files) {
+/// leaves no incomplete table. `keeps_same`: a file that has its text already stays as it is, so that builds by Ninja
+/// do not compile it again. Adds the writing times.
+void write_files(const std::filesystem::path& folder, bool keeps_same, std::vector<TimedFile>& files) {
   const auto part = [&](const TimedFile& timed) { return folder / (timed.file.name + ".part"); };
   const auto fail = [&](const std::filesystem::path& path, const std::string& why) {
     for (const TimedFile& timed : files) {
@@ -143,10 +144,10 @@ void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& fi
     if (!out) fail(target, "cannot be written");
     timed.seconds += watch.lap();
   }
-  // rename; a file that has this text stays as it is, so that a build does not compile it again
+  // rename
   for (const TimedFile& timed : files) {
     const auto target = folder / timed.file.name;
-    if (has_text(target, timed.file.text))
+    if (keeps_same && has_text(target, timed.file.text))
       std::filesystem::remove(part(timed), error);
     else
       std::filesystem::rename(part(timed), target, error);
@@ -184,7 +185,7 @@ int run_classes(const Options& options) {
 int run_cases(const Options& options) {
   std::vector<TimedFile> files;
   for (EmittedFile& file : emit_cases(options.dim)) files.push_back({std::move(file), 0.0});
-  write_files(options.out, files);
+  write_files(options.out, options.keeps_same, files);
   fmt::print("wrote {} and {} pictures\n", files.front().file.name, files.size() - 1);
   return 0;
 }
@@ -200,7 +201,7 @@ int run_builder(const Options& options) {
   }
   std::vector<TimedFile> files;
   for (const EmittedFile& file : emitted) files.push_back({file, 0.0});
-  write_files(options.out, files);
+  write_files(options.out, options.keeps_same, files);
   for (const TimedFile& timed : files) fmt::print("wrote {}: {} bytes\n", timed.file.name, timed.file.text.size());
   return 0;
 }
@@ -237,7 +238,7 @@ int run_out(const Options& options) {
   fmt::print("made and certified in {:.2f} s\n", watch.lap());
   // files
   std::vector<TimedFile> files = emit_all(set, options.languages);
-  write_files(options.out, files);
+  write_files(options.out, options.keeps_same, files);
   for (const auto& [file, seconds] : files)
     fmt::print("wrote {}: {} bytes in {:.3f} s\n", file.name, file.text.size(), seconds);
   return 0;

@@ -53,6 +53,7 @@ struct Options {
   std::uint64_t sample = 0;                                      ///< --sample; --certify only, not with --all; 0: none
   std::uint64_t seed = 1;                                        ///< --seed; with --sample
   unsigned threads = 0;                                          ///< --threads; with --all or --sample; 0: all
+  bool keeps_same = false;                                       ///< --keep; with --out
   bool list = false;                                             ///< --list; --transversal only
   bool json = false;                                             ///< --json; not for --out and --cases, not with --list
   Alternative alternative = Alternative::low;                    ///< --alternative; --classes only

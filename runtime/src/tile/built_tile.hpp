@@ -169,6 +169,7 @@ class BuiltTiles {
         max_bytes_(max_bytes / 2),
         max_builder_bytes_(max_bytes / 2 / builders) {
     if (cube.dim() != 5) kind_.triangulation = Triangulation::barycentric;
+    if (kind_.triangulation == Triangulation::compact) max_bytes_ = max_bytes;  // its makers keep nothing
   }
 
   [[nodiscard]] const CubeSymmetries& symmetries() const noexcept { return symmetries_; }

@@ -66,7 +66,7 @@ tegl::builders::CubeContour contour_of_cell(const std::array<float, 8>& values, 
 // [/cell]
 
 // [five]
-/// Number of 4-simplices of the contour in a 5D cell whose high corners are the bits of `signature`, all faces separate.
+/// Number of 4-simplices in a 5D cell whose high corners are the bits of `signature`, with all faces separate.
 std::size_t simplices_of_cell(std::uint32_t signature) {
   thread_local tegl::builders::FiveCubeBuilder builder;
   tegl::builders::FiveKey key;

@@ -69,10 +69,19 @@ TEST(FiveCubeBuilder, FromTheEdgesIsTheSameAsByTables) {
                              expected.simplices.end()))
           << key.signature;
       ASSERT_EQ(contour.own.size(), expected.own.size());
+      ASSERT_EQ(contour.components, expected.components);
+      ASSERT_EQ(contour.side_copies, expected.side_copies);
+      ASSERT_EQ(contour.is_settled, expected.is_settled);
+      for (unsigned c = 0; c < 40; ++c) {
+        ASSERT_EQ(from_edges.cube_vertices(c), by_tables.cube_vertices(c));
+        for (unsigned j = 0; j < by_tables.cube_vertices(c); ++j)
+          ASSERT_EQ(from_edges.cube_mask(c, j), by_tables.cube_mask(c, j));
+      }
       for (std::size_t v = 0; v < contour.own.size(); ++v) {
         ASSERT_EQ(contour.own[v].points.corners, expected.own[v].points.corners);
         ASSERT_EQ(contour.own[v].points.edges, expected.own[v].points.edges);
         ASSERT_EQ(contour.own[v].repeat, expected.own[v].repeat);
+        ASSERT_EQ(contour.own[v].face, expected.own[v].face);
       }
     }
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Recognition of 3-spheres among closed 3-manifolds, fast enough for a test per cell. A closed connected 3-manifold
-// without one tetrahedron that collapses to a point is a ball, so the manifold is a sphere (J. H. C. Whitehead,
-// Simplicial spaces, nuclei and m-groups, 1939); one whose first homology modulo 2 is not 0 is none.
+// Recognition of 3-spheres among closed 3-manifolds, fast enough for a test per cell. If a closed connected 3-manifold
+// without one of its tetrahedra collapses to a point, the rest is a ball and the manifold is a sphere (J. H. C.
+// Whitehead, Simplicial spaces, nuclei and m-groups, 1939). A manifold with homology modulo 2 in dimension 1 is no
+// sphere.
 #pragma once
 
 #include <array>
@@ -21,8 +22,8 @@ class ThreeSphereTest {
   /// Whether the tetrahedra are proved to form a sphere. They must form a closed connected 3-manifold, vertices in any
   /// order. False: it has homology, or none of a few tries collapses it; no sphere for which all fail is known. Time:
   /// about linear in the number of tetrahedra, and cubic in the size of what is left of a manifold that does not
-  /// collapse. Throws std::invalid_argument if a triangle does not belong to exactly two tetrahedra, or for more than
-  /// 16 384 tetrahedra.
+  /// collapse. Throws std::invalid_argument if a triangle does not belong to exactly two tetrahedra, std::length_error
+  /// for more than 16 384 tetrahedra.
   [[nodiscard]] bool operator()(std::span<const Tetrahedron> tetrahedra);
 
  private:
