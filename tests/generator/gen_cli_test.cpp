@@ -14,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
-#include <iomanip>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -25,53 +24,10 @@
 #include <utility>
 #include <vector>
 
+#include "gen_cli.hpp"
+
+namespace tegl::test {
 namespace {
-
-using nlohmann::json;
-using testing::HasSubstr;
-
-struct Outcome {
-  int status = -1;
-  std::string out;
-  std::string err;
-};
-
-/// Runs gen with these arguments; `redirect` is appended to the shell command unchanged.
-Outcome gen(std::initializer_list<std::string_view> arguments, const std::string& redirect = "") {
-  const std::string messages =
-      testing::TempDir() + "gen_" + testing::UnitTest::GetInstance()->current_test_info()->name() + ".txt";
-  std::string command = "'" TEGL_GEN_PROGRAM "'";
-  for (const std::string_view argument : arguments) {
-    command.append(" '").append(argument).append("'");
-  }
-  command.append(" 2>'").append(messages).append("' ").append(redirect);
-  Outcome run;
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) {
-    ADD_FAILURE() << "cannot run " << command;
-    return run;
-  }
-  std::array<char, 4096> buffer{};
-  for (std::size_t got = 0; (got = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    run.out.append(buffer.data(), got);
-  }
-  const int result = pclose(pipe);
-  run.status = WIFEXITED(result) ? WEXITSTATUS(result) : -1;
-  std::ifstream file(messages);
-  run.err.assign(std::istreambuf_iterator<char>(file), {});
-  (void)std::remove(messages.c_str());
-  return run;
-}
-
-/// Expects a refused command line: status 2, nothing on standard output, and a message with all these texts.
-void expect_refused(std::initializer_list<std::string_view> arguments, std::initializer_list<const char*> texts) {
-  const Outcome run = gen(arguments);
-  EXPECT_EQ(run.status, 2) << run.err;
-  EXPECT_EQ(run.out, "");
-  for (const char* const text : texts) {
-    EXPECT_THAT(run.err, HasSubstr(text));
-  }
-}
 
 TEST(GenCli, CountsTheClassesOfEveryGroupAsJson) {
   struct Expected {
@@ -522,35 +478,6 @@ TEST(GenCli, CertifiesEverySignatureOfBothAlternativesAndTriangulations) {
   }
 }
 
-/// A new empty folder, removed at the end.
-class Folder {
- public:
-  Folder() : path_(testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// The regular files in a folder and their bytes.
-std::map<std::string, std::string> contents(const std::string& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.is_regular_file()) {
-      std::ifstream file(entry.path(), std::ios::binary);
-      files[entry.path().filename().string()].assign(std::istreambuf_iterator<char>(file), {});
-    }
-  }
-  return files;
-}
-
 TEST(GenCli, OutWritesTheSameBytesWhereverAndHoweverOften) {
   const Folder folder;
   ASSERT_EQ(gen({"--dim", "3", "--out", folder.file("first")}).status, 0);
@@ -577,24 +504,6 @@ TEST(GenCli, OutSaysHowLargeEachFileIsAndHowLongItTook) {
   for (const auto& [name, text] : contents(folder.file("out")))
     EXPECT_THAT(run.out, testing::ContainsRegex("wrote " + name + ": " + std::to_string(text.size()) +
                                                 " bytes in [0-9]+\\.[0-9]+ s"));
-}
-
-TEST(GenCli, KeepLeavesFilesThatHaveTheirText) {
-  const Folder folder;
-  const std::string file = folder.file("out/tile2_compact.cpp");
-  ASSERT_EQ(gen({"--dim", "2", "--out", folder.file("out")}).status, 0);
-  const auto long_ago = std::filesystem::last_write_time(file) - std::chrono::hours(1);
-  const auto write_again = [&](std::vector<std::string> arguments) {
-    std::filesystem::last_write_time(file, long_ago);
-    EXPECT_EQ(gen(arguments).status, 0);
-    return std::filesystem::last_write_time(file) != long_ago;
-  };
-  EXPECT_FALSE(write_again({"--dim", "2", "--out", folder.file("out"), "--keep"}));
-  EXPECT_TRUE(write_again({"--dim", "2", "--out", folder.file("out")}));
-  std::ofstream(file, std::ios::app) << " ";
-  EXPECT_TRUE(write_again({"--dim", "2", "--out", folder.file("out"), "--keep"}));
-  EXPECT_EQ(contents(folder.file("out")).size(), 6U) << "a temporary file is left";
-  expect_refused({"--dim", "2", "--builder", "--keep"}, {"--keep", "--out"});
 }
 
 TEST(GenCli, OutOf4dOnOneProcessorIsWhatTheBuildWroteOnAll) {
@@ -644,71 +553,5 @@ TEST(GenCli, OutThatCannotBeWrittenFailsAndLeavesNothingHalfWritten) {
   }
 }
 
-std::string hexadecimal(std::uint64_t number) {
-  std::ostringstream text;
-  text << std::hex << std::setw(16) << std::setfill('0') << number;
-  return text.str();
-}
-
-/// FNV-1a of 64 bits.
-std::uint64_t digest_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
-TEST(GenCli, BuilderIsPrintedOrWrittenWithItsManifest) {
-  const Folder folder;
-  for (const char* const dim : {"2", "3"})
-    for (const char* const leaf : {"table", "edges"}) {
-      const std::string name = std::string("builder") + dim + (std::string(leaf) == "edges" ? "_edges" : "");
-      const Outcome printed = gen({"--dim", dim, "--builder", "--leaf", leaf});
-      ASSERT_EQ(printed.status, 0) << printed.err;
-      const Outcome written = gen({"--dim", dim, "--builder", "--leaf", leaf, "--out", folder.file(name)});
-      ASSERT_EQ(written.status, 0) << written.err;
-      EXPECT_THAT(written.out, HasSubstr("wrote " + name + ".hpp"));
-      const auto files = contents(folder.file(name));
-      ASSERT_EQ(files.size(), 3u);
-      EXPECT_EQ(printed.out, files.at(name + ".hpp") + "\n" + files.at(name + ".cpp"));
-      const json manifest = json::parse(files.at(name + "_manifest.json"));
-      EXPECT_EQ(manifest.at("builder"), std::stoi(dim));
-      EXPECT_EQ(manifest.at("leaf"), leaf);
-      ASSERT_EQ(manifest.at("texts").size(), 2u);
-      for (const json& text : manifest.at("texts")) {
-        const std::string& content = files.at(text.at("name"));
-        EXPECT_EQ(text.at("bytes"), content.size());
-        EXPECT_EQ(text.at("fnv1a"), hexadecimal(digest_of(content)));
-      }
-    }
-}
-
-TEST(GenCli, BuilderIsTheOneOfTheBuildInEveryLanguage) {
-  const Folder folder;
-  for (const char* const dim : {"2", "3"}) {
-    ASSERT_EQ(gen({"--builder", "--dim", dim, "--language", "cpp,glsl,wgsl", "--out", folder.file("all")}).status, 0);
-    const auto files = contents(folder.file("all"));
-    const std::string name = std::string("builder") + dim;
-    for (const char* const suffix : {".hpp", ".cpp", ".glsl", ".wgsl", "_manifest.json"}) {
-      std::ifstream in(std::string(TEGL_TABLE_DIR) + "/" + name + suffix, std::ios::binary);
-      EXPECT_EQ(files.at(name + suffix), (std::string{std::istreambuf_iterator<char>(in), {}})) << name << suffix;
-    }
-  }
-  for (const auto& [name, text] : contents(folder.file("all")))
-    for (std::size_t first = 0; first < text.size(); first = text.find('\n', first) + 1)
-      ASSERT_LE(text.find('\n', first) - first, 120u) << name << ": " << text.substr(first, 120);
-}
-
-TEST(GenCli, BuilderRefusesOptionsOfOtherCommands) {
-  expect_refused({"--dim", "6", "--builder"}, {"--dim 6", "--builder expects 2 to 5"});
-  expect_refused({"--dim", "3", "--builder", "--leaf", "corners"}, {"--leaf corners", "table or edges"});
-  expect_refused({"--dim", "3", "--builder", "--language", "cuda"}, {"does not emit cuda", "cpp, glsl or wgsl"});
-  expect_refused({"--dim", "3", "--builder", "--leaf", "edges", "--language", "glsl"}, {"--leaf edges", "table"});
-  expect_refused({"--dim", "3", "--builder", "--triangulation", "all"},
-                 {"--triangulation all", "barycentric or compact"});
-  expect_refused({"--dim", "3", "--builder", "--layout", "flat"}, {"--layout does not go with --builder"});
-  expect_refused({"--dim", "3", "--count", "--leaf", "table"}, {"--leaf does not go with --count"});
-  expect_refused({"--dim", "3", "--builder", "--count"}, {"--builder and --count were both given"});
-  expect_refused({"--dim", "3", "--builder", "--out", "a", "--cases", "b"}, {"--builder and --cases were both given"});
-}
-
 }  // namespace
+}  // namespace tegl::test

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The program `gen`: builders, and files that are kept.
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+#include "gen_cli.hpp"
+
+namespace tegl::test {
+namespace {
+
+std::string hexadecimal(std::uint64_t number) {
+  std::ostringstream text;
+  text << std::hex << std::setw(16) << std::setfill('0') << number;
+  return text.str();
+}
+
+/// FNV-1a of 64 bits.
+std::uint64_t digest_of(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
+
+TEST(GenCli, BuilderIsPrintedOrWrittenWithItsManifest) {
+  const Folder folder;
+  for (const char* const dim : {"2", "3"})
+    for (const char* const leaf : {"table", "edges"}) {
+      const std::string name = std::string("builder") + dim + (std::string(leaf) == "edges" ? "_edges" : "");
+      const Outcome printed = gen({"--dim", dim, "--builder", "--leaf", leaf});
+      ASSERT_EQ(printed.status, 0) << printed.err;
+      const Outcome written = gen({"--dim", dim, "--builder", "--leaf", leaf, "--out", folder.file(name)});
+      ASSERT_EQ(written.status, 0) << written.err;
+      EXPECT_THAT(written.out, HasSubstr("wrote " + name + ".hpp"));
+      const auto files = contents(folder.file(name));
+      ASSERT_EQ(files.size(), 3u);
+      EXPECT_EQ(printed.out, files.at(name + ".hpp") + "\n" + files.at(name + ".cpp"));
+      const json manifest = json::parse(files.at(name + "_manifest.json"));
+      EXPECT_EQ(manifest.at("builder"), std::stoi(dim));
+      EXPECT_EQ(manifest.at("leaf"), leaf);
+      ASSERT_EQ(manifest.at("texts").size(), 2u);
+      for (const json& text : manifest.at("texts")) {
+        const std::string& content = files.at(text.at("name"));
+        EXPECT_EQ(text.at("bytes"), content.size());
+        EXPECT_EQ(text.at("fnv1a"), hexadecimal(digest_of(content)));
+      }
+    }
+}
+
+TEST(GenCli, BuilderIsTheOneOfTheBuildInEveryLanguage) {
+  const Folder folder;
+  for (const char* const dim : {"2", "3"}) {
+    ASSERT_EQ(gen({"--builder", "--dim", dim, "--language", "cpp,glsl,wgsl", "--out", folder.file("all")}).status, 0);
+    const auto files = contents(folder.file("all"));
+    const std::string name = std::string("builder") + dim;
+    for (const char* const suffix : {".hpp", ".cpp", ".glsl", ".wgsl", "_manifest.json"}) {
+      std::ifstream in(std::string(TEGL_TABLE_DIR) + "/" + name + suffix, std::ios::binary);
+      EXPECT_EQ(files.at(name + suffix), (std::string{std::istreambuf_iterator<char>(in), {}})) << name << suffix;
+    }
+  }
+  for (const auto& [name, text] : contents(folder.file("all")))
+    for (std::size_t first = 0; first < text.size(); first = text.find('\n', first) + 1)
+      ASSERT_LE(text.find('\n', first) - first, 120u) << name << ": " << text.substr(first, 120);
+}
+
+TEST(GenCli, BuilderRefusesOptionsOfOtherCommands) {
+  expect_refused({"--dim", "6", "--builder"}, {"--dim 6", "--builder expects 2 to 5"});
+  expect_refused({"--dim", "3", "--builder", "--leaf", "corners"}, {"--leaf corners", "table or edges"});
+  expect_refused({"--dim", "3", "--builder", "--language", "cuda"}, {"does not emit cuda", "cpp, glsl or wgsl"});
+  expect_refused({"--dim", "3", "--builder", "--leaf", "edges", "--language", "glsl"}, {"--leaf edges", "table"});
+  expect_refused({"--dim", "3", "--builder", "--triangulation", "all"},
+                 {"--triangulation all", "barycentric or compact"});
+  expect_refused({"--dim", "3", "--builder", "--layout", "flat"}, {"--layout does not go with --builder"});
+  expect_refused({"--dim", "3", "--count", "--leaf", "table"}, {"--leaf does not go with --count"});
+  expect_refused({"--dim", "3", "--builder", "--count"}, {"--builder and --count were both given"});
+  expect_refused({"--dim", "3", "--builder", "--out", "a", "--cases", "b"}, {"--builder and --cases were both given"});
+}
+
+TEST(GenCli, KeepLeavesFilesThatHaveTheirText) {
+  const Folder folder;
+  const std::string file = folder.file("out/tile2_compact.cpp");
+  ASSERT_EQ(gen({"--dim", "2", "--out", folder.file("out")}).status, 0);
+  const auto long_ago = std::filesystem::last_write_time(file) - std::chrono::hours(1);
+  const auto write_again = [&](std::initializer_list<std::string_view> arguments) {
+    std::filesystem::last_write_time(file, long_ago);
+    EXPECT_EQ(gen(arguments).status, 0);
+    return std::filesystem::last_write_time(file) != long_ago;
+  };
+  const std::string out = folder.file("out");
+  EXPECT_FALSE(write_again({"--dim", "2", "--out", out, "--keep"}));
+  EXPECT_TRUE(write_again({"--dim", "2", "--out", out}));
+  std::ofstream(file, std::ios::app) << " ";
+  EXPECT_TRUE(write_again({"--dim", "2", "--out", out, "--keep"}));
+  EXPECT_EQ(contents(folder.file("out")).size(), 6U) << "a temporary file is left";
+  expect_refused({"--dim", "2", "--builder", "--keep"}, {"--keep", "--out"});
+}
+
+}  // namespace
+}  // namespace tegl::test
