@@ -27,12 +27,12 @@ Tetrahedra join_of_circles(std::uint16_t m, std::uint16_t n) {
 }
 
 /// A torus of dimension 3: n^3 cubes with six tetrahedra each, n >= 3.
-Tetrahedra torus(std::uint16_t n) {
+Tetrahedra torus(unsigned n) {
   Tetrahedra result;
-  for (std::uint16_t cube = 0; cube < n * n * n; ++cube) {
+  for (unsigned cube = 0; cube < n * n * n; ++cube) {
     std::array<unsigned, 3> order = {0, 1, 2};
     do {
-      std::array<unsigned, 3> at = {cube % n, cube / n % n, static_cast<unsigned>(cube / (n * n))};
+      std::array<unsigned, 3> at = {cube % n, cube / n % n, cube / (n * n)};
       const auto number = [&] { return static_cast<std::uint16_t>(at[0] + n * (at[1] + n * at[2])); };
       ThreeSphereTest::Tetrahedron t{number(), 0, 0, 0};
       for (unsigned step = 0; step < 3; ++step) {
