@@ -257,7 +257,7 @@ TEST(Emission, IsTheSameTextEveryTime) {
   request.dim = 3;
   request.command = "gen --dim 3";
   const auto first = emit_cpp(make_table_set(request)), second = emit_cpp(make_table_set(request));
-  ASSERT_EQ(4u, first.size()) << "two triangulations, regions, all resolutions";
+  ASSERT_EQ(5u, first.size()) << "two triangulations, regions, all resolutions, variants";
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_EQ(first[i].name, second[i].name);
     EXPECT_EQ(first[i].text, second[i].text);

@@ -23,7 +23,7 @@
 #include "kernel/placement.hpp"
 #include "kernel/split_nonmanifold.hpp"
 #include "kernel/tile_cells.hpp"
-#include "tile/built_tile.hpp"
+#include "tile/built_tiles.hpp"
 #include "tile/grid_cells.hpp"
 #include "tile/tile_places.hpp"
 

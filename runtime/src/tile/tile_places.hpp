@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "tile/built_tile.hpp"
+#include "tile/built_tiles.hpp"
 #include "tile/extract_tables.hpp"
 
 namespace tegl::detail {

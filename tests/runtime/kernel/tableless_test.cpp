@@ -21,7 +21,7 @@
 #include "measure.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/tile_facets.hpp"
-#include "tile/built_tile.hpp"
+#include "tile/built_tiles.hpp"
 #include "tile/cube_symmetries.hpp"
 
 namespace tegl::test {
