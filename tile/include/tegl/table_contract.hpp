@@ -163,17 +163,18 @@ struct ResolvedTable {
 
 /// A resolved cube: its key (VariantTable), and the differences in size from the unresolved cube of its signature.
 struct Variant {
-  std::uint16_t key;
-  std::int8_t more_simplices, more_own_vertices;
+  std::uint16_t key;              ///< key of the cube
+  std::int8_t more_simplices;     ///< number of simplices, less that of the unresolved cube
+  std::int8_t more_own_vertices;  ///< number of own vertices, less that of the unresolved cube
 };
 
 /// A tile table in the flat layout, in the form that loops over many tiles read.
 struct RowTable {
   /// Layout of an entry, from low bits to high: number of simplices, flag for own vertices, first simplex.
   static constexpr unsigned kCountBits = 6;
-  static constexpr std::uint32_t kCountMask = (1u << kCountBits) - 1;
-  static constexpr std::uint32_t kOwnFlag = 1u << kCountBits;
-  static constexpr unsigned kFirstShift = kCountBits + 1;
+  static constexpr std::uint32_t kCountMask = (1u << kCountBits) - 1;  ///< bits of the number of simplices
+  static constexpr std::uint32_t kOwnFlag = 1u << kCountBits;          ///< set if the tile has own vertices
+  static constexpr unsigned kFirstShift = kCountBits + 1;              ///< lowest bit of the first simplex
 
   const TileTable* table;               ///< the lists; by key if there are variants
   const std::uint32_t* entries;         ///< by signature; n = 2: by key; n = 3 with variants: by place_of(key)
@@ -225,9 +226,10 @@ struct VariantTable {
 struct CubeJoin {
   /// If `pairs` is 1: the lower and the upper end of each of the edges A, C, B, D.
   std::array<std::uint8_t, 8> corners;
-  std::uint8_t pairs;                ///< number of pairs that may join
-  bool high;                         ///< if `pairs` is 1: whether it may join high regions
-  std::uint8_t high_pair, low_pair;  ///< 1 + the pair that may join high, or low, regions; 0: none
+  std::uint8_t pairs;      ///< number of pairs that may join
+  bool high;               ///< if `pairs` is 1: whether it may join high regions
+  std::uint8_t high_pair;  ///< 1 + the pair that may join high regions; 0: none
+  std::uint8_t low_pair;   ///< 1 + the pair that may join low regions; 0: none
 };
 
 }  // namespace tegl::tables

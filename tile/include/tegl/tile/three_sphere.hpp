@@ -17,7 +17,7 @@ namespace tegl::tile {
 /// Tests manifolds one after the other and reuses its memory. Not thread-safe.
 class ThreeSphereTest {
  public:
-  using Tetrahedron = std::array<std::uint16_t, 4>;
+  using Tetrahedron = std::array<std::uint16_t, 4>;  ///< four vertex numbers
 
   /// Whether the tetrahedra are proved to form a sphere. They must form a closed connected 3-manifold, vertices in any
   /// order. False: it has homology, or none of a few tries collapses it; no sphere for which all fail is known. Time:
