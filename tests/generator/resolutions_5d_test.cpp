@@ -9,12 +9,7 @@
 namespace tegl::gen {
 namespace {
 
-// Sanitizers make it ten times as slow, and a few tiles show them all there is.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kShare = 200;
-#else
-constexpr std::size_t kShare = 1500;
-#endif
+constexpr std::size_t kShare = test::unless_sanitized(1500, 200);
 
 TEST(ResolutionsIn5D, RandomTilesPass) {
   const std::uint64_t tiles = test::cases_to_test(10000, kShare);

@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
+#include "share.hpp"
 #include "symmetry/tile_symmetry.hpp"
 #include "tegl/tile/facets.hpp"
 
@@ -82,12 +83,7 @@ TEST(Resolutions, OtherTilesPassToo) {
   EXPECT_EQ(certify_all_resolutions(TileKind::octahedron, 3, 1).pairs, 64u);
 }
 
-// Sanitizers make it ten times as slow, and fewer tiles suffice for them.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t kTesseracts = 4000;
-#else
-constexpr std::uint64_t kTesseracts = 100000;
-#endif
+constexpr std::uint64_t kTesseracts = test::unless_sanitized(100000, 4000);
 
 TEST(Resolutions, AHundredThousandTesseractsPass) {
   const ResolutionFigures figures = certify_sample(TileKind::cube, 4, kTesseracts, 2024, 0);

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "tegl/tile/corners.hpp"
+#include "tegl/tile/diagonal_edges.hpp"
 
 namespace tegl::gen {
 
@@ -63,17 +64,6 @@ bool is_settled_tesseract(unsigned signature) {
   return critical == 0 || (in_tile.count(critical) == 1 && std::popcount(critical) - segments / 2 + polygons == 2);
 }
 
-/// Corners of square 2 a + side.
-constexpr std::array<std::array<std::uint8_t, 4>, 6> kSquares = {
-    {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}}};
-
-/// A pair of diagonal edges along an axis: the lower corners of A and C, and of the other two, B and D.
-struct Pair {
-  std::uint8_t a, c, b, d, step;
-};
-constexpr std::array<Pair, 6> kPairs = {
-    {{0, 6, 2, 4, 1}, {2, 4, 0, 6, 1}, {0, 5, 1, 4, 2}, {1, 4, 0, 5, 2}, {0, 3, 1, 2, 4}, {1, 2, 0, 3, 4}}};
-
 /// Regions of the corners of one sign, as the cube's surface joins them.
 class Regions {
  public:
@@ -84,7 +74,7 @@ class Regions {
         if (((corners >> v) & 1u) != 0 && ((corners >> (v ^ step)) & 1u) != 0) join(v, v ^ step);
     for (unsigned q = 0; q < 6; ++q) {
       if (((ambiguous & joined_squares) >> q & 1u) == 0) continue;
-      const auto& s = kSquares[q];
+      const auto& s = detail::kSquareCorners[q];
       if ((corners >> s[0] & 1u) != 0)
         join(s[0], s[3]);
       else
@@ -110,7 +100,7 @@ class Regions {
 };
 
 /// Whether a pair of edges could join two regions. `corners`: all of the regions' sign.
-bool could_join(const Pair& pair, unsigned corners, const Regions& regions) {
+bool could_join(const detail::DiagonalEdges& pair, unsigned corners, const Regions& regions) {
   const auto has = [&](unsigned v) { return (corners >> v & 1u) != 0; };
   const auto end_of = [&](unsigned v) { return has(v) ? v : v + pair.step; };
   const auto stays = [&](unsigned v) { return has(v) && has(v + pair.step); };
@@ -124,8 +114,8 @@ std::uint8_t deciding_pair(unsigned corners, unsigned ambiguous, unsigned joined
   if (regions.count(corners) != 2) return 0;
   std::uint8_t deciding = 0;
   for (std::uint8_t axis = 0; axis < 3; ++axis) {
-    const bool first = could_join(kPairs[std::size_t{2} * axis], corners, regions);
-    const bool second = could_join(kPairs[std::size_t{2} * axis + 1], corners, regions);
+    const bool first = could_join(detail::kDiagonalEdges[std::size_t{2} * axis], corners, regions);
+    const bool second = could_join(detail::kDiagonalEdges[std::size_t{2} * axis + 1], corners, regions);
     if (!first && !second) return 0;
     if (first != second) deciding = static_cast<std::uint8_t>(2 * axis + (first ? 1 : 2));
   }
@@ -139,7 +129,7 @@ tables::CubeJoin join_of(std::uint8_t high_pair, std::uint8_t low_pair) {
   join.pairs = static_cast<std::uint8_t>((high_pair != 0) + (low_pair != 0));
   if (join.pairs != 1) return join;
   join.high = high_pair != 0;
-  const Pair& pair = kPairs[(join.high ? high_pair : low_pair) - 1u];
+  const detail::DiagonalEdges& pair = detail::kDiagonalEdges[(join.high ? high_pair : low_pair) - 1u];
   unsigned at = 0;
   for (const std::uint8_t lower : {pair.a, pair.c, pair.b, pair.d})
     for (const unsigned end : {unsigned{lower}, unsigned{lower} + pair.step})

@@ -51,6 +51,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/diagonal_edges.hpp"
 
 namespace tegl::detail {
 
@@ -232,20 +233,9 @@ struct SquareQuestion {
   }
 };
 
-/// Corners of square 2 a + side.
-constexpr std::array<Square, 6> kSquares = {
-    {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}}};
-
-/// A pair of diagonal edges along an axis: the lower corners of A and C, and of the other two, B and D.
-struct Pair {
-  std::uint8_t a, c, b, d, step;
-};
-constexpr std::array<Pair, 6> kPairs = {
-    {{0, 6, 2, 4, 1}, {2, 4, 0, 6, 1}, {0, 5, 1, 4, 2}, {1, 4, 0, 5, 2}, {0, 3, 1, 2, 4}, {1, 2, 0, 3, 4}}};
-
 /// Whether A and C of a pair of edges are joined inside the cube. See "Fourth" above.
 struct PairQuestion {
-  Pair pair;
+  DiagonalEdges pair;
   bool high;
 
   template <class Values>
@@ -275,7 +265,7 @@ struct CentreDecider {
     for (const bool high : {true, false}) {
       const std::uint8_t pair = high ? joins.high_pair : joins.low_pair;
       if (pair == 0) continue;
-      const Answer is_joined = PairQuestion{kPairs[pair - 1u], high}(f);
+      const Answer is_joined = PairQuestion{kDiagonalEdges[pair - 1u], high}(f);
       if (is_joined == Answer::unsure) return false;
       if (is_joined == Answer::no) continue;
       result = high ? Choice::high : Choice::low;
@@ -296,7 +286,7 @@ struct CubeDecider {
     unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
     for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1, bit *= 2) {
       const auto q = static_cast<unsigned>(std::countr_zero(rest));
-      const Answer is_high = SquareQuestion{kSquares[q], (signature >> kSquares[q][0] & 1u) != 0}(f);
+      const Answer is_high = SquareQuestion{kSquareCorners[q], (signature >> kSquareCorners[q][0] & 1u) != 0}(f);
       if (is_high == Answer::unsure) return false;
       const unsigned is_joined = is_high == Answer::yes ? 1 : 0;
       result.high_squares = static_cast<std::uint8_t>(result.high_squares | is_joined << q);

@@ -316,7 +316,7 @@ class TileWriter {
     constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
     TilePoint<N> place = mask_place<N>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), places, true);
     for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
-      for (double& x : place) x += 0.0625 * (0.5 - x);
+      for (double& x : place) x = repeated_coordinate(x);
     return place;
   }
 

@@ -222,10 +222,23 @@ inline constexpr auto kCornerPoints = [] {
   return result;
 }();
 
+/// Weight of point number v of an uneven mean (mask_place).
+constexpr double uneven_weight(unsigned v) noexcept { return 1.0 + 0.01 * v; }
+
+/// One coordinate of an own vertex, from the mean of its points (mask_place). `axis`: number in the vertex's face.
+[[gnu::always_inline]] inline double own_coordinate(double mean, int axis, bool has_corners, bool uneven) noexcept {
+  const double centre = uneven ? 0.487 + 0.01 * axis : 0.5;
+  const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
+  return share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
+}
+
+/// One coordinate of the next of several own vertices that have the same points: nearer to the face's centre.
+[[gnu::always_inline]] inline double repeated_coordinate(double x) noexcept { return x + 0.0625 * (0.5 - x); }
+
 /// Weights of mask_place, by bit of the mask.
 inline constexpr auto kUnevenWeights = [] {
   std::array<double, 64> result{};
-  for (unsigned v = 0; v < result.size(); ++v) result[v] = 1.0 + 0.01 * v;
+  for (unsigned v = 0; v < result.size(); ++v) result[v] = uneven_weight(v);
   return result;
 }();
 
@@ -251,12 +264,7 @@ TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& p
   }
   const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
   TilePoint<K> point;
-  for (int a = 0; a < K; ++a) {
-    const double mean = sum.point[a] / sum.weight;
-    const double centre = uneven ? 0.487 + 0.01 * a : 0.5;
-    const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
-    point[a] = share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
-  }
+  for (int a = 0; a < K; ++a) point[a] = own_coordinate(sum.point[a] / sum.weight, a, has_corners, uneven);
   return point;
 }
 

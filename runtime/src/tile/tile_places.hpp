@@ -152,26 +152,23 @@ class TilePlaces {
     return divided(sum);
   }
 
-  /// As own_place and mask_place of 4D tiles (extract_tables.hpp), in the frame of the vertex's face: a layer's contours
-  /// agree with those of a 4D image bit by bit.
+  /// As own_place and mask_place of 4D tiles (extract_tables.hpp), in the frame of the vertex's face: a layer's
+  /// contours agree with those of a 4D image bit by bit.
   Point mean_of_points(const BuiltTile::Vertex& vertex) noexcept {
     Weighted<N> sum;
     bool has_corners = false;
     for (std::size_t at = vertex.first; at < vertex.end; at += 2) {
       const std::uint16_t v = tile_->of[at];
       has_corners = has_corners || tile_->vertices[v].kind == tile::VertexKind::corner;
-      sum.add((*this)(v), vertex.is_even ? 1.0 : 1.0 + 0.01 * tile_->of[at + 1]);
+      sum.add((*this)(v), vertex.is_even ? 1.0 : uneven_weight(tile_->of[at + 1]));
     }
     const CubeFaces::Cell& face = cube_.cells()[vertex.face];
     Point point = corner_point<N>(face.base);
     int own_axis = 0;
     for (int a = 0; a < N; ++a) {
       if ((face.axes >> a & 1u) == 0) continue;
-      const double centre = vertex.is_even ? 0.5 : 0.487 + 0.01 * own_axis++;
-      const double share = has_corners ? 0.5 : vertex.is_even ? 0.0 : 0.1;
-      const double mean = sum.point[a] / sum.weight;
-      point[a] = share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
-      for (unsigned repeat = 0; repeat < vertex.repeats; ++repeat) point[a] += 0.0625 * (0.5 - point[a]);
+      point[a] = own_coordinate(sum.point[a] / sum.weight, own_axis++, has_corners, !vertex.is_even);
+      for (unsigned repeat = 0; repeat < vertex.repeats; ++repeat) point[a] = repeated_coordinate(point[a]);
     }
     return point;
   }

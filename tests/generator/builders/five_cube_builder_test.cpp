@@ -19,12 +19,7 @@ namespace {
 
 using Checks = FiveCubeChecks<builders::FiveCubeBuilder, builders::FiveKey, builders::FiveCube>;
 
-// Sanitizers make it ten times as slow, and a few tiles show them all there is.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kShare = 100;
-#else
-constexpr std::size_t kShare = 1000;
-#endif
+constexpr std::size_t kShare = unless_sanitized(1000, 100);
 
 TEST(FiveCubeBuilder, RandomTilesPassTheCertificateAndAgreeWithTheGeneralBuilder) {
   const std::size_t tiles = cases_to_test(100'000, kShare);
