@@ -47,9 +47,10 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
   // n slabs need n + 1 counted and n + 2 classified layers. With `ahead`, the next batch's layers are classified too.
   const std::size_t bits = (ahead ? 2 : 1) * counter.layer_bytes();
   constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
+  constexpr std::size_t kObjects = 4096;  // the extraction itself, its source, estimator and lists by thread
   const auto fit = [&] {
-    const auto fixed =
-        static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
+    const auto fixed = static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() +
+                                           threads * thread_bytes + kObjects);
     // 2D does not reuse planes (take_planes), so each of two batches needs its own.
     const std::size_t planes = (ahead && N == 2 ? 2 : 1) * (counter.layer_planes_bytes() + counter.slab_planes_bytes());
     const auto each = static_cast<double>(bits + planes + (ahead ? 2 : 1) * kBookkeeping);
