@@ -193,7 +193,8 @@ std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<LocalSimple
 
 }  // namespace
 
-BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const SigmaComplex& sigma, std::size_t limit) {
+BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const SigmaComplex& sigma, std::size_t limit,
+                            const std::function<bool(const BallDissection&)>& accepts) {
   std::set<std::uint8_t> seen;
   for (const LocalSimplex& s : sphere) seen.insert(s.begin(), s.begin() + 3);
   const std::vector<std::uint8_t> vertices(seen.begin(), seen.end());
@@ -202,22 +203,25 @@ BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const Sigma
   constexpr int kTries = 40;
   Dice dice(0x9e3779b9u);
   BallDissection best;
-  // random descents; a new best result lowers the limit
+  // Random descents; a new best result lowers the limit. `accepts` is slow, so each descent shows it only its smallest
+  // dissection.
   for (int i = 0; i < kTries && limit + 3 >= vertices.size(); ++i) {
     Front front = start;
-    while (front.tetrahedra().size() + front.vertices_left() <= limit + 3) {
-      if (front.vertices_left() == 4 ? front.take_last() : !step(front, vertices.size(), dice)) {
-        if (front.vertices_left() == 4 && front.tetrahedra().size() <= limit) {
-          best = {front.tetrahedra(), {}};
-          limit = best.tetrahedra.size() - 1;
-        }
-        break;
+    BallDissection smallest;
+    std::size_t most = limit;
+    while (front.tetrahedra().size() + front.vertices_left() <= most + 3) {
+      const bool is_last = front.vertices_left() == 4;
+      if (is_last ? !front.take_last() : !step(front, vertices.size(), dice)) break;
+      const std::size_t coned = is_last ? 0 : 2 * front.vertices_left() - 4;
+      if ((is_last || front.vertices_left() > 4) && front.tetrahedra().size() + coned <= most) {
+        smallest = {front.tetrahedra(), is_last ? std::vector<LocalSimplex>{} : front.triangles()};
+        most = front.tetrahedra().size() + coned - 1;
       }
-      const std::size_t coned = front.tetrahedra().size() + 2 * front.vertices_left() - 4;
-      if (front.vertices_left() == 4 || coned > limit) continue;
-      best = {front.tetrahedra(), front.triangles()};
-      limit = coned - 1;
+      if (is_last) break;
     }
+    if (smallest.empty() || (accepts && !accepts(smallest))) continue;
+    best = std::move(smallest);
+    limit = most;
   }
   std::sort(best.tetrahedra.begin(), best.tetrahedra.end());
   return best;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "filling/sigma_complex.hpp"
@@ -29,6 +30,10 @@ struct BallDissection {
 /// triangles, which removes the vertex, or over two triangles with a common edge, which exchanges the edge for the
 /// other diagonal. A complete removal with V vertices and x exchanges has V - 3 + x tetrahedra. Many tries with seeded
 /// random choices search for a good order of steps.
-BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const SigmaComplex& sigma, std::size_t limit);
+///
+/// If `accepts` is given, the result is the smallest one found for which it returns true. It is called for dissections
+/// smaller than those accepted before.
+BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const SigmaComplex& sigma, std::size_t limit,
+                            const std::function<bool(const BallDissection&)>& accepts = {});
 
 }  // namespace tegl::gen

@@ -98,7 +98,10 @@ ContourBuilder::ContourBuilder(const Lattice& lattice, int n, Alternative altern
     : FaceContours(tile_of(lattice, n), alternative, triangulation,
                    contours_of_faces(lattice, n, alternative, triangulation)) {
   if (n == 1) return;
-  if (n >= 3 && triangulation == Triangulation::compact) hulls_ = std::make_unique<HullContours>(tile());
+  if (n >= 3 && triangulation == Triangulation::compact) {
+    hulls_ = std::make_unique<HullContours>(tile());
+    proof_ = std::make_unique<EmbeddingProof>(tile());
+  }
   if (n == 4 && tile().kind == TileKind::cube) {  // 4-simplices have spherical components only
     const auto contours = contours_by_dimension(lattice, 3, Alternative::low, triangulation);
     side_regions_ = std::make_unique<SignatureRegions>(lattice, 3, contours, RegionStyle::cone);
@@ -136,7 +139,7 @@ TileContour ContourBuilder::build(Signature signature) const {
   if (dim() == 2)
     cut_runs(tile(), signature, alternative(), contour);
   else
-    fill(*this, {hulls_.get(), side_regions_.get()}, signature, contour);
+    fill(*this, {hulls_.get(), proof_.get(), side_regions_.get()}, signature, contour);
   return contour;
 }
 

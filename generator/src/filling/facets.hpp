@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/lattice.hpp"
+#include "filling/embedding_proof.hpp"
 #include "filling/face_contours.hpp"
 #include "filling/hull.hpp"
 #include "filling/tile_contour.hpp"
@@ -34,6 +35,7 @@ class ContourBuilder : public FaceContours {
   void find_orientation();
 
   std::unique_ptr<HullContours> hulls_;             ///< for the compact triangulation, n >= 3
+  std::unique_ptr<EmbeddingProof> proof_;           ///< for the compact triangulation, n >= 3
   std::unique_ptr<SignatureRegions> side_regions_;  ///< for 4-cubes: regions of the cubes, copied by side filling
 };
 

@@ -316,10 +316,30 @@ std::vector<LocalSimplex> oriented(std::vector<LocalSimplex> tetrahedra, const C
   return result;
 }
 
+std::vector<LocalSimplex> all_of(const BallDissection& ball, std::uint8_t own_vertex) {
+  std::vector<LocalSimplex> result = ball.tetrahedra;
+  for (const LocalSimplex& t : ball.rest) result.push_back({own_vertex, t[0], t[1], t[2]});  // the cone vertex first
+  return result;
+}
+
+void take_dissection(const BallDissection& ball, const Component& c, std::uint8_t own_vertex, LocalFacet& facet) {
+  facet.simplices = oriented(all_of(ball, own_vertex), c);
+  facet.filling = ball.rest.empty() ? Filling::pulled : Filling::cone;
+}
+
+/// Whether simplices are embedded for all positions; the own vertex is the mean of the vertices that it is coned to.
+bool are_embedded(const FaceContours& faces, const EmbeddingProof& proof, std::uint8_t own_vertex,
+                  const std::vector<LocalSimplex>& simplices) {
+  EmbeddingProof::Means means(own_vertex - faces.tile().edge_count() + 1u);
+  for (const LocalSimplex& s : simplices)
+    if (s[0] == own_vertex) means.back() |= 1u << s[1] | 1u << s[2] | 1u << s[3];
+  return proof.holds(simplices, means);
+}
+
 /// Fills a component with few simplices: from the hull, as a cone from one of its own vertices (a polygon: by chords),
 /// or by a dissection of the ball, whichever gives the fewest. The dissection may add one cone vertex.
-bool fill_compact(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
-                  std::uint8_t own_vertex, LocalFacet& facet) {
+bool fill_smallest(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
+                   std::uint8_t own_vertex, LocalFacet& facet) {
   LocalFacet other;
   facet.filling = Filling::pulled;
   const bool from_hull = fill_from_hull(faces, hulls, signature, c, facet);
@@ -331,14 +351,41 @@ bool fill_compact(const FaceContours& faces, const HullContours& hulls, Signatur
   if (faces.dim() == 4 && c.euler == 2) {
     const std::size_t limit = facet.simplices.empty() ? c.boundary.size() - 1 : facet.simplices.size() - 1;
     BallDissection ball = dissect_ball(c.boundary, SigmaComplex(faces, c.boundary), limit);
-    if (!ball.empty()) {
-      for (const LocalSimplex& t : ball.rest)
-        ball.tetrahedra.push_back({own_vertex, t[0], t[1], t[2]});  // the cone vertex first
-      facet.simplices = oriented(std::move(ball.tetrahedra), c);
-      facet.filling = ball.rest.empty() ? Filling::pulled : Filling::cone;
-    }
+    if (!ball.empty()) take_dissection(std::move(ball), c, own_vertex, facet);
   }
   return !facet.simplices.empty();
+}
+
+/// The smallest filling of a sphere that is embedded for all positions: a cone from one of its own vertices or a
+/// dissection, if it has fewer simplices than the cone from inside.
+bool fill_embedded(const FaceContours& faces, const EmbeddingProof& proof, const Component& c, std::uint8_t own_vertex,
+                   LocalFacet& facet) {
+  const SigmaComplex sigma(faces, c.boundary);
+  std::size_t limit = c.boundary.size() - 1;
+  for (const std::uint8_t apex : c.vertices) {
+    auto cone = pulled_cone(c, apex);
+    if (cone.size() > limit || !proof.holds(cone) ||
+        !std::all_of(cone.begin(), cone.end(), [&](const LocalSimplex& s) { return sigma.allows(s); }))
+      continue;
+    limit = cone.size() - 1;
+    facet.simplices = std::move(cone);
+    facet.filling = Filling::pulled;
+  }
+  const BallDissection ball = dissect_ball(c.boundary, sigma, limit, [&](const BallDissection& candidate) {
+    return are_embedded(faces, proof, own_vertex, all_of(candidate, own_vertex));
+  });
+  if (!ball.empty()) take_dissection(ball, c, own_vertex, facet);
+  return !facet.simplices.empty();
+}
+
+/// Fills a component compactly so that it is embedded for all positions. Returns false if no such filling has fewer
+/// simplices than the cone from inside.
+bool fill_compact(const FaceContours& faces, const FillingSources& sources, Signature signature, const Component& c,
+                  std::uint8_t own_vertex, LocalFacet& facet) {
+  if (!fill_smallest(faces, *sources.hulls, signature, c, own_vertex, facet)) return false;
+  if (are_embedded(faces, *sources.proof, own_vertex, facet.simplices)) return true;
+  facet.simplices.clear();
+  return faces.dim() == 4 && c.euler == 2 && fill_embedded(faces, *sources.proof, c, own_vertex, facet);
 }
 
 }  // namespace
@@ -356,7 +403,7 @@ void fill(const FaceContours& faces, const FillingSources& sources, Signature si
     if (fill_simplex(n, c, facet)) {
       facet.filling = Filling::simplex;
     } else if (const auto own = static_cast<std::uint8_t>(faces.own_base() + contour.cone_vertices);
-               compact && fill_compact(faces, *sources.hulls, signature, c, own, facet)) {
+               compact && fill_compact(faces, sources, signature, c, own, facet)) {
       if (facet.filling == Filling::cone) ++contour.cone_vertices;
     } else if (n == 4 && c.euler != 2) {
       facet.filling = Filling::side;

@@ -3,6 +3,7 @@
 // Fills the components of Sigma (private to the generator).
 #pragma once
 
+#include "filling/embedding_proof.hpp"
 #include "filling/face_contours.hpp"
 #include "filling/hull.hpp"
 #include "filling/tile_contour.hpp"
@@ -13,6 +14,7 @@ namespace tegl::gen {
 /// Auxiliary data for fillings, besides Sigma.
 struct FillingSources {
   const HullContours* hulls = nullptr;             ///< hulls of the tile; required for compact contours
+  const EmbeddingProof* proof = nullptr;           ///< of the tile; required for compact contours
   const SignatureRegions* side_regions = nullptr;  ///< regions of the tile's faces; required for 4-cubes
 };
 

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Separation of sets of corners by the hyperplanes that corners span.
+#include "filling/embedding_proof.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+
+namespace tegl::gen {
+
+namespace {
+
+using IntPoint = std::array<int, 4>;
+
+IntPoint corner_of(const Tile& tile, std::size_t v) {
+  IntPoint point{};
+  for (int i = 0; i < tile.dim; ++i) point[i] = static_cast<int>(tile.corners[v][i]);
+  return point;
+}
+
+/// A normal of the hyperplane in n-space parallel to n - 1 vectors: their generalized cross product.
+IntPoint normal_to(const std::array<IntPoint, 3>& d, int n) {
+  const auto minor2 = [&](int a, int b) { return d[0][a] * d[1][b] - d[0][b] * d[1][a]; };
+  const auto minor3 = [&](int a, int b, int c) {
+    return minor2(a, b) * d[2][c] - minor2(a, c) * d[2][b] + minor2(b, c) * d[2][a];
+  };
+  if (n == 2) return {d[0][1], -d[0][0], 0, 0};
+  if (n == 3) return {minor2(1, 2), -minor2(0, 2), minor2(0, 1), 0};
+  return {minor3(1, 2, 3), -minor3(0, 2, 3), minor3(0, 1, 3), -minor3(0, 1, 2)};
+}
+
+/// Calls visit(chosen) for all ascending sequences of `count` numbers below `end`.
+template <class Visit>
+void for_each_choice(std::size_t count, std::size_t end, std::vector<std::size_t>& chosen, const Visit& visit) {
+  if (chosen.size() == count) return visit();
+  for (std::size_t v = chosen.empty() ? 0 : chosen.back() + 1; v < end; ++v) {
+    chosen.push_back(v);
+    for_each_choice(count, end, chosen, visit);
+    chosen.pop_back();
+  }
+}
+
+}  // namespace
+
+EmbeddingProof::EmbeddingProof(const Tile& tile) : tile_(&tile) {
+  std::vector<std::size_t> chosen;
+  for_each_choice(static_cast<std::size_t>(tile.dim), tile.corner_count(), chosen, [&] { add_hyperplane(chosen); });
+  if (hyperplanes_.size() > kWords * 64) throw std::logic_error("a tile with more hyperplanes than expected");
+  for (std::size_t k = 0; k < hyperplanes_.size(); ++k) existing_[k / 64] |= std::uint64_t{1} << k % 64;
+  of_edges_.resize((tile.edge_count() + 7) / 8);
+  for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
+    for (unsigned byte = 0; byte < 256; ++byte)
+      if ((byte >> e % 8 & 1u) != 0) of_edges_[e / 8][byte].add(sides_of_edge(e));
+  for (unsigned p = 1; p < 1u << tile.dim; ++p)
+    for (unsigned q = 1; q < 1u << tile.dim; ++q)
+      if (std::popcount(p) + std::popcount(q) <= tile.dim + 2) face_pairs_.emplace_back(p, q);
+  for (const SubTile& face : tile.faces) {
+    std::uint32_t edges = 0;
+    for (const std::uint8_t e : face.edge) edges |= 1u << e;
+    facets_.push_back(edges);
+  }
+}
+
+EmbeddingProof::Sides EmbeddingProof::sides_of_edge(std::uint32_t e) const {
+  const std::uint32_t ends = 1u << tile_->edges[e][0] | 1u << tile_->edges[e][1];
+  Sides sides;
+  for (std::size_t k = 0; k < hyperplanes_.size(); ++k) {
+    const auto& [above, below] = hyperplanes_[k];
+    if ((ends & above) != 0) sides.above[k / 64] |= std::uint64_t{1} << k % 64;
+    if ((ends & below) != 0) sides.below[k / 64] |= std::uint64_t{1} << k % 64;
+  }
+  return sides;
+}
+
+void EmbeddingProof::add_hyperplane(std::span<const std::size_t> through) {
+  const IntPoint base = corner_of(*tile_, through[0]);
+  std::array<IntPoint, 3> directions{};
+  for (std::size_t r = 1; r < through.size(); ++r) {
+    const IntPoint point = corner_of(*tile_, through[r]);
+    for (int i = 0; i < tile_->dim; ++i) directions[r - 1][i] = point[i] - base[i];
+  }
+  const IntPoint normal = normal_to(directions, tile_->dim);
+  std::uint32_t above = 0, below = 0;
+  for (std::uint32_t v = 0; v < tile_->corner_count(); ++v) {
+    const IntPoint point = corner_of(*tile_, v);
+    int height = 0;
+    for (int i = 0; i < tile_->dim; ++i) height += normal[i] * (point[i] - base[i]);
+    if (height > 0) above |= 1u << v;
+    if (height < 0) below |= 1u << v;
+  }
+  if ((above | below) == 0) return;  // the corners span less than a hyperplane
+  const std::pair hyperplane{std::max(above, below), std::min(above, below)};
+  if (std::find(hyperplanes_.begin(), hyperplanes_.end(), hyperplane) == hyperplanes_.end())
+    hyperplanes_.push_back(hyperplane);
+}
+
+EmbeddingProof::Simplex EmbeddingProof::prepared(const LocalSimplex& simplex, const Means& means) const {
+  Simplex result;
+  for (unsigned set = 1; set < result.faces.size(); ++set) {
+    for (int i = 0; i < tile_->dim; ++i)
+      if ((set >> i & 1u) != 0) result.faces[set] |= Vertices{1} << simplex[i];
+    result.edges[set] = edges_of(result.faces[set], means);
+    result.sides[set] = sides_of(result.edges[set]);
+  }
+  return result;
+}
+
+/// The edges of whose points the vertices are positive combinations.
+std::uint32_t EmbeddingProof::edges_of(Vertices vertices, const Means& means) const {
+  const std::uint32_t count = tile_->edge_count();
+  auto edges = static_cast<std::uint32_t>(vertices & ((Vertices{1} << count) - 1));
+  for (Vertices rest = vertices >> count; rest != 0; rest &= rest - 1)
+    edges |= means[static_cast<std::size_t>(std::countr_zero(rest))];
+  return edges;
+}
+
+EmbeddingProof::Sides EmbeddingProof::sides_of(std::uint32_t edges) const {
+  Sides sides;
+  for (const SidesOfByte& of_byte : of_edges_) {
+    sides.add(of_byte[edges & 0xffu]);
+    edges >>= 8;
+  }
+  return sides;
+}
+
+bool EmbeddingProof::in_one_facet(std::uint32_t edges) const {
+  return std::any_of(facets_.begin(), facets_.end(), [&](std::uint32_t facet) { return (edges & ~facet) == 0; });
+}
+
+/// True if a hyperplane separates the two sets properly.
+bool EmbeddingProof::have_separate_interiors(const Sides& p, const Sides& q) noexcept {
+  std::uint64_t separating = 0;
+  for (std::size_t k = 0; k < kWords; ++k) {
+    separating |= ~p.below[k] & ~q.above[k] & (p.above[k] | q.below[k]);
+    separating |= ~p.above[k] & ~q.below[k] & (p.below[k] | q.above[k]);
+  }
+  return separating != 0;
+}
+
+/// A sufficient condition, faster than may_meet: one hyperplane has a on one side, b on the other, and on itself no
+/// vertices but common ones of either a or b. So they meet in the simplex of these vertices.
+bool EmbeddingProof::are_divided(const Simplex& a, const Simplex& b) const {
+  const Vertices common = a.faces.back() & b.faces.back();
+  for (std::size_t k = 0; k < kWords; ++k) {
+    const auto through = [&](const Simplex& simplex) {  // hyperplanes with a vertex that is not common
+      std::uint64_t result = 0;
+      for (unsigned one = 1; one < 1u << tile_->dim; one *= 2)
+        if ((simplex.faces[one] & common) == 0) result |= ~(simplex.sides[one].above[k] | simplex.sides[one].below[k]);
+      return result;
+    };
+    const Sides &all_a = a.sides.back(), &all_b = b.sides.back();
+    const std::uint64_t between = (~all_a.below[k] & ~all_b.above[k]) | (~all_a.above[k] & ~all_b.below[k]);
+    if ((between & ~(through(a) & through(b)) & existing_[k]) != 0) return true;
+  }
+  return false;
+}
+
+/// True if a hyperplane contains the edges `both` and separates p and q properly.
+bool EmbeddingProof::are_separate_around(std::uint32_t p, std::uint32_t q, std::uint32_t both) const {
+  const Sides a = sides_of(p), b = sides_of(q), on = sides_of(both);
+  std::uint64_t separating = 0;
+  for (std::size_t k = 0; k < kWords; ++k) {
+    const std::uint64_t through = ~on.above[k] & ~on.below[k];
+    separating |= through & ~a.below[k] & ~b.above[k] & (a.above[k] | b.below[k]);
+    separating |= through & ~a.above[k] & ~b.below[k] & (a.below[k] | b.above[k]);
+  }
+  return separating != 0;
+}
+
+/// True if the relative interiors of p and q meet for some positions and weights. A mean was replaced by its points. A
+/// point on both sides counts on either or, if its weights are equal, on none.
+bool EmbeddingProof::may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) const {
+  const std::uint32_t both = of_p & of_q;
+  if (are_separate_around(of_p & ~both, of_q & ~both, both)) return false;
+  for (std::uint32_t to_p = both;; to_p = (to_p - 1) & both) {
+    const std::uint32_t rest = both & ~to_p, left = (of_p & ~both) | to_p;
+    const Sides sides = sides_of(left);
+    for (std::uint32_t to_q = rest;; to_q = (to_q - 1) & rest) {
+      const std::uint32_t right = (of_q & ~both) | to_q;
+      if (left != 0 && right != 0 && !have_separate_interiors(sides, sides_of(right))) return true;
+      if (to_q == 0) break;
+    }
+    if (to_p == 0) break;
+  }
+  return false;
+}
+
+/// True if simplices a and b may meet outside of the simplex of their common vertices. Then the relative interiors of
+/// two disjoint faces meet; by Radon's theorem, faces with n + 2 vertices in total are enough.
+bool EmbeddingProof::may_meet(const Simplex& a, const Simplex& b) const {
+  if (are_divided(a, b)) return false;
+  for (const auto& [p, q] : face_pairs_) {
+    if ((a.faces[p] & b.faces[q]) != 0) continue;
+    const bool meet = (a.edges[p] & b.edges[q]) == 0 ? !have_separate_interiors(a.sides[p], b.sides[q])
+                                                     : may_meet_inside(a.edges[p], b.edges[q]);
+    if (meet && !in_one_facet(a.edges[p] | b.edges[q])) return true;
+  }
+  return false;
+}
+
+bool EmbeddingProof::holds(std::span<const LocalSimplex> simplices, const Means& means) const {
+  std::vector<Simplex> all;
+  for (const LocalSimplex& s : simplices) {
+    const Simplex& last = all.emplace_back(prepared(s, means));
+    if (std::any_of(all.begin(), all.end() - 1, [&](const Simplex& t) { return may_meet(last, t); })) return false;
+  }
+  return true;
+}
+
+bool EmbeddingProof::holds_between(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
+                                   const Means& means) const {
+  std::vector<Simplex> others;
+  for (const LocalSimplex& s : second) others.push_back(prepared(s, means));
+  return std::none_of(first.begin(), first.end(), [&](const LocalSimplex& s) {
+    const Simplex one = prepared(s, means);
+    return std::any_of(others.begin(), others.end(), [&](const Simplex& t) { return may_meet(one, t); });
+  });
+}
+
+}  // namespace tegl::gen
