@@ -108,7 +108,23 @@ std::vector<std::vector<LocalSimplex>> split(std::vector<LocalSimplex> rest, int
   return components;
 }
 
+constexpr std::uint8_t kNoVertex = 255;
+
 }  // namespace
+
+/// The barycentre of the only facet in the boundary of a region with these vertices. From there, every point of the
+/// region is visible, for all positions: the facet is a cone from the same point, and every other ray leaves the tile
+/// once. kNoVertex if several facets bound the region, or one without a barycentre.
+std::uint8_t SignatureRegions::only_barycentre(const TileContour& contour, const std::array<bool, 256>& region) const {
+  std::uint8_t result = kNoVertex;
+  int facets = 0;
+  for (const LocalFacet& facet : contour.facets) {
+    if (facet.points.empty() || !region[tile_->corner_count() + facet.points[0]]) continue;
+    ++facets;
+    if (facet.filling == Filling::cone) result = static_cast<std::uint8_t>(tile_->corner_count() + facet.simplices[0][0]);
+  }
+  return facets == 1 && tile_->dim == 3 ? result : kNoVertex;
+}
 
 TileRegions SignatureRegions::build(Signature signature, const TileContour& contour) const {
   const int k = tile_->dim;
@@ -127,11 +143,14 @@ TileRegions SignatureRegions::build(Signature signature, const TileContour& cont
         lowest = std::min(lowest, s[i]);
         if (s[i] < tile_->corner_count() + tile_->edge_count()) mask |= 1u << s[i];
       }
-    // cone from the smallest vertex or an own vertex
+    // cone from the smallest vertex, from the barycentre of the only facet around it, or from an own vertex
+    const std::uint8_t barycentre = only_barycentre(contour, seen);
     const bool simplex = vertices == static_cast<std::size_t>(k) + 1 && component.size() == vertices;
     const bool from_own_vertex = simplex || (k == 2 && style_ == RegionStyle::fan);
     std::uint8_t apex = lowest;
-    if (!from_own_vertex) {
+    if (!from_own_vertex && barycentre != kNoVertex) {
+      apex = barycentre;
+    } else if (!from_own_vertex) {
       apex = static_cast<std::uint8_t>(own_base() + result.own_masks.size());
       result.own_masks.push_back(mask);
     }

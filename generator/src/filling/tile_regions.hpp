@@ -3,6 +3,7 @@
 // The triangulated high part of a tile, built from the contours of the tile and of its faces.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -12,8 +13,8 @@
 
 namespace tegl::gen {
 
-/// cone: every region that is not a simplex is coned from its barycentre, so no chord joins two contour points. fan:
-/// regions of squares are fans from a corner instead.
+/// cone: every region that is not a simplex is coned from its barycentre, or in a cube from the barycentre of its only
+/// facet, so no chord joins two contour points. fan: regions of squares are fans from a corner instead.
 enum class RegionStyle { cone, fan };
 
 /// The high part of a k-tile (k <= 3): disjoint balls. Local vertices as in the table contract (RegionTable).
@@ -41,6 +42,7 @@ class SignatureRegions {
  private:
   [[nodiscard]] TileRegions build(Signature signature, const TileContour& contour) const;
   [[nodiscard]] std::vector<LocalSimplex> boundary(Signature signature, const TileContour& contour) const;
+  [[nodiscard]] std::uint8_t only_barycentre(const TileContour& contour, const std::array<bool, 256>& region) const;
   [[nodiscard]] std::uint8_t lift(std::uint32_t f, std::uint8_t vertex) const;
 
   const Tile* tile_;
