@@ -160,6 +160,9 @@ void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
              of(Filling::cone), of(Filling::pulled), of(Filling::side));
   fmt::print("  simplices    {}: {:.2f} per signature, at most {}\n", f.simplices,
              static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.max_simplices);
+  fmt::print("  embedded     {} proved for all positions", f.embedded);
+  if (f.searched != 0) fmt::print(", {} searched", f.searched);
+  fmt::print("\n");
   if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);
 }
 
@@ -168,11 +171,13 @@ std::string figures_json(const CertifiedFigures& f) {
       "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
       "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
       "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
-      "\"mean_simplices\": {:.4f}, \"pairs\": {}, \"unmatched_pairs\": {}}}",
+      "\"mean_simplices\": {:.4f}, \"embedded_proved\": {}, \"embedded_searched\": {}, \"pairs\": {}, "
+      "\"unmatched_pairs\": {}}}",
       alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
       f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
       f.highest_genus, f.simplices, f.max_simplices,
-      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
+      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.embedded, f.searched, f.pairs.pairs,
+      f.pairs.unmatched);
 }
 
 int run_certify(const Options& options) {

@@ -98,13 +98,13 @@ void print_classes(const Options& options, const Tile& tile, const std::vector<G
 }
 
 void print_figures_of(const TableSet& set) {
-  fmt::print("\n{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>9}\n", "alternative", "triangulation", "certified",
-             "facets", "non-spherical", "simplices", "at most", "pairs");
+  fmt::print("\n{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>8} {:>9}\n", "alternative", "triangulation",
+             "certified", "facets", "non-spherical", "simplices", "at most", "embedded", "pairs");
   bool non_spherical = false, pairs = false;
   for (const CertifiedFigures& f : set.figures) {
-    fmt::print("{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>9}\n", alternative_name(f.alternative),
+    fmt::print("{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>8} {:>9}\n", alternative_name(f.alternative),
                triangulation_name(f.triangulation), f.signatures, f.facets, f.others, f.simplices, f.max_simplices,
-               f.pairs.pairs == 0 ? "-" : std::to_string(f.pairs.pairs));
+               f.embedded, f.pairs.pairs == 0 ? "-" : std::to_string(f.pairs.pairs));
     non_spherical |= f.others != 0;
     pairs |= f.pairs.pairs != 0;
   }

@@ -34,9 +34,19 @@ PairFigures matching_pairs(const ContourBuilder& builder, const std::vector<Tile
 std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high,
                                        const Transversal& classes, bool pairs, std::vector<CertifiedFigures>& figures) {
   CertifiedFigures of_low, of_high;
-  auto contours = certified_contours(low, classes, of_low);
-  const auto high_contours = certified_contours(high, classes, of_high);
+  auto contours = certified_contours(
+      low, [&](Signature s) { return low.build(s); }, classes, of_low);
+  // Building all compact 4D contours takes most of the time. Of the high-connected ones, a share is built, to see that
+  // they are the inverted ones.
+  constexpr Signature kShare = 16;
+  const auto make_high = [&](Signature s) {
+    return low.dim() < 4 || s % kShare == 0 ? high.build(s) : inverted(4, contours[contours.size() - 1 - s]);
+  };
+  const auto high_contours = certified_contours(high, make_high, classes, of_high);
   check_inversion(low.dim(), contours, high_contours);
+  certify_embedding(low, contours, of_low);  // the inverse is embedded as well
+  of_high.embedded = of_low.embedded;
+  of_high.searched = of_low.searched;
   if (pairs) {
     of_low.pairs = matching_pairs(low, contours);
     of_high.pairs = matching_pairs(high, high_contours);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <map>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "base/fnv.hpp"
 #include "base/parallel.hpp"
 #include "filling/certificate.hpp"
+#include "filling/embedding_evidence.hpp"
 
 namespace tegl::gen {
 
@@ -228,14 +230,25 @@ tables::TileTable TileTables::view() const {
           side_masks.data()};
 }
 
-std::vector<TileContour> certified_contours(const ContourBuilder& builder, const Transversal& classes,
-                                            CertifiedFigures& figures) {
+TileContour inverted(int dim, const TileContour& contour) {
+  TileContour result = contour;
+  for (LocalFacet& facet : result.facets) {
+    if (dim == 3) std::reverse(facet.points.begin() + 1, facet.points.end());
+    for (LocalSimplex& s : facet.simplices) std::swap(s[dim - 1], s[dim - 2]);
+  }
+  for (LocalSimplex& s : result.boundary) std::swap(s[dim - 2], s[dim - 3]);
+  return result;
+}
+
+std::vector<TileContour> certified_contours(const ContourBuilder& builder,
+                                            const std::function<TileContour(Signature)>& make,
+                                            const Transversal& classes, CertifiedFigures& figures) {
   const std::uint64_t count = builder.tile().full() + 1;
   // build and certify on all processors
   std::vector<TileContour> contours(count);
   const auto build = [&](TableCertifier& certifier, std::uint64_t number) {
     const auto s = static_cast<std::uint32_t>(number);
-    contours[s] = builder.build(s);
+    contours[s] = make(s);
     if (const tile::Fault fault = certifier.certify(s, contours[s]); fault != tile::Fault::none)
       throw Error(ErrorCode::CertificateFailed,
                   fmt::format("signature {} of the {}-tile: {}", s, builder.dim(), tile::name_of(fault)));
@@ -268,6 +281,30 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder, const
     if (others && classes.representatives[classes.class_of[s]] == s) figures.classes_with_others.push_back(s);
   }
   return contours;
+}
+
+void certify_embedding(const ContourBuilder& builder, const std::vector<TileContour>& contours,
+                       CertifiedFigures& figures) {
+  const EmbeddingCertifier certifier(builder);
+  std::atomic<std::uint64_t> embedded = 0, searched = 0;
+  const auto judge = [&](int, std::uint64_t s) {
+    switch (certifier.of(contours[s])) {
+      case Evidence::proved:
+        ++embedded;
+        return;
+      case Evidence::searched:
+        ++searched;
+        return;
+      case Evidence::absent:
+        throw Error(
+            ErrorCode::CertificateFailed,
+            fmt::format("signature {} of the {}-tile: its simplices intersect for some positions", s, builder.dim()));
+    }
+  };
+  in_parallel(
+      contours.size(), kChunk, 0, [] { return 0; }, judge, [](int) {});
+  figures.embedded = embedded;
+  figures.searched = searched;
 }
 
 void check_inversion(int dim, const std::vector<TileContour>& low, const std::vector<TileContour>& high) {

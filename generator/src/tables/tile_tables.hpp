@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -76,13 +77,24 @@ struct CertifiedFigures {
   std::uint64_t signatures_with_others = 0;                  ///< signatures with a facet that is not a ball
   std::vector<Signature> classes_with_others;                ///< representatives, ascending
   std::array<std::uint64_t, 4> by_filling{};                 ///< number of facets by Filling
+  std::uint64_t embedded = 0;                                ///< signatures proved to be embedded
+  std::uint64_t searched = 0;                                ///< other signatures, embedded as far as a search shows
   PairFigures pairs;                                         ///< pairs of neighbours; all 0 if pairs were not certified
 };
 
-/// Builds the contours of all signatures and certifies each. `classes`: of the builder's tile. Uses all processors; the
-/// result does not depend on their number. Throws Error{CertificateFailed} with the first signature that fails.
-std::vector<TileContour> certified_contours(const ContourBuilder& builder, const Transversal& classes,
-                                            CertifiedFigures& figures);
+/// Makes the contours of all signatures by `make`, thread-safe, and certifies each as a contour of `builder`. `classes`:
+/// of the builder's tile. Uses all processors; the result does not depend on their number. Throws Error{CertificateFailed} with the first signature that fails.
+std::vector<TileContour> certified_contours(const ContourBuilder& builder,
+                                            const std::function<TileContour(Signature)>& make,
+                                            const Transversal& classes, CertifiedFigures& figures);
+
+/// The contour of the complement in the other alternative: the same simplices with reversed orientation. n = 3, 4.
+TileContour inverted(int dim, const TileContour& contour);
+
+/// Counts the contours that are proved to be embedded for all positions (filling/embedding_evidence.hpp). Throws
+/// Error{CertificateFailed} with the first signature whose simplices intersect for some positions.
+void certify_embedding(const ContourBuilder& builder, const std::vector<TileContour>& contours,
+                       CertifiedFigures& figures);
 
 /// Throws Error{Internal} unless, for every signature s, the contour `high[s]` is `low[~s]` with reversed orientation,
 /// vertex by vertex. This property lets one table serve both alternatives.
