@@ -166,7 +166,7 @@ TEST(GenCli, ADimensionWithoutACommandIsCertifiedAndSummarised) {
   EXPECT_EQ(text.status, 0) << text.err;
   for (const char* const line :
        {"2-tile: 4 corners, 16 signatures\n", "      6       4  rotations\n",
-        "low         barycentric          16      16             0        16       2       128",
+        "low         barycentric          16      16             0        16       2       16       128",
         "Every signature is certified, and every pair of neighbours matches.\n",
         "tile2_compact                  flat     16        16       256\n"}) {
     EXPECT_THAT(text.out, HasSubstr(line));
@@ -180,6 +180,8 @@ TEST(GenCli, ADimensionWithoutACommandIsCertifiedAndSummarised) {
   ASSERT_EQ(summary.at("certified").size(), 4U);
   for (const json& figures : summary.at("certified")) {
     EXPECT_EQ(figures.at("passed"), 256);
+    EXPECT_EQ(figures.at("embedded_proved"), 256);
+    EXPECT_EQ(figures.at("embedded_searched"), 0);
     EXPECT_EQ(figures.at("pairs"), 3 * 16 * 16 * 16);
     EXPECT_EQ(figures.at("unmatched_pairs"), 0);
   }
