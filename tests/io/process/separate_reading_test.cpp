@@ -319,7 +319,7 @@ TEST(SeparateReading, LeavesNothingBehindAndWorksWhileOtherThreadsDo) {
   for (int i = 0; i < 20; ++i) open_layers(dir / "b.nc", ReadImageOptions{.separate_process = true});
   done = true;
   busy.join();
-  EXPECT_EQ(open_descriptors(), before);
+  EXPECT_LE(open_descriptors(), before);  // the other threads may have had a file open for a moment
   EXPECT_FALSE(child_of_this().has_value());
 }
 
