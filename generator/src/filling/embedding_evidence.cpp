@@ -14,7 +14,7 @@ const char* name_of(Evidence evidence) noexcept {
 EmbeddingCertifier::EmbeddingCertifier(const ContourBuilder& builder) : builder_(&builder), proof_(builder.tile()) {}
 
 /// The edges around each vertex that is coned: barycentres of faces in Sigma, and own vertices. A cone's first vertex
-/// is its apex; barycentres of faces come before those of the tile.
+/// is its apex. The barycentres of faces are collected first, as cones from the tile's barycentres contain them.
 EmbeddingProof::Means EmbeddingCertifier::means_of(const TileContour& contour) const {
   const std::uint32_t edges = builder_->tile().edge_count();
   EmbeddingProof::Means means(256 - edges, 0);

@@ -26,7 +26,7 @@ class EmbeddingProof {
   explicit EmbeddingProof(const Tile& tile);
 
   /// By local vertex v - edge count: the set of edges (bit e) of whose points the vertex is a positive combination,
-  /// with any weights. Vertices may share edges. At most 32 vertices.
+  /// with any weights. Vertices may share edges. Local vertices are below 64.
   using Means = std::vector<std::uint32_t>;
 
   /// True if no two of the simplices (n vertices each) meet outside of the simplex of their common vertices, for all

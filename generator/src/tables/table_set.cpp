@@ -40,7 +40,7 @@ std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourB
   // they are the inverted ones.
   constexpr Signature kShare = 16;
   const auto make_high = [&](Signature s) {
-    return low.dim() < 4 || s % kShare == 0 ? high.build(s) : inverted(4, contours[contours.size() - 1 - s]);
+    return low.dim() < 4 || s % kShare == 0 ? high.build(s) : inverted(contours[contours.size() - 1 - s]);
   };
   const auto high_contours = certified_contours(high, make_high, classes, of_high);
   check_inversion(low.dim(), contours, high_contours);

@@ -230,13 +230,11 @@ tables::TileTable TileTables::view() const {
           side_masks.data()};
 }
 
-TileContour inverted(int dim, const TileContour& contour) {
+TileContour inverted(const TileContour& contour) {
   TileContour result = contour;
-  for (LocalFacet& facet : result.facets) {
-    if (dim == 3) std::reverse(facet.points.begin() + 1, facet.points.end());
-    for (LocalSimplex& s : facet.simplices) std::swap(s[dim - 1], s[dim - 2]);
-  }
-  for (LocalSimplex& s : result.boundary) std::swap(s[dim - 2], s[dim - 3]);
+  for (LocalFacet& facet : result.facets)
+    for (LocalSimplex& s : facet.simplices) std::swap(s[3], s[2]);
+  for (LocalSimplex& s : result.boundary) std::swap(s[2], s[1]);
   return result;
 }
 

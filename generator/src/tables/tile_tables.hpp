@@ -88,8 +88,8 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder,
                                             const std::function<TileContour(Signature)>& make,
                                             const Transversal& classes, CertifiedFigures& figures);
 
-/// The contour of the complement in the other alternative: the same simplices with reversed orientation. n = 3, 4.
-TileContour inverted(int dim, const TileContour& contour);
+/// The contour of a 4-tile's complement in the other alternative: the same simplices with reversed orientation.
+TileContour inverted(const TileContour& contour);
 
 /// Counts the contours that are proved to be embedded for all positions (filling/embedding_evidence.hpp). Throws
 /// Error{CertificateFailed} with the first signature whose simplices intersect for some positions.

@@ -152,8 +152,8 @@ class TilePlaces {
     return divided(sum);
   }
 
-  /// As own_place and mask_place of 4D tiles (extract_tables.hpp), in the frame of the vertex's face: a layer's
-  /// contours agree with those of a 4D image bit by bit.
+  /// As own_place and mask_place of 4D tiles (extract_tables.hpp), in the frame of the vertex's face: a layer of
+  /// a 5D contour equals the contour of the 4D image, bit by bit.
   Point mean_of_points(const BuiltTile::Vertex& vertex) noexcept {
     Weighted<N> sum;
     bool has_corners = false;
