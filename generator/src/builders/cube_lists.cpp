@@ -106,7 +106,6 @@ void number_lists(const ResolvedCube& cube, const VariantTables& variants, CubeL
         list.choice = static_cast<std::uint8_t>(choice);
         list.signature = static_cast<std::uint8_t>(s);
         list.high_squares = static_cast<std::uint8_t>(high);
-        list.is_not_low = high != 0 || choice != 0;
         list.key = static_cast<std::uint16_t>(ambiguous_signatures[s] ? s | (1 + 3 * r + choice) << 8 : s);
         list.first_triangle = static_cast<std::uint32_t>(result.triangles.size() / 3);
         if (result.triangulation == Triangulation::compact)

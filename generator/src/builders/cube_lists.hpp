@@ -30,7 +30,6 @@ struct CubeLists {
     std::uint16_t entry;
     std::uint8_t choice, signature, high_squares;
     std::uint8_t own_vertices = 0, barycentres = 0, triangle_count = 0;
-    bool is_not_low = false;                      ///< whether it differs from the low-connected contour
     std::uint16_t key = 0;                        ///< of the list in tables::VariantTable
     std::uint32_t first_triangle = 0;             ///< in `triangles`
     std::array<std::uint32_t, kMostOwn> masks{};  ///< corners (bit v) and edges (bit 8 + e) of own vertices

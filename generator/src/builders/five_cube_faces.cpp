@@ -14,7 +14,6 @@
 
 #include "base/error.hpp"
 #include "tegl/tile/corners.hpp"
-#include "tegl/tile/facets.hpp"
 
 namespace tegl::gen {
 
@@ -230,26 +229,6 @@ void write_incidences(const Faces& faces, std::string& text) {
         [&](const CubeFace& cube) { return around(tesseracts, cube); });
 }
 
-/// The signatures of tesseracts with a component that is not a sphere, in the low-connected contour.
-void write_tori(std::string& text) {
-  tile::FacetBuilder builder(tile::FaceLattice::cube(4));
-  std::vector<unsigned> found;
-  for (unsigned s = 0; s < 65536; ++s) {
-    const auto& euler = builder.build(s, {}, tile::Geometry::without).sigma_euler;
-    if (std::any_of(euler.begin(), euler.end(), [](int x) { return x != 2 && x != 0; }))
-      throw Error(ErrorCode::CertificateFailed, fmt::format("tesseract {}: a surface of higher genus than 1", s));
-    if (std::any_of(euler.begin(), euler.end(), [](int x) { return x == 0; })) found.push_back(s);
-  }
-  fmt::format_to(std::back_inserter(text), "/// Ascending.\nconstexpr std::array<std::uint16_t, {}> kWithTorus{{{{\n",
-                 found.size());
-  constexpr std::size_t kPerLine = 16;
-  for (std::size_t i = 0; i < found.size(); i += kPerLine)
-    fmt::format_to(std::back_inserter(text), "    {},\n",
-                   fmt::join(found.begin() + static_cast<std::ptrdiff_t>(i),
-                             found.begin() + static_cast<std::ptrdiff_t>(std::min(i + kPerLine, found.size())), ", "));
-  text += "}};\n\n";
-}
-
 }  // namespace
 
 std::string five_cube_faces() {
@@ -260,7 +239,6 @@ std::string five_cube_faces() {
   write_tesseracts(faces, text);
   write_edges(faces, text);
   write_incidences(faces, text);
-  write_tori(text);
   write_signatures(text);
   return text;
 }

@@ -168,8 +168,8 @@ void define_lists(std::string& text, const CubeLists& lists, const std::string& 
   and_none.push_back({});
   define(text, name("ResolvedCubes::Summary", "Summaries"), and_none, [&](const CubeLists::List& l) {
     const std::uint32_t first_triangle = l.part_count == 0 ? 0 : lists.parts[l.first_part].first_triangle;
-    return fmt::format("{{{},{},{},{},{},{},{}}}", l.first_part, first_triangle, l.part_count, l.triangle_count,
-                       l.is_not_low ? 1 : 0, l.own_vertices, l.barycentres);
+    return fmt::format("{{{},{},{},{},{},{}}}", l.first_part, first_triangle, l.part_count, l.triangle_count,
+                       l.own_vertices, l.barycentres);
   });
   define(text, name("std::uint32_t", "Apexes"), lists.apexes, mask);
   std::vector<CubeLists::Part> parts = lists.parts;

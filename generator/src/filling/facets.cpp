@@ -109,6 +109,13 @@ ContourBuilder::ContourBuilder(const Lattice& lattice, int n, Alternative altern
   find_orientation();
 }
 
+ContourBuilder::ContourBuilder(const Lattice& lattice, int n, std::vector<TileContour> of_faces)
+    : FaceContours(tile_of(lattice, n), Alternative::low, Triangulation::compact, std::move(of_faces)),
+      hulls_(std::make_unique<HullContours>(tile())),
+      proof_(std::make_unique<EmbeddingProof>(tile())) {
+  find_orientation();
+}
+
 /// The contour around a single high corner is convex, so one of its simplices fixes the sign for all.
 void ContourBuilder::find_orientation() {
   const TileContour one = build(1);

@@ -25,6 +25,9 @@ class ContourBuilder : public FaceContours {
  public:
   /// Builds n-tiles of `lattice`; n is at most its dimension. The lattice must outlive this object.
   ContourBuilder(const Lattice& lattice, int n, Alternative alternative, Triangulation triangulation);
+  /// Builds compact, low-connected n-tiles, n = 3, 4, whose faces have the given contours, by signature. For n = 4: only
+  /// tiles whose Sigma consists of spheres.
+  ContourBuilder(const Lattice& lattice, int n, std::vector<TileContour> of_faces);
   ContourBuilder(const ContourBuilder&) = delete;
   ContourBuilder& operator=(const ContourBuilder&) = delete;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fills one or several polygons on a cube's boundary. A polygon of the compact table keeps its triangles. Others are
-// filled by search: for an open edge of the front, every vertex is tried as the third one of its triangle, until no
+// Fills one or several polygons on a cube's boundary: a single polygon as a balanced fan, if its chords do not lie in a
+// square. Others are filled by search: for an open edge of the front, every vertex is tried as the third one of its triangle, until no
 // edge is open. The number of triangles determines the surface: a disc, or a sphere with holes. If every such surface
 // has a chord in a square, the filling is a copy of the region between the polygons, pushed inwards. Every filling must
 // pass the certificate.
@@ -16,7 +16,7 @@
 #include "base/error.hpp"
 #include "base/fnv.hpp"
 #include "base/lattice.hpp"
-#include "filling/facets.hpp"
+#include "filling/balanced.hpp"
 #include "filling/resolutions.hpp"
 #include "tegl/tile/certificate.hpp"
 
@@ -366,29 +366,12 @@ class Table {
     return result;
   }
 
-  /// The triangles of a polygon that the compact table also has for this signature; empty if it has none. So both
-  /// tables agree if no square is ambiguous or all are resolved equally.
-  [[nodiscard]] Triangles as_in_compact_table(const Polygon& polygon) const {
-    const bool all_high = high_squares_ != 0 && high_squares_ == table_.ambiguous.back();
-    const ContourBuilder& first = all_high ? compact_high_ : compact_low_;
-    const ContourBuilder& second = all_high ? compact_low_ : compact_high_;
-    for (const ContourBuilder* compact : {&first, &second})
-      for (const LocalFacet& facet : compact->build(static_cast<Signature>(signature_)).facets) {
-        if (facet.points != polygon) continue;
-        Triangles filling;
-        for (const LocalSimplex& t : facet.simplices) filling.push_back({t[0], t[1], t[2]});
-        return filling;
-      }
-    return {};
-  }
-
-  // Fills a boundary by the first filling that passes the certificate: compact table, search without and with an own
+  // Fills a boundary by the first filling that passes the certificate: balanced fan, search without and with an own
   // vertex, copy of the region.
   void fill(tables::ResolvedList& list, const std::vector<Polygon>& boundary, Choice choice) {
     Alone alone(frame_, tile_, boundary);
     if (boundary.size() == 1)
-      if (const Triangles known = as_in_compact_table(boundary[0]); !known.empty() && alone.passes(known))
-        return write(list, known, {});
+      if (const Triangles fan = balanced_fan(boundary[0]); alone.passes(fan)) return write(list, fan, {});
     if (const auto flat = Search(frame_, alone, boundary, false).run()) return write(list, *flat, {});
     if (const auto coned = Search(frame_, alone, boundary, true).run()) {
       std::uint32_t mask = 0;
@@ -418,8 +401,6 @@ class Table {
 
   const Frame& frame_;
   tile::FacetBuilder builder_;
-  ContourBuilder compact_low_{frame_.tiles, 3, Alternative::low, Triangulation::compact};
-  ContourBuilder compact_high_{frame_.tiles, 3, Alternative::high, Triangulation::compact};
   ResolvedCube table_;
   // State of the current entry.
   Signature signature_ = 0;

@@ -22,7 +22,7 @@ struct ResolvedCube {
   std::vector<std::uint32_t> masks;  ///< per own vertex: its corners (bit v) and edge points (bit 8 + e)
 };
 
-/// Builds the table. A polygon that the compact table has for the signature is triangulated as there. Otherwise the
+/// Builds the table. A polygon is triangulated as a balanced fan (balanced.hpp). If a chord lies in a square, the
 /// triangulation on edge points with the shortest inner edges is searched for (points at edge midpoints). If none
 /// passes the certificate, the search adds one vertex. If that fails as well, the filling is a copy of the region
 /// between the polygons. Every filling passes the certificate. Errors: CertificateFailed, with signature and

@@ -43,4 +43,7 @@ struct TileContour {
   std::vector<std::uint64_t> side_masks;   ///< one per side vertex: the corners and edges of which it is the mean
 };
 
+/// The contour of a 4-tile's complement in the other alternative: the same simplices with reversed orientation.
+TileContour inverted(const TileContour& contour);
+
 }  // namespace tegl::gen

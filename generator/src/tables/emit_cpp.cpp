@@ -23,16 +23,20 @@ void lists(std::string& text, const std::vector<tables::List>& values) {
   text += "};\n";
 }
 
+constexpr const char* kBalancedRows = "kTile4EstimatedCompactRows";
+
+/// `variant`: the triangulation, or "balanced".
+std::string variable_name(const TileTables& table, const std::string& variant) {
+  return fmt::format("k{}{}", upper_camel(tile_name(table.tile, table.dim)), upper_camel(variant.c_str()));
+}
 std::string variable_name(const TileTables& table) {
-  return fmt::format("k{}{}", upper_camel(tile_name(table.tile, table.dim)),
-                     upper_camel(triangulation_name(table.triangulation)));
+  return variable_name(table, triangulation_name(table.triangulation));
 }
 
-EmittedFile tile_file(const TableSet& set, const TileTables& table) {
-  const auto name = variable_name(table);
-  std::string text =
-      opening(set, fmt::format("Contours of the {}-tile, low-connected alternative, {} triangulation, {} layout.",
-                               table.dim, triangulation_name(table.triangulation), layout_name(table.layout)));
+EmittedFile tile_file(const TableSet& set, const TileTables& table, const std::string& variant,
+                      const std::string& contents, const std::vector<NamedRows>& row_tables) {
+  const auto name = variable_name(table, variant);
+  std::string text = opening(set, contents);
   write_array(text, "std::uint16_t", "kListOf", "signature -> list", table.list_of);
   write_array(text, "std::uint16_t", "kElementOf", "signature -> group element", table.element_of);
   write_array(text, "std::uint8_t", "kSlotSwaps", "signature -> cubes whose barycentre slots change places",
@@ -45,7 +49,7 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
               static_cast<std::size_t>(table.dim) * 8);
   write_array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
   std::string rows;
-  for (const NamedRows& named : set.rows) {
+  for (const NamedRows& named : row_tables) {
     if (named.of != table.triangulation) continue;
     row_arrays(text, named.rows, named.name.substr(1));
     fmt::format_to(Appender(rows), "\nconst RowTable {} = {};\n", named.name,
@@ -65,8 +69,7 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
                  or_null(table.element_of, "kElementOf"), or_null(table.slot_swaps, "kSlotSwaps"),
                  or_null(table.permutations, "kPermutations"), or_null(table.reverses, "kReverses"),
                  or_null(table.side_masks, "kSideMasks"), rows);
-  return {fmt::format("{}_{}.cpp", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
-          std::move(text)};
+  return {fmt::format("{}_{}.cpp", tile_name(table.tile, table.dim), variant), std::move(text)};
 }
 
 void region_table(std::string& text, const RegionTables& table) {
@@ -138,7 +141,18 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
 
 std::vector<EmittedFile> emit_cpp(const TableSet& set) {
   std::vector<EmittedFile> files;
-  for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
+  for (const TileTables& table : set.tiles) {
+    const char* const triangulation = triangulation_name(table.triangulation);
+    files.push_back(
+        tile_file(set, table, triangulation,
+                  fmt::format("Contours of the {}-tile, low-connected alternative, {} triangulation, {} layout.",
+                              table.dim, triangulation, layout_name(table.layout)),
+                  set.rows));
+  }
+  if (set.balanced)
+    files.push_back(tile_file(set, *set.balanced, "balanced",
+                              "Compact contours of the 4-tiles that do not depend on the data, with balanced fillings.",
+                              {{Triangulation::compact, kBalancedRows, set.balanced_rows}}));
   if (!set.regions.empty()) files.push_back(region_file(set));
   if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
   if (set.tile == TileKind::cube) files.push_back(emit_variants(set));
@@ -165,14 +179,16 @@ EmittedFile emit_manifest(const TableSet& set) {
   }
   text += "\n  ],\n  \"tables\": [";
   separator = "\n";
-  for (const TileTables& t : set.tiles) {
+  const auto add_table = [&](const TileTables& t, const std::string& name) {
     fmt::format_to(Appender(text),
                    "{}    {{\"name\": \"{}\", \"layout\": \"{}\", \"lists\": {}, \"stored_simplices\": {}, "
                    "\"max_tile_vertices\": {}, \"fnv1a\": \"{:016x}\"}}",
-                   separator, variable_name(t), layout_name(t.layout), t.lists.size(),
+                   separator, name, layout_name(t.layout), t.lists.size(),
                    t.simplices.size() / static_cast<std::size_t>(t.dim), t.max_tile_vertices, digest(t));
     separator = ",\n";
-  }
+  };
+  for (const TileTables& t : set.tiles) add_table(t, variable_name(t));
+  if (set.balanced) add_table(*set.balanced, variable_name(*set.balanced, "balanced"));
   for (const RegionTables& t : set.regions)
     fmt::format_to(Appender(text),
                    "{}    {{\"name\": \"kRegion{}{}{}\", \"stored_simplices\": {}, \"fnv1a\": \"{:016x}\"}}", separator,
@@ -184,9 +200,12 @@ EmittedFile emit_manifest(const TableSet& set) {
                    "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
                    "\"{:016x}\"}}",
                    separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));
-  for (const NamedRows& rows : set.rows)
+  const auto add_rows = [&](const std::string& name, const RowTables& rows) {
     fmt::format_to(Appender(text), "{}    {{\"name\": \"{}\", \"entries\": {}, \"fnv1a\": \"{:016x}\"}}", separator,
-                   rows.name, rows.rows.entries.size(), digest(rows.rows));
+                   name, rows.entries.size(), digest(rows));
+  };
+  for (const NamedRows& rows : set.rows) add_rows(rows.name, rows.rows);
+  if (set.balanced) add_rows(kBalancedRows, set.balanced_rows);
   for (const VariantTables& t : set.variants)
     fmt::format_to(Appender(text),
                    "{}    {{\"name\": \"{}Variants\", \"lists\": {}, \"stored_simplices\": {}, \"fnv1a\": "

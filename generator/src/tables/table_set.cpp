@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "filling/ambiguity.hpp"
+#include "filling/balanced.hpp"
 #include "filling/facets.hpp"
 #include "filling/regions.hpp"
 #include "symmetry/counting.hpp"
@@ -56,10 +57,18 @@ std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourB
   return contours;
 }
 
+/// The compact table of estimated ambiguities.
+TileTables balanced_tables(const Lattice& lattice, const TileClasses& classes) {
+  const ContourBuilder builder(lattice, 4, Alternative::low, Triangulation::compact);
+  return make_tile_tables(builder, make_balanced_tesseracts(lattice, ambiguous_tesseracts()).contours, Layout::flat,
+                          classes);
+}
+
 /// Adds row tables, resolved squares and cubes, and the sets of ambiguous tiles.
 void add_resolved_tiles(TableSet& set) {
   if (set.dim == 3) set.ambiguous = ambiguous_cubes(*set.resolved), set.joins = make_cube_joins(*set.resolved);
   if (set.dim == 4) set.ambiguous = ambiguous_tesseracts();
+  if (set.balanced) set.balanced_rows = make_estimated_rows(*set.balanced, set.ambiguous);
   for (const TileTables& table : set.tiles) {
     if (!has_row_tables(table)) continue;
     const std::string name =
@@ -68,7 +77,6 @@ void add_resolved_tiles(TableSet& set) {
     if (set.dim == 2) set.variants.push_back(make_square_variants(table));
     if (set.dim == 3) set.variants.push_back(make_cube_variants(table, *set.resolved));
     if (set.dim != 4) continue;
-    set.rows.push_back({table.triangulation, "kTile4EstimatedCompactRows", make_estimated_rows(table, set.ambiguous)});
     set.rows.push_back({table.triangulation, "kTile4EstimatedBarycentricRows",
                         make_estimated_rows(table, std::vector<bool>(set.ambiguous.size(), true))});
   }
@@ -109,6 +117,7 @@ TableSet make_table_set(const TableRequest& request) {
   }
   if (request.tile != TileKind::cube) return set;
   if (request.dim == 3) set.resolved = make_resolved_cube();
+  if (request.dim == 4) set.balanced = balanced_tables(lattice, classes);
   add_resolved_tiles(set);
   return set;
 }

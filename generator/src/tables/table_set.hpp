@@ -33,9 +33,11 @@ struct TableSet {
   std::uint64_t orbits = 0;                ///< number of classes of signatures under them
   std::vector<CertifiedFigures> figures;   ///< one per certified alternative and triangulation
   std::vector<TileTables> tiles;           ///< one per triangulation
+  std::optional<TileTables> balanced{};    ///< for 4D cubes: the tiles that do not depend on the data, balanced
   std::vector<RegionTables> regions;       ///< regions of the (dim - 1)-tile
   std::optional<ResolvedCube> resolved{};  ///< for 3D cubes
   std::vector<NamedRows> rows;             ///< for cubes
+  RowTables balanced_rows;                 ///< of `balanced`; tiles that depend on the data have no simplices
   std::vector<VariantTables> variants;     ///< for 2D and 3D cubes
   std::vector<bool> ambiguous;             ///< for 3D and 4D cubes: by signature, whether the data affect the tile
   std::vector<tables::CubeJoin> joins;     ///< for 3D cubes, by entry of `resolved`

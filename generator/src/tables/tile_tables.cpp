@@ -230,14 +230,6 @@ tables::TileTable TileTables::view() const {
           side_masks.data()};
 }
 
-TileContour inverted(const TileContour& contour) {
-  TileContour result = contour;
-  for (LocalFacet& facet : result.facets)
-    for (LocalSimplex& s : facet.simplices) std::swap(s[3], s[2]);
-  for (LocalSimplex& s : result.boundary) std::swap(s[2], s[1]);
-  return result;
-}
-
 std::vector<TileContour> certified_contours(const ContourBuilder& builder,
                                             const std::function<TileContour(Signature)>& make,
                                             const Transversal& classes, CertifiedFigures& figures) {

@@ -88,9 +88,6 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder,
                                             const std::function<TileContour(Signature)>& make,
                                             const Transversal& classes, CertifiedFigures& figures);
 
-/// The contour of a 4-tile's complement in the other alternative: the same simplices with reversed orientation.
-TileContour inverted(const TileContour& contour);
-
 /// Counts the contours that are proved to be embedded for all positions (filling/embedding_evidence.hpp). Throws
 /// Error{CertificateFailed} with the first signature whose simplices intersect for some positions.
 void certify_embedding(const ContourBuilder& builder, const std::vector<TileContour>& contours,

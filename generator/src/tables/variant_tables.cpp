@@ -166,7 +166,6 @@ class VariantMaker {
     tile.layout = Layout::flat;
     tile.first_tile_vertex = plain.first_tile_vertex;
     tile.list_of.resize(keys);
-    for (unsigned s = 0; s < 1u << (1u << plain.dim); ++s) add_plain(s, s, false);
   }
 
   void add(unsigned key, const std::vector<std::uint8_t>& simplices, unsigned cones,
@@ -271,6 +270,7 @@ RowTables make_estimated_rows(const TileTables& table, const std::vector<bool>& 
 
 VariantTables make_square_variants(const TileTables& plain) {
   VariantMaker maker(plain, 32);
+  for (unsigned s = 0; s < 16; ++s) maker.add_plain(s, s, false);
   for (const unsigned s : {0b0110u, 0b1001u}) maker.add_plain(s | 16, ~s & 15u, true);
   VariantTables result = maker.finish();
   result.rows = make_row_tables(result.tile);
@@ -281,6 +281,14 @@ VariantTables make_square_variants(const TileTables& plain) {
 VariantTables make_cube_variants(const TileTables& plain, const ResolvedCube& cube) {
   const std::vector<bool> ambiguous = ambiguous_cubes(cube);
   VariantMaker maker(plain, std::size_t{256} * kCubeVariants);
+  for (unsigned s = 0; s < 256; ++s) {
+    if (ambiguous[s] || plain.triangulation == Triangulation::barycentric) {
+      maker.add_plain(s, s, false);
+    } else {
+      const Polygons polygons(cube, cube.entries[cube.first_entry[s]].separate);
+      maker.add(s, polygons.triangles, polygons.cones, polygons.masks);
+    }
+  }
   for (unsigned s = 0; s < 256; ++s) {
     if (!ambiguous[s]) continue;
     const unsigned resolutions = 1u << std::popcount(unsigned{cube.ambiguous[s]});

@@ -39,7 +39,8 @@ struct VariantTables {
 
 /// The squares of all keys. The high-connected square is the low-connected one of the complement, reversed.
 [[nodiscard]] VariantTables make_square_variants(const TileTables& plain);
-/// The cubes of all keys. `plain`: of the triangulation to make. Certifies every disc that is coned from its
+/// The cubes of all keys. `plain`: of the triangulation to make; compact cubes without ambiguity are those of `cube`.
+/// Certifies every disc that is coned from its
 /// barycentre. Throws Error{CertificateFailed}.
 [[nodiscard]] VariantTables make_cube_variants(const TileTables& plain, const ResolvedCube& cube);
 

@@ -14,6 +14,9 @@ namespace tegl::tables {
 extern const TileTable kTile2Barycentric, kTile2Compact;
 extern const TileTable kTile3Barycentric, kTile3Compact;
 extern const TileTable kTile4Barycentric, kTile4Compact;
+/// Of the 4D tiles that do not depend on the data beyond their signature (kAmbiguous4), compact contours that do not
+/// depend on which side is high; no simplices for the others.
+extern const TileTable kTile4Balanced;
 
 /// The cube with every ambiguous square resolved independently.
 extern const ResolvedTable kTile3Resolved;
@@ -26,8 +29,8 @@ extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegio
 extern const RowTable kTile2BarycentricRows, kTile2CompactRows;
 extern const RowTable kTile3BarycentricRows, kTile3CompactRows;
 extern const RowTable kTile4CompactRows;
-/// The compact table of 4D tiles, in which the tiles that the data may change are marked as having own vertices. These
-/// are all tiles in the barycentric triangulation, and those of kAmbiguous4 in the compact one.
+/// For estimated ambiguities: the tiles that the data may change are marked as having own vertices. These are all tiles
+/// in the barycentric triangulation, and those of kAmbiguous4 in the compact one; the others are those of kTile4Balanced.
 extern const RowTable kTile4EstimatedBarycentricRows, kTile4EstimatedCompactRows;
 
 /// Squares and cubes with resolved ambiguities.
