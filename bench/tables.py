@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The figures of bench/results/*.json as tables for readers: writes bench/results/README.md, and the table of missed
-marks in bench/README.md."""
+"""The figures of bench/results/*.json as tables for readers: writes bench/results/README.md, the table of missed marks in
+bench/README.md, and the table of resolved ambiguities in docs/cost.md."""
 
 import json
 import re
@@ -9,6 +9,7 @@ import machine
 
 RESULTS = machine.ROOT / "bench/results"
 MISSED = machine.ROOT / "bench/README.md"
+COST = machine.ROOT / "docs/cost.md"
 
 # What bounds a case beside memory, by field and dimension: written by hand, explained in bench/README.md.
 BOUNDS = {
@@ -166,13 +167,45 @@ def missed(result: dict, cases: list[dict]) -> list[str]:
     return text if len(text) > 2 else ["All marks for speed are met."]
 
 
+def resolved_verdict(verdict: dict) -> str:
+    reached = f"{verdict['ratio']:.2f}×" if "ratio" in verdict else f"{verdict['ms_per_tile']:.3f} ms a tile"
+    return f"{verdict['rule']} {reached} ({verdict['wanted']}: {'met' if verdict['met'] else 'not met'})"
+
+
+def resolved(result: dict) -> list[str]:
+    """Times relative to `low`, with those of the numbers of simplices, and what was to be reached."""
+    rules = list(dict.fromkeys(rule for row in result["rows"] for rule in row["sides"]))
+    others = [rule for rule in rules if rule != "low"]
+    text = ["| image | threads | `low`, ms | ns per active tile | " + " | ".join(f"`{rule}`" for rule in others) + " | result |",
+            "|---|---|---|---|" + "---|" * len(others) + "---|"]
+    for row in result["rows"]:
+        low = row["sides"]["low"]
+        ratios = []
+        for rule in others:
+            side = row["sides"].get(rule)
+            ratios.append(f"{side['ratio']:.2f}× ({side['simplices'] / low['simplices']:.2f})" if side else "")
+        text.append(f"| {row['name']} | {row['threads']} | {low['median_ms']:.2f} | {1e6 * low['median_ms'] / low['active_tiles']:.1f}"
+                    f" | {' | '.join(ratios)} | {'; '.join(map(resolved_verdict, row['verdicts']))} |")
+    return text
+
+
+def put_between(path, first: str, table: list[str]) -> None:
+    """Puts a table between its marks in a page."""
+    first, last = f"<!-- {first}: made by bench/tables.py -->\n", "<!-- end -->"
+    before, rest = path.read_text().split(first)
+    path.write_text(before + first + "\n" + "\n".join(table) + "\n\n" + last + rest.split(last, 1)[1])
+
+
 def write_missed(path) -> None:
-    """Puts that table between its marks in bench/README.md."""
     result = json.loads((RESULTS / "side_by_side.json").read_text())
     cases = json.loads((RESULTS / "instructions.json").read_text())["cases"]
-    first, last = "<!-- missed marks: made by bench/tables.py -->\n", "<!-- end -->"
-    before, rest = path.read_text().split(first)
-    path.write_text(before + first + "\n" + "\n".join(missed(result, cases)) + "\n\n" + last + rest.split(last, 1)[1])
+    put_between(path, "missed marks", missed(result, cases))
+
+
+def write_resolved(path) -> None:
+    kept = RESULTS / "resolved.json"
+    if kept.exists():
+        put_between(path, "resolved ambiguities", resolved(json.loads(kept.read_text())))
 
 
 def page(name: str, title: str, how: str, table) -> list[str]:
@@ -189,6 +222,8 @@ def main() -> None:
             "from one machine: compare ratios, not times."]
     text += page("side_by_side", "Side by side", "`bench/side_by_side`: all programs on the same samples, in turn, in one process.",
                  side_by_side)
+    text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order; "
+                 "medians relative to `low`, in brackets the same for the numbers of simplices.", resolved)
     text += page("scaling", "Scaling", "`bench/scaling`: the minimum of three runs of each.", scaling)
     text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
                  stages)
@@ -196,6 +231,7 @@ def main() -> None:
                  "which supports AVX2 at most.", instructions)
     (RESULTS / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(text)) + "\n")
     write_missed(MISSED)
+    write_resolved(COST)
 
 
 if __name__ == "__main__":

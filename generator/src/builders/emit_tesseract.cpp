@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "builders/cube_facets.hpp"
 #include "builders/cube_lists.hpp"
 #include "builders/cube_regions.hpp"
 #include "builders/emit_builder.hpp"
@@ -197,6 +198,38 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                  {"add_cube_regions", for_cubes("add_cube_regions({}, corners, high, first_centre, copy, sigma);")}});
 }
 
+/// The builder of facets: header and source. The lists are those of the compact triangulation.
+void add_facet_builder(const BuilderRequest& request, const TesseractArrays& arrays, BuilderTexts& texts) {
+  const std::vector<CubeFacets> facets = make_cube_facets(arrays.lists.back());
+  std::size_t most = 0, count = 0;
+  for (const CubeFacets& of : facets) {
+    most = std::max(most, of.facets.size());
+    count += of.facets.size();
+  }
+  const std::string certificate = fmt::format(
+      "{} facets of the {} lists; closed boundaries, uses of segments, Euler characteristics", count, facets.size());
+  texts.certificate += "; " + certificate;
+  const std::string banner =
+      builder_banner(request, Language::cpp, "The facets of squares, cubes and tesseracts.", certificate);
+  std::string squares;
+  for (unsigned f = 0; f < 6; ++f) {
+    std::array<unsigned, 6> of_cube{};
+    for (unsigned q = 0; q < 6; ++q) of_cube[q] = square_of_cube(f, q);
+    squares += fmt::format("{{{}}},  // {}\n", fmt::join(of_cube, ", "), plane_name(f));
+  }
+  const std::string name = builder_name(request) + "_facets";
+  texts.files.push_back({name + ".hpp", filled("builder4_facets.hpp", {{"banner", banner},
+                                                                       {"namespace", builder_namespace(request)},
+                                                                       {"most_facets", fmt::format("{}", most)}})});
+  texts.files.push_back(
+      {name + ".cpp", filled("builder4_facets.cpp", {{"banner", banner},
+                                                     {"name", name},
+                                                     {"namespace", builder_namespace(request)},
+                                                     {"arrays", facet_arrays_text(facets)},
+                                                     {"squares_of_cubes", squares},
+                                                     {"reversed_cubes", fmt::format("{:#04x}", reversed_cubes())}})});
+}
+
 }  // namespace
 
 BuilderTexts emit_tesseract_builder(const BuilderRequest& request) {
@@ -229,9 +262,11 @@ BuilderTexts emit_tesseract_builder(const BuilderRequest& request) {
                                  {"class", class_text(request)}})});
   }
   texts.files.push_back({name + ".cpp", source_text(request, banner("The contour of a tesseract."))});
-  if (request.leaf == Leaf::table)
+  if (request.leaf == Leaf::table) {
     texts.files.push_back({name + "_lists.cpp", filled("builder4_lists.cpp", {{"banner", banner("Arrays.")},
                                                                               {"arrays", arrays_text(arrays)}})});
+    add_facet_builder(request, arrays, texts);
+  }
   return texts;
 }
 

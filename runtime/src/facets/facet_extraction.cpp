@@ -17,9 +17,8 @@
 
 #include "ambiguity/tesseract_decision.hpp"
 #include "base/workers.hpp"
+#include "builder4_facets.hpp"
 #include "facets/facet_rows.hpp"
-#include "facets/facet_tables.hpp"
-#include "facets/resolved_facets.hpp"
 #include "facets/split_facets.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_kernel.hpp"
@@ -27,15 +26,22 @@
 #include "kernel/placement.hpp"
 #include "kernel/shared_places.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
 namespace {
 
+using builders::FaceFacets;
+using builders::FacetEntry;
+using builders::FacetView;
+using builders::TesseractFacets;
+
+constexpr unsigned kMostAxes = 4;
+constexpr unsigned kCubeEdges = tables::edge_count(3);
+
 /// Working memory of a thread.
 struct FacetScratch {
-  explicit FacetScratch(const FacetTables& tables) : tesseract(tables) {}
-
-  ResolvedFacets tesseract;
+  TesseractFacets tesseract;
   std::vector<std::uint32_t> at;
   std::vector<std::ptrdiff_t> rows;
   std::vector<double> alphas, end;
@@ -60,30 +66,14 @@ struct KnownKind : FaceKind {
   };
   FaceCorners corners;
   FaceNumbers* numbers = nullptr;
-  std::array<Sub, 2 * FacetTables::kMaxDim> subs;  ///< by FacetEntry::face
+  std::array<Sub, std::size_t{2} * kMostAxes> subs;  ///< by FacetEntry::face
   /// Edges of cubes that are resolved from the data.
-  std::array<Sub, FacetTables::kCubeEdges> edges;
-  /// Whether facets depend on more than the signature, so that faces have types (FacetTables).
+  std::array<Sub, kCubeEdges> edges;
+  /// Whether facets depend on more than the signature, so that faces have types: those of FaceFacets, and for
+  /// tesseracts the sign of the centre.
   bool has_types = false;
 
   [[nodiscard]] bool is_resolved_cube() const noexcept { return has_types && !outward && grid_dim() == 3; }
-};
-
-/// The facets of one face.
-struct FacetsOfFace {
-  const FacetTables* tables;
-  const ResolvedFacets* tesseract;  ///< null: the facets are in the tables
-  unsigned dim, type;
-
-  [[nodiscard]] unsigned count() const noexcept {
-    return tesseract != nullptr ? tesseract->count() : tables->count(dim, type);
-  }
-  [[nodiscard]] std::size_t entry_count() const noexcept {
-    return tesseract != nullptr ? tesseract->entry_count() : tables->entry_count(dim, type);
-  }
-  [[nodiscard]] std::span<const FacetEntry> entries(unsigned number) const noexcept {
-    return tesseract != nullptr ? tesseract->entries(number) : tables->entries(dim, type, number);
-  }
 };
 
 /// Facets of one dimension, as in FacetHierarchy.
@@ -101,13 +91,13 @@ class FacetExtraction {
       : source_(source),
         options_(options),
         flip_(against_tables(grid, options)),
+        is_high_(options.ambiguity == Ambiguity::high),
         passes_(kPasses + (!is_estimated(options.ambiguity) ? 0
                            : N > 2                          ? 2
                                                             : 1)),
         reporter_(options.work.progress, passes_, "passes"),
         rows_(grid.sizes()),
-        tables_(options.ambiguity),
-        workers_(options.work.threads, [this] { return FacetScratch(tables_); }) {
+        workers_(options.work.threads, [] { return FacetScratch(); }) {
     if (is_estimated(options.ambiguity)) estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
     faces_.resize(2u << N);
     for (unsigned axes = 1; axes <= kAll; ++axes) add_kind({axes, false});
@@ -150,7 +140,7 @@ class FacetExtraction {
     if (kind.outward) known.subs[2 * kind.grid_dim()] = {&faces({kind.axes, false}), 0, 0};
   }
   void add_edges(KnownKind& known) {
-    for (unsigned e = 0; e < FacetTables::kCubeEdges; ++e) {
+    for (unsigned e = 0; e < kCubeEdges; ++e) {
       const unsigned base = known.spread(edge_base(3, e));
       known.edges[e] = {&faces({1u << known.axis(e / 4), false}), rows_.shift(base), base & 1u};
     }
@@ -194,10 +184,9 @@ class FacetExtraction {
     if (any_missing) rows_.set_missing(std::move(missing));
   }
 
-  /// Finds the bits of critical faces, and the signatures of tesseracts that occur.
+  /// Finds the bits of critical faces.
   void find_faces() {
     busy_.assign(rows_.rows(), 0);
-    if (has_tesseract_tables()) met_.resize(1u << (1u << FacetTables::kMaxDim));
     for_rows([&](std::size_t row, FacetScratch&) {
       const auto index = rows_.index_of(row);
       Word any = 0;
@@ -208,17 +197,12 @@ class FacetExtraction {
         for (std::size_t w = 0; w < rows_.words(); ++w)
           any_of_kind |= bits[w] = rows_.critical(kind, kind.corners, row, index, w);
         any |= any_of_kind;
-        if (met_.empty() || kind.dim() != FacetTables::kMaxDim || any_of_kind == 0) continue;
-        for_bits(bits, rows_.words(), [&](std::size_t i) {
-          std::atomic_ref(met_[rows_.signature(kind.corners, row, i)]).store(1, std::memory_order_relaxed);
-        });
       }
       busy_[row] = any != 0 ? 1 : 0;
     });
     for (const KnownKind& kind : kinds_)
       if (kind.has_types || !is_top(kind)) kind.numbers->rank(kind.has_types);
   }
-  [[nodiscard]] bool has_tesseract_tables() const noexcept { return N == FacetTables::kMaxDim && !estimator_; }
 
   /// Resolves ambiguities by the estimator: first squares, then cubes. Tesseracts are resolved when their facets are
   /// counted.
@@ -256,8 +240,8 @@ class FacetExtraction {
     const auto base = place_of(row, i);
     std::array<double, std::size_t{1} << N> values;
     source_.corner_values(base, kind.axes, values.data());
-    return FacetTables::square_type(signature,
-                                    estimator_->is_square_high(base, kind.axes, std::span(values).template first<4>()));
+    return FaceFacets::square_type(signature,
+                                   estimator_->is_square_high(base, kind.axes, std::span(values).template first<4>()));
   }
 
   /// An outward cube has low corners outside, and no tunnel.
@@ -287,53 +271,59 @@ class FacetExtraction {
   }
 
   /// The facets of a face; valid until the next use of the scratch.
-  FacetsOfFace facets_of(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
-                         FacetScratch& scratch) const {
-    FacetsOfFace facets{&tables_, nullptr, kind.dim(), kind.dim() == 1 ? 1 : signature};
-    if (!kind.has_types) return facets;
-    if (kind.dim() < FacetTables::kMaxDim) {
-      facets.type = kind.numbers->type(row, i);
-    } else {
+  FacetView facets_of(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
+                      FacetScratch& scratch) const {
+    if (kind.dim() == 1) return FaceFacets::of_edge();
+    if (kind.dim() == 2)
+      return FaceFacets::of_square(kind.has_types ? kind.numbers->type(row, i)
+                                                  : FaceFacets::square_type(signature, is_high_));
+    if (kind.dim() == 3) return FaceFacets::of_cube(list_of(kind, row, i, signature));
+    if (kind.has_types) {
       begin_tesseract(kind, row, i, signature, scratch.tesseract);
-      scratch.tesseract.fill(static_cast<tile::Choice>(kind.numbers->type(row, i)));
-      facets.tesseract = &scratch.tesseract;
+      return scratch.tesseract.joined(static_cast<std::uint16_t>(signature),
+                                      static_cast<tile::Choice>(kind.numbers->type(row, i)));
     }
-    return facets;
+    ResolvedKey key;
+    key.squares = is_high_ ? ~std::uint32_t{0} : 0;
+    key.signature = static_cast<std::uint16_t>(signature);
+    scratch.tesseract.begin(ResolvedTesseract::lists_of(key));
+    return scratch.tesseract.separate();
+  }
+  /// The list of a face of three dimensions.
+  unsigned list_of(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature) const {
+    return kind.has_types ? kind.numbers->type(row, i) : FaceFacets::cube_type(signature, is_high_);
   }
 
   /// For faces of four dimensions. Returns the number of components of Sigma.
   std::size_t begin_tesseract(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
-                              ResolvedFacets& tesseract) const {
-    std::array<std::uint16_t, 8> cubes;
+                              TesseractFacets& tesseract) const {
+    ResolvedCubes::Lists cubes;
     const std::uint64_t signatures = ResolvedCubes::instance().signatures(static_cast<std::uint16_t>(signature));
     for (unsigned f = 0; f < 8; ++f) {
       const auto of_cube = static_cast<unsigned>(signatures >> (8 * f) & 255u);
       const KnownKind::Sub& sub = kind.subs[f];
       cubes[f] =
-          of_cube == 0 || of_cube == 255 ? ResolvedFacets::kNone : sub.numbers->type(row + sub.rows, i + sub.ahead);
+          of_cube == 0 || of_cube == 255 ? ResolvedCubes::kNone : sub.numbers->type(row + sub.rows, i + sub.ahead);
     }
-    return tesseract.begin(static_cast<std::uint16_t>(signature), cubes);
+    return tesseract.begin(cubes);
   }
 
-  /// Resolves a tesseract. Called once, when its facets are counted.
-  void choose_tesseract(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
-                        FacetScratch& scratch) const {
+  /// Resolves a tesseract and returns its facets. Called once, when they are counted.
+  FacetView resolved_facets(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
+                            FacetScratch& scratch) const {
     auto choice = tile::Choice::separate;
-    if (!kind.outward && begin_tesseract(kind, row, i, signature, scratch.tesseract) > 1) {
+    if (begin_tesseract(kind, row, i, signature, scratch.tesseract) > 1 && !kind.outward) {
       const auto base = place_of(row, i);
       std::array<double, std::size_t{1} << N> values;
       source_.corner_values(base, kind.axes, values.data());
       choice = estimator_->choice(base, kind.axes, values);
     }
     kind.numbers->type(row, i) = static_cast<std::uint16_t>(choice);
+    return scratch.tesseract.joined(static_cast<std::uint16_t>(signature), choice);
   }
 
   /// Counts the facets by row.
   void count_facets() {
-    std::vector<std::uint16_t> signatures;
-    for (std::size_t s = 0; s < met_.size(); ++s)
-      if (met_[s] != 0) signatures.push_back(static_cast<std::uint16_t>(s));
-    if (has_tesseract_tables()) tables_.add_tesseracts(signatures);
     for_busy_rows([&](std::size_t row, FacetScratch& scratch) {
       for (const KnownKind& kind : kinds_) count_row(kind, row, scratch);
     });
@@ -344,12 +334,13 @@ class FacetExtraction {
     FaceNumbers& here = *kind.numbers;
     for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
       const unsigned signature = kind.dim() == 1 ? 1 : rows_.signature(kind.corners, row, i);
-      if (kind.has_types && kind.dim() == FacetTables::kMaxDim) choose_tesseract(kind, row, i, signature, scratch);
-      const FacetsOfFace facets = facets_of(kind, row, i, signature, scratch);
+      const FacetView facets = kind.has_types && kind.dim() == kMostAxes
+                                   ? resolved_facets(kind, row, i, signature, scratch)
+                                   : facets_of(kind, row, i, signature, scratch);
       here.first_facet[row] += facets.count();
       here.first_entry[row] += facets.entry_count();
       if (!kind.is_resolved_cube()) return;
-      const FacetTables::Inside& inside = tables_.inside(facets.type);
+      const FaceFacets::Inside inside = FaceFacets::inside(here.type(row, i));
       here.first_point[row] += inside.points.size();
       here.first_segment[row] += inside.segments.size();
       here.first_end[row] += 2 * inside.segments.size();
@@ -415,7 +406,7 @@ class FacetExtraction {
     for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
       const unsigned signature = rows_.signature(kind.corners, row, i);
       if (first != nullptr) *first++ = facet;
-      const FacetsOfFace facets = facets_of(kind, row, i, signature, scratch);
+      const FacetView facets = facets_of(kind, row, i, signature, scratch);
       const unsigned count = facets.count();
       const bool turn = is_top(kind) && flip_ != is_mirrored(kind, row, i);
       // each facet and its boundary; turned facets have the reverse order and opposite signs
@@ -427,13 +418,13 @@ class FacetExtraction {
         for (std::size_t e = 0; e < entries.size(); ++e, ++entry) {
           const FacetEntry& bound = entries[turn ? entries.size() - 1 - e : e];
           const KnownKind::Sub& sub = kind.subs[bound.face];
-          const bool is_inside = bound.face == FacetTables::kInside && kind.is_resolved_cube();
+          const bool is_inside = bound.face == FaceFacets::kInside && kind.is_resolved_cube();
           const Index first_bound = is_inside ? segment : sub.numbers->first(row + sub.rows, i + sub.ahead);
           level.down[entry] = first_bound + bound.number;
           level.down_signs[entry] = turn ? static_cast<std::int8_t>(-bound.sign) : bound.sign;
         }
       }
-      if (kind.is_resolved_cube()) segment += static_cast<Index>(tables_.inside(facets.type).segments.size());
+      if (kind.is_resolved_cube()) segment += static_cast<Index>(FaceFacets::inside(here.type(row, i)).segments.size());
     });
     if (kind.is_resolved_cube()) write_inside(kind, row);
   }
@@ -450,17 +441,17 @@ class FacetExtraction {
     auto segment = static_cast<Index>(here.first_segment[row]);
     auto end = static_cast<Index>(here.first_end[row]);
     for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
-      const FacetTables::Inside& inside = tables_.inside(here.type(row, i));
+      const FaceFacets::Inside inside = FaceFacets::inside(here.type(row, i));
       const unsigned signature = rows_.signature(kind.corners, row, i);
       for (std::size_t s = 0; s < inside.segments.size(); ++s, ++segment) {
         levels_[1].places[segment] = place(kind, row, i, signature, s);
         levels_[1].down_first[segment] = end;
         for (const std::size_t side : {0u, 1u}) {
           const unsigned v = inside.segments[s][side];
-          const bool on_edge = v < FacetTables::kCubeEdges;
+          const bool on_edge = v < kCubeEdges;
           const KnownKind::Sub& edge = kind.edges[on_edge ? v : 0];
           levels_[1].down[end] = on_edge ? edge.numbers->first(row + edge.rows, i + edge.ahead)
-                                         : point + static_cast<Index>(v - FacetTables::kCubeEdges);
+                                         : point + static_cast<Index>(v - kCubeEdges);
           levels_[1].down_signs[end++] = side == 0 ? -1 : 1;
         }
       }
@@ -481,17 +472,16 @@ class FacetExtraction {
   SampleSource<N>& source_;
   const ExtractOptions& options_;
   bool flip_;
+  bool is_high_;  ///< all ambiguous faces are high
   std::size_t passes_;
   ProgressReporter reporter_;
   std::size_t pass_ = 0;
   GridRows<N> rows_;
-  FacetTables tables_;
   std::optional<FaceEstimator<N>> estimator_;  ///< set if ambiguities are resolved from the data
   Workers<FacetScratch> workers_;
   std::vector<KnownKind> kinds_;
   std::vector<FaceNumbers> faces_;  ///< by axes; outward kinds after the others
   std::vector<std::uint8_t> busy_;  ///< by row: whether any face in it has facets
-  std::vector<std::uint8_t> met_;   ///< by signature of a tesseract: whether it occurs
   std::array<NumberedFacets, N> levels_;
 };
 
@@ -541,7 +531,6 @@ class FacetWriter : FacetExtraction<N> {
   using Base::reporter_;
   using Base::rows_;
   using Base::source_;
-  using Base::tables_;
 
   void write_points() {
     facets_.vertices.resize(facets_.count(0));
@@ -590,7 +579,7 @@ class FacetWriter : FacetExtraction<N> {
     auto vertex = static_cast<std::size_t>(here.first_point[row]);
     for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
       const std::uint16_t type = here.type(row, i);
-      const FacetTables::Inside& inside = tables_.inside(type);
+      const FaceFacets::Inside inside = FaceFacets::inside(type);
       if (inside.points.empty()) return;
       const auto index = place_of(row, i);
       const EdgePlaces<N, Axes> edges(source_, index, rows_.signature(kind.corners, row, i));

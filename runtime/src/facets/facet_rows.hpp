@@ -226,7 +226,7 @@ class FaceNumbers {
     first_facet.assign(rows, 0);
     first_entry.assign(rows, 0);
   }
-  /// Call it after the bits are set. `has_types`: faces have a type (FacetTables).
+  /// Call it after the bits are set. `has_types`: faces have a type (FaceFacets).
   void rank(bool has_types) {
     std::uint32_t count = 0;
     for (std::size_t w = 0; w < bits.size(); ++w) {
