@@ -389,7 +389,7 @@ TEST_F(ResolvedTiles, RandomResolutionsOfEveryClassPassTheCertificateUpToGenus5)
   for (int genus = 0; genus <= 5; ++genus) EXPECT_GT(genera_[genus], 0) << "genus " << genus;
 }
 
-TEST_F(ResolvedTiles, WhereNothingIsToBeChosenTheyAreThoseOfTheCompactTable) {
+TEST_F(ResolvedTiles, WhereNothingIsToBeChosenTheyAreThoseOfTheBalancedTable) {
   std::size_t settled = 0;
   for (unsigned s = 0; s < 65536; s += 7) {
     if (!ResolvedTesseract::is_settled(static_cast<std::uint16_t>(s))) continue;
@@ -397,10 +397,10 @@ TEST_F(ResolvedTiles, WhereNothingIsToBeChosenTheyAreThoseOfTheCompactTable) {
     ResolvedKey key = keys_.uniform();
     key.signature = static_cast<std::uint16_t>(s);
     const ResolvedView& view = tile_.find(key);
-    const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[s]];
+    const tables::List& list = tables::kTile4Balanced.lists[tables::kTile4Balanced.list_of[s]];
     ASSERT_EQ(view.simplex_count, list.simplex_count);
     ASSERT_EQ(view.own_vertices, std::uint32_t{list.cone_vertices} + list.side_vertices);
-    const std::uint8_t* const stored = tables::kTile4Compact.simplices + 4 * std::size_t{list.first_simplex};
+    const std::uint8_t* const stored = tables::kTile4Balanced.simplices + 4 * std::size_t{list.first_simplex};
     if (view.own_vertices == 0) {
       ASSERT_TRUE(std::equal(stored, stored + 4 * std::size_t{list.simplex_count}, view.simplices)) << s;
     }

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Balanced fillings: a tile and its complement have the same simplices.
+#include "filling/balanced.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "filling/ambiguity.hpp"
+#include "filling/resolved_cube.hpp"
+
+namespace tegl::gen {
+namespace {
+
+/// The simplices by ascending vertices, and the number of those that occur twice.
+std::multiset<std::array<std::uint8_t, 4>> unoriented(const TileContour& contour) {
+  std::multiset<std::array<std::uint8_t, 4>> result;
+  for (const LocalFacet& facet : contour.facets)
+    for (const LocalSimplex& s : facet.simplices) {
+      std::array<std::uint8_t, 4> sorted{s[0], s[1], s[2], s[3]};
+      std::sort(sorted.begin(), sorted.end());
+      result.insert(sorted);
+    }
+  return result;
+}
+
+TEST(Balanced, TesseractsHaveTheSimplicesOfTheirComplements) {
+  const Lattice lattice(TileKind::cube, 4);
+  const auto depends_on_data = ambiguous_tesseracts();
+  const BalancedTesseracts balanced = make_balanced_tesseracts(lattice, depends_on_data);
+  const ContourBuilder low(lattice, 4, Alternative::low, Triangulation::compact);
+  std::uint64_t of_low = 0;
+  bool low_is_balanced = true;
+  for (std::size_t s = 1; s < 65535; ++s) {
+    if (depends_on_data[s]) {
+      ASSERT_TRUE(balanced.contours[s].facets.empty());
+      continue;
+    }
+    ASSERT_EQ(unoriented(balanced.contours[s]), unoriented(balanced.contours[65535 - s])) << s;
+    const TileContour other = low.build(s);
+    for (const LocalFacet& facet : other.facets) of_low += facet.simplices.size();
+    if (s % 16 == 0 && low_is_balanced) low_is_balanced = unoriented(other) == unoriented(low.build(65535 - s));
+  }
+  EXPECT_FALSE(low_is_balanced);
+  // few more simplices than the table of a fixed alternative, where each signature counts once
+  EXPECT_LT(static_cast<double>(balanced.simplices), 1.07 * static_cast<double>(of_low));
+}
+
+/// The triangles of a list, by ascending vertices.
+std::multiset<std::array<std::uint8_t, 3>> triangles_of(const ResolvedCube& cube, const tables::ResolvedList& list) {
+  std::multiset<std::array<std::uint8_t, 3>> result;
+  for (std::size_t t = list.first_triangle; t < std::size_t{list.first_triangle} + list.triangle_count; ++t) {
+    std::array<std::uint8_t, 3> sorted{cube.triangles[3 * t], cube.triangles[3 * t + 1], cube.triangles[3 * t + 2]};
+    std::sort(sorted.begin(), sorted.end());
+    result.insert(sorted);
+  }
+  return result;
+}
+
+TEST(Balanced, CubesWithoutAmbiguityHaveTheTrianglesOfTheirComplements) {
+  const ResolvedCube cube = make_resolved_cube();
+  const auto ambiguous = ambiguous_cubes(cube);
+  for (unsigned s = 0; s < 256; ++s) {
+    if (ambiguous[s]) continue;
+    EXPECT_EQ(triangles_of(cube, cube.entries[cube.first_entry[s]].separate),
+              triangles_of(cube, cube.entries[cube.first_entry[255 - s]].separate))
+        << s;
+  }
+}
+
+}  // namespace
+}  // namespace tegl::gen
