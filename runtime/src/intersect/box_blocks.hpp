@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -82,14 +81,15 @@ class BoxBlocks {
     }
     /// Bit i: box i meets the box.
     [[nodiscard]] unsigned meeting(const Bounds& bounds) const noexcept {
-      std::array<std::uint8_t, kBlock> meets;
-      meets.fill(1);
+      // loops of eight, which compilers turn into vector instructions
+      std::array<std::uint32_t, kBlock> meets;
+      meets.fill(~0u);
       for (int a = 0; a < N; ++a)
         for (std::size_t i = 0; i < kBlock; ++i)
-          meets[i] = static_cast<std::uint8_t>(meets[i] & (low[a][i] <= bounds.high[a] ? 1 : 0) &
-                                               (high[a][i] >= bounds.low[a] ? 1 : 0));
-      // gathers the lowest bits of eight bytes
-      return static_cast<unsigned>((std::bit_cast<std::uint64_t>(meets) * 0x0102040810204080u) >> 56);
+          meets[i] &= (low[a][i] <= bounds.high[a] ? ~0u : 0u) & (high[a][i] >= bounds.low[a] ? ~0u : 0u);
+      std::uint32_t bits = 0;
+      for (std::size_t i = 0; i < kBlock; ++i) bits |= meets[i] & (1u << i);
+      return bits;
     }
   };
 
@@ -109,6 +109,28 @@ class BoxBlocks {
       result.high[a] = -rounded_down(-high);
     }
     return result;
+  }
+  /// Moves bit i to bit i N, for the lowest 64 / N bits.
+  static std::uint64_t spread_bits(std::uint64_t x) noexcept {
+    if constexpr (N == 2) {
+      x = (x | x << 16) & 0x0000ffff0000ffffu;
+      x = (x | x << 8) & 0x00ff00ff00ff00ffu;
+      x = (x | x << 4) & 0x0f0f0f0f0f0f0f0fu;
+      x = (x | x << 2) & 0x3333333333333333u;
+      x = (x | x << 1) & 0x5555555555555555u;
+    } else if constexpr (N == 3) {
+      x = (x | x << 32) & 0x001f00000000ffffu;
+      x = (x | x << 16) & 0x001f0000ff0000ffu;
+      x = (x | x << 8) & 0x100f00f00f00f00fu;
+      x = (x | x << 4) & 0x10c30c30c30c30c3u;
+      x = (x | x << 2) & 0x1249249249249249u;
+    } else {
+      x = (x | x << 24) & 0x000000ff000000ffu;
+      x = (x | x << 12) & 0x000f000f000f000fu;
+      x = (x | x << 6) & 0x0303030303030303u;
+      x = (x | x << 3) & 0x1111111111111111u;
+    }
+    return x;
   }
   void sort(const SimplexPlanes<N>& simplices, unsigned threads, const Progress& progress);
 
@@ -154,7 +176,7 @@ void BoxBlocks<N>::sort(const SimplexPlanes<N>& simplices, unsigned threads, con
       for (const Index v : simplices.simplex(order_[i])) middle += simplices.point(v)[a] / N;
       const double cell = (middle - least[a]) * scale[a];  // infinite or NaN for huge coordinates
       const auto digits = static_cast<std::uint64_t>(cell > 0.0 ? std::min(cell, kMostCells) : 0.0);
-      for (unsigned bit = 0; bit < kBits; ++bit) key |= (digits >> bit & 1u) << (bit * N + static_cast<unsigned>(a));
+      key |= spread_bits(digits) << a;
     }
     keyed[i] = {key, order_[i]};
   });

@@ -54,6 +54,7 @@ class PairFinder {
     const std::span<const Index> here = boxes_.simplices(block);
     for (std::size_t k = 0; k < here.size(); ++k) {
       load_embedded_vertices(here[k]);
+      test_.load(here[k]);
       for (const Index near : near_)
         for (unsigned bits = boxes_.meeting(block, k, near); bits != 0; bits &= bits - 1)
           test(here[k], boxes_.simplices(near)[static_cast<std::size_t>(std::countr_zero(bits))], pairs);
@@ -80,7 +81,7 @@ class PairFinder {
     IntersectingPair<N> pair;
     pair.first = std::min(s, t);
     pair.second = std::max(s, t);
-    if (test_.meet(pair.first, pair.second, pair.place)) pairs.push_back(pair);
+    if (test_.meets(t, pair.place)) pairs.push_back(pair);
   }
 
   const SimplexPlanes<N>& simplices_;

@@ -12,38 +12,51 @@
 
 namespace tegl::detail {
 
-/// Decides pairs of simplices that are not flat. Thread-safe if the simplices are not changed.
+/// Decides pairs of simplices that are not flat. One object per thread.
 template <int N>
 class PairTest {
  public:
   explicit PairTest(const SimplexPlanes<N>& simplices) : simplices_(simplices) {}
 
-  /// Whether two different simplices have a common point outside of the convex hull of their common vertices, or the
-  /// same vertices. Then `place` is such a point.
-  [[nodiscard]] bool meet(Index s, Index t, PointN<N>& place) const;
+  /// Sets the first simplex of pairs.
+  void load(Index s) noexcept;
+  /// Whether the loaded simplex and another one have a common point outside of the convex hull of their common
+  /// vertices, or the same vertices. Then `place` is such a point.
+  [[nodiscard]] bool meets(Index t, PointN<N>& place);
 
  private:
-  /// Two simplices, or faces of them.
-  struct Pair {
-    Index s, t;
-    CornersN<N> a, b;             ///< corners of s and t
-    unsigned a_common, b_common;  ///< bit i: corner i is a vertex of both
-    unsigned a_face, b_face;      ///< the corners of the faces
-    std::array<int, N> partner;   ///< by common corner of s, that of t
+  static constexpr unsigned kAll = (1u << N) - 1;
 
-    [[nodiscard]] unsigned a_own() const noexcept { return a_face & ~a_common; }
-    [[nodiscard]] unsigned b_own() const noexcept { return b_face & ~b_common; }
-    [[nodiscard]] int common() const noexcept { return std::popcount(a_common & a_face); }
+  /// Bounds of some corners, for all axes.
+  struct Bounds {
+    PointN<N> low, high;
+  };
+  /// A simplex, or a face of it.
+  struct Side {
+    Index simplex = 0;
+    CornersN<N> corners{};
+    unsigned face = kAll;  ///< bit i: corner i is in the face
+    unsigned common = 0;   ///< bit i: corner i is also a vertex of the other simplex
+    Bounds bounds{};       ///< of the face
+    [[nodiscard]] unsigned own() const noexcept { return face & ~common; }
   };
 
-  [[nodiscard]] Pair make_pair(Index s, Index t) const noexcept;
-  static bool reduce_to_faces(Pair& pair) noexcept;
-  [[nodiscard]] bool planes_separate(const Pair& pair) const noexcept;
-  [[nodiscard]] bool found_separator(const Pair& pair) const noexcept;
-  static bool separates(const Pair& pair, const PointN<N>& direction) noexcept;
-  static bool meet_by_integers(const Pair& pair, PointN<N>& place);
+  void load_side(Side& side, Index s) const noexcept;
+  void find_common() noexcept;
+  static Bounds bounds_of(const CornersN<N>& corners) noexcept;
+  static void restrict_bounds(Side& side) noexcept;
+  [[nodiscard]] bool are_apart() const noexcept;
+  bool reduce_to_faces() noexcept;
+  [[nodiscard]] bool planes_separate() const noexcept;
+  [[nodiscard]] bool found_separator() const noexcept;
+  [[nodiscard]] bool separates(const PointN<N>& direction) const noexcept;
+  [[nodiscard]] const PointN<N>& reference() const noexcept;
+  [[nodiscard]] bool meet_by_integers(PointN<N>& place) const;
 
   const SimplexPlanes<N>& simplices_;
+  Side a_, b_;
+  Bounds a_bounds_{};             ///< of all corners of the loaded simplex
+  std::array<int, N> partner_{};  ///< by common corner of a_, that of b_
 };
 
 /// How far two simplices reach through each other's hyperplanes: the smaller one, over both, of the greatest heights of
