@@ -94,7 +94,7 @@ void print_classes(const Options& options, const Tile& tile, const std::vector<G
                count.kind == GroupKind::Full ? "all symmetries" : "rotations",
                count.inversion ? ", with the exchange of high and low" : "");
   fmt::print("The classes are counted by enumeration and by Burnside's lemma.\n");
-  std::fflush(stdout);  // certifying takes half a minute in 4D
+  std::fflush(stdout);  // certifying takes a minute of processor time in 4D
 }
 
 void print_figures_of(const TableSet& set) {
