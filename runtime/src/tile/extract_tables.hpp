@@ -225,9 +225,11 @@ inline constexpr auto kCornerPoints = [] {
 /// Weight of point number v of an uneven mean (mask_place).
 constexpr double uneven_weight(unsigned v) noexcept { return 1.0 + 0.01 * v; }
 
-/// One coordinate of an own vertex, from the mean of its points (mask_place). `axis`: number in the vertex's face.
+/// One coordinate of an own vertex, from the mean of its points (mask_place). `axis`: number in the vertex's face. With
+/// corners the vertex lies on the ray from the face's centre to the mean, as copies of a side must; both halves are
+/// exact for the mean of one corner.
 [[gnu::always_inline]] inline double own_coordinate(double mean, int axis, bool has_corners, bool uneven) noexcept {
-  const double centre = uneven ? 0.487 + 0.01 * axis : 0.5;
+  const double centre = uneven && !has_corners ? 0.487 + 0.01 * axis : 0.5;
   const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
   return share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
 }
