@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The stages of find_intersections: planes, stars, boxes, pairs, tiles. See tegl/intersections.hpp.
+#include "tegl/intersections.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/workers.hpp"
+#include "intersect/box_blocks.hpp"
+#include "intersect/pair_test.hpp"
+#include "intersect/star_test.hpp"
+#include "mesh/validate.hpp"
+#include "mesh/vertex_stars.hpp"
+
+namespace tegl {
+
+namespace detail {
+namespace {
+
+constexpr std::size_t kStarBlock = 4096;
+constexpr std::size_t kPairBlock = 64;  ///< blocks of eight simplices
+
+/// By vertex: 1 if no two simplices around it intersect.
+template <int N>
+std::vector<std::uint8_t> embedded_stars(const SimplexPlanes<N>& simplices, std::span<const Index> rows,
+                                         unsigned threads, const Progress& progress) {
+  std::vector<std::uint8_t> result(simplices.point_count());
+  if constexpr (N > 2) {
+    const Stars stars = make_stars<N>(rows, simplices.point_count(), part_of(progress, 0.0, 0.4));
+    for_each_block(
+        result.size(), kStarBlock, threads, part_of(progress, 0.4, 1.0), [&] { return StarTest<N>(simplices); },
+        [&](std::size_t, std::size_t from, std::size_t to, StarTest<N>& test) {
+          for (std::size_t v = from; v < to; ++v)
+            result[v] = test.is_embedded(static_cast<Index>(v), stars.of(v)) ? 1 : 0;
+        });
+  }
+  return result;
+}
+
+/// Finds the pairs of one simplex with others.
+template <int N>
+class PairFinder {
+ public:
+  PairFinder(const SimplexPlanes<N>& simplices, std::span<const std::uint8_t> embedded, const BoxBlocks<N>& boxes)
+      : simplices_(simplices), embedded_(embedded), boxes_(boxes), test_(simplices) {}
+
+  /// Appends the pairs of the simplices in a block with those in it and in later ones.
+  void find(std::size_t block, std::vector<IntersectingPair<N>>& pairs) {
+    boxes_.find_near(block, near_);
+    const std::span<const Index> here = boxes_.simplices(block);
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      load_embedded_vertices(here[k]);
+      for (const Index near : near_)
+        for (unsigned bits = boxes_.meeting(block, k, near); bits != 0; bits &= bits - 1)
+          test(here[k], boxes_.simplices(near)[static_cast<std::size_t>(std::countr_zero(bits))], pairs);
+    }
+  }
+
+ private:
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+  void load_embedded_vertices(Index s) noexcept {
+    for (int i = 0; i < N; ++i) {
+      const Index v = simplices_.simplex(s)[i];
+      embedded_vertices_[i] = embedded_[v] != 0 ? v : kNone;
+    }
+  }
+  [[nodiscard]] bool share_embedded_vertex(Index t) const noexcept {
+    unsigned shared = 0;
+    for (const Index v : embedded_vertices_)
+      for (const Index w : simplices_.simplex(t)) shared |= v == w ? 1u : 0u;
+    return shared != 0;
+  }
+  void test(Index s, Index t, std::vector<IntersectingPair<N>>& pairs) {
+    if (share_embedded_vertex(t)) return;
+    IntersectingPair<N> pair;
+    pair.first = std::min(s, t);
+    pair.second = std::max(s, t);
+    if (test_.meet(pair.first, pair.second, pair.place)) pairs.push_back(pair);
+  }
+
+  const SimplexPlanes<N>& simplices_;
+  std::span<const std::uint8_t> embedded_;
+  const BoxBlocks<N>& boxes_;
+  PairTest<N> test_;
+  std::array<Index, N> embedded_vertices_{};
+  std::vector<Index> near_;
+};
+
+/// All pairs, ascending.
+template <int N>
+std::vector<IntersectingPair<N>> all_pairs(const SimplexPlanes<N>& simplices, std::span<const std::uint8_t> embedded,
+                                           const BoxBlocks<N>& boxes, unsigned threads, const Progress& progress) {
+  std::vector<std::vector<IntersectingPair<N>>> of_blocks(block_count(boxes.size(), kPairBlock));
+  for_each_block(
+      boxes.size(), kPairBlock, threads, progress, [&] { return PairFinder<N>(simplices, embedded, boxes); },
+      [&](std::size_t part, std::size_t from, std::size_t to, PairFinder<N>& finder) {
+        for (std::size_t block = from; block < to; ++block) finder.find(block, of_blocks[part]);
+      });
+  std::vector<IntersectingPair<N>> result;
+  for (const auto& pairs : of_blocks) result.insert(result.end(), pairs.begin(), pairs.end());
+  std::sort(result.begin(), result.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second < b.second; });
+  return result;
+}
+
+/// The tile that contains the centroid of a simplex, by the number of tiles along each axis from the origin.
+template <int N>
+std::array<double, N> tile_of(const SimplexPlanes<N>& simplices, Index s, const TileGrid<N>& tiles) noexcept {
+  PointN<N> tile{};
+  for (const PointN<N>& corner : simplices.corners(s))
+    for (int a = 0; a < N; ++a) tile[a] += corner[a] / N;
+  for (int a = 0; a < N; ++a) tile[a] = std::floor((tile[a] - tiles.origin[a]) / tiles.size[a]);
+  return tile;
+}
+
+template <class Item>
+std::uint64_t count_different(std::vector<Item>& items) {
+  std::sort(items.begin(), items.end());
+  return static_cast<std::uint64_t>(std::unique(items.begin(), items.end()) - items.begin());
+}
+
+template <int N>
+void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> intersecting, const TileGrid<N>& tiles,
+                 Intersections<N>& result) {
+  std::vector<std::array<double, N>> found(simplices.size());
+  for (std::size_t s = 0; s < found.size(); ++s) found[s] = tile_of(simplices, static_cast<Index>(s), tiles);
+  result.tiles = count_different(found);
+  found.clear();
+  for (const Index s : intersecting) found.push_back(tile_of(simplices, s, tiles));
+  result.tiles_hit = count_different(found);
+}
+
+template <int N>
+void require_tiles(const TileGrid<N>& tiles) {
+  for (int a = 0; a < N; ++a) {
+    if (!(tiles.size[a] > 0.0 && std::isfinite(tiles.size[a])))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("the size of tiles along axis {} is {}; expected a positive number", a, tiles.size[a]));
+    if (!std::isfinite(tiles.origin[a]))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("the origin of tiles on axis {} is {}; expected a finite number", a, tiles.origin[a]));
+  }
+}
+
+template <int N>
+Intersections<N> intersections_of(std::span<const PointN<N>> points, std::span<const std::array<Index, N>> rows,
+                                  const IntersectionOptions<N>& options) {
+  const unsigned threads = options.work.threads;
+  const Progress& progress = options.work.progress;
+  Intersections<N> result;
+  result.simplices = rows.size();
+  const SimplexPlanes<N> simplices(points, rows, threads, part_of(progress, 0.0, 0.1));
+  for (std::size_t s = 0; s < simplices.size(); ++s) result.flat += simplices.is_flat(static_cast<Index>(s)) ? 1 : 0;
+  const std::vector<std::uint8_t> embedded =
+      embedded_stars<N>(simplices, flat_rows(rows), threads, part_of(progress, 0.1, 0.3));
+  const BoxBlocks<N> boxes(simplices, threads, part_of(progress, 0.3, 0.4));
+  result.pairs = all_pairs<N>(simplices, embedded, boxes, threads, part_of(progress, 0.4, 1.0));
+  result.pair_count = result.pairs.size();
+  std::vector<Index> intersecting;
+  for (const auto& pair : result.pairs) intersecting.insert(intersecting.end(), {pair.first, pair.second});
+  result.intersecting = count_different(intersecting);
+  intersecting.resize(result.intersecting);
+  if (options.tiles) count_tiles<N>(simplices, intersecting, *options.tiles, result);
+  if (result.pairs.size() > options.most_listed) result.pairs.resize(options.most_listed);
+  for (auto& pair : result.pairs) {
+    pair.depth = depth_of<N>(simplices, pair.first, pair.second);
+    result.depth = std::max(result.depth, pair.depth);
+  }
+  return result;
+}
+
+}  // namespace
+}  // namespace detail
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Intersections<N> find_intersections(const Contour<N, Real>& contour,
+                                                                       const IntersectionOptions<N>& options) {
+  detail::require_vertices(contour);
+  detail::require_finite(contour);
+  if (options.tiles) detail::require_tiles(*options.tiles);
+  if constexpr (std::is_same_v<Real, double>) {
+    return detail::intersections_of<N>(contour.vertices, contour.simplices, options);
+  } else {
+    std::vector<detail::PointN<N>> points(contour.vertices.size());
+    for (std::size_t v = 0; v < points.size(); ++v)
+      for (int a = 0; a < N; ++a) points[v][a] = static_cast<double>(contour.vertices[v][a]);
+    return detail::intersections_of<N>(points, contour.simplices, options);
+  }
+}
+
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
+  template Intersections<N> find_intersections<N, Real>(const Contour<N, Real>&, const IntersectionOptions<N>&);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl
