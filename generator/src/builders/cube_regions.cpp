@@ -166,9 +166,8 @@ RegionFrame frame_of(const CubeLists& lists, std::size_t number, const std::vect
   for (unsigned v = 0; v < kFirstOwn; ++v) frame.points[v] = RegionProof::Points{1} << v;
   if (number < lists.lists.size())
     for (unsigned j = 0; j < lists.lists[number].own_vertices; ++j) {
-      constexpr RegionProof::Points kCorners = 0xff;  // not a barycentre: moved towards the centre, the corners' mean
-      const bool is_moved = j >= lists.lists[number].barycentres;
-      frame.points[kFirstOwn + j] = lists.lists[number].masks[j] | (is_moved ? kCorners : 0);
+      const std::uint32_t mask = lists.lists[number].masks[j];
+      frame.points[kFirstOwn + j] = is_on_ray(mask) ? RegionProof::on_ray(mask) : mask;
     }
   for (unsigned q = 0; q < 6; ++q) {
     std::vector<Triangle> square;
@@ -199,7 +198,7 @@ class RegionMaker {
     tetrahedra = division->tetrahedra;
     if (high)
       for (Tetrahedron& t : tetrahedra) std::swap(t[2], t[3]);
-    if (division->centre != 0) centres.push_back(division->centre);
+    if (division->centre != 0) centres.push_back(static_cast<std::uint32_t>(division->centre));
     return true;
   }
 

@@ -61,6 +61,11 @@ class Samples {
     double count = 0;
     for (; points != 0; points &= points - 1, ++count) {
       const auto v = static_cast<unsigned>(std::countr_zero(points));
+      if (v >= RegionProof::kFirstRay) {
+        unsigned digits = v - RegionProof::kFirstRay;
+        for (unsigned a = 0; a < 3; ++a, digits /= 3) sum[a] += 0.5 + 0.25 * (static_cast<double>(digits % 3) - 1.0);
+        continue;
+      }
       const unsigned corner = v < 8 ? v : detail::edge_base(3, v - 8);
       for (unsigned a = 0; a < 3; ++a) sum[a] += static_cast<double>(corner >> a & 1u);
       if (v >= 8) sum[(v - 8) / 4] += 0.35 + 0.025 * (v - 8);
@@ -214,7 +219,8 @@ class Search {
     const auto [n, odd] = number(t);
     Visibility& result = visible_[2 * n + (odd ? 1 : 0)];
     if (result.is_known) return result;
-    for (RegionProof::Points rest = points_; rest != 0; rest &= rest - 1) {
+    constexpr RegionProof::Points kCentre = RegionProof::Points{1} << RegionProof::kCentre;
+    for (RegionProof::Points rest = (points_ & RegionProof::kShared) | kCentre; rest != 0; rest &= rest - 1) {
       const RegionProof::Points point = rest & (0 - rest);
       const auto sign = proof_.sign(point, frame_.points[t[0]], frame_.points[t[1]], frame_.points[t[2]]);
       if (sign == RegionProof::Sign::positive) result.positive |= point;
@@ -224,16 +230,20 @@ class Search {
     return result;
   }
 
-  /// The points from whose mean all of the front is visible; 0 if there are none. One of them is a corner: the copy of
-  /// such a mean lies half way to the centre of the tesseract.
+  /// The points from whose mean all of the front is visible; 0 if there are none. That is the cube's centre, which is
+  /// the mean of all corners, or one of them is a corner: the copy of such a mean lies half way to the centre of the
+  /// tesseract.
   [[nodiscard]] RegionProof::Points kernel() {
-    RegionProof::Points all = points_;
+    constexpr RegionProof::Points kCorners = 0xff, kCentre = RegionProof::Points{1} << RegionProof::kCentre;
+    RegionProof::Points all = ~RegionProof::Points{0};
     for (const Triangle& t : front_) all &= visibility(t).not_negative;
-    constexpr RegionProof::Points kCorners = 0xff;
-    const bool inside = (all & kCorners) != 0 && std::all_of(front_.begin(), front_.end(), [&](const Triangle& t) {
-                          return (all & visibility(t).positive) != 0;
-                        });
-    return inside ? all : 0;
+    const auto is_kernel = [&](RegionProof::Points points) {
+      return std::all_of(front_.begin(), front_.end(),
+                         [&](const Triangle& t) { return (points & visibility(t).positive) != 0; });
+    };
+    if ((all & kCentre) != 0 && is_kernel(kCentre)) return kCorners;
+    all &= RegionProof::kShared;
+    return (all & kCorners) != 0 && all != kCorners && is_kernel(all) ? all : 0;
   }
 
   bool take_rest() {

@@ -27,7 +27,7 @@ struct RegionFrame {
 /// A division of a region, with the orientation that its surface has towards the inside.
 struct RegionDivision {
   std::vector<CubeRegions::Tetrahedron> tetrahedra;  ///< the centre: vertex kFirstCentre
-  RegionProof::Points centre = 0;                    ///< 0: without a centre
+  RegionProof::Points centre = 0;  ///< the corners and edges whose mean it is; 0: without a centre
 };
 
 /// Searches for a division into positive tetrahedra without other vertices than those of the surface; if there is none,
