@@ -15,13 +15,13 @@
 
 namespace tegl::gen {
 
-/// All lists in all cubes of a tesseract. Local vertices of the tesseract: [0, 32) are on its edges; 32 + 3 f + j is
+/// All lists in all cubes of a tesseract. Local vertices of the tesseract: [0, 32) are on its edges; 32 + 4 f + j is
 /// own vertex j of cube f's list.
 struct CubeLists {
   static constexpr unsigned kCubes = 8;
   static constexpr unsigned kEdges = 32;
   static constexpr unsigned kCubeEdges = 12;
-  static constexpr unsigned kMostOwn = 3;    ///< own vertices of a list, at most
+  static constexpr unsigned kMostOwn = 4;    ///< own vertices of a list, at most
   static constexpr unsigned kMostParts = 4;  ///< parts of a list, at most
   static constexpr std::uint16_t kNone = 0xffff;
 

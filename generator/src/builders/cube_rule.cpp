@@ -75,6 +75,12 @@ unsigned edges_of(const CubeFilling& filling) {
   return edges;
 }
 
+Squares squares_kind(unsigned ambiguous, unsigned high, const std::vector<CubePolygon>& polygons, std::size_t facets) {
+  if ((high & ambiguous) == 0) return kNoneHigh;
+  if ((high & ambiguous) == ambiguous) return kAllHigh;
+  return facets == 2 && polygons[0].size() == 6 && polygons[1].size() == 6 ? kHexagons : kMixed;
+}
+
 [[noreturn]] void fail(unsigned signature, unsigned high, const char* why) {
   throw Error(ErrorCode::CertificateFailed,
               fmt::format("builder of the cube, signature {}, high squares {:#x}: {}", signature, high, why));
@@ -182,7 +188,8 @@ ResolvedCube coned(const ResolvedCube& table) {
       tables::ResolvedList list{static_cast<std::uint16_t>(result.triangles.size() / 3), 0, 0,
                                 static_cast<std::uint16_t>(result.masks.size())};
       for (std::size_t f = 0; f < facets.size(); ++f) {
-        if (facets[f].size() == 1) fillings[f] = cone_over(polygons[facets[f][0]]);
+        const bool has_ray = std::any_of(fillings[f].masks.begin(), fillings[f].masks.end(), is_on_ray);
+        if (facets[f].size() == 1 && !has_ray) fillings[f] = cone_over(polygons[facets[f][0]]);
         for (const CubeTriangle& t : fillings[f].triangles)
           for (const std::uint8_t v : t)
             result.triangles.push_back(static_cast<std::uint8_t>(v < kEdges ? v : v + list.own_vertices));
@@ -241,9 +248,9 @@ std::vector<FillingRow> make_filling_rule(const ResolvedCube& table) {
   for_each_resolution(table, [&](unsigned signature, unsigned high, const tables::ResolvedEntry& entry) {
     const std::vector<CubePolygon> polygons = cube_polygons(signature, high);
     if (polygons.size() != entry.components) fail(signature, high, "another number of polygons");
-    const Squares kind = squares_kind(table.ambiguous[signature], high);
     for (const Choice choice : kChoices) {
       const auto facets = cube_facets(signature, high, choice, polygons);
+      const Squares kind = squares_kind(table.ambiguous[signature], high, polygons, facets.size());
       const std::vector<CubeFilling> fillings = fillings_of(table, list_of(entry, choice));
       if (facets.size() != fillings.size()) fail(signature, high, "another number of facets");
       for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -273,7 +280,7 @@ std::vector<FillingRow> make_filling_rule(const ResolvedCube& table) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool alone =
         (i == 0 || rows[i - 1].key != rows[i].key) && (i + 1 == rows.size() || rows[i + 1].key != rows[i].key);
-    if (alone) rows[i].squares = kNoneHigh | kMixed | kAllHigh;
+    if (alone) rows[i].squares = kNoneHigh | kMixed | kAllHigh | kHexagons;
   }
   return rows;
 }

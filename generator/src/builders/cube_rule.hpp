@@ -8,30 +8,25 @@
 #include <cstdint>
 #include <vector>
 
+#include "filling/cube_frame.hpp"
 #include "filling/resolved_cube.hpp"
 #include "tegl/tile/choices.hpp"
 
 namespace tegl::gen {
 
-/// A polygon by its edges, from its smallest edge on, with high corners on its left seen from outside.
-using CubePolygon = std::vector<std::uint8_t>;
-using CubeTriangle = std::array<std::uint8_t, 3>;
-
 /// Order in which a builder visits the squares (numbers 2 axis + side): the order of tile::FaceLattice, so facets are
 /// in the order of tile::FacetBuilder.
 inline constexpr std::array<std::uint8_t, 6> kSquareOrder = {4, 2, 0, 1, 3, 5};
 
-/// How the ambiguous squares of a cube are resolved, as a bit of a set.
+/// How the ambiguous squares of a cube are resolved, and what depends on that, as a bit of a set.
 enum Squares : std::uint8_t {
   kNoneHigh = 1,  ///< all are low, or there is none
   kMixed = 2,     ///< some low, some high
   kAllHigh = 4,   ///< all are high
+  kHexagons = 8,  ///< some low, some high, and the facets are two hexagons, whose discs might intersect
 };
-[[nodiscard]] constexpr Squares squares_kind(unsigned ambiguous, unsigned high) {
-  return (high & ambiguous) == 0 ? kNoneHigh : (high & ambiguous) == ambiguous ? kAllHigh : kMixed;
-}
 
-/// The polygons in the order in which the squares, visited in kSquareOrder, have their first segments.
+/// The polygons, each from its smallest edge on, in the order in which the squares, visited in kSquareOrder, have their first segments.
 [[nodiscard]] std::vector<CubePolygon> cube_polygons(unsigned signature, unsigned high_squares);
 
 /// The polygons of each facet, by index. Low centre: polygons around the same high region are joined; high centre:
@@ -63,7 +58,8 @@ struct FillingRow {
 [[nodiscard]] std::vector<FillingRow> make_filling_rule(const ResolvedCube& table);
 
 /// The table in the barycentric triangulation: every facet of one polygon with more than three edges is coned from its
-/// barycentre, whose mask has kBarycentreBit and the polygon's edges. Joined polygons are filled as in the table.
+/// barycentre, whose mask has kBarycentreBit and the polygon's edges. Joined polygons, and polygons with own vertices on
+/// rays, are filled as in the table.
 [[nodiscard]] ResolvedCube coned(const ResolvedCube& table);
 inline constexpr unsigned kBarycentreBit = 20;
 

@@ -15,6 +15,7 @@
 #include "builders/cube_rule.hpp"
 #include "builders/emit_builder.hpp"
 #include "builders/templates.hpp"
+#include "filling/cube_certificate.hpp"
 #include "filling/resolved_cube.hpp"
 #include "filling/tile_contour.hpp"
 
@@ -167,9 +168,10 @@ Words words_of(const ResolvedCube& table, const Lists& lists) {
   for (const auto& [separate, low, high] : lists.list_of)
     words.push_back(fits(separate, 10) | fits(low, 10) << 10 | fits(high, 10) << 20);
   result.lists = words.size();
-  for (const List& list : lists.lists)
-    words.push_back(fits(list.first_triangle, 14) | fits(list.triangles, 5) << 14 | fits(list.own_vertices, 2) << 19 |
-                    fits(list.first_mask, 11) << 21);
+  for (const List& list : lists.lists) {
+    words.push_back(fits(list.first_triangle, 16) | fits(list.triangles, 16) << 16);
+    words.push_back(fits(list.first_mask, 16) | fits(list.own_vertices, 16) << 16);
+  }
   result.triangles = words.size();
   for (std::size_t t = 0; t < lists.arrays.triangles.size(); ++t) {
     const CubeTriangle& triangle = lists.arrays.triangles[t];
@@ -236,6 +238,16 @@ std::string square_lines(const Tile& cube) {
   return text;
 }
 
+std::string squares_text(unsigned squares) {
+  if (squares == (kNoneHigh | kMixed | kAllHigh | kHexagons)) return "kAny";
+  std::vector<const char*> names;
+  if ((squares & kNoneHigh) != 0) names.push_back("kLow");
+  if ((squares & kMixed) != 0) names.push_back("kMixed");
+  if ((squares & kAllHigh) != 0) names.push_back("kHigh");
+  if ((squares & kHexagons) != 0) names.push_back("kHexagons");
+  return fmt::format("{}", fmt::join(names, " | "));
+}
+
 std::string by_edges(const std::vector<FillingRow>& rule, const std::string& banner, const std::string& name,
                      const std::string& space) {
   const CubeLattice tiles(3);
@@ -243,13 +255,7 @@ std::string by_edges(const std::vector<FillingRow>& rule, const std::string& ban
   Arrays arrays;
   std::string rows;
   for (const FillingRow& row : rule) {
-    const char* const squares = row.squares == (kNoneHigh | kMixed | kAllHigh) ? "kAny"
-                                : row.squares == kNoneHigh                     ? "kLow"
-                                : row.squares == kMixed                        ? "kMixed"
-                                : row.squares == kAllHigh                      ? "kHigh"
-                                : row.squares == (kNoneHigh | kMixed)          ? "kLow | kMixed"
-                                : row.squares == (kMixed | kAllHigh)           ? "kMixed | kHigh"
-                                                                               : "kLow | kHigh";
+    const std::string squares = squares_text(row.squares);
     std::vector<std::string> polygons;
     for (const CubePolygon& polygon : row.polygons) polygons.push_back(fmt::format("({})", fmt::join(polygon, " ")));
     rows +=
@@ -284,8 +290,9 @@ BuilderTexts emit_cube_builder(const BuilderRequest& request) {
   const std::vector<FillingRow> rule = make_filling_rule(table);
   const Lists lists = lists_of(table);
   BuilderTexts texts;
-  texts.certificate = fmt::format("{} triangulation, {} resolutions of 256 signatures, 3 ways each",
-                                  triangulation_name(request.triangulation), table.entries.size());
+  texts.certificate = fmt::format(
+      "{} triangulation, {} resolutions of 256 signatures, 3 ways each; {} proved to be embedded for all positions",
+      triangulation_name(request.triangulation), table.entries.size(), certify_embedding(table));
   const std::string name = builder_name(request), space = builder_namespace(request);
   for (const Language language : request.languages) {
     const auto banner = [&](const char* what) { return builder_banner(request, language, what, texts.certificate); };

@@ -13,12 +13,6 @@ namespace {
 
 using IntPoint = std::array<int, 4>;
 
-IntPoint corner_of(const Tile& tile, std::size_t v) {
-  IntPoint point{};
-  for (int i = 0; i < tile.dim; ++i) point[i] = static_cast<int>(tile.corners[v][i]);
-  return point;
-}
-
 /// A normal of the hyperplane in n-space parallel to n - 1 vectors: their generalized cross product.
 IntPoint normal_to(const std::array<IntPoint, 3>& d, int n) {
   const auto minor2 = [&](int a, int b) { return d[0][a] * d[1][b] - d[0][b] * d[1][a]; };
@@ -43,15 +37,30 @@ void for_each_choice(std::size_t count, std::size_t end, std::vector<std::size_t
 
 }  // namespace
 
-EmbeddingProof::EmbeddingProof(const Tile& tile) : tile_(&tile) {
+EmbeddingProof::EmbeddingProof(const Tile& tile, std::span<const Ray> rays) : tile_(&tile) {
+  points_.resize(tile.corner_count());
+  for (std::size_t v = 0; v < tile.corner_count(); ++v)
+    for (int i = 0; i < tile.dim; ++i) points_[v][i] = 2 * static_cast<int>(tile.corners[v][i]);
+  for (const auto& edge : tile.edges) segments_.push_back({edge[0], edge[1]});
+  if (!rays.empty()) {
+    const auto centre = static_cast<std::uint8_t>(points_.size());
+    points_.push_back({1, 1, 1, tile.dim == 4 ? 1 : 0});
+    for (const Ray& ray : rays) {
+      segments_.push_back({centre, static_cast<std::uint8_t>(points_.size())});
+      Point& end = points_.emplace_back(points_[centre]);
+      for (int i = 0; i < tile.dim; ++i) end[i] += ray[i];
+    }
+  }
   std::vector<std::size_t> chosen;
-  for_each_choice(static_cast<std::size_t>(tile.dim), tile.corner_count(), chosen, [&] { add_hyperplane(chosen); });
+  for_each_choice(static_cast<std::size_t>(tile.dim), points_.size(), chosen, [&] { add_hyperplane(chosen); });
   if (hyperplanes_.size() > kWords * 64) throw std::logic_error("a tile with more hyperplanes than expected");
   for (std::size_t k = 0; k < hyperplanes_.size(); ++k) existing_[k / 64] |= std::uint64_t{1} << k % 64;
-  of_edges_.resize((tile.edge_count() + 7) / 8);
-  for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
+  of_edges_.resize((segments_.size() + 7) / 8);
+  for (std::uint32_t e = 0; e < segments_.size(); ++e) {
+    const Sides sides = sides_of_edge(e);
     for (unsigned byte = 0; byte < 256; ++byte)
-      if ((byte >> e % 8 & 1u) != 0) of_edges_[e / 8][byte].add(sides_of_edge(e));
+      if ((byte >> e % 8 & 1u) != 0) of_edges_[e / 8][byte].add(sides);
+  }
   for (unsigned p = 1; p < 1u << tile.dim; ++p)
     for (unsigned q = 1; q < 1u << tile.dim; ++q)
       if (std::popcount(p) + std::popcount(q) <= tile.dim + 2) face_pairs_.emplace_back(p, q);
@@ -63,7 +72,7 @@ EmbeddingProof::EmbeddingProof(const Tile& tile) : tile_(&tile) {
 }
 
 EmbeddingProof::Sides EmbeddingProof::sides_of_edge(std::uint32_t e) const {
-  const std::uint32_t ends = 1u << tile_->edges[e][0] | 1u << tile_->edges[e][1];
+  const std::uint32_t ends = 1u << segments_[e][0] | 1u << segments_[e][1];
   Sides sides;
   for (std::size_t k = 0; k < hyperplanes_.size(); ++k) {
     const auto& [above, below] = hyperplanes_[k];
@@ -74,16 +83,16 @@ EmbeddingProof::Sides EmbeddingProof::sides_of_edge(std::uint32_t e) const {
 }
 
 void EmbeddingProof::add_hyperplane(std::span<const std::size_t> through) {
-  const IntPoint base = corner_of(*tile_, through[0]);
+  const IntPoint base = points_[through[0]];
   std::array<IntPoint, 3> directions{};
   for (std::size_t r = 1; r < through.size(); ++r) {
-    const IntPoint point = corner_of(*tile_, through[r]);
+    const IntPoint& point = points_[through[r]];
     for (int i = 0; i < tile_->dim; ++i) directions[r - 1][i] = point[i] - base[i];
   }
   const IntPoint normal = normal_to(directions, tile_->dim);
   std::uint32_t above = 0, below = 0;
-  for (std::uint32_t v = 0; v < tile_->corner_count(); ++v) {
-    const IntPoint point = corner_of(*tile_, v);
+  for (std::uint32_t v = 0; v < points_.size(); ++v) {
+    const IntPoint& point = points_[v];
     int height = 0;
     for (int i = 0; i < tile_->dim; ++i) height += normal[i] * (point[i] - base[i]);
     if (height > 0) above |= 1u << v;
@@ -108,7 +117,7 @@ EmbeddingProof::Simplex EmbeddingProof::prepared(const LocalSimplex& simplex, co
 
 /// The edges of whose points the vertices are positive combinations.
 std::uint32_t EmbeddingProof::edges_of(Vertices vertices, const Means& means) const {
-  const std::uint32_t count = tile_->edge_count();
+  const std::size_t count = segments_.size();
   auto edges = static_cast<std::uint32_t>(vertices & ((Vertices{1} << count) - 1));
   for (Vertices rest = vertices >> count; rest != 0; rest &= rest - 1)
     edges |= means[static_cast<std::size_t>(std::countr_zero(rest))];
@@ -196,6 +205,20 @@ bool EmbeddingProof::may_meet(const Simplex& a, const Simplex& b) const {
                                                      : may_meet_inside(a.edges[p], b.edges[q]);
     if (meet && !in_one_facet(a.edges[p] | b.edges[q])) return true;
   }
+  return false;
+}
+
+/// Points are affinely dependent if and only if the relative interiors of the convex hulls of two disjoint sets of them
+/// meet (Radon's theorem).
+bool EmbeddingProof::may_be_flat(const LocalSimplex& simplex, const Means& means) const {
+  const Simplex all = prepared(simplex, means);
+  for (unsigned p = 1; p < 1u << tile_->dim; ++p)
+    for (unsigned q = 1; q < p; ++q) {
+      if ((p & q) != 0) continue;
+      const bool meet = (all.edges[p] & all.edges[q]) == 0 ? !have_separate_interiors(all.sides[p], all.sides[q])
+                                                           : may_meet_inside(all.edges[p], all.edges[q]);
+      if (meet) return true;
+    }
   return false;
 }
 

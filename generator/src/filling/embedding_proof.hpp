@@ -8,6 +8,9 @@
 // have disjoint relative interiors if and only if a hyperplane separates them properly (R. T. Rockafellar, Convex
 // Analysis, 1970, theorem 11.3), and it can be moved until it is spanned by corners. So a finite set of hyperplanes
 // decides exactly, for all positions at once.
+//
+// The same holds for vertices that are free on other segments, as on rays from the tile's centre: their ends count as
+// corners.
 #pragma once
 
 #include <array>
@@ -23,10 +26,14 @@ namespace tegl::gen {
 /// The hyperplanes spanned by a tile's corners, and the proofs that they give. n = 2, 3, 4.
 class EmbeddingProof {
  public:
-  explicit EmbeddingProof(const Tile& tile);
+  /// A vector from the tile's centre to a point of its boundary, in halves of an edge.
+  using Ray = std::array<int, 4>;
 
-  /// By local vertex v - edge count: the set of edges (bit e) of whose points the vertex is a positive combination,
-  /// with any weights. Vertices may share edges. Local vertices are below 64.
+  /// Local vertices from the edge count on are free on these rays: anywhere between the tile's centre and the ray's end.
+  explicit EmbeddingProof(const Tile& tile, std::span<const Ray> rays = {});
+
+  /// For the local vertices after those on edges and rays: the set of edges (bit e; rays follow) of whose points the
+  /// vertex is a positive combination, with any weights. Vertices may share edges. Local vertices are below 64.
   using Means = std::vector<std::uint32_t>;
 
   /// True if no two of the simplices (n vertices each) meet outside of the simplex of their common vertices, for all
@@ -36,6 +43,8 @@ class EmbeddingProof {
   /// The same for each simplex of `first` with each of `second`.
   [[nodiscard]] bool holds_between(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
                                    const Means& means = {}) const;
+  /// True if some positions make the simplex degenerate: a triangle with its vertices on a line, and so on.
+  [[nodiscard]] bool may_be_flat(const LocalSimplex& simplex, const Means& means = {}) const;
 
  private:
   static constexpr std::size_t kWords = 3;
@@ -54,6 +63,7 @@ class EmbeddingProof {
     std::array<Sides, 16> sides;            ///< the same: of their edges
   };
 
+  using Point = std::array<int, 4>;
   void add_hyperplane(std::span<const std::size_t> through);
   [[nodiscard]] Simplex prepared(const LocalSimplex& simplex, const Means& means) const;
   [[nodiscard]] std::uint32_t edges_of(Vertices vertices, const Means& means) const;
@@ -67,8 +77,10 @@ class EmbeddingProof {
   [[nodiscard]] bool may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) const;
 
   const Tile* tile_;
+  std::vector<Point> points_;                                         ///< corners, the centre, ends of rays; doubled
+  std::vector<std::array<std::uint8_t, 2>> segments_;                 ///< edges and rays, by their ends
   std::vector<std::uint32_t> facets_;                                 ///< by face of the tile: its edges
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> hyperplanes_;  ///< the corners above and below
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> hyperplanes_;  ///< the points above and below
   Hyperplanes existing_{};                                            ///< bits of hyperplanes_
   using SidesOfByte = std::array<Sides, 256>;
   std::vector<SidesOfByte> of_edges_;                              ///< by 8 edges: of every set of these

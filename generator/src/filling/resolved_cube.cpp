@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fills one or several polygons on a cube's boundary. A polygon of the compact table keeps its triangles. Others are
-// filled by search: for an open edge of the front, every vertex is tried as the third one of its triangle, until no
-// edge is open. The number of triangles determines the surface: a disc, or a sphere with holes. If every such surface
-// has a chord in a square, the filling is a copy of the region between the polygons, pushed inwards. Every filling must
-// pass the certificate.
+// Fills one or several polygons on a cube's boundary. A polygon of the compact table keeps its triangles. Other single
+// polygons are filled by search. The surface between several polygons is radial (cube_tunnel.hpp). Every filling must
+// pass the certificate, and every list is proved to be embedded.
 #include "filling/resolved_cube.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/fnv.hpp"
 #include "base/lattice.hpp"
+#include "filling/cube_embedding.hpp"
+#include "filling/cube_frame.hpp"
+#include "filling/cube_tunnel.hpp"
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
+#include "filling/surface_search.hpp"
 #include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
@@ -29,40 +33,14 @@ using tile::FaceLattice;
 using tile::TileFacets;
 using tile::VertexId;
 
-constexpr std::size_t kEdges = 12;
+constexpr std::size_t kEdges = CubeFrame::kEdges;
 constexpr std::size_t kOwn = kEdges;  ///< number of the first vertex that is not an edge point
-constexpr std::size_t kMaxOwn = 8;
-using Triangle = std::array<std::uint8_t, 3>;
-using Polygon = std::vector<std::uint8_t>;  ///< edges, with high on the left seen from outside
-using Triangles = std::vector<Triangle>;
-
-/// The cube's edges and squares in the numbering of the table contract.
-struct Frame {
-  FaceLattice lattice = FaceLattice::cube(3);
-  CubeLattice tiles{3};
-  std::vector<std::uint8_t> edge_of_face = std::vector<std::uint8_t>(lattice.faces().size());
-  std::vector<std::uint32_t> face_of_square = std::vector<std::uint32_t>(6);
-  std::vector<std::array<std::uint8_t, 4>> squares = std::vector<std::array<std::uint8_t, 4>>(6);
-  std::array<unsigned, kEdges + 1> squares_of{};             ///< by edge: set of the squares that contain it
-  std::array<std::array<double, 3>, kEdges + 1> position{};  ///< midpoint of each edge
-
-  Frame() {
-    const Tile& cube = tiles.tile(3);
-    for (std::uint8_t e = 0; e < kEdges; ++e)
-      edge_of_face[lattice.find(Signature{1} << cube.edges[e][0] | Signature{1} << cube.edges[e][1]).value()] = e;
-    for (std::size_t q = 0; q < 6; ++q) {
-      std::copy_n(cube.faces[q].corner.begin(), 4, squares[q].begin());
-      face_of_square[q] = lattice.find(cube.faces[q].corners()).value();
-      for (const std::uint8_t e : cube.faces[q].edge) squares_of[e] |= 1u << q;
-    }
-    for (std::size_t e = 0; e < kEdges; ++e)
-      for (std::size_t i = 0; i < 3; ++i)
-        position[e][i] = (cube.corners[cube.edges[e][0]][i] + cube.corners[cube.edges[e][1]][i]) / 2;
-  }
-};
+constexpr std::size_t kMaxOwn = 4;
+using Polygon = CubePolygon;
+using Triangles = CubeTriangles;
 
 /// The polygons of Sigma, each from its smallest edge on, in ascending order of these edges.
-std::vector<Polygon> polygons_of(const Frame& frame, const TileFacets& tile) {
+std::vector<Polygon> polygons_of(const CubeFrame& frame, const TileFacets& tile) {
   constexpr std::uint8_t kNoEdge = 255;
   std::array<std::uint8_t, kEdges> next{};
   next.fill(kNoEdge);
@@ -87,7 +65,7 @@ std::vector<Polygon> polygons_of(const Frame& frame, const TileFacets& tile) {
 /// The tile with Sigma restricted to some polygons, for certifying a filling of only these.
 class Alone {
  public:
-  Alone(const Frame& frame, const TileFacets& tile, const std::vector<Polygon>& boundary)
+  Alone(const CubeFrame& frame, const TileFacets& tile, const std::vector<Polygon>& boundary)
       : frame_(&frame), tile_(tile) {
     unsigned edges = 0;
     for (const Polygon& polygon : boundary)
@@ -114,7 +92,7 @@ class Alone {
 
   bool passes(const Triangles& filling) {
     tile::Facet facet;
-    for (const Triangle& t : filling) {
+    for (const CubeTriangle& t : filling) {
       tile::Simplex& simplex = facet.simplices.emplace_back(tile::kNoSimplex);
       for (std::size_t i = 0; i < 3; ++i) simplex[i] = id_[t[i]];
     }
@@ -123,205 +101,18 @@ class Alone {
   }
 
  private:
-  const Frame* frame_;
+  const CubeFrame* frame_;
   TileFacets tile_;
   std::array<VertexId, kEdges + kMaxOwn> id_{};
   tile::Certifier certifier_;
 };
 
-/// Search for a connected surface of genus 0 with the given boundary and the shortest inner edges.
-class Search {
- public:
-  Search(const Frame& frame, Alone& alone, const std::vector<Polygon>& boundary, bool own_vertex)
-      : frame_(frame), alone_(alone), position_(frame.position) {
-    for (const Polygon& polygon : boundary)
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const std::uint8_t a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-        open_[a][b] = used_[a][b] = used_[b][a] = true;
-        vertices_.push_back(a);
-      }
-    const std::size_t points = vertices_.size();
-    // Number of triangles from Euler's formula, V - E + F = 2 - holes.
-    triangles_ = points + 2 * boundary.size() - 4 + (own_vertex ? 2 : 0);
-    if (!own_vertex) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      position_[kOwn][i] = 0;
-      for (const std::uint8_t e : vertices_) position_[kOwn][i] += frame.position[e][i] / static_cast<double>(points);
-    }
-    vertices_.push_back(kOwn);
-  }
-
-  std::optional<Triangles> run() {
-    advance(0);
-    return std::exchange(best_, std::nullopt);
-  }
-
- private:
-  [[nodiscard]] double length(std::size_t a, std::size_t b) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double d = position_[a][i] - position_[b][i];
-      sum += d * d;
-    }
-    return sum;
-  }
-
-  /// True if the edge closes an open one, or is new and does not lie in a square.
-  [[nodiscard]] bool possible(std::size_t from, std::size_t to) const {
-    return open_[from][to] || (!used_[from][to] && (frame_.squares_of[from] & frame_.squares_of[to]) == 0);
-  }
-
-  /// Adds an edge of a triangle. Returns true if it closed an open edge; take_back() needs that value.
-  bool put(std::size_t from, std::size_t to, double& cost) {
-    if (open_[from][to]) return open_[from][to] = false, true;
-    open_[to][from] = used_[from][to] = used_[to][from] = true;
-    cost += length(from, to);
-    return false;
-  }
-
-  void take_back(std::size_t from, std::size_t to, bool closed) {
-    if (closed)
-      open_[from][to] = true;
-    else
-      open_[to][from] = used_[from][to] = used_[to][from] = false;
-  }
-
-  // Extends the front at its first open edge. Prunes by cost.
-  void advance(double cost) {
-    constexpr double kEqual = 1e-9;
-    if (best_ && cost > best_cost_ - kEqual) return;
-    std::size_t a = 0, b = 0;
-    while (a <= kOwn && !open_[a][b])
-      if (++b > kOwn) ++a, b = 0;
-    if (a > kOwn) return consider(cost);
-    if (filling_.size() == triangles_) return;
-    for (const std::uint8_t c : vertices_) {
-      if (c == a || c == b || !possible(b, c) || !possible(c, a)) continue;
-      double sum = cost;
-      open_[a][b] = false;
-      const bool second = put(b, c, sum), third = put(c, a, sum);
-      filling_.push_back({static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), c});
-      advance(sum);
-      filling_.pop_back();
-      take_back(c, a, third), take_back(b, c, second);
-      open_[a][b] = true;
-    }
-  }
-
-  void consider(double cost) {
-    if (filling_.size() != triangles_ || !connected() || !alone_.passes(filling_)) return;
-    best_ = filling_, best_cost_ = cost;
-  }
-
-  [[nodiscard]] bool connected() const {
-    unsigned reached = 1u << filling_[0][0], before = 0;
-    while (reached != std::exchange(before, reached))
-      for (const Triangle& t : filling_) {
-        const unsigned own = 1u << t[0] | 1u << t[1] | 1u << t[2];
-        if ((own & reached) != 0) reached |= own;
-      }
-    return std::all_of(vertices_.begin(), vertices_.end(), [&](unsigned v) { return ((reached >> v) & 1u) != 0; });
-  }
-
-  const Frame& frame_;
-  Alone& alone_;
-  std::array<std::array<double, 3>, kEdges + 1> position_;
-  std::vector<std::uint8_t> vertices_;
-  std::size_t triangles_ = 0;
-  bool open_[kEdges + 1][kEdges + 1] = {};  ///< directed edges that still need a triangle
-  bool used_[kEdges + 1][kEdges + 1] = {};
-  Triangles filling_;
-  std::optional<Triangles> best_;
-  double best_cost_ = 0;
-};
-
-/// A copy of a region of the cube's boundary: in each square a fan from a corner. Copies of corners are own vertices,
-/// so no edge is a chord between two edge points.
-class SideFilling {
- public:
-  SideFilling(const Frame& frame, Signature signature, unsigned high_squares, bool high)
-      : frame_(frame), signature_(signature), high_squares_(high_squares), high_(high) {}
-
-  /// The triangles of the region bounded by these polygons. Writes to `corners` the corner of each own vertex.
-  Triangles run(const std::vector<Polygon>& boundary, std::vector<std::uint8_t>& corners) {
-    for (std::size_t q = 0; q < 6; ++q) square(q);
-    unsigned reached = 1u << boundary[0][0], before = 0;
-    while (reached != std::exchange(before, reached))
-      for (const Triangle& t : all_)
-        if ((bits(t) & reached) != 0) reached |= bits(t);
-    Triangles filling;
-    for (Triangle t : all_) {
-      if ((bits(t) & reached) == 0) continue;
-      for (std::uint8_t& v : t) {
-        if (v < kEdges) continue;
-        const auto corner = static_cast<std::uint8_t>(v - kEdges);
-        const auto at = std::find(corners.begin(), corners.end(), corner);
-        v = static_cast<std::uint8_t>(kOwn + static_cast<std::size_t>(at - corners.begin()));
-        if (at == corners.end()) corners.push_back(corner);
-      }
-      filling.push_back(t);
-    }
-    turn(filling, boundary);
-    return filling;
-  }
-
- private:
-  static unsigned bits(const Triangle& t) { return 1u << t[0] | 1u << t[1] | 1u << t[2]; }
-  [[nodiscard]] bool inside(std::uint8_t corner) const { return (((signature_ >> corner) & 1u) != 0) == high_; }
-
-  void square(std::size_t q) {
-    // The square's corners in cyclic order, with the same orientation for all six squares seen from outside.
-    std::array<std::uint8_t, 4> ring = {frame_.squares[q][0], frame_.squares[q][1], frame_.squares[q][3],
-                                        frame_.squares[q][2]};
-    if (frame_.tiles.tile(3).faces[q].sign < 0) std::reverse(ring.begin(), ring.end());
-    std::vector<std::uint8_t> outline;  // of the inside part if joined; corner c is kEdges + c
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::uint8_t here = ring[i], next = ring[(i + 1) % 4];
-      if (inside(here)) outline.push_back(static_cast<std::uint8_t>(kEdges + here));
-      if (inside(here) != inside(next)) outline.push_back(frame_.tiles.tile(3).edge_between(here, next));
-    }
-    const bool joined = (((high_squares_ >> q) & 1u) != 0) == high_;
-    const auto is_corner = [](std::uint8_t v) { return v >= kEdges; };
-    const auto count = std::count_if(outline.begin(), outline.end(), is_corner);
-    if (count == 2 && outline.size() == 6 && !joined) {
-      for (std::size_t i = 0; i < 6; ++i)
-        if (is_corner(outline[i])) all_.push_back({outline[(i + 5) % 6], outline[i], outline[(i + 1) % 6]});
-      return;
-    }
-    if (count == 0) return;
-    // Fan from a corner without adjacent edge points if there are three corners, else from any corner.
-    std::size_t from = 0;
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const bool better = is_corner(outline[i]) && (!is_corner(outline[from]) ||
-                                                    (count == 3 && is_corner(outline[(i + 1) % outline.size()]) &&
-                                                     is_corner(outline[(i + outline.size() - 1) % outline.size()])));
-      if (better) from = i;
-    }
-    for (std::size_t i = 1; i + 1 < outline.size(); ++i)
-      all_.push_back({outline[from], outline[(from + i) % outline.size()], outline[(from + i + 1) % outline.size()]});
-  }
-
-  /// Reverses all triangles if they do not match the boundary's orientation.
-  static void turn(Triangles& filling, const std::vector<Polygon>& boundary) {
-    const std::uint8_t a = boundary[0][0], b = boundary[0][1];
-    const bool right = std::any_of(filling.begin(), filling.end(), [&](const Triangle& t) {
-      return (t[0] == a && t[1] == b) || (t[1] == a && t[2] == b) || (t[2] == a && t[0] == b);
-    });
-    if (!right)
-      for (Triangle& t : filling) std::swap(t[1], t[2]);
-  }
-
-  const Frame& frame_;
-  Signature signature_;
-  unsigned high_squares_;
-  bool high_;
-  Triangles all_;
-};
-
 /// Collects the entries of the table.
 class Table {
  public:
-  explicit Table(const Frame& frame) : frame_(frame), builder_(frame.lattice) { table_.squares = frame.squares; }
+  explicit Table(const CubeFrame& frame) : frame_(frame), builder_(frame.lattice), radial_(frame) {
+    table_.squares.assign(frame.squares.begin(), frame.squares.end());
+  }
 
   void open_signature(unsigned ambiguous) {
     table_.first_entry.push_back(static_cast<std::uint16_t>(table_.entries.size()));
@@ -345,7 +136,7 @@ class Table {
       }
       list.first_triangle = static_cast<std::uint16_t>(table_.triangles.size() / 3);
       list.first_mask = static_cast<std::uint16_t>(table_.masks.size());
-      for (const tile::Facet& facet : tile_.facets) fill(list, around(facet, polygons), choice);
+      for (const CubeSurface& filling : fillings(polygons, choice)) write(list, filling);
     }
     table_.entries.push_back(entry);
   }
@@ -382,42 +173,100 @@ class Table {
     return {};
   }
 
-  // Fills a boundary by the first filling that passes the certificate: compact table, search without and with an own
-  // vertex, copy of the region.
-  void fill(tables::ResolvedList& list, const std::vector<Polygon>& boundary, Choice choice) {
-    Alone alone(frame_, tile_, boundary);
-    if (boundary.size() == 1)
-      if (const Triangles known = as_in_compact_table(boundary[0]); !known.empty() && alone.passes(known))
-        return write(list, known, {});
-    if (const auto flat = Search(frame_, alone, boundary, false).run()) return write(list, *flat, {});
-    if (const auto coned = Search(frame_, alone, boundary, true).run()) {
-      std::uint32_t mask = 0;
-      for (const Polygon& polygon : boundary)
-        for (const std::uint8_t e : polygon) mask |= std::uint32_t{1} << (8 + e);
-      return write(list, *coned, {mask});
-    }
-    std::vector<std::uint8_t> corners;
-    const Triangles side = SideFilling(frame_, signature_, high_squares_, choice == Choice::low).run(boundary, corners);
-    if (corners.size() > kMaxOwn || !alone.passes(side))
-      throw Error(ErrorCode::CertificateFailed,
-                  fmt::format("cube of signature {}, high squares {:#x}: no filling of its {} polygons passes",
-                              signature_, high_squares_, boundary.size()));
-    std::vector<std::uint32_t> masks;
-    for (const std::uint8_t corner : corners) masks.push_back(std::uint32_t{1} << corner);
-    write(list, side, masks);
+  /// The fillings of all facets. If two discs may intersect, they become radial as well.
+  [[nodiscard]] std::vector<CubeSurface> fillings(const std::vector<Polygon>& polygons, Choice choice) {
+    std::vector<std::vector<Polygon>> boundaries;
+    for (const tile::Facet& facet : tile_.facets) boundaries.push_back(around(facet, polygons));
+    std::vector<CubeSurface> result;
+    for (const std::vector<Polygon>& boundary : boundaries)
+      result.push_back(boundary.size() == 1 ? disc(boundary) : radial(boundary, choice == Choice::low));
+    for (std::size_t f = 0; f < result.size(); ++f)
+      for (std::size_t g = 0; g < f; ++g) {
+        if (are_apart(result[f], result[g])) continue;
+        for (const std::size_t one : {f, g})
+          if (boundaries[one].size() == 1) result[one] = radial(boundaries[one], encloses_high(boundaries[one][0]));
+        if (!are_apart(result[f], result[g])) fail("two facets may intersect", boundaries.size());
+      }
+    return result;
   }
 
-  void write(tables::ResolvedList& list, const Triangles& filling, const std::vector<std::uint32_t>& masks) {
-    for (const Triangle& t : filling)
+  /// Fills a polygon by the first filling that passes the certificate and does not intersect itself: that of the
+  /// compact table, one without and one with an own vertex.
+  [[nodiscard]] CubeSurface disc(const std::vector<Polygon>& boundary) {
+    Alone alone(frame_, tile_, boundary);
+    const auto is_admissible = [&](const Triangles& filling, const std::vector<std::uint32_t>& masks) {
+      return embedding(masks).holds(filling) && alone.passes(filling);
+    };
+    if (const Triangles known = as_in_compact_table(boundary[0]); !known.empty() && is_admissible(known, {}))
+      return {known, {}};
+    SurfaceSearch flat(frame_, boundary, {});
+    flat.may_add = [&](const CubeTriangle& t, const Triangles& others) { return embedding({}).may_add(t, others); };
+    flat.accepts = [&](const Triangles& filling) { return is_admissible(filling, {}); };
+    if (auto found = flat.run()) return {std::move(*found), {}};
+    SurfaceSearch::Point mean{};
+    std::uint32_t mask = 0;
+    for (const std::uint8_t e : boundary[0]) {
+      for (std::size_t a = 0; a < 3; ++a)
+        mean[a] += frame_.midpoint(e)[a] / static_cast<double>(boundary[0].size());
+      mask |= std::uint32_t{1} << (8 + e);
+    }
+    SurfaceSearch coned(frame_, boundary, {&mean, 1});
+    coned.may_add = [&](const CubeTriangle& t, const Triangles& others) {
+      return embedding({mask}).may_add(t, others);
+    };
+    coned.accepts = [&](const Triangles& filling) { return is_admissible(filling, {mask}); };
+    if (auto found = coned.run()) return {std::move(*found), {mask}};
+    fail("no filling passes", 1);
+  }
+
+  /// Fills polygons by a radial surface, parallel to the region of this sign.
+  [[nodiscard]] CubeSurface radial(const std::vector<Polygon>& boundary, bool is_high) {
+    const std::optional<CubeSurface> surface = radial_.fill(static_cast<unsigned>(signature_), boundary, is_high);
+    if (!surface || !Alone(frame_, tile_, boundary).passes(surface->triangles))
+      fail("no radial filling passes", boundary.size());
+    return *surface;
+  }
+
+  /// Proofs for own vertices with these masks. They are kept, as few sets of masks occur.
+  [[nodiscard]] CubeEmbedding& embedding(const std::vector<std::uint32_t>& masks) {
+    return embeddings_.try_emplace(masks, frame_, masks).first->second;
+  }
+
+  [[nodiscard]] bool are_apart(const CubeSurface& a, const CubeSurface& b) {
+    std::vector<std::uint32_t> masks = a.masks;
+    masks.insert(masks.end(), b.masks.begin(), b.masks.end());
+    Triangles shifted = b.triangles;
+    for (CubeTriangle& t : shifted)
+      for (std::uint8_t& v : t) v = static_cast<std::uint8_t>(v < kOwn ? v : v + a.masks.size());
+    return embedding(masks).holds_between(a.triangles, shifted);
+  }
+
+  /// True if fewer corners are on the polygon's high side than on its low side.
+  [[nodiscard]] bool encloses_high(const Polygon& polygon) const {
+    unsigned high = 0, low = 0;
+    for (const std::uint8_t e : polygon)
+      for (const std::uint8_t v : frame_.cube().edges[e]) ((signature_ >> v & 1u) != 0 ? high : low) |= 1u << v;
+    return std::popcount(high) < std::popcount(low);
+  }
+
+  [[noreturn]] void fail(const char* why, std::size_t polygons) const {
+    throw Error(ErrorCode::CertificateFailed, fmt::format("cube of signature {}, high squares {:#x}, {} polygons: {}",
+                                                          signature_, high_squares_, polygons, why));
+  }
+
+  void write(tables::ResolvedList& list, const CubeSurface& filling) {
+    for (const CubeTriangle& t : filling.triangles)
       for (const std::uint8_t v : t)
         table_.triangles.push_back(static_cast<std::uint8_t>(v < kOwn ? v : v + list.own_vertices));
-    list.triangle_count = static_cast<std::uint8_t>(list.triangle_count + filling.size());
-    list.own_vertices = static_cast<std::uint8_t>(list.own_vertices + masks.size());
-    table_.masks.insert(table_.masks.end(), masks.begin(), masks.end());
+    list.triangle_count = static_cast<std::uint8_t>(list.triangle_count + filling.triangles.size());
+    list.own_vertices = static_cast<std::uint8_t>(list.own_vertices + filling.masks.size());
+    table_.masks.insert(table_.masks.end(), filling.masks.begin(), filling.masks.end());
   }
 
-  const Frame& frame_;
+  const CubeFrame& frame_;
   tile::FacetBuilder builder_;
+  RadialFilling radial_;
+  std::map<std::vector<std::uint32_t>, CubeEmbedding> embeddings_;
   ContourBuilder compact_low_{frame_.tiles, 3, Alternative::low, Triangulation::compact};
   ContourBuilder compact_high_{frame_.tiles, 3, Alternative::high, Triangulation::compact};
   ResolvedCube table_;
@@ -430,7 +279,7 @@ class Table {
 }  // namespace
 
 ResolvedCube make_resolved_cube() {
-  const Frame frame;
+  const CubeFrame frame;
   Table table(frame);
   std::vector<Choice> choices(frame.lattice.faces().size(), Choice::separate);
   for (Signature s = 0; s < 256; ++s) {

@@ -24,9 +24,9 @@ struct ResolvedCube {
 
 /// Builds the table. A polygon that the compact table has for the signature is triangulated as there. Otherwise the
 /// triangulation on edge points with the shortest inner edges is searched for (points at edge midpoints). If none
-/// passes the certificate, the search adds one vertex. If that fails as well, the filling is a copy of the region
-/// between the polygons. Every filling passes the certificate. Errors: CertificateFailed, with signature and
-/// resolution.
+/// passes, the search adds one vertex. Several joined polygons bound a radial surface (cube_tunnel.hpp); so do two
+/// polygons of a cube whose discs might intersect. Every filling passes the certificate, and no two triangles of a list
+/// intersect, wherever the points are on their edges. Errors: CertificateFailed, with signature and resolution.
 [[nodiscard]] ResolvedCube make_resolved_cube();
 
 /// FNV-1a digest of all numbers in the table.

@@ -2,6 +2,7 @@
 //
 // Emits the C++ tables and the manifest.
 #include "tables/emit.hpp"
+#include "filling/cube_certificate.hpp"
 #include "tables/emit_arrays.hpp"
 #include "tables/emit_rows.hpp"
 
@@ -181,17 +182,19 @@ EmittedFile emit_manifest(const TableSet& set) {
                    t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1), digest(t));
   if (set.resolved)
     fmt::format_to(Appender(text),
-                   "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
-                   "\"{:016x}\"}}",
-                   separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));
+                   "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"embedded_proved\": {}, \"stored_simplices\": {}, "
+                   "\"fnv1a\": \"{:016x}\"}}",
+                   separator, set.resolved->entries.size(), certify_embedding(*set.resolved),
+                   set.resolved->triangles.size() / 3, digest(*set.resolved));
   for (const NamedRows& rows : set.rows)
     fmt::format_to(Appender(text), "{}    {{\"name\": \"{}\", \"entries\": {}, \"fnv1a\": \"{:016x}\"}}", separator,
                    rows.name, rows.rows.entries.size(), digest(rows.rows));
   for (const VariantTables& t : set.variants)
     fmt::format_to(Appender(text),
-                   "{}    {{\"name\": \"{}Variants\", \"lists\": {}, \"stored_simplices\": {}, \"fnv1a\": "
+                   "{}    {{\"name\": \"{}Variants\", \"lists\": {}, {}\"stored_simplices\": {}, \"fnv1a\": "
                    "\"{:016x}\", \"rows_fnv1a\": \"{:016x}\"}}",
                    separator, variable_name(t.tile), t.tile.lists.size(),
+                   t.embedded == 0 ? "" : fmt::format("\"embedded_proved\": {}, ", t.embedded),
                    t.tile.simplices.size() / static_cast<std::size_t>(set.dim), digest(t.tile), digest(t.rows));
   text += "\n  ]\n}\n";
   return {set.tile == TileKind::cube ? fmt::format("manifest{}.json", set.dim)

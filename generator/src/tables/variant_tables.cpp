@@ -15,6 +15,8 @@
 #include "base/error.hpp"
 #include "base/fnv.hpp"
 #include "filling/ambiguity.hpp"
+#include "filling/cube_certificate.hpp"
+#include "filling/cube_frame.hpp"
 #include "tegl/tile/choices.hpp"
 #include "tegl/tile/complex.hpp"
 
@@ -31,13 +33,28 @@ struct Polygons {
   static constexpr unsigned kFirstOwn = tables::first_tile_vertex(3);
   std::vector<std::uint8_t> triangles;
   unsigned cones = 0;  ///< number of own vertices that are barycentres; they come first
-  std::vector<std::uint64_t> masks;
+  std::vector<std::uint64_t> masks;  ///< of the other own vertices
 
   Polygons(const ResolvedCube& cube, const tables::ResolvedList& list) {
     const auto first = cube.triangles.begin() + 3 * std::ptrdiff_t{list.first_triangle};
     triangles.assign(first, first + 3 * std::ptrdiff_t{list.triangle_count});
     const auto mask = cube.masks.begin() + list.first_mask;
     masks.assign(mask, mask + list.own_vertices);
+  }
+
+  [[nodiscard]] CubeTriangles as_triangles() const {
+    CubeTriangles result;
+    for (std::size_t t = 0; t < triangles.size(); t += 3)
+      result.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
+    return result;
+  }
+  /// Masks of all own vertices. That of a barycentre has the edges of its triangles.
+  [[nodiscard]] std::vector<std::uint32_t> all_masks() const {
+    std::vector<std::uint32_t> result(cones);
+    for (const CubeTriangle& t : as_triangles())
+      if (t[0] >= kFirstOwn && t[0] < kFirstOwn + cones) result[t[0] - kFirstOwn] |= 1u << (8 + t[1]) | 1u << (8 + t[2]);
+    for (const std::uint64_t mask : masks) result.push_back(static_cast<std::uint32_t>(mask));
+    return result;
   }
 };
 
@@ -86,14 +103,18 @@ DirectedEdges boundary_of(const std::vector<std::uint8_t>& triangles) {
   return around;
 }
 
-/// Cones every disc with more than one triangle from its barycentre. Other components are kept.
+/// Cones every disc with more than one triangle from its barycentre. Other components are kept, and discs with own
+/// vertices on rays.
 void cone_discs(Polygons& polygons) {
   const DirectedEdges before = boundary_of(polygons.triangles);
   // cone discs
   std::vector<std::vector<std::uint8_t>> kept;
   std::vector<std::uint8_t> triangles;
   for (std::vector<std::uint8_t>& part : parts_of(polygons.triangles)) {
-    if (tile::shape_of(simplices_of(part)) != tile::Shape::ball) {
+    const bool has_ray = std::any_of(part.begin(), part.end(), [&](std::uint8_t v) {
+      return v >= Polygons::kFirstOwn && is_on_ray(static_cast<std::uint32_t>(polygons.masks[v - Polygons::kFirstOwn]));
+    });
+    if (has_ray || tile::shape_of(simplices_of(part)) != tile::Shape::ball) {
       kept.push_back(std::move(part));
       continue;
     }
@@ -281,6 +302,7 @@ VariantTables make_square_variants(const TileTables& plain) {
 VariantTables make_cube_variants(const TileTables& plain, const ResolvedCube& cube) {
   const std::vector<bool> ambiguous = ambiguous_cubes(cube);
   VariantMaker maker(plain, std::size_t{256} * kCubeVariants);
+  CubeListCertifier certifier;
   for (unsigned s = 0; s < 256; ++s) {
     if (!ambiguous[s]) continue;
     const unsigned resolutions = 1u << std::popcount(unsigned{cube.ambiguous[s]});
@@ -290,12 +312,17 @@ VariantTables make_cube_variants(const TileTables& plain, const ResolvedCube& cu
       for (unsigned choice = 0; choice < lists.size(); ++choice) {
         Polygons polygons(cube, *lists[choice]);
         if (plain.triangulation == Triangulation::barycentric) cone_discs(polygons);
+        certifier.certify(polygons.as_triangles(), polygons.all_masks(),
+                          fmt::format("cube of signature {}, resolution {}, choice {}, {}", s, r, choice,
+                                      triangulation_name(plain.triangulation)));
         maker.add(key_of(s, r, choice), polygons.triangles, polygons.cones, polygons.masks);
       }
     }
   }
   add_cube_rows(cube, ambiguous, maker);
-  return maker.finish();
+  VariantTables result = maker.finish();
+  result.embedded = certifier.proved();
+  return result;
 }
 
 std::uint64_t digest(const RowTables& table) {

@@ -25,8 +25,9 @@ struct RowTables {
 
 /// Squares or cubes with resolved ambiguities.
 struct VariantTables {
-  TileTables tile;  ///< lists by key; its signatures are keys
-  RowTables rows;   ///< by key
+  TileTables tile;             ///< lists by key; its signatures are keys
+  RowTables rows;              ///< by key
+  std::uint64_t embedded = 0;  ///< number of lists of resolved tiles that are proved to be embedded
 };
 
 /// Whether a table has a form for loops: it must be flat, with sizes that fit in an entry.
@@ -40,7 +41,7 @@ struct VariantTables {
 /// The squares of all keys. The high-connected square is the low-connected one of the complement, reversed.
 [[nodiscard]] VariantTables make_square_variants(const TileTables& plain);
 /// The cubes of all keys. `plain`: of the triangulation to make. Certifies every disc that is coned from its
-/// barycentre. Throws Error{CertificateFailed}.
+/// barycentre, and that every list is embedded. Throws Error{CertificateFailed}.
 [[nodiscard]] VariantTables make_cube_variants(const TileTables& plain, const ResolvedCube& cube);
 
 /// FNV-1a digest of all numbers.

@@ -594,9 +594,9 @@ class FacetWriter : FacetExtraction<N> {
       if (inside.points.empty()) return;
       const auto index = place_of(row, i);
       const EdgePlaces<N, Axes> edges(source_, index, rows_.signature(kind.corners, row, i));
+      CubeRays<N> rays = edges.rays();
       for (const std::uint8_t own : inside.points) {
-        const TilePoint<3> point =
-            mask_place<3>(ResolvedCubes::instance().mask(type, own), std::identity(), edges, true);
+        const TilePoint<3> point = cube_own_place(ResolvedCubes::instance().mask(type, own), edges, rays);
         facets_.vertices[vertex] = placement_.template in_cell<CellFrame<N, Axes>>(index, point);
         if (options_.normals != Normals::none)
           facets_.normals[vertex] = placement_.normals()->template in_cell<CellFrame<N, Axes>>(index, point);

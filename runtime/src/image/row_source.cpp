@@ -100,6 +100,16 @@ void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* 
 }
 
 template <Value T, int N>
+CubeHeights RowSource<T, N>::cube_heights(const Index& base, unsigned axes) const noexcept {
+  CubeHeights heights{{}, epsilon_};
+  if constexpr (N > 2) {
+    corner_values(base, axes, heights.at.data());
+    for (double& height : heights.at) height -= this->isovalue();
+  }
+  return heights;
+}
+
+template <Value T, int N>
 void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept {
   if (N == 4 && axes == (1u << N) - 1) {
     // About half of the edges are critical: computing all is faster than gathering these.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "image/bitplanes.hpp"
+#include "image/cube_heights.hpp"
 #include "image/gradient.hpp"
 
 namespace tegl::detail {
@@ -95,7 +96,7 @@ struct EdgesInRows {
 };
 
 /// Intersections of the contour with edges of the grid, as interpolation parameters: 0 at an edge's first end, 1 at its
-/// second, clamped to [epsilon, 1 - epsilon].
+/// second, clamped to [epsilon, 1 - epsilon]. Also the data of intersections with rays inside cubes.
 template <int N>
 class EdgeCrossings {
  public:
@@ -109,6 +110,8 @@ class EdgeCrossings {
   /// edge e to out[e]. `out` has an entry for each edge of the cell; the other entries are undefined.
   virtual void cell_alphas(const SampleIndex<N>& base, unsigned axes, std::uint32_t edges,
                            double* out) const noexcept = 0;
+  /// Heights at the corners of the cube along three `axes` based at `base`.
+  [[nodiscard]] virtual CubeHeights cube_heights(const SampleIndex<N>& base, unsigned axes) const noexcept = 0;
 
  protected:
   explicit EdgeCrossings(const Strides& strides) : strides_(strides) {}

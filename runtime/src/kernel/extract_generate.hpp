@@ -375,8 +375,11 @@ class TileWriter {
   void write_own(const SimplexList<N>& list, SharedPlaces<N>& places, const typename RowShape<N>::Index& index,
                  Index own, VertexRun<Vertex> vertices) const noexcept {
     std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
-    own_places<N>(
-        list, compact_, [&](unsigned v) -> decltype(auto) { return places(list.mapped(v)); }, points.data());
+    const auto place = [&](unsigned v) -> decltype(auto) { return places(list.mapped(v)); };
+    if constexpr (N == 3)
+      own_places<N>(list, compact_, place, points.data(), places.edges().rays());
+    else
+      own_places<N>(list, compact_, place, points.data());
     for (unsigned j = 0; j < list.own_vertices(); ++j) {
       vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
       if (placement_.normals() != nullptr)

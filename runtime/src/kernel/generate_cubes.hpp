@@ -64,7 +64,7 @@ void generate_listed_cubes(const EdgeCrossings<4>& source, const tables::TileTab
     index[0] = cube.at;
     const SimplexList<3> list(table, cube.key);
     const EdgePlaces<4, Axes> places(source, index, signature_of<3>(cube.key));
-    own_places<3>(list, false, places, points.data());
+    own_places<3>(list, false, places, points.data(), places.rays());
     for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
       vertices[next] = placement.template in_cell<CellFrame<4, Axes>>(index, points[j]);
       if (placement.normals() != nullptr)

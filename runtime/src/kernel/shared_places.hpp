@@ -17,21 +17,57 @@
 
 namespace tegl::detail {
 
+/// Levels of the contour on rays inside the cube along three `axes` based at `base` (CubeHeights). Reads the samples at
+/// the first request.
+template <int N>
+class CubeRays {
+ public:
+  CubeRays(const EdgeCrossings<N>& source, const SampleIndex<N>& base, unsigned axes) noexcept
+      : source_(source), base_(base), axes_(axes) {}
+  [[nodiscard]] double operator()(std::uint32_t corners) noexcept {
+    if (!is_known_) heights_ = source_.cube_heights(base_, axes_);
+    is_known_ = true;
+    return heights_.level(corners);
+  }
+
+ private:
+  const EdgeCrossings<N>& source_;
+  SampleIndex<N> base_;
+  unsigned axes_;
+  bool is_known_ = false;
+  CubeHeights heights_;
+};
+
 /// Positions of the vertices on critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
 template <int N, unsigned Axes>
 class EdgePlaces {
  public:
   static constexpr int kDim = std::popcount(Axes);
 
-  EdgePlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
+  EdgePlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept
+      : source_(source), base_(base) {
     source.cell_alphas(base, Axes, critical_edges<kDim>(signature), alphas_.data());
   }
   [[nodiscard]] TilePoint<kDim> operator()(unsigned edge) const noexcept {
     return edge_point<kDim>(edge, alphas_[edge]);
   }
   [[nodiscard]] double alpha(unsigned edge) const noexcept { return alphas_[edge]; }
+  /// Of the cell, which is a cube.
+  [[nodiscard]] CubeRays<N> rays() const noexcept {
+    static_assert(kDim == 3);
+    return CubeRays<N>(source_, base_, Axes);
+  }
+  /// Of a cube of the cell, which is a tesseract.
+  [[nodiscard]] CubeRays<N> rays_in(unsigned cube) const noexcept {
+    static_assert(Axes == 15);
+    auto base = base_;
+    base[cube / 2] += cube % 2;
+    return CubeRays<N>(source_, base, Axes ^ 1u << cube / 2);
+  }
 
  private:
+  const EdgeCrossings<N>& source_;
+  SampleIndex<N> base_;
   std::array<double, tables::edge_count(kDim)> alphas_;  ///< undefined for non-critical edges
 };
 
@@ -43,6 +79,7 @@ class SharedPlaces {
                const tables::TileTable* /*cube*/) noexcept
       : edges_(source, base, signature) {}
   [[nodiscard]] TilePoint<N> operator()(unsigned v) noexcept { return edges_(v); }
+  [[nodiscard]] const EdgePlaces<N, (1u << N) - 1>& edges() const noexcept { return edges_; }
 
  private:
   EdgePlaces<N, (1u << N) - 1> edges_;
@@ -165,7 +202,8 @@ class ResolvedPlaces {
     const SimplexList<3> list(variant_table<3>(Triangulation::barycentric).tile, cubes_.key(lists_[cube]));
     std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points{};
     own_places<3>(
-        list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data());
+        list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data(),
+        edges_.rays_in(cube));
     for (unsigned j = 0; j < ResolvedCubes::kMostOwn; ++j) {
       const unsigned v = ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j;
       places_[v] = cube_point(cube, points[j]);

@@ -366,7 +366,8 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     const SeenTile& seen = slab(k).tiles[cell.tile];
     const CellKind<N> kind(cell.kind);
     const auto base = base_of(cell, k);
-    places.begin(seen, kind.is_cap() ? N - 1 : -1);
+    const Rays rays(*this, kind, base);
+    places.begin(seen, kind.is_cap() ? N - 1 : -1, rays);
     ids.resize(seen.tile->vertices.size());
     for_faces_of(k, c,
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
@@ -427,6 +428,25 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     source_.edge_alphas(start[N - 1], kind.axis(axis), {&row, &at, 1}, &result);
     return result;
   }
+
+  /// Rays in the cubes of a cell. Cubes of a cap across the border are flat: the level does not matter.
+  class Rays final : public TileRays {
+   public:
+    Rays(const TileExtraction& of, CellKind<N> kind, const typename RowShape<N>::Index& base) noexcept
+        : of_(of), kind_(kind), base_(base) {}
+    [[nodiscard]] double level(std::size_t face, std::uint32_t corners) const noexcept override {
+      const CubeFaces::Cell& cube = of_.cube_.cells()[face];
+      if (kind_.is_cap() && (cube.axes >> (N - 1) & 1u) != 0) return 0.5;
+      auto start = base_;
+      for (int a = 0; a < N; ++a) start[a] += kind_.spread(cube.base) >> a & 1u;
+      return of_.source_.cube_heights(start, kind_.spread(cube.axes)).level(corners);
+    }
+
+   private:
+    const TileExtraction& of_;
+    CellKind<N> kind_;
+    const typename RowShape<N>::Index& base_;
+  };
 
   /// Maps a position from the axes of a cell to those of the grid.
   static TilePoint<N> in_grid(CellKind<N> kind, const TilePoint<N>& place) noexcept {

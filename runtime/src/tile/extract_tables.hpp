@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/corners.hpp"
@@ -270,15 +272,46 @@ TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& p
   return point;
 }
 
+/// Whether a vertex of a cube with this mask lies on a ray (tables::ResolvedList): it has corners.
+constexpr bool is_on_ray(std::uint64_t mask) noexcept { return (mask & 0xffu) != 0; }
+
+/// Position of a cube's own vertex on the ray from the cube's centre to the mean of `corners`. `level`: from
+/// CubeHeights. Every vertex of a tunnel is here, in images of all dimensions.
+inline TilePoint<3> ray_place(std::uint32_t corners, double level) noexcept {
+  std::uint32_t all = 7, some = 0;  // axes along which all corners, and any corner, are at 1
+  for (; corners != 0; corners &= corners - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(corners));
+    all &= v;
+    some |= v;
+  }
+  TilePoint<3> point;
+  for (unsigned a = 0; a < 3; ++a)
+    point[a] = 0.5 + 0.5 * level * (static_cast<double>(all >> a & 1u) + static_cast<double>(some >> a & 1u) - 1.0);
+  return point;
+}
+
+/// Position of a cube's own vertex from its mask, as mask_place, except for vertices on rays. `rays(corners)`: level of
+/// a ray.
+template <class Place, class Rays>
+TilePoint<3> cube_own_place(std::uint32_t mask, const Place& place, Rays&& rays) noexcept {
+  if (is_on_ray(mask)) return ray_place(mask, rays(mask));
+  return mask_place<3>(mask, std::identity(), place, true);
+}
+
+/// For tiles that have no vertices on rays.
+struct NoRays {
+  double operator()(std::uint32_t) const noexcept { return 0.5; }
+};
+
 /// Positions of a tile's cone vertices and side vertices in the unit tile, so that they do not depend on the units of
 /// the axes. `place(v)`: position of the stored vertex v < first_tile_vertex(K), in the frame of the signature. `out`:
-/// list.own_vertices() points.
+/// list.own_vertices() points. `rays`: as for cube_own_place.
 ///
 /// Tiles of a 3D image and cubes of a 4D image use the same function. Their barycentres agree bit by bit, so a 4D
 /// contour contains the 3D contours of its time steps.
-template <int K, class Place>
-void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const Place& place,
-                TilePoint<K>* out) noexcept {
+template <int K, class Place, class Rays = NoRays>
+void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const Place& place, TilePoint<K>* out,
+                [[maybe_unused]] Rays&& rays = {}) noexcept {
   const unsigned cones = list.list().cone_vertices;
   for (unsigned j = 0; j < cones; ++j) {
     const unsigned apex = tables::first_tile_vertex(K) + j;
@@ -289,9 +322,11 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
     }
   }
   const auto corner = [&](unsigned v) { return list.mapped_corner(v); };
-  // Cubes (K = 3) have side vertices only if they are resolved from the data.
   for (unsigned j = 0; j < list.list().side_vertices; ++j)
-    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, K == 3);
+    if constexpr (K == 3)  // cubes have side vertices only if they are resolved from the data
+      out[cones + j] = cube_own_place(static_cast<std::uint32_t>(list.side_mask(j)), place, rays);
+    else
+      out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, false);
 }
 
 }  // namespace tegl::detail

@@ -69,6 +69,16 @@ std::array<double, N> simplex_barycentre(std::span<const std::array<double, N>> 
   return sum.point;
 }
 
+/// Levels of the contour on rays inside the cubes of a tile (CubeHeights).
+class TileRays {
+ public:
+  /// `face`: number of the cube in the lattice.
+  [[nodiscard]] virtual double level(std::size_t face, std::uint32_t corners) const noexcept = 0;
+
+ protected:
+  ~TileRays() = default;
+};
+
 /// Computes positions on request, for one tile at a time.
 template <int N>
 class TilePlaces {
@@ -77,8 +87,10 @@ class TilePlaces {
 
   TilePlaces(const CubeFaces& cube, const CubeSymmetries& symmetries) : cube_(cube), symmetries_(symmetries) {}
   /// `flat_axis`: axis along which all positions are 0; -1: none. Positions on edges must be set by `set_edge`.
-  void begin(const SeenTile& seen, int flat_axis) {
+  /// `rays` must live until the next tile.
+  void begin(const SeenTile& seen, int flat_axis, const TileRays& rays) {
     tile_ = seen.tile.get();
+    rays_ = &rays;
     symmetry_ = seen.symmetry;
     flat_axis_ = flat_axis;
     const BuiltTile& tile = *tile_;
@@ -109,7 +121,8 @@ class TilePlaces {
       case tile::VertexKind::centre:
         return vertex.first == vertex.end ? beside(vertex) : mean(vertex);
       case tile::VertexKind::side:
-        return vertex.copied == BuiltTile::kNone ? mean_of_points(vertex) : pushed_inwards(vertex);
+        if (vertex.copied != BuiltTile::kNone) return pushed_inwards(vertex);
+        return is_on_ray(vertex) ? on_ray(vertex) : mean_of_points(vertex);
       default:
         return corner_point<N>(cube_.cells()[vertex.face].base);
     }
@@ -150,6 +163,21 @@ class TilePlaces {
     Weighted<N> sum;
     for (std::size_t at = vertex.first; at < vertex.end; ++at) sum.add((*this)(tile_->of[at]), 1.0);
     return divided(sum);
+  }
+
+  /// Whether it belongs to a cube and depends on corners, with their numbers in the cube (cube_own_place).
+  [[nodiscard]] bool is_on_ray(const BuiltTile::Vertex& vertex) const noexcept {
+    return cube_.cells()[vertex.face].dim == 3 && vertex.first != vertex.end && tile_->of[vertex.first + 1] < 8;
+  }
+  Point on_ray(const BuiltTile::Vertex& vertex) const noexcept {
+    std::uint32_t corners = 0;
+    for (std::size_t at = vertex.first; at < vertex.end; at += 2) corners |= 1u << tile_->of[at + 1];
+    const TilePoint<3> inside = ray_place(corners, rays_->level(vertex.face, corners));
+    const CubeFaces::Cell& face = cube_.cells()[vertex.face];
+    Point point = corner_point<N>(face.base);
+    for (int a = 0, own_axis = 0; a < N; ++a)
+      if ((face.axes >> a & 1u) != 0) point[a] = inside[own_axis++];
+    return point;
   }
 
   /// As own_place and mask_place of 4D tiles (extract_tables.hpp), in the frame of the vertex's face: a layer of
@@ -195,6 +223,7 @@ class TilePlaces {
   const CubeFaces& cube_;
   const CubeSymmetries& symmetries_;
   const BuiltTile* tile_ = nullptr;
+  const TileRays* rays_ = nullptr;
   CubeSymmetry symmetry_;
   int flat_axis_ = -1;
   std::vector<Point> points_;

@@ -100,7 +100,7 @@ class GeneralTesseract {
         // frames by the table contract, not by the emitted ones
         for (std::size_t i = 0; i < 3; ++i)
           triangle[i] = static_cast<tile::VertexId>(triangles[t + i] < 12 ? detail::lifted_edge(4, f, triangles[t + i])
-                                                                          : 32 + 3 * f + triangles[t + i] - 12u);
+                                                                          : 32 + 4 * f + triangles[t + i] - 12u);
         const int sign = tile::sort_vertices(triangle);
         tile.in_face[g].push_back(triangle);
         tile.in_face_sign[g].push_back(sign);
