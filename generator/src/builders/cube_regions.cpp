@@ -16,6 +16,7 @@
 
 #include "base/error.hpp"
 #include "builders/region_maker.hpp"
+#include "filling/cube_frame.hpp"
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/corners.hpp"
 

@@ -249,14 +249,16 @@ inline constexpr auto kUnevenWeights = [] {
 /// Position of an own vertex from its mask (bit v: corner v, bit 2^K + e: edge e). With edges only, it is their mean;
 /// with corners, half way from the tile's centre to the mean of all. `corner(v)`: maps a corner to the current frame.
 ///
-/// `uneven`: slightly unequal weights. If samples have few different values, as masks have, vertices on edges take few
+/// `uneven`: slightly unequal weights, unless all points are corners: the mean of a cube's corners is its centre, on the
+/// rays of its own vertices. If samples have few different values, as masks have, vertices on edges take few
 /// positions. The mean could then lie on the line through two of them, and a triangle would have zero area. The vertex
 /// is also moved towards the centre, as all edges may lie in one face of the tile, which must contain only the face's
 /// own vertices.
 template <int K, class Corner, class Place>
 TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
   constexpr unsigned kCorners = 1u << K;
-  const auto weight = [uneven](unsigned v) { return uneven ? kUnevenWeights[v] : 1.0; };
+  const bool has_uneven = uneven && mask >> kCorners != 0;
+  const auto weight = [has_uneven](unsigned v) { return has_uneven ? kUnevenWeights[v] : 1.0; };
   Weighted<K> sum;
   for (std::uint64_t rest = mask & ((std::uint64_t{1} << kCorners) - 1); rest != 0; rest &= rest - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(rest));
