@@ -15,6 +15,8 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "builders/region_maker.hpp"
+#include "filling/cube_frame.hpp"
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -60,10 +62,11 @@ struct Side {
   unsigned signature, high_squares;
   bool high;
   bool has_square_centres;  ///< polygons with more than three vertices are coned from their barycentre
+  bool has_middle_fans;     ///< polygons with three corners are fans from the middle one
 
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == high; }
 
-  /// Appends the side's part of a square: each polygon as a fan from its lowest corner, or coned. Adjacent cubes get
+  /// Appends the side's part of a square: each polygon as a fan from a corner, the lowest or a middle one, or coned. Adjacent cubes get
   /// the same triangles. Oriented outwards for the low side, inwards for the high side: this continues the contour,
   /// which is oriented towards high.
   void add_square(unsigned q, std::vector<Triangle>& to) const {
@@ -86,7 +89,13 @@ struct Side {
       for (std::size_t i = 0; i < n; ++i)
         to.push_back({static_cast<std::uint8_t>(kFirstSquare + q), outline[i], outline[(i + 1) % n]});
     } else if (corners != 0) {
-      std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
+      const auto is_apex = [&](std::size_t i) {
+        return !has_middle_fans || corners != 3 ? outline[i] == *std::min_element(outline.begin(), outline.end())
+                            : outline[(i + n - 1) % n] < 8 && outline[i] < 8 && outline[(i + 1) % n] < 8;
+      };
+      std::size_t apex = 0;
+      while (!is_apex(apex)) ++apex;
+      std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(apex), outline.end());
       for (std::size_t i = 1; i + 1 < n; ++i) to.push_back({outline[0], outline[i], outline[i + 1]});
     }
   }
@@ -150,6 +159,28 @@ bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
   return true;
 }
 
+/// The vertices of a list and of a side for divide_region.
+RegionFrame frame_of(const CubeLists& lists, std::size_t number, const std::vector<Triangle>& contour,
+                     const Side& side) {
+  RegionFrame frame;
+  frame.squares = kSquares;
+  for (unsigned v = 0; v < kFirstOwn; ++v) frame.points[v] = RegionProof::Points{1} << v;
+  if (number < lists.lists.size())
+    for (unsigned j = 0; j < lists.lists[number].own_vertices; ++j) {
+      const std::uint32_t mask = lists.lists[number].masks[j];
+      frame.points[kFirstOwn + j] = is_on_ray(mask) ? RegionProof::on_ray(mask) : mask;
+    }
+  for (unsigned q = 0; q < 6; ++q) {
+    std::vector<Triangle> square;
+    side.add_square(q, square);
+    for (const Triangle& t : square)
+      for (const std::uint8_t v : t)
+        if (v < kFirstOwn) frame.points[kFirstSquare + q] |= RegionProof::Points{1} << v;
+  }
+  for (const Triangle& t : contour) frame.on_contour |= set_of(t);
+  return frame;
+}
+
 /// Divides the regions of one side of a cube into tetrahedra.
 class RegionMaker {
  public:
@@ -157,6 +188,20 @@ class RegionMaker {
 
   std::vector<Tetrahedron> tetrahedra;
   std::vector<std::uint32_t> centres;
+  bool is_proved = false;
+
+  bool divide(const RegionProof& proof, const RegionFrame& frame, std::vector<Triangle> surface, bool high) {
+    if (high)
+      for (Triangle& t : surface) std::swap(t[1], t[2]);
+    const auto division = divide_region(proof, frame, surface);
+    if (!division) return false;
+    is_proved = true;
+    tetrahedra = division->tetrahedra;
+    if (high)
+      for (Tetrahedron& t : tetrahedra) std::swap(t[2], t[3]);
+    if (division->centre != 0) centres.push_back(static_cast<std::uint32_t>(division->centre));
+    return true;
+  }
 
   /// `surface`: the whole boundary of the region. `contour`: triangles of the list.
   void fill(const std::vector<Triangle>& surface, const std::vector<Triangle>& contour) {
@@ -417,6 +462,7 @@ void certify(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Trian
 }  // namespace
 
 CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
+  const RegionProof proof;
   CubeRegions result;
   const std::size_t whole = lists.lists.size();
   for (std::size_t number = 0; number <= whole; ++number)
@@ -425,7 +471,8 @@ CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
       const bool is_whole = number == whole;
       // boundary of the side
       const Side side{is_whole ? (high ? 255u : 0u) : lists.lists[number].signature,
-                      is_whole ? 0u : lists.lists[number].high_squares, high, has_square_centres};
+                      is_whole ? 0u : lists.lists[number].high_squares, high, has_square_centres,
+                      lists.triangulation == Triangulation::compact};
       std::vector<Triangle> surface, contour;
       for (unsigned q = 0; q < 6; ++q) side.add_square(q, surface);
       if (!is_whole) {
@@ -436,13 +483,15 @@ CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
                              static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
         surface.insert(surface.end(), contour.begin(), contour.end());
       }
+      const RegionFrame frame = frame_of(lists, number, contour, side);
       // regions
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
         RegionMaker maker(lists.triangulation == Triangulation::barycentric);
-        maker.fill(part, contour);
+        if (!maker.divide(proof, frame, part, high)) maker.fill(part, contour);
         certify(maker.tetrahedra, part);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);
+        ++(maker.is_proved ? result.proved : result.others);
         result.regions.push_back(
             {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(maker.centres.size()),
              static_cast<std::uint16_t>(maker.tetrahedra.size()), static_cast<std::uint32_t>(result.tetrahedra.size()),

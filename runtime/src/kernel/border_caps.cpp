@@ -54,15 +54,16 @@ bool lies_in_square(std::uint32_t mask) noexcept {
 }
 
 /// Position of a vertex that a region of a cube adds in the barycentric triangulation. The weights are unequal, as in
-/// mask_place, so that the vertex is hardly ever coplanar with three others. All points of a region along a tunnel
+/// mask_place and unless all points are corners, so that the vertex is hardly ever coplanar with three others. All points of a region along a tunnel
 /// (`is_collar`) may lie in one square, and the cube on the other side may add a vertex there as well. Such vertices
 /// are moved towards the cube's centre.
 template <unsigned Axes>
 TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask, bool is_collar) noexcept {
   Weighted<3> sum;
+  const double step = mask >> 8 != 0 ? 0.01 : 0.0;
   for (; mask != 0; mask &= mask - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(mask));
-    sum.add(v < 8 ? corner_point<3>(v) : places(v - 8), 1.0 + 0.01 * v);
+    sum.add(v < 8 ? corner_point<3>(v) : places(v - 8), 1.0 + step * v);
   }
   for (double& x : sum.point) x = is_collar ? 0.9 * (x / sum.weight) + 0.1 * 0.5 : x / sum.weight;
   return sum.point;

@@ -227,9 +227,11 @@ inline constexpr auto kCornerPoints = [] {
 /// Weight of point number v of an uneven mean (mask_place).
 constexpr double uneven_weight(unsigned v) noexcept { return 1.0 + 0.01 * v; }
 
-/// One coordinate of an own vertex, from the mean of its points (mask_place). `axis`: number in the vertex's face.
+/// One coordinate of an own vertex, from the mean of its points (mask_place). `axis`: number in the vertex's face. With
+/// corners the vertex lies on the ray from the face's centre to the mean, as copies of a side must; both halves are
+/// exact for the mean of one corner.
 [[gnu::always_inline]] inline double own_coordinate(double mean, int axis, bool has_corners, bool uneven) noexcept {
-  const double centre = uneven ? 0.487 + 0.01 * axis : 0.5;
+  const double centre = uneven && !has_corners ? 0.487 + 0.01 * axis : 0.5;
   const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
   return share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
 }
@@ -247,14 +249,16 @@ inline constexpr auto kUnevenWeights = [] {
 /// Position of an own vertex from its mask (bit v: corner v, bit 2^K + e: edge e). With edges only, it is their mean;
 /// with corners, half way from the tile's centre to the mean of all. `corner(v)`: maps a corner to the current frame.
 ///
-/// `uneven`: slightly unequal weights. If samples have few different values, as masks have, vertices on edges take few
+/// `uneven`: slightly unequal weights, unless all points are corners: the mean of a cube's corners is its centre, on the
+/// rays of its own vertices. If samples have few different values, as masks have, vertices on edges take few
 /// positions. The mean could then lie on the line through two of them, and a triangle would have zero area. The vertex
 /// is also moved towards the centre, as all edges may lie in one face of the tile, which must contain only the face's
 /// own vertices.
 template <int K, class Corner, class Place>
 TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
   constexpr unsigned kCorners = 1u << K;
-  const auto weight = [uneven](unsigned v) { return uneven ? kUnevenWeights[v] : 1.0; };
+  const bool has_uneven = uneven && mask >> kCorners != 0;
+  const auto weight = [has_uneven](unsigned v) { return has_uneven ? kUnevenWeights[v] : 1.0; };
   Weighted<K> sum;
   for (std::uint64_t rest = mask & ((std::uint64_t{1} << kCorners) - 1); rest != 0; rest &= rest - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(rest));

@@ -184,12 +184,12 @@ class TilePlaces {
   /// a 5D contour equals the contour of the 4D image, bit by bit.
   Point mean_of_points(const BuiltTile::Vertex& vertex) noexcept {
     Weighted<N> sum;
-    bool has_corners = false;
-    for (std::size_t at = vertex.first; at < vertex.end; at += 2) {
-      const std::uint16_t v = tile_->of[at];
-      has_corners = has_corners || tile_->vertices[v].kind == tile::VertexKind::corner;
-      sum.add((*this)(v), vertex.is_even ? 1.0 : uneven_weight(tile_->of[at + 1]));
-    }
+    bool has_corners = false, has_edges = false;
+    for (std::size_t at = vertex.first; at < vertex.end; at += 2)
+      (tile_->vertices[tile_->of[at]].kind == tile::VertexKind::corner ? has_corners : has_edges) = true;
+    const bool is_even = vertex.is_even || !has_edges;
+    for (std::size_t at = vertex.first; at < vertex.end; at += 2)
+      sum.add((*this)(tile_->of[at]), is_even ? 1.0 : uneven_weight(tile_->of[at + 1]));
     const CubeFaces::Cell& face = cube_.cells()[vertex.face];
     Point point = corner_point<N>(face.base);
     int own_axis = 0;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Divides a ball in a cube into tetrahedra that are positive wherever the contour meets the cube's edges.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "builders/cube_regions.hpp"
+#include "builders/region_proof.hpp"
+
+namespace tegl::gen {
+
+/// What a division may not do, and where its vertices lie.
+struct RegionFrame {
+  using Set = std::uint64_t;  ///< bit set of local vertices (CubeRegions)
+  static constexpr unsigned kEnd = CubeRegions::kFirstSquare + 6;  ///< one past the last local vertex
+
+  std::array<Set, 6> squares{};                           ///< local vertices in each square
+  Set on_contour = 0;                                     ///< vertices of the list
+  std::array<RegionProof::Points, kEnd> points{};         ///< by vertex
+};
+
+/// A division of a region, with the orientation that its surface has towards the inside.
+struct RegionDivision {
+  std::vector<CubeRegions::Tetrahedron> tetrahedra;  ///< the centre: vertex kFirstCentre
+  RegionProof::Points centre = 0;  ///< the corners and edges whose mean it is; 0: without a centre
+};
+
+/// Searches for a division into positive tetrahedra without other vertices than those of the surface; if there is none,
+/// with one centre. Simplices whose vertices all lie in one square or on the contour belong to the surface. `surface`:
+/// triangles oriented outwards. Empty if the search fails.
+[[nodiscard]] std::optional<RegionDivision> divide_region(const RegionProof& proof, const RegionFrame& frame,
+                                                          std::span<const std::array<std::uint8_t, 3>> surface);
+
+}  // namespace tegl::gen
