@@ -4,7 +4,8 @@
 in the rule side by side, and keeps their figures in bench/results/resolved.json.
 
 All rules of an image run in one process, in random order and many times, so that what disturbs the machine meets all of
-them. Ratios are of medians. bench/tables.py makes tables of the figures.
+them. Ratios are of medians: of processor time on one thread, of real time on several. bench/tables.py makes tables of the
+figures.
 """
 
 import argparse
@@ -73,7 +74,7 @@ def measure(case: Case, threads: int, options) -> dict:
         raise RuntimeError(f"extract_bench has no rules for {case.benchmarks} with {threads} threads; found {sorted(runs)}")
     sides = {}
     for rule in (rule for rule in RULES if rule in runs):
-        ms = [run["real_time"] for run in runs[rule]]
+        ms = [run["cpu_time" if threads == 1 else "real_time"] for run in runs[rule]]
         first = runs[rule][0]
         sides[rule] = {"median_ms": statistics.median(ms), "least_ms": min(ms), "runs": len(ms),
                        "active_tiles": int(first["active_tiles"]), "simplices": int(first["simplices"])}

@@ -223,7 +223,8 @@ def main() -> None:
     text += page("side_by_side", "Side by side", "`bench/side_by_side`: all programs on the same samples, in turn, in one process.",
                  side_by_side)
     text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order; "
-                 "medians relative to `low`, in brackets the same for the numbers of simplices.", resolved)
+                 "medians (of processor time on one thread, of real time on several) relative to `low`, in brackets the same for the numbers of "
+                 "simplices.", resolved)
     text += page("scaling", "Scaling", "`bench/scaling`: the minimum of three runs of each.", scaling)
     text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
                  stages)
