@@ -173,17 +173,19 @@ def resolved_verdict(verdict: dict) -> str:
 
 
 def resolved(result: dict) -> list[str]:
-    """Times relative to `low`, with those of the numbers of simplices, and what was to be reached."""
+    """Times relative to `low`, by medians and by least times, the ratio of the numbers of simplices, and what was to be
+    reached."""
     rules = list(dict.fromkeys(rule for row in result["rows"] for rule in row["sides"]))
     others = [rule for rule in rules if rule != "low"]
-    text = ["| image | threads | `low`, ms | ns per active tile | " + " | ".join(f"`{rule}`" for rule in others) + " | result |",
+    text = ["| image | threads | `low`, median ms | ns per active tile | " + " | ".join(f"`{rule}`" for rule in others) + " | result |",
             "|---|---|---|---|" + "---|" * len(others) + "---|"]
     for row in result["rows"]:
         low = row["sides"]["low"]
         ratios = []
         for rule in others:
             side = row["sides"].get(rule)
-            ratios.append(f"{side['ratio']:.2f}× ({side['simplices'] / low['simplices']:.2f})" if side else "")
+            ratios.append(f"{side['ratio']:.2f}×, {side['ratio_of_least']:.2f}× ({side['simplices'] / low['simplices']:.2f})"
+                          if side else "")
         text.append(f"| {row['name']} | {row['threads']} | {low['median_ms']:.2f} | {1e6 * low['median_ms'] / low['active_tiles']:.1f}"
                     f" | {' | '.join(ratios)} | {'; '.join(map(resolved_verdict, row['verdicts']))} |")
     return text
@@ -222,8 +224,8 @@ def main() -> None:
             "from one machine: compare ratios, not times."]
     text += page("side_by_side", "Side by side", "`bench/side_by_side`: all programs on the same samples, in turn, in one process.",
                  side_by_side)
-    text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order; "
-                 "medians relative to `low`, in brackets the same for the numbers of simplices.", resolved)
+    text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order. Processor "
+                 "time on one thread, real time on several, relative to `low`: medians, least times, in brackets the numbers of simplices.", resolved)
     text += page("scaling", "Scaling", "`bench/scaling`: the minimum of three runs of each.", scaling)
     text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
                  stages)

@@ -88,7 +88,7 @@ ResolvedTile KeptTile::tile(unsigned signature) const noexcept {
   result.key.tile = static_cast<tile::Choice>(words_[1] >> 52 & 3);
   if (plan() != ResolvedTesseract::kOther) return result;  // others do not need the squares
   const auto lists = ResolvedCubes::instance().lists();
-  for (unsigned f = 0; f < 8; ++f)
+  for (unsigned f = 0; f < 6; ++f)  // each square is in a cube across x, y or z
     if (result.lists[f] != ResolvedCubes::kNone)
       result.key.squares |= kSquaresOfCubes[f][lists[result.lists[f]].high_squares];
   return result;

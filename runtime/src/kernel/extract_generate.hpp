@@ -292,12 +292,13 @@ class TileWriter {
         const EdgePlaces<N, kAll> alphas(source_, index, signature);
         const auto places = [&](unsigned edge) { return edge_point_at_once<N>(edge, alphas.alpha(edge)); };
         ResolvedPlaces shared(alphas, cubes, tile.lists);
+        const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
           ids[ResolvedTesseract::kFirstOwn + j] = own;
           const TilePoint<N> place = (filling.masks[j] & ResolvedTesseract::kIsBarycentre) != 0
                                          ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
                                          : own_place(filling.masks[j], places);
-          vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
+          vertices[own] = in_cell(place);
           if (placement_.normals() != nullptr)
             vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
         }

@@ -53,10 +53,7 @@ class Placement {
 
   /// Coordinate at the fraction x of the way from sample i to i + 1. Exact at both ends, never outside.
   [[nodiscard]] double between(int axis, std::size_t i, double x) const noexcept {
-    const double a = coordinates_[axis][i];
-    const double b = coordinates_[axis][i + 1];
-    const double p = a + x * (b - a);
-    return x >= 1.0 ? b : std::clamp(p, std::min(a, b), std::max(a, b));
+    return between(coordinates_[axis][i], coordinates_[axis][i + 1], x);
   }
 
   /// World position of a point given by axis coordinates.
@@ -83,6 +80,27 @@ class Placement {
                                                                   : inside_slab(world(point), base[N - 1]);
   }
 
+  /// As in_cell along all axes, for several points in one cell, whose corners are looked up once.
+  class Cell {
+   public:
+    Cell(const Placement& placement, const Index& base) noexcept : placement_(placement), slab_(base[N - 1]) {
+      for (int a = 0; a < N; ++a) {
+        from_[a] = placement.coordinates_[a][base[a]];
+        to_[a] = placement.coordinates_[a][base[a] + 1];
+      }
+    }
+    [[nodiscard]] Vertex operator()(const std::array<double, N>& place) const noexcept {
+      std::array<double, N> point;
+      for (int a = 0; a < N; ++a) point[a] = between(from_[a], to_[a], place[a]);
+      return placement_.inside_slab(placement_.world(point), slab_);
+    }
+
+   private:
+    const Placement& placement_;
+    std::size_t slab_;
+    std::array<double, N> from_, to_;
+  };
+
   /// Completes the description of edges in layer k and writes their vertices.
   void edges(std::size_t k, EdgePoints<N, Real>& edges) const noexcept {
     edges.layer = sample(N - 1, k);
@@ -98,6 +116,11 @@ class Placement {
   }
 
  private:
+  [[nodiscard]] static double between(double a, double b, double x) noexcept {
+    const double p = a + x * (b - a);
+    return x >= 1.0 ? b : std::clamp(p, std::min(a, b), std::max(a, b));
+  }
+
   /// Keeps a point between layers k and k + 1 off both layers by the smallest difference that its type represents. Used
   /// in 4D, and in 3D for slices at a layer directly from the image. If samples (almost) equal the isovalue, points
   /// between layers would coincide with a layer, and `slice` could not distinguish them from the layer's own points.
