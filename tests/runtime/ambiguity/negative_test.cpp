@@ -35,10 +35,11 @@ double enclosed_together(std::size_t samples, Ambiguity ambiguity, Triangulation
   options.close = true;
   double middle = 0;  // about half of the samples are high
   for (const double value : image.values) middle += value / static_cast<double>(image.values.size());
-  double sum = 0;
-  sum += measure(extract<double>(image.view(), middle, options)).content.value();
-  sum += measure(extract<double>(negative(image).view(), -middle, options)).content.value();
-  return sum / std::pow(static_cast<double>(samples - 1), N);
+  const auto other = negative(image);
+  const auto content = [&](const OwnedImage<double, N>& of, double isovalue) {
+    return measure(extract<double>(of.view(), isovalue, options), WorkOptions{}).content.value();
+  };
+  return (content(image, middle) + content(other, -middle)) / std::pow(static_cast<double>(samples - 1), N);
 }
 
 constexpr std::array kAlike = {Ambiguity::mean, Ambiguity::saddle};
@@ -81,7 +82,8 @@ void expect_same_simplices(std::size_t samples, Ambiguity ambiguity, bool expect
   } while (image.values.size() < sample_count(image.grid));
   ExtractOptions options;
   options.ambiguity = ambiguity;
-  const auto contour = extract(image.view(), 0.0, options), other = extract(negative(image).view(), 0.0, options);
+  const auto reversed = negative(image);
+  const auto contour = extract(image.view(), 0.0, options), other = extract(reversed.view(), 0.0, options);
   ASSERT_GT(contour.simplices.size(), 1000u);
   ASSERT_EQ(contour.vertices, other.vertices);
   EXPECT_EQ(unoriented(contour) == unoriented(other), expect);
