@@ -62,11 +62,11 @@ struct Side {
   unsigned signature, high_squares;
   bool high;
   bool has_square_centres;  ///< polygons with more than three vertices are coned from their barycentre
-  bool has_middle_fans;     ///< polygons with three corners are fans from the middle one
 
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == high; }
 
-  /// Appends the side's part of a square: each polygon as a fan from a corner, the lowest or a middle one, or coned. Adjacent cubes get
+  /// Appends the side's part of a square: each polygon as a fan from its lowest corner, or
+  /// from the middle one of three, or coned. Adjacent cubes get
   /// the same triangles. Oriented outwards for the low side, inwards for the high side: this continues the contour,
   /// which is oriented towards high.
   void add_square(unsigned q, std::vector<Triangle>& to) const {
@@ -90,7 +90,7 @@ struct Side {
         to.push_back({static_cast<std::uint8_t>(kFirstSquare + q), outline[i], outline[(i + 1) % n]});
     } else if (corners != 0) {
       const auto is_apex = [&](std::size_t i) {
-        return !has_middle_fans || corners != 3 ? outline[i] == *std::min_element(outline.begin(), outline.end())
+        return corners != 3 ? outline[i] == *std::min_element(outline.begin(), outline.end())
                             : outline[(i + n - 1) % n] < 8 && outline[i] < 8 && outline[(i + 1) % n] < 8;
       };
       std::size_t apex = 0;
@@ -169,6 +169,7 @@ RegionFrame frame_of(const CubeLists& lists, std::size_t number, const std::vect
     for (unsigned j = 0; j < lists.lists[number].own_vertices; ++j) {
       const std::uint32_t mask = lists.lists[number].masks[j];
       frame.points[kFirstOwn + j] = is_on_ray(mask) ? RegionProof::on_ray(mask) : mask;
+      if (j < lists.lists[number].barycentres && !side.has_square_centres) frame.barycentres |= bit(kFirstOwn + j);
     }
   for (unsigned q = 0; q < 6; ++q) {
     std::vector<Triangle> square;
@@ -199,7 +200,7 @@ class RegionMaker {
     tetrahedra = division->tetrahedra;
     if (high)
       for (Tetrahedron& t : tetrahedra) std::swap(t[2], t[3]);
-    if (division->centre != 0) centres.push_back(static_cast<std::uint32_t>(division->centre));
+    if (division->centre != 0) centres.push_back(division->centre);
     return true;
   }
 
@@ -461,6 +462,11 @@ void certify(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Trian
 
 }  // namespace
 
+std::size_t CubeRegions::proved() const {
+  return static_cast<std::size_t>(
+      std::count_if(regions.begin(), regions.end(), [](const Region& r) { return r.is_proved; }));
+}
+
 CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
   const RegionProof proof;
   CubeRegions result;
@@ -471,8 +477,7 @@ CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
       const bool is_whole = number == whole;
       // boundary of the side
       const Side side{is_whole ? (high ? 255u : 0u) : lists.lists[number].signature,
-                      is_whole ? 0u : lists.lists[number].high_squares, high, has_square_centres,
-                      lists.triangulation == Triangulation::compact};
+                      is_whole ? 0u : lists.lists[number].high_squares, high, has_square_centres};
       std::vector<Triangle> surface, contour;
       for (unsigned q = 0; q < 6; ++q) side.add_square(q, surface);
       if (!is_whole) {
@@ -491,11 +496,10 @@ CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
         certify(maker.tetrahedra, part);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);
-        ++(maker.is_proved ? result.proved : result.others);
         result.regions.push_back(
             {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(maker.centres.size()),
              static_cast<std::uint16_t>(maker.tetrahedra.size()), static_cast<std::uint32_t>(result.tetrahedra.size()),
-             static_cast<std::uint32_t>(result.centres.size())});
+             static_cast<std::uint32_t>(result.centres.size()), maker.is_proved});
         result.tetrahedra.insert(result.tetrahedra.end(), maker.tetrahedra.begin(), maker.tetrahedra.end());
         result.centres.insert(result.centres.end(), maker.centres.begin(), maker.centres.end());
       }

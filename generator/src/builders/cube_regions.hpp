@@ -22,25 +22,28 @@ struct CubeRegions {
   static constexpr unsigned kFirstCentre = kFirstOwn + CubeLists::kMostOwn;  ///< vertices that the region adds
   static constexpr unsigned kVertices = 32;                                  ///< maximum, not counting square centres
   static constexpr unsigned kFirstSquare = kVertices;                        ///< barycentres of squares' high parts
+  static constexpr std::uint32_t kFirstDouble = 1u << 20;
   using Tetrahedron = std::array<std::uint8_t, 4>;
 
   struct Region {
     std::uint8_t corners, centre_count;
     std::uint16_t tetrahedron_count;
     std::uint32_t first_tetrahedron, first_centre;
+    bool is_proved;  ///< whether its tetrahedra are proved to be positive for all positions on edges and rays
   };
 
   std::vector<std::uint32_t> first_region;  ///< by 2 * list + side
   std::vector<Region> regions;
   std::vector<Tetrahedron> tetrahedra;  ///< oriented so that they induce the list's triangles
-  std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near
-  /// Number of regions whose tetrahedra are proved to be positive for all positions on edges, and of the others.
-  std::size_t proved = 0, others = 0;
+  std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near, or
+                                        ///< kFirstDouble << j: on the ray of own vertex j
+
+  [[nodiscard]] std::size_t proved() const;  ///< number of regions that are proved
 };
 
 /// `has_square_centres`: squares are triangulated as in tables::region_table of the barycentric triangulation, to close
-/// contours at the image border; else each polygon in a square is a fan from its lowest corner or,
-/// in the compact triangulation, from the middle one of three corners. Certifies every region.
+/// contours at the image border; else each polygon in a square is a fan from its lowest corner, or
+/// from the middle one of three corners. Certifies every region.
 /// Throws Error{CertificateFailed}.
 [[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres);
 

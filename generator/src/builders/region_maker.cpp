@@ -230,10 +230,10 @@ class Search {
     return result;
   }
 
-  /// The points from whose mean all of the front is visible; 0 if there are none. That is the cube's centre, which is
-  /// the mean of all corners, or one of them is a corner: the copy of such a mean lies half way to the centre of the
-  /// tesseract.
-  [[nodiscard]] RegionProof::Points kernel() {
+  /// The points from whose mean all of the front is visible, as in CubeRegions::centres; 0 if there are none. That is the
+  /// cube's centre, which is the mean of all corners, or one of them is a corner: the copy of such a mean lies half way
+  /// to the centre of the tesseract. Or it lies on a barycentre's ray.
+  [[nodiscard]] std::uint32_t kernel() {
     constexpr RegionProof::Points kCorners = 0xff, kCentre = RegionProof::Points{1} << RegionProof::kCentre;
     RegionProof::Points all = ~RegionProof::Points{0};
     for (const Triangle& t : front_) all &= visibility(t).not_negative;
@@ -243,11 +243,24 @@ class Search {
     };
     if ((all & kCentre) != 0 && is_kernel(kCentre)) return kCorners;
     all &= RegionProof::kShared;
-    return (all & kCorners) != 0 && all != kCorners && is_kernel(all) ? all : 0;
+    if ((all & kCorners) != 0 && all != kCorners && is_kernel(all)) return static_cast<std::uint32_t>(all);
+    for (Set rest = frame_.barycentres; rest != 0; rest &= rest - 1) {
+      const auto v = static_cast<unsigned>(std::countr_zero(rest));
+      if (is_seen_from(v)) return CubeRegions::kFirstDouble << (v - CubeRegions::kFirstOwn);
+    }
+    return 0;
+  }
+  /// Whether the triangles of the front that do not contain a vertex are visible from it.
+  [[nodiscard]] bool is_seen_from(unsigned v) const {
+    return std::all_of(front_.begin(), front_.end(), [&](const Triangle& t) {
+      return (set_of(t) & one(v)) != 0 ||
+             proof_.sign(frame_.points[v], frame_.points[t[0]], frame_.points[t[1]], frame_.points[t[2]]) ==
+                 RegionProof::Sign::positive;
+    });
   }
 
   bool take_rest() {
-    const RegionProof::Points centre = kernel();
+    const std::uint32_t centre = kernel();
     if (centre == 0) return false;
     result_.tetrahedra = taken_;
     result_.centre = centre;

@@ -213,7 +213,7 @@ std::size_t TesseractArrays::region_count() const {
 
 std::size_t TesseractArrays::proved_regions() const {
   std::size_t count = 0;
-  for (const CubeRegions& r : regions) count += r.proved;
+  for (const CubeRegions& r : regions) count += r.proved();
   return count;
 }
 

@@ -295,9 +295,12 @@ class TileWriter {
         const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
           ids[ResolvedTesseract::kFirstOwn + j] = own;
-          const TilePoint<N> place = (filling.masks[j] & ResolvedTesseract::kIsBarycentre) != 0
+          const std::uint64_t mask = filling.masks[j];
+          const TilePoint<N> place = (mask & ResolvedTesseract::kIsBarycentre) != 0
                                          ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
-                                         : own_place(filling.masks[j], places);
+                                     : (mask & ResolvedTesseract::kIsDouble) != 0
+                                         ? half_way(shared(static_cast<unsigned>(mask & 63u)))
+                                         : own_place(mask, places);
           vertices[own] = in_cell(place);
           if (placement_.normals() != nullptr)
             vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
@@ -311,7 +314,13 @@ class TileWriter {
     return out + filling.simplex_count;
   }
 
-  /// Position of an own vertex that is not a barycentre.
+  /// Half way from the tile's centre to a point.
+  static TilePoint<N> half_way(TilePoint<N> point) noexcept {
+    for (double& x : point) x = 0.25 + 0.5 * x;
+    return point;
+  }
+
+  /// Position of an own vertex that is neither a barycentre nor a double.
   template <class Places>
   static TilePoint<N> own_place(std::uint64_t mask, const Places& places) noexcept {
     constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;

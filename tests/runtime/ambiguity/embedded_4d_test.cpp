@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// 4D contours with resolved ambiguities do not intersect themselves: random tiles with positions of the contour on edges
+// that are uniform or near the edges' ends, and noise, by the exact test of tegl/intersections.hpp.
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "estimators.hpp"
+#include "fields.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/intersections.hpp"
+
+namespace tegl::test {
+namespace {
+
+struct TilesHit {
+  int tiles = 0;
+  std::uint64_t pairs = 0, flat = 0;
+};
+
+/// `spread`: differences from the isovalue have the size exp(+-spread) at most; 0: uniform ones.
+TilesHit count_random_tiles(Ambiguity ambiguity, Triangulation triangulation, double spread, int tiles) {
+  std::mt19937_64 bits(1994);
+  const auto unit = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
+  ExtractOptions options;
+  options.ambiguity = ambiguity;
+  options.triangulation = triangulation;
+  TilesHit result;
+  std::vector<double> values(16);
+  for (int i = 0; i < tiles; ++i) {
+    for (double& value : values) {
+      const double size = spread > 0 ? std::exp(spread * (2 * unit() - 1)) : unit();
+      value = (bits() & 1u) != 0 ? size : -size;
+    }
+    const auto found = find_intersections(
+        extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options));
+    result.tiles += found.is_embedded() ? 0 : 1;
+    result.pairs += found.pair_count;
+    result.flat += found.flat;
+  }
+  return result;
+}
+
+TEST(Embedded4d, RandomTilesDoNotIntersectThemselves) {
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+    for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::decider, Ambiguity::squares})
+      for (const double spread : {0.0, 3.45}) {
+        const TilesHit hit = count_random_tiles(ambiguity, triangulation, spread, 400);
+        EXPECT_EQ(hit.tiles, 0) << "ambiguity " << static_cast<int>(ambiguity) << ", triangulation "
+                                << static_cast<int>(triangulation) << ", spread " << spread << ": " << hit.pairs
+                                << " pairs, " << hit.flat << " flat tetrahedra";
+      }
+}
+
+TEST(Embedded4d, ContoursOfNoiseDoNotIntersectThemselves) {
+  const auto image = noise<double, 4>(6, 5);
+  for (const auto& [name, options] : all_ways()) {
+    const auto found = find_intersections(extract<double>(image.view(), 0.5, options));
+    EXPECT_EQ(found.pair_count, 0u) << name;
+    EXPECT_EQ(found.flat, 0u) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
