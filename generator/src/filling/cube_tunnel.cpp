@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -31,6 +32,23 @@ CubePolygon from_least(CubePolygon polygon) {
 CubePolygon reversed(CubePolygon polygon) {
   std::reverse(polygon.begin(), polygon.end());
   return from_least(polygon);
+}
+
+/// The surface with its own vertices numbered in the order in which the triangles have them.
+CubeSurface in_order(const CubeSurface& surface) {
+  CubeSurface result{surface.triangles, {}};
+  std::vector<std::uint8_t> old;
+  for (CubeTriangle& t : result.triangles)
+    for (std::uint8_t& v : t) {
+      if (v < CubeFrame::kEdges) continue;
+      const auto at = std::find(old.begin(), old.end(), v) - old.begin();
+      if (at == std::ssize(old)) {
+        old.push_back(v);
+        result.masks.push_back(surface.masks[v - CubeFrame::kEdges]);
+      }
+      v = static_cast<std::uint8_t>(CubeFrame::kEdges + at);
+    }
+  return result;
 }
 
 void reverse(CubeTriangles& triangles) {
@@ -145,7 +163,7 @@ std::optional<CubeSurface> RadialFilling::fill(unsigned signature, const std::ve
     mask = before;
   }
   if (to->reverses == is_high) reverse(surface.triangles);
-  return surface;
+  return in_order(surface);
 }
 
 /// The region's corners are those of its sign that edges connect with its polygons.

@@ -50,13 +50,16 @@ double cubic_level(double a, double b, double c, double d) noexcept {
     above = below, at_above = at_below;
     below -= 0.25, at_below = value(below);
   }
-  // Newton's method from the chord's root, kept between the two
+  // Newton's method from the chord's root, or bisection where it leaves the interval
   double x = below + (above - below) * (at_below / (at_below - at_above));
-  for (int step = 0; step < 3; ++step) {
-    const double slope = b + x * (2.0 * c + x * (3.0 * d));
-    const double next = x - value(x) / slope;
-    if (!(next > below && next < above)) break;
+  for (int step = 0; step < 8; ++step) {
+    const double at = value(x);
+    ((at >= 0.0) == is_high ? above : below) = x;
+    double next = x - at / (b + x * (2.0 * c + x * (3.0 * d)));
+    if (!(next >= below && next <= above)) next = 0.5 * (below + above);
+    const double moved = std::abs(next - x);
     x = next;
+    if (moved < 1e-5) break;  // the next step would be below 1e-9
   }
   return x;
 }

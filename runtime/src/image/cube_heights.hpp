@@ -15,7 +15,8 @@ struct CubeHeights {
   double epsilon;  ///< as ExtractOptions::epsilon
 
   /// The contour's position on the ray from the cube's centre (0) to the mean of `corners` (1): those of a corner, an
-  /// edge or a square of the cube, as a set of bits. Where the interpolant has the isovalue several times, the last one.
+  /// edge or a square of the cube, as a set of bits. Where the interpolant has the isovalue several times, the last one
+  /// (on rays to corners, of those that are a fourth apart).
   /// Where nowhere, 0; on a ray to a square, the end whose height is smaller. Clamped to [kLeast, 1 - kLeast], or by
   /// epsilon if that is more. 0.5 if a sample is infinite. A multiple of 2^-32, so that positions computed from it are
   /// on the ray exactly.

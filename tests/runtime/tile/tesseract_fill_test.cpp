@@ -151,7 +151,7 @@ class AsBuilt {
     for (unsigned v = 0; v < kFirstOwn + view.own_vertices; ++v) {
       tile::Vertex vertex;
       vertex.kind = v < 32 ? tile::VertexKind::edge : tile::VertexKind::side;
-      vertex.face = v < 32 ? edge_face_[v] : v < kFirstOwn ? face_of_cube((v - 32) / 3) : lattice_.tile();
+      vertex.face = v < 32 ? edge_face_[v] : v < kFirstOwn ? face_of_cube((v - 32) / ResolvedCubes::kMostOwn) : lattice_.tile();
       vertex.number = v;
       tile.vertices.push_back(vertex);
     }

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Levels of the contour on rays inside a cube, against the trilinear interpolant by its definition.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "image/cube_heights.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// The corners of all corners, edges and squares of the cube.
+std::vector<std::uint32_t> ends_of_rays() {
+  std::vector<std::uint32_t> result;
+  for (unsigned fixed = 1; fixed < 8; ++fixed)
+    for (unsigned at = 0; at < 8; ++at) {
+      if ((at & ~fixed) != 0) continue;
+      std::uint32_t corners = 0;
+      for (unsigned v = 0; v < 8; ++v)
+        if ((v & fixed) == at) corners |= 1u << v;
+      result.push_back(corners);
+    }
+  return result;
+}
+
+/// The interpolant at a position on a ray.
+double height_at(const std::array<double, 8>& heights, std::uint32_t corners, double level) {
+  std::array<double, 3> point{};
+  for (unsigned v = 0; v < 8; ++v)
+    for (unsigned a = 0; a < 3; ++a)
+      if ((corners >> v & 1u) != 0) point[a] += (v >> a & 1u) != 0 ? 1.0 : 0.0;
+  for (double& x : point) x = 0.5 + level * (x / std::popcount(corners) - 0.5);
+  double sum = 0;
+  for (unsigned v = 0; v < 8; ++v) {
+    double weight = heights[v];
+    for (unsigned a = 0; a < 3; ++a) weight *= (v >> a & 1u) != 0 ? point[a] : 1.0 - point[a];
+    sum += weight;
+  }
+  return sum;
+}
+
+TEST(CubeHeights, AreZeroAtTheLevelsOfRays) {
+  const std::vector<std::uint32_t> ends = ends_of_rays();
+  EXPECT_EQ(ends.size(), 26u);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::size_t inside = 0, clamped = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    CubeHeights cube{{}, 0.0};
+    for (double& h : cube.at) h = uniform(random);
+    for (const std::uint32_t corners : ends) {
+      const double level = cube.level(corners);
+      ASSERT_GE(level, CubeHeights::kLeast);
+      ASSERT_LE(level, 1.0 - CubeHeights::kLeast);
+      ASSERT_EQ(level * 0x1p32, std::round(level * 0x1p32));
+      const double centre = height_at(cube.at, corners, 0.0), end = height_at(cube.at, corners, 1.0);
+      if (level > CubeHeights::kLeast && level < 1.0 - CubeHeights::kLeast) {
+        ASSERT_NEAR(height_at(cube.at, corners, level), 0.0, 1e-8) << corners;
+        ++inside;
+      } else if ((centre < 0) != (end < 0)) {
+        // the height changes its sign between the level and the near end of the ray
+        const double at = height_at(cube.at, corners, level), near = level < 0.5 ? centre : end;
+        ASSERT_TRUE((at < 0) != (near < 0) || std::abs(at) < 1e-6) << corners;
+        ++clamped;
+      }
+      // beyond it the height keeps the sign of the end: everywhere on a ray to an edge, at fourths of one to a corner
+      for (const double beyond : {0.25, 0.5, 0.75}) {
+        const double x = std::popcount(corners) == 2 ? level + beyond * (1.0 - level) : beyond;
+        if (std::popcount(corners) == 4 || level == CubeHeights::kLeast || level == 1.0 - CubeHeights::kLeast) continue;
+        if (x <= level) continue;
+        const double at = height_at(cube.at, corners, x);
+        ASSERT_TRUE((at < 0) == (end < 0) || std::abs(at) < 1e-9) << corners;
+      }
+    }
+  }
+  EXPECT_GT(inside, 100'000u);
+  EXPECT_GT(clamped, 1000u);
+}
+
+TEST(CubeHeights, HaveTheSameLevelsWithTheOppositeSign) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 1000; ++i) {
+    CubeHeights cube{{}, 0.0}, opposite{{}, 0.0};
+    for (std::size_t v = 0; v < 8; ++v) opposite.at[v] = -(cube.at[v] = uniform(random));
+    for (const std::uint32_t corners : ends_of_rays()) ASSERT_EQ(cube.level(corners), opposite.level(corners));
+  }
+}
+
+TEST(CubeHeights, KeepEpsilonFromBothEnds) {
+  const std::array<double, 8> heights = {1e-9, -1, -1, -1, -1, -1, -1, -1}, others = {1, 1, 1, 1, -1, -1, -1, -0.99};
+  for (const double epsilon : {0.01, 0.1, 0.4}) {
+    const double least = std::max(epsilon, CubeHeights::kLeast);
+    EXPECT_NEAR((CubeHeights{heights, epsilon}.level(1)), 1.0 - least, 1e-9);
+    EXPECT_NEAR((CubeHeights{others, epsilon}.level(15)), least, 1e-9);
+  }
+}
+
+TEST(CubeHeights, OfAnyMagnitudeHaveLevelsInside) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::array<double, 8> pattern = {2, -1, -1, -2, -1, -1, -1, 3};
+  for (const double size : {1e-320, 1e-200, 1e-5, 1e30, 1e200, 1e308, kInfinity}) {
+    CubeHeights cube{pattern, 0.0};
+    for (double& h : cube.at) h *= size;
+    for (const std::uint32_t corners : ends_of_rays()) {
+      EXPECT_GE(cube.level(corners), CubeHeights::kLeast) << size << " " << corners;
+      EXPECT_LE(cube.level(corners), 1.0 - CubeHeights::kLeast) << size << " " << corners;
+    }
+  }
+  const CubeHeights zero{{}, 0.0};
+  for (const std::uint32_t corners : ends_of_rays()) EXPECT_EQ(zero.level(corners), CubeHeights::kLeast);
+}
+
+}  // namespace
+}  // namespace tegl::detail
