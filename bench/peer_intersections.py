@@ -100,8 +100,8 @@ def measure(mesh, cells) -> dict:
         found["cells"] += 1
         found["triangles"] += len(triangles)
         found["tunnels"] += has_tunnel(triangles)
-        found["hit"] += report.pair_count > 0
-        found["pairs"] += report.pair_count
+        found["hit"] += report.count > 0
+        found["pairs"] += report.count
         found["flat"] += report.flat
     return found
 
