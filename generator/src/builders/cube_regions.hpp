@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "builders/cube_lists.hpp"
+#include "builders/region_vertices.hpp"
 
 namespace tegl::gen {
 
@@ -16,15 +17,7 @@ namespace tegl::gen {
 /// simplex whose vertices all belong to the list is a simplex of the list. Any simplex in a square belongs to that
 /// square's triangulation, which depends on the square only. The regions of all cubes around a tesseract therefore
 /// match.
-struct CubeRegions {
-  static constexpr unsigned kFirstEdge = 8;                                  ///< after the corners
-  static constexpr unsigned kFirstOwn = kFirstEdge + CubeLists::kCubeEdges;  ///< own vertices of the list
-  static constexpr unsigned kFirstCentre = kFirstOwn + CubeLists::kMostOwn;  ///< vertices that the region adds
-  static constexpr unsigned kVertices = 32;                                  ///< maximum, not counting square centres
-  static constexpr unsigned kFirstSquare = kVertices;                        ///< barycentres of squares' high parts
-  static constexpr std::uint32_t kFirstDouble = 1u << 20;
-  using Tetrahedron = std::array<std::uint8_t, 4>;
-
+struct CubeRegions : RegionVertices {
   struct Region {
     std::uint8_t corners, centre_count;
     std::uint16_t tetrahedron_count;

@@ -99,8 +99,8 @@ class Samples {
     for (std::size_t i = 0; i < kCount; ++i) {
       bool inside = true;
       for (const auto& plane : planes)
-        inside = inside && plane[0] * samples_[i][0] + plane[1] * samples_[i][1] + plane[2] * samples_[i][2] + plane[3] >
-                               1e-9;
+        inside = inside &&
+                 plane[0] * samples_[i][0] + plane[1] * samples_[i][1] + plane[2] * samples_[i][2] + plane[3] > 1e-9;
       result[i] = inside;
     }
     return result;
@@ -113,7 +113,10 @@ class Samples {
 class Search {
  public:
   Search(const RegionProof& proof, const RegionFrame& frame, std::span<const Triangle> surface)
-      : proof_(proof), frame_(frame), samples_(frame, surface), state_(kMost * kMost * kMost, kUnused),
+      : proof_(proof),
+        frame_(frame),
+        samples_(frame, surface),
+        state_(kMost * kMost * kMost, kUnused),
         visible_(2 * state_.size()) {
     Set all = 0;
     for (const Triangle& t : surface) all |= set_of(t);
@@ -139,7 +142,7 @@ class Search {
   }
 
  private:
-  static constexpr std::size_t kMost = 32;        ///< vertices
+  static constexpr std::size_t kMost = 32;  ///< vertices
   static constexpr unsigned kMostNodes = 150;
   static constexpr std::uint8_t kUnused = 0, kOpen = 1, kOpenReversed = 2, kClosed = 3;
 
@@ -230,9 +233,9 @@ class Search {
     return result;
   }
 
-  /// The points from whose mean all of the front is visible, as in CubeRegions::centres; 0 if there are none. That is the
-  /// cube's centre, which is the mean of all corners, or one of them is a corner: the copy of such a mean lies half way
-  /// to the centre of the tesseract. Or it lies on a barycentre's ray.
+  /// The points from whose mean all of the front is visible, as in CubeRegions::centres; 0 if there are none. That is
+  /// the cube's centre, which is the mean of all corners, or one of them is a corner: the copy of such a mean lies half
+  /// way to the centre of the tesseract. Or it lies on a barycentre's ray.
   [[nodiscard]] std::uint32_t kernel() {
     constexpr RegionProof::Points kCorners = 0xff, kCentre = RegionProof::Points{1} << RegionProof::kCentre;
     RegionProof::Points all = ~RegionProof::Points{0};
@@ -246,16 +249,15 @@ class Search {
     if ((all & kCorners) != 0 && all != kCorners && is_kernel(all)) return static_cast<std::uint32_t>(all);
     for (Set rest = frame_.barycentres; rest != 0; rest &= rest - 1) {
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
-      if (is_seen_from(v)) return CubeRegions::kFirstDouble << (v - CubeRegions::kFirstOwn);
+      if (is_seen_from(v)) return RegionVertices::kFirstDouble << (v - RegionVertices::kFirstOwn);
     }
     return 0;
   }
   /// Whether the triangles of the front that do not contain a vertex are visible from it.
   [[nodiscard]] bool is_seen_from(unsigned v) const {
     return std::all_of(front_.begin(), front_.end(), [&](const Triangle& t) {
-      return (set_of(t) & one(v)) != 0 ||
-             proof_.sign(frame_.points[v], frame_.points[t[0]], frame_.points[t[1]], frame_.points[t[2]]) ==
-                 RegionProof::Sign::positive;
+      return (set_of(t) & one(v)) != 0 || proof_.sign(frame_.points[v], frame_.points[t[0]], frame_.points[t[1]],
+                                                      frame_.points[t[2]]) == RegionProof::Sign::positive;
     });
   }
 
@@ -265,7 +267,7 @@ class Search {
     result_.tetrahedra = taken_;
     result_.centre = centre;
     for (const Triangle& t : front_)
-      result_.tetrahedra.push_back({static_cast<Vertex>(CubeRegions::kFirstCentre), t[0], t[1], t[2]});
+      result_.tetrahedra.push_back({static_cast<Vertex>(RegionVertices::kFirstCentre), t[0], t[1], t[2]});
     return true;
   }
 
@@ -357,9 +359,9 @@ class Search {
   RegionProof::Points points_ = 0;   ///< of all vertices
   std::vector<Triangle> front_;
   Samples::Bits left_;
-  std::vector<CubeRegions::Tetrahedron> taken_;
-  std::uint64_t hash_ = 0;              ///< of the set taken_
-  std::set<std::uint64_t> seen_;        ///< hashes of sets from which the search failed
+  std::vector<RegionVertices::Tetrahedron> taken_;
+  std::uint64_t hash_ = 0;        ///< of the set taken_
+  std::set<std::uint64_t> seen_;  ///< hashes of sets from which the search failed
   RegionDivision result_;
   bool has_centre_ = false;
   unsigned most_ = 0, nodes_ = 0;

@@ -27,8 +27,7 @@ unsigned lowest(RegionProof::Points points) { return static_cast<unsigned>(std::
 
 }  // namespace
 
-RegionProof::RegionProof()
-    : signs_(index(kPoints - 1, kPoints - 1, kPoints - 1, kPoints - 1) + 1, kUnknown) {
+RegionProof::RegionProof() : signs_(index(kPoints - 1, kPoints - 1, kPoints - 1, kPoints - 1) + 1, kUnknown) {
   const auto corner = [](unsigned v) {
     return Point{static_cast<int>(2 * (v & 1u)), static_cast<int>(2 * (v >> 1 & 1u)), static_cast<int>(2 * (v >> 2))};
   };

@@ -20,9 +20,9 @@ namespace tegl::gen {
 /// Signs of volumes of tetrahedra in the unit cube, for all positions. Not thread-safe: remembers what it was asked.
 class RegionProof {
  public:
-  /// A set of points: bit v for a corner, bit 8 + e for the point on an edge, kCentre for the cube's centre, and one bit
-  /// for the point on each ray from the centre to the centre of a square, of an edge, or to a corner. Several points: a
-  /// mean of them, with any positive weights.
+  /// A set of points: bit v for a corner, bit 8 + e for the point on an edge, kCentre for the cube's centre, and one
+  /// bit for the point on each ray from the centre to the centre of a square, of an edge, or to a corner. Several
+  /// points: a mean of them, with any positive weights.
   using Points = std::uint64_t;
   static constexpr unsigned kFirstRay = 20;  ///< by the sum of (digit + 1) 3^axis of its end (-1, 0, 1)
   static constexpr unsigned kCentre = kFirstRay + 13;

@@ -20,7 +20,7 @@ struct TesseractArrays {
 
   [[nodiscard]] std::size_t region_count() const;
   [[nodiscard]] std::size_t proved_regions() const;  ///< those positive for all positions (CubeRegions)
-  [[nodiscard]] unsigned most_triangles() const;  ///< maximum per list
+  [[nodiscard]] unsigned most_triangles() const;     ///< maximum per list
 };
 
 /// Makes and certifies the arrays. Throws Error{CertificateFailed}.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <optional>
 #include <type_traits>
 
@@ -290,11 +289,11 @@ class TileWriter {
     if constexpr (N == 4)
       if (filling.own_vertices != 0) {
         const EdgePlaces<N, kAll> alphas(source_, index, signature);
-        const auto places = [&](unsigned edge) { return edge_point_at_once<N>(edge, alphas.alpha(edge)); };
         ResolvedPlaces shared(alphas, cubes, tile.lists);
         const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
           ids[ResolvedTesseract::kFirstOwn + j] = own;
+<<<<<<< HEAD
           const std::uint64_t mask = filling.masks[j];
           const TilePoint<N> place = (mask & ResolvedTesseract::kIsBarycentre) != 0
                                          ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
@@ -302,6 +301,10 @@ class TileWriter {
                                          ? half_way(shared(static_cast<unsigned>(mask & 63u)))
                                          : own_place(mask, places);
           vertices[own] = in_cell(place);
+=======
+          const TilePoint<N> place = shared.own_vertex(filling, j);
+          vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
+>>>>>>> 4e15fe205e2a84d0a96017c8fbed1d04d1dd9fa8
           if (placement_.normals() != nullptr)
             vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
         }
@@ -312,22 +315,6 @@ class TileWriter {
                                    ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
                     out);
     return out + filling.simplex_count;
-  }
-
-  /// Half way from the tile's centre to a point.
-  static TilePoint<N> half_way(TilePoint<N> point) noexcept {
-    for (double& x : point) x = 0.25 + 0.5 * x;
-    return point;
-  }
-
-  /// Position of an own vertex that is neither a barycentre nor a double.
-  template <class Places>
-  static TilePoint<N> own_place(std::uint64_t mask, const Places& places) noexcept {
-    constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
-    TilePoint<N> place = mask_place<N>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), places, true);
-    for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
-      for (double& x : place) x = repeated_coordinate(x);
-    return place;
   }
 
   /// Writes a tile's simplices. In the class layout, vertex numbers are permuted once per tile instead of once per use,

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 
 #include "ambiguity/tesseract_decision.hpp"
 #include "image/sample_source.hpp"
@@ -169,6 +170,25 @@ class ResolvedPlaces {
     return places_[v];
   }
 
+  /// Position of own vertex j of a filling (ResolvedView::masks).
+  [[nodiscard]] TilePoint<4> own_vertex(const ResolvedView& filling, unsigned j) noexcept {
+    const std::uint64_t mask = filling.masks[j];
+    if ((mask & ResolvedTesseract::kIsBarycentre) != 0) return barycentre(filling, ResolvedTesseract::kFirstOwn + j);
+    TilePoint<4> place;
+    if ((mask & ResolvedTesseract::kIsDouble) != 0) {
+      place = (*this)(static_cast<unsigned>(mask & ~ResolvedTesseract::kIsDouble));
+      for (double& x : place) x = 0.25 + 0.5 * x;
+      return place;
+    }
+    constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
+    const auto on_edge = [&](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
+    place = mask_place<4>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), on_edge, true);
+    for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
+      for (double& x : place) x = repeated_coordinate(x);
+    return place;
+  }
+
+ private:
   /// Position of own vertex `apex` of a filling: area-weighted mean of the triangles that it is joined with.
   [[nodiscard]] TilePoint<4> barycentre(const ResolvedView& filling, unsigned apex) noexcept {
     Weighted<4> sum, plain;  // `plain`: for a sphere shrunk to a point
@@ -185,7 +205,6 @@ class ResolvedPlaces {
     return mean.point;
   }
 
- private:
   [[nodiscard]] bool is_barycentre(unsigned v) const noexcept {
     if (v < ResolvedCubes::kEdges) return false;
     const unsigned cube = (v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;

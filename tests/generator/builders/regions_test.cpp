@@ -96,16 +96,18 @@ std::string fault_of_side(const CubeLists& lists, const CubeRegions& regions, st
   for (std::size_t r = regions.first_region[side]; r < regions.first_region[side + 1]; ++r) {
     const CubeRegions::Region& region = regions.regions[r];
     if (!region.is_proved) continue;
-    RandomPositions().add_centres(positions, std::span(regions.centres).subspan(region.first_centre, region.centre_count));
+    RandomPositions().add_centres(positions,
+                                  std::span(regions.centres).subspan(region.first_centre, region.centre_count));
     for (std::size_t t = 0; t < region.tetrahedron_count; ++t) {
       const auto& [a, b, c, d] = regions.tetrahedra[region.first_tetrahedron + t];
-      const bool is_wall = region.centre_count == 1 && positions[a] == positions[kFirstCentre] &&
-                           (positions[b] == positions[a] || positions[c] == positions[a] || positions[d] == positions[a]);
+      const bool is_wall =
+          region.centre_count == 1 && positions[a] == positions[kFirstCentre] &&
+          (positions[b] == positions[a] || positions[c] == positions[a] || positions[d] == positions[a]);
       if (is_wall) continue;  // parallel to the rays
       const double volume = six_volumes(positions[a], positions[b], positions[c], positions[d]);
       if (high ? volume > -1e-15 : volume < 1e-15)
-        return fmt::format("list {} of signature {}, {} side: tetrahedron ({} {} {} {}) has six times the volume {}", list,
-                           lists.lists[list].signature, high ? "high" : "low", a, b, c, d, volume);
+        return fmt::format("list {} of signature {}, {} side: tetrahedron ({} {} {} {}) has six times the volume {}",
+                           list, lists.lists[list].signature, high ? "high" : "low", a, b, c, d, volume);
     }
   }
   return "";
@@ -158,7 +160,8 @@ TEST(CubeRegions, AFaultInOneRegionIsFoundByItsList) {
   ASSERT_TRUE(region.is_proved);
   CubeRegions::Tetrahedron& changed = regions.tetrahedra[region.first_tetrahedron];
   std::swap(changed[0], changed[1]);
-  const std::string name = fmt::format("list {} of signature {}, low side", list, arrays.lists[1].lists[list].signature);
+  const std::string name =
+      fmt::format("list {} of signature {}, low side", list, arrays.lists[1].lists[list].signature);
   EXPECT_EQ(fault_of_regions(arrays.lists[1], regions, 2).substr(0, name.size()), name);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// 4D contours with resolved ambiguities do not intersect themselves: random tiles with positions of the contour on edges
-// that are uniform or near the edges' ends, and noise, by the exact test of tegl/intersections.hpp.
+// 4D contours with resolved ambiguities do not intersect themselves: random tiles with positions of the contour on
+// edges that are uniform or near the edges' ends, and noise, by the exact test of tegl/intersections.hpp.
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -36,8 +36,8 @@ TilesHit count_random_tiles(Ambiguity ambiguity, Triangulation triangulation, do
       const double size = spread > 0 ? std::exp(spread * (2 * unit() - 1)) : unit();
       value = (bits() & 1u) != 0 ? size : -size;
     }
-    const auto found = find_intersections(
-        extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options));
+    const auto found =
+        find_intersections(extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options));
     result.tiles += found.is_embedded() ? 0 : 1;
     result.pairs += found.pair_count;
     result.flat += found.flat;
