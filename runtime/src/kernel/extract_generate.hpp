@@ -293,18 +293,8 @@ class TileWriter {
         const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
           ids[ResolvedTesseract::kFirstOwn + j] = own;
-<<<<<<< HEAD
-          const std::uint64_t mask = filling.masks[j];
-          const TilePoint<N> place = (mask & ResolvedTesseract::kIsBarycentre) != 0
-                                         ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
-                                     : (mask & ResolvedTesseract::kIsDouble) != 0
-                                         ? half_way(shared(static_cast<unsigned>(mask & 63u)))
-                                         : own_place(mask, places);
-          vertices[own] = in_cell(place);
-=======
           const TilePoint<N> place = shared.own_vertex(filling, j);
-          vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
->>>>>>> 4e15fe205e2a84d0a96017c8fbed1d04d1dd9fa8
+          vertices[own] = in_cell(place);
           if (placement_.normals() != nullptr)
             vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
         }
