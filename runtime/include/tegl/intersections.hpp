@@ -18,7 +18,7 @@ namespace tegl {
 /// A regular grid of tiles, to count those that contain intersections.
 template <int N>
 requires DimensionBetween<N, 2, 4>
-struct TileGrid {
+struct IntersectionTiles {
   std::array<double, N> size = detail::all_one<N>();  ///< extent of a tile along each axis, positive
   std::array<double, N> origin{};                     ///< a corner of one of the tiles
 };
@@ -31,7 +31,7 @@ struct IntersectionOptions {
   std::size_t most_listed = std::numeric_limits<std::size_t>::max();
   /// If given, tiles are counted. For an image without a world map: its grid's spacing and the position of its first
   /// sample.
-  std::optional<TileGrid<N>> tiles = {};
+  std::optional<IntersectionTiles<N>> tiles = {};
   WorkOptions work = {};  ///< threads and progress
 };
 

@@ -111,7 +111,7 @@ std::vector<IntersectingPair<N>> all_pairs(const SimplexPlanes<N>& simplices, st
 
 /// The tile that contains the centroid of a simplex, by the number of tiles along each axis from the origin.
 template <int N>
-std::array<double, N> tile_of(const SimplexPlanes<N>& simplices, Index s, const TileGrid<N>& tiles) noexcept {
+std::array<double, N> tile_of(const SimplexPlanes<N>& simplices, Index s, const IntersectionTiles<N>& tiles) noexcept {
   PointN<N> tile{};
   for (const PointN<N>& corner : simplices.corners(s))
     for (int a = 0; a < N; ++a) tile[a] += corner[a] / N;
@@ -126,8 +126,8 @@ std::uint64_t count_different(std::vector<Item>& items) {
 }
 
 template <int N>
-void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> intersecting, const TileGrid<N>& tiles,
-                 Intersections<N>& result) {
+void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> intersecting,
+                 const IntersectionTiles<N>& tiles, Intersections<N>& result) {
   std::vector<std::array<double, N>> found(simplices.size());
   for (std::size_t s = 0; s < found.size(); ++s) found[s] = tile_of(simplices, static_cast<Index>(s), tiles);
   result.tiles = count_different(found);
@@ -137,7 +137,7 @@ void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> inter
 }
 
 template <int N>
-void require_tiles(const TileGrid<N>& tiles) {
+void require_tiles(const IntersectionTiles<N>& tiles) {
   for (int a = 0; a < N; ++a) {
     if (!(tiles.size[a] > 0.0 && std::isfinite(tiles.size[a])))
       throw Error(ErrorCode::InvalidArgument,

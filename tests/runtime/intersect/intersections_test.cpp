@@ -181,7 +181,7 @@ TEST(Intersections, TilesAreCounted) {
   surface.vertices.insert(surface.vertices.end(), {{41, 0, 0}, {42, 0, 0.1}, {41, 1, 0.1}});
   surface.simplices.assign({{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 11}, {12, 13, 14}});
   IntersectionOptions<3> options;
-  options.tiles = TileGrid<3>{{2, 1, 1}, {1, 0, 0}};
+  options.tiles = IntersectionTiles<3>{{2, 1, 1}, {1, 0, 0}};
   const auto found = find_intersections(surface, options);
   EXPECT_EQ(found.pair_count, 2u);
   EXPECT_EQ(found.tiles, 3u);
