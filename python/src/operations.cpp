@@ -7,6 +7,7 @@
 #include "docs.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/sample.hpp"
 #include "tegl/simplify.hpp"
@@ -59,6 +60,57 @@ py::dict check_any(const AnyContour& contour, const py::object& progress) {
   put(result, "degenerate_simplices", report.degenerate_simplices);
   put(result, "nonfinite_vertices", report.nonfinite_vertices);
   return result;
+}
+
+/// #P x width numbers, row = pair.
+template <class Number, std::size_t kWidth, class Pair, class RowOf>
+py::array_t<Number> rows_of(const std::vector<Pair>& pairs, const RowOf& row_of) {
+  py::array_t<Number> result({static_cast<py::ssize_t>(pairs.size()), static_cast<py::ssize_t>(kWidth)});
+  auto rows = result.template mutable_unchecked<2>();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::array<Number, kWidth> row = row_of(pairs[i]);
+    for (std::size_t k = 0; k < kWidth; ++k) rows(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(k)) = row[k];
+  }
+  return result;
+}
+
+template <int N>
+py::dict to_dict(const Intersections<N>& found) {
+  using Pair = IntersectingPair<N>;
+  py::dict result;
+  put(result, "simplices", found.simplices);
+  put(result, "flat", found.flat);
+  put(result, "count", found.pair_count);
+  put(result, "intersecting", found.intersecting);
+  result["pairs"] = rows_of<Index, 2>(found.pairs, [](const Pair& pair) {
+    return std::array{pair.first, pair.second};
+  });
+  result["places"] = rows_of<double, N>(found.pairs, [](const Pair& pair) { return pair.place; });
+  result["depths"] = rows_of<double, 1>(found.pairs, [](const Pair& pair) {
+                       return std::array{pair.depth};
+                     }).reshape(std::vector<py::ssize_t>{static_cast<py::ssize_t>(found.pairs.size())});
+  put(result, "tiles", found.tiles);
+  put(result, "tiles_hit", found.tiles_hit);
+  return result;
+}
+
+/// `tile`, `origin`: none, or a number for each axis. `most_listed`: none for all.
+py::dict intersections_any(const AnyContour& contour, const std::optional<Numbers>& tile, const Numbers& origin,
+                           std::optional<std::uint64_t> most_listed, unsigned threads, const py::object& progress) {
+  Call call(progress);
+  return std::visit(
+      [&]<int N, class Real>(const Contour<N, Real>& c) -> py::dict {
+        if constexpr (N <= 4) {
+          IntersectionOptions<N> options;
+          if (most_listed) options.most_listed = *most_listed;
+          if (tile) options.tiles = IntersectionTiles<N>{to_array<N>("tile", *tile), to_array<N>("origin", origin)};
+          options.work = {threads, call.progress()};
+          return to_dict(call.run([&] { return find_intersections(c, options); }));
+        } else {
+          throw_dimension("intersections", N, "2 to 4 dimensions");
+        }
+      },
+      contour.contour);
 }
 
 py::dict measure_any(const AnyContour& contour, unsigned threads, const py::object& progress) {
@@ -188,6 +240,7 @@ SimplifyOptions<N> simplify_options(const py::dict& arguments, Call& call) {
   if (!arguments["scale"].is_none()) result.scale = to_array<N>("scale", py::cast<Numbers>(arguments["scale"]));
   result.measure = py::cast<bool>(arguments["measure"]);
   result.allow_nonmanifold = py::cast<bool>(arguments["allow_nonmanifold"]);
+  result.keep_embedded = py::cast<bool>(arguments["keep_embedded"]);
   result.work = {py::cast<unsigned>(arguments["threads"]), call.progress()};
   return result;
 }
@@ -264,6 +317,8 @@ void bind_operations(py::module_& m) {
   m.def("slice_stack", &cuts, py::arg("contour"), py::arg("normal"), py::arg("offsets"), py::arg("threads"),
         py::arg("progress"), doc::slice_stack);
   m.def("check", &check_any, py::arg("contour"), py::arg("progress"), doc::check_2);
+  m.def("find_intersections", &intersections_any, py::arg("contour"), py::arg("tile"), py::arg("origin"),
+        py::arg("most_listed"), py::arg("threads"), py::arg("progress"), doc::find_intersections);
   m.def("measure", &measure_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::measure);
   m.def("measure_cuts", &measure_cuts_any, py::arg("contour"), py::arg("at"), py::arg("threads"), py::arg("progress"),
         doc::measure_cuts);

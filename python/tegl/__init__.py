@@ -15,17 +15,18 @@ at the border of the array and at missing values. The contour of a 4D array can 
 """
 
 from . import _tegl
-from ._contour import Components, Contour, check, components, elements, load, measure, simplify, track
+from ._contour import (Components, Contour, check, components, elements, intersections, load, measure, simplify,
+                       track)
 from ._image import Image, contour, read, slice
 from ._index import Index, PickReport
-from ._results import Component, CutMeasures, Elements, ElementSum, Measures, MeshReport, SimplifyStats
+from ._results import Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MeshReport, SimplifyStats
 from ._skimage import marching_cubes
 from ._tegl import Cancelled, __version__
 from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment
 
 __all__ = [
     "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",
-    "Measures", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle",
-    "TrackSample", "TrackSegment", "__version__", "check", "components", "contour", "elements", "load",
-    "marching_cubes", "measure", "read", "simplify", "slice", "track",
+    "Intersections", "Measures", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph",
+    "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour", "elements",
+    "intersections", "load", "marching_cubes", "measure", "read", "simplify", "slice", "track",
 ]

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _arguments, _export, _kinds, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
-from ._results import Component, CutMeasures, Elements, Measures, MeshReport, SimplifyStats
+from ._results import Component, CutMeasures, Elements, Intersections, Measures, MeshReport, SimplifyStats
 from ._track import TrackGraph
 
 
@@ -292,12 +292,34 @@ class Contour:
         """Checks whether the contour is a manifold: see `tegl.check`."""
         return MeshReport(**_tegl.check(self._core, progress))
 
+    def intersections(self, *, tile: float | Sequence[float] | None = None, origin: float | Sequence[float] = 0.0,
+                      most_listed: int | None = None, threads: int = 0,
+                      progress: Progress | None = None) -> Intersections:
+        """Finds all simplices that intersect: see `tegl.intersections`."""
+        sizes = None if tile is None else self._of_axes("tile", tile)
+        found = _tegl.find_intersections(self._core, sizes, self._of_axes("origin", origin),
+                                         _arguments.or_none(_arguments.as_whole, "most_listed", most_listed, 0),
+                                         _arguments.threads_of(threads), progress)
+        if self._is_reversed:
+            found["places"] = found["places"][:, ::-1]
+        return Intersections(**found)
+
+    def _of_axes(self, name: str, given: float | Sequence[float]) -> list[float]:
+        """One number for all axes, or one for each, in the library's order."""
+        if not _results.is_list(given):
+            return [_arguments.as_number(name, given)] * self.ndim
+        numbers = _arguments.as_numbers(name, given, "a number, or one for each axis")
+        if len(numbers) != self.ndim:
+            raise ValueError(f"{name} has {len(numbers)} numbers; expected {self.ndim}, one for each axis")
+        return self._listed(numbers)
+
     @typing.overload
     def simplify(self, ratio: float | None = None, *, count: int | None = None,
                  max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
                  border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
                  scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-                 allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+                 allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
+                 progress: Progress | None = None,
                  return_stats: typing.Literal[False] = False) -> Contour: ...
 
     @typing.overload
@@ -305,21 +327,23 @@ class Contour:
                  max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
                  border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
                  scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-                 allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+                 allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
+                 progress: Progress | None = None,
                  return_stats: typing.Literal[True]) -> tuple[Contour, SimplifyStats]: ...
 
     def simplify(self, ratio: float | None = None, *, count: int | None = None,
                  max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
                  border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
                  scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-                 allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+                 allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
+                 progress: Progress | None = None,
                  return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
         """The contour with fewer simplices and the same topology: see `tegl.simplify`."""
         return self._simplify(ratio, count, max_error, method, border, max_curvature, scale, measure, allow_nonmanifold,
-                              threads, progress, return_stats)
+                              keep_embedded, threads, progress, return_stats)
 
-    def _simplify(self, ratio, count, max_error, method, border, max_curvature, scale, measure, allow_nonmanifold, threads,
-                  progress, return_stats) -> typing.Any:
+    def _simplify(self, ratio, count, max_error, method, border, max_curvature, scale, measure, allow_nonmanifold,
+                  keep_embedded, threads, progress, return_stats) -> typing.Any:
         if isinstance(scale, str) and scale != "auto":
             raise ValueError(f"scale is '{scale}'; expected 'auto' or a number for each axis")
         factors: list[float] | None = None
@@ -342,6 +366,7 @@ class Contour:
                    "max_curvature": either(number, "max_curvature", max_curvature), "scale": factors,
                    "measure": truth("measure", measure),
                    "allow_nonmanifold": truth("allow_nonmanifold", allow_nonmanifold),
+                   "keep_embedded": truth("keep_embedded", keep_embedded),
                    "threads": _arguments.threads_of(threads)}
         simplified, stats = _tegl.simplify(self._core, options, progress)
         result = Contour._of(simplified, self._is_reversed, self._extent)
@@ -529,6 +554,20 @@ def check(contour: Contour, *, progress: Progress | None = None) -> MeshReport:
     return Contour.check(contour, progress=progress)
 
 
+@_arguments.documents("find_intersections", "Intersections")
+def intersections(contour: Contour, *, tile: float | Sequence[float] | None = None,
+                  origin: float | Sequence[float] = 0.0, most_listed: int | None = None, threads: int = 0,
+                  progress: Progress | None = None) -> Intersections:
+    """Finds all pairs of simplices that intersect outside of their common face, by exact arithmetic.
+
+    `tile` is the size of a tile, one number for all axes or one for each; then the tiles with intersections are counted.
+    For an array without coordinates it is 1. `origin` is a corner of a tile.
+    """
+    _arguments.core_of(contour)
+    return Contour.intersections(contour, tile=tile, origin=origin, most_listed=most_listed, threads=threads,
+                                 progress=progress)
+
+
 @typing.overload
 def measure(contour: Contour, *, at: None = None, allow_empty: bool = False, threads: int = 0,
             progress: Progress | None = None) -> Measures: ...
@@ -573,7 +612,8 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
              max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
              border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
              scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
+             progress: Progress | None = None,
              return_stats: typing.Literal[False] = False) -> Contour: ...
 
 
@@ -582,7 +622,8 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
              max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
              border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
              scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
+             progress: Progress | None = None,
              return_stats: typing.Literal[True]) -> tuple[Contour, SimplifyStats]: ...
 
 
@@ -591,7 +632,8 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
              max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
              border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
              scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
+             progress: Progress | None = None,
              return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
     """A contour with fewer simplices and the same topology; the attribute "simplification_error" bounds the error.
 
@@ -607,7 +649,7 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
     """
     _arguments.core_of(contour)
     return Contour._simplify(contour, ratio, count, max_error, method, border, max_curvature, scale, measure,
-                             allow_nonmanifold, threads, progress, return_stats)
+                             allow_nonmanifold, keep_embedded, threads, progress, return_stats)
 
 
 @_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")

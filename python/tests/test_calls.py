@@ -62,7 +62,8 @@ def test_all_long_calls_tell_progress_that_rises_to_one(long_image, tmp_path):
     contour = tegl.contour(long_image[:6, :20, :20, :20], 0.0, dtype=np.float64)
     contour.save(tmp_path / "c.vtkhdf")
     components = contour.components()
-    for call in (contour.track, contour.measure, contour.components, contour.elements, contour.check, components.split,
+    for call in (contour.track, contour.measure, contour.components, contour.elements, contour.check,
+                 contour.intersections, components.split,
                  lambda **k: components.select([0, 1], **k), lambda **k: components.largest(2, **k),
                  lambda **k: contour.slice([1.5, 2.5], **k), lambda **k: contour.measure(**k),
                  lambda **k: tegl.measure(contour, at=[1.5, 2.5], **k),

@@ -125,6 +125,30 @@ def test_check_finds_what_is_wrong():
     assert not tegl.Contour(contour.vertices, contour.simplices[1:]).check().is_closed
 
 
+def test_intersections_are_found_with_their_places():
+    embedded = tegl.contour(ball(3), 0.0).intersections()
+    assert embedded.is_embedded and embedded.count == 0 and embedded.tiles == 0
+    assert embedded.pairs.shape == (0, 2) and embedded.places.shape == (0, 3) and embedded.depths.shape == (0,)
+    # a triangle in the plane z = 0 (the last column), pierced by another; one far away; a flat one
+    vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 2, -1], [1, 2, 3], [9, 9, 3], [20, 0, 0], [21, 0, 0], [20, 1, 0],
+                         [5, 5, 5], [6, 6, 6], [7, 7, 7]], float)
+    contour = tegl.Contour(vertices, np.arange(12, dtype=np.uint32).reshape(4, 3))
+    found = tegl.intersections(contour, tile=[10, 10, 2], origin=0.5)
+    assert (found.simplices, found.count, found.intersecting, found.flat) == (4, 1, 2, 1) and not found.is_embedded
+    assert np.array_equal(found.pairs, [[0, 1]]) and found.pairs.dtype == np.uint32
+    x, y, z = found.places[0]
+    assert abs(z) < 1e-12 and x >= 1 and y >= 2 and x + y <= 4 + 1e-12
+    assert found.depths[0] == pytest.approx(1.0)  # the second reaches 1 below the first
+    assert found.tiles == 4 and found.tiles_hit == 2
+    assert contour.intersections(most_listed=0).count == 1 and len(contour.intersections(most_listed=0).pairs) == 0
+    with pytest.raises(ValueError, match="tile has 2 numbers; expected 3"):
+        contour.intersections(tile=[1, 1])
+    with pytest.raises(ValueError, match="size of tiles along axis 0 is 0"):
+        contour.intersections(tile=0)
+    with pytest.raises(ValueError, match="2 to 4 dimensions"):
+        tegl.contour(noise((3, 3, 3, 3, 3), 1), 0.0).intersections()
+
+
 @pytest.mark.parametrize("ndim", [2, 3, 4, 5])
 def test_measures_are_those_of_a_ball(ndim):
     size = {2: 101, 3: 41, 4: 21, 5: 7}[ndim]
@@ -291,6 +315,16 @@ def test_simplification_takes_the_ratio_first():
         assert call(return_stats=True)[1].simplices_after <= 0.1 * len(contour.simplices)
     with pytest.raises(TypeError):
         contour.simplify(0.1, 0.2)
+
+
+def test_simplification_keeps_contours_embedded_on_request():
+    contour = tegl.contour(noise((14, 14, 14), 3), 0.0, dtype=np.float64)
+    assert contour.intersections().count == 0
+    assert contour.simplify(0.3, measure=False).intersections().count > 0
+    kept = contour.simplify(0.3, measure=False, keep_embedded=True)
+    assert kept.intersections().count == 0 and len(kept.simplices) < 0.4 * len(contour.simplices)
+    with pytest.raises(ValueError, match="keep_embedded for the method fast"):
+        contour.simplify(0.3, method="fast", keep_embedded=True)
 
 
 @pytest.mark.parametrize("function, method", [(tegl.simplify, tegl.Contour.simplify), (tegl.track, tegl.Contour.track),
@@ -489,7 +523,7 @@ def test_contours_are_pickled_and_copied():
 
 def test_what_is_no_contour_or_no_array_is_a_type_error():
     array = noise((5, 6, 7), 1)
-    for call in (tegl.check, tegl.measure, tegl.components, tegl.elements, tegl.track,
+    for call in (tegl.check, tegl.intersections, tegl.measure, tegl.components, tegl.elements, tegl.track,
                  lambda value: tegl.simplify(value, ratio=0.5)):
         with pytest.raises(TypeError, match="ndarray is not a contour; expected a tegl.Contour"):
             call(array)

@@ -109,6 +109,55 @@ TEST_F(Check, QuietlyTellsByTheExitCodeAlone) {
   EXPECT_EQ(run.out + run.err, "");
 }
 
+TEST_F(Check, FindsIntersections) {
+  const RunResult none = run_tegl({"check", save(octahedron()), "--intersections"});
+  EXPECT_EQ(none.exit, 0) << none.err;
+  EXPECT_THAT(none.out, HasSubstr("intersect    none"));
+  EXPECT_THAT(none.out, HasSubstr(" + intersections "));
+
+  // a triangle that pierces another, and a flat one
+  Mesh mesh;
+  mesh.coordinates = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, -0.5, 1, 1, 2, 3, 3, 2, 8, 8, 8, 9, 9, 9, 10, 10, 10};
+  mesh.simplices = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  write_mesh(mesh, path("crossed.ply"));
+  const RunResult plain = run_tegl({"check", path("crossed.ply"), "--json"});
+  EXPECT_EQ(plain.exit, 0);
+  EXPECT_FALSE(plain.json().contains("intersections"));
+  const RunResult run = run_tegl({"check", path("crossed.ply"), "--intersections", "--json", "--places", "5", "--tile",
+                                  "10,10,1", "--origin", "-0.5", "--threads", "2"});
+  EXPECT_EQ(run.exit, 1);
+  const auto found = run.json()["intersections"];
+  EXPECT_EQ(found["pairs"], 1);
+  EXPECT_EQ(found["simplices"], 2);
+  EXPECT_EQ(found["flat_simplices"], 1);
+  EXPECT_NEAR(found["depth"].get<double>(), 0.5, 1e-12);
+  EXPECT_EQ(found["tiles"], 3);
+  EXPECT_EQ(found["tiles_with_pairs"], 2);
+  ASSERT_EQ(found["places"].size(), 1u);
+  EXPECT_EQ(found["places"][0]["simplices"], nlohmann::json({0, 1}));
+  EXPECT_NEAR(found["places"][0]["at"][2].get<double>(), 0.0, 1e-12);
+  EXPECT_GE(run.json()["seconds"]["intersections"], 0.0);
+
+  const RunResult text = run_tegl({"check", path("crossed.ply"), "--intersections", "--places", "1", "--tile", "5"});
+  EXPECT_EQ(text.exit, 1);
+  EXPECT_THAT(text.out, HasSubstr("intersect    1 pair of 2 triangles, up to 0.5 deep"));
+  EXPECT_THAT(text.out, HasSubstr("1 triangle without area, in no pair"));
+  EXPECT_THAT(text.out, HasSubstr("tiles        1 of 2 with intersections (50 %)"));
+  EXPECT_THAT(text.out, HasSubstr("pair         0 and 1 at ("));
+}
+
+TEST_F(Check, RefusesBadOptionsOfIntersections) {
+  const std::string file = save(octahedron());
+  EXPECT_EQ(run_tegl({"check", file, "--tile", "1"}).exit, 2) << "without --intersections";
+  EXPECT_EQ(run_tegl({"check", file, "--intersections", "--origin", "1"}).exit, 2) << "without --tile";
+  EXPECT_EQ(run_tegl({"check", file, "--intersections", "--places", "-1"}).exit, 2);
+  const RunResult two = run_tegl({"check", file, "--intersections", "--tile", "1,2"});
+  EXPECT_EQ(two.exit, 2);
+  EXPECT_THAT(two.err, HasSubstr("--tile 1,2 has 2 numbers; expected one, or 3, one for each axis"));
+  EXPECT_THAT(run_tegl({"check", file, "--intersections", "--tile", "0"}).err,
+              HasSubstr("--tile is 0; expected positive numbers"));
+}
+
 TEST_F(Check, RefusesWhatIsNoMesh) {
   EXPECT_EQ(run_tegl({"check", path("none.ply")}).exit, 3);
   EXPECT_EQ(run_tegl({"check", write("text.ply", "this is no mesh\n")}).exit, 4);

@@ -169,6 +169,7 @@ TEST_F(SimplifyCommand, TellsWhichOptionIsWrong) {
   expect_refused(2, {"--ratio", "0.5", "--scale", "1,2"}, {"--scale", "2 numbers", "3"});
   expect_refused(2, {"--ratio", "0.5", "--max-curvature", "1"}, {"--max-curvature", "facets"});
   expect_refused(2, {"--ratio", "0.5", "--allow-nonmanifold"}, {"--allow-nonmanifold", "fast"});
+  expect_refused(2, {"--ratio", "0.5", "--method", "fast", "--keep-embedded"}, {"--keep-embedded", "fast"});
   expect_refused(2, {"--ratio", "0.5", "--method", "best"}, {"--method", "best", "quadric"});
 }
 
@@ -182,6 +183,19 @@ TEST_F(SimplifyCommand, SaysWhatStoppedIt) {
   EXPECT_THAT(text("0.05"), HasSubstr("fewer simplices would exceed --max-error"));
   EXPECT_THAT(text("0"), HasSubstr("no simplex can be removed within --max-error 0"));
   EXPECT_THAT(text("1000"), HasSubstr("topology, border or the shapes of simplices prevent"));
+}
+
+TEST_F(SimplifyCommand, KeepsContoursEmbeddedIfRequested) {
+  const std::string rough = write("noise.nrrd", nrrd_bytes(noise({12, 12, 12}, 1)));
+  const auto exit_of_check = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"simplify", rough,        "--iso", "127.5",      "--ratio",
+                                          "0.3",      "--no-bound", "-o",    path("a.ply")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_tegl(arguments).exit, 0);
+    return run_tegl({"check", path("a.ply"), "--intersections"}).exit;
+  };
+  EXPECT_EQ(exit_of_check({}), 1);
+  EXPECT_EQ(exit_of_check({"--keep-embedded"}), 0);
 }
 
 TEST_F(SimplifyCommand, RefusesWhatIsNoManifoldUnlessAllowed) {

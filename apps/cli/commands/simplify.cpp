@@ -69,6 +69,8 @@ class SimplifyCommand final : public ContourInputCommand {
         ->type_name("NUMBERS|auto");
     app().add_flag("--no-bound", no_bound_,
                    "skip the error bound, also the one of an earlier simplification, and the rounds that reduce it");
+    app().add_flag("--keep-embedded", keep_embedded_,
+                   "refuse contractions that make simplices intersect; see 'tegl check --intersections'");
     app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: also write a result that is not a manifold");
     app()
         .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
@@ -134,6 +136,8 @@ class SimplifyCommand final : public ContourInputCommand {
     if (!max_error_.empty()) require_between("--max-error", max_error_, 0.0);
     if (!max_curvature_.empty()) require_between("--max-curvature", max_curvature_, 0.0);
     require_method(allow_nonmanifold_, "--allow-nonmanifold", "fast");
+    if (keep_embedded_ && method_ == "fast")
+      throw Error(ErrorCode::InvalidArgument, "--keep-embedded with --method fast; expected another method");
   }
 
   static void require_between(const char* option, const std::string& text, double least,
@@ -169,6 +173,7 @@ class SimplifyCommand final : public ContourInputCommand {
     if (!max_curvature_.empty()) options.max_curvature = parse_finite("--max-curvature", max_curvature_);
     options.measure = !no_bound_;
     options.allow_nonmanifold = allow_nonmanifold_;
+    options.keep_embedded = keep_embedded_;
     options.scale = scale(contour);
     used_scale_.assign(options.scale.begin(), options.scale.end());
     if (input.image) options.planes = planes<N>(input.image->image);
@@ -305,6 +310,7 @@ class SimplifyCommand final : public ContourInputCommand {
   std::vector<double> used_scale_;
   bool no_bound_ = false;
   bool allow_nonmanifold_ = false;
+  bool keep_embedded_ = false;
   bool no_check_ = false;
   CompressOption compress_;
 };

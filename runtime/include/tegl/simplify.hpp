@@ -76,6 +76,10 @@ struct SimplifyOptions {
   bool measure = true;
   /// Only for `fast`, InvalidArgument for other methods: accept non-manifold results.
   bool allow_nonmanifold = false;
+  /// Refuses every contraction whose simplices would intersect each other or others (tegl/intersections.hpp), by exact
+  /// tests. A contour without intersecting pairs keeps this property. Simplices that intersect already are not
+  /// contracted unless that ends their intersections. InvalidArgument for `fast`. Takes two to five times as long.
+  bool keep_embedded = false;
   WorkOptions work = {};  ///< threads (for the bounds only) and progress
 };
 
@@ -83,7 +87,7 @@ struct SimplifyOptions {
 enum class SimplifyEnd {
   count,   ///< the requested number of simplices is reached
   error,   ///< max_error (or max_curvature) would be exceeded
-  shape,   ///< topology, boundary, planes or shape conditions forbid all further removals
+  shape,   ///< topology, boundary, planes, shape conditions or keep_embedded forbid all further removals
   rounds,  ///< no round kept max_error: the result is the original contour
 };
 
@@ -120,7 +124,8 @@ struct Simplification {
 /// Reduces the number of simplices and preserves the topology: components, Euler characteristic, orientation and
 /// boundary. An edge is contracted only if the link condition holds (Dey, Edelsbrunner, Guha, Nekhayev 1999), no normal
 /// turns by 78 degrees or more, and no simplex becomes flat or worse than the worst one around the edge. Parts closer
-/// to each other than the error may intersect afterwards. N = 2, 3, 4; Real: float or double.
+/// to each other than the error may intersect afterwards, unless `keep_embedded` is set. N = 2, 3, 4; Real: float or
+/// double.
 ///
 /// Normals and vertex attributes are interpolated where vertices move; remaining simplices keep their attributes. The
 /// vertex attribute "simplification_error" is a bound: a point of the original that was matched with a simplex is at

@@ -8,10 +8,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include "base/radix_sort.hpp"
@@ -19,7 +22,7 @@
 
 namespace tegl::detail {
 
-/// Simplices that are flat are left out.
+/// Simplices that are flat meet none. The order stays; boxes may be replaced.
 template <int N>
 class BoxBlocks {
  public:
@@ -36,6 +39,26 @@ class BoxBlocks {
   }
   /// Replaces `near` by the blocks from `block` on whose boxes meet its box. Ascending.
   void find_near(std::size_t block, std::vector<Index>& near) const;
+  /// Calls visit(simplex) for all simplices whose boxes meet that of these corners.
+  template <class Visit>
+  void visit_near(const CornersN<N>& corners, const Visit& visit) const {
+    const Bounds bounds = bounds_of(corners);
+    visit_blocks(bounds, 0, [&](std::size_t block) {
+      for (unsigned bits = levels_[0][block].meeting(bounds); bits != 0; bits &= bits - 1)
+        visit(order_[block * kBlock + static_cast<std::size_t>(std::countr_zero(bits))]);
+    });
+  }
+  /// Replaces the box of a simplex, by its place in the order; without corners it meets no box from then on.
+  void replace(std::size_t place, const CornersN<N>* corners) {
+    Bounds bounds = corners != nullptr ? bounds_of(*corners) : Bounds::none();
+    for (std::vector<Eight>& level : levels_) {
+      level[place / kBlock].set(place % kBlock, bounds);
+      place /= kBlock;
+      bounds = level[place].whole();
+    }
+  }
+  /// All simplices, in Morton order.
+  [[nodiscard]] std::span<const Index> order() const noexcept { return order_; }
   /// Bit i: the box of simplex i of block `near` meets that of simplex `k` of `block`. For near == block only i > k.
   [[nodiscard]] unsigned meeting(std::size_t block, std::size_t k, std::size_t near) const noexcept {
     unsigned bits = levels_[0][near].meeting(levels_[0][block].box(k));
@@ -47,6 +70,14 @@ class BoxBlocks {
   /// Bounds are rounded outwards.
   struct Bounds {
     std::array<float, N> low, high;
+
+    /// A box of NaN, which meets none.
+    static Bounds none() noexcept {
+      Bounds result;
+      result.low.fill(std::numeric_limits<float>::quiet_NaN());
+      result.high.fill(std::numeric_limits<float>::quiet_NaN());
+      return result;
+    }
   };
   struct alignas(32) Eight {
     std::array<std::array<float, kBlock>, N> low, high;
@@ -64,13 +95,14 @@ class BoxBlocks {
       }
       return result;
     }
-    /// The box around all that are set, of which box 0 is one.
+    /// The box around all that are set; none if there is none.
     [[nodiscard]] Bounds whole() const noexcept {
-      Bounds result;
-      for (int a = 0; a < N; ++a) {
-        result.low[a] = *std::min_element(low[a].begin(), low[a].end());
-        result.high[a] = *std::max_element(high[a].begin(), high[a].end());
-      }
+      Bounds result = Bounds::none();
+      for (int a = 0; a < N; ++a)
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          if (!(low[a][i] >= result.low[a])) result.low[a] = std::isnan(low[a][i]) ? result.low[a] : low[a][i];
+          if (!(high[a][i] <= result.high[a])) result.high[a] = std::isnan(high[a][i]) ? result.high[a] : high[a][i];
+        }
       return result;
     }
     void set(std::size_t i, const Bounds& bounds) noexcept {
@@ -110,6 +142,9 @@ class BoxBlocks {
     }
     return result;
   }
+  /// Calls visit(block) for the blocks from `first` on that may contain a box that meets `bounds`. Ascending.
+  template <class Visit>
+  void visit_blocks(const Bounds& bounds, std::size_t first, const Visit& visit) const;
   /// Moves bit i to bit i N, for the lowest 64 / N bits.
   static std::uint64_t spread_bits(std::uint64_t x) noexcept {
     if constexpr (N == 2) {
@@ -186,15 +221,15 @@ void BoxBlocks<N>::sort(const SimplexPlanes<N>& simplices, unsigned threads, con
 
 template <int N>
 BoxBlocks<N>::BoxBlocks(const SimplexPlanes<N>& simplices, unsigned threads, const Progress& progress) {
-  order_.reserve(simplices.size());
-  for (std::size_t s = 0; s < simplices.size(); ++s)
-    if (!simplices.is_flat(static_cast<Index>(s))) order_.push_back(static_cast<Index>(s));
+  order_.resize(simplices.size());
+  std::iota(order_.begin(), order_.end(), Index{0});
   levels_.emplace_back((order_.size() + kBlock - 1) / kBlock);
   if (order_.empty()) return;
   sort(simplices, threads, part_of(progress, 0.0, 0.6));
   for_each_item(levels_[0].size(), threads, part_of(progress, 0.6, 1.0), [&](std::size_t block) {
     const std::span<const Index> here = this->simplices(block);
-    for (std::size_t i = 0; i < here.size(); ++i) levels_[0][block].set(i, bounds_of(simplices.corners(here[i])));
+    for (std::size_t i = 0; i < here.size(); ++i)
+      if (!simplices.is_flat(here[i])) levels_[0][block].set(i, bounds_of(simplices.corners(here[i])));
   });
   while (levels_.back().size() > 1) {
     const std::vector<Eight>& below = levels_.back();
@@ -205,29 +240,33 @@ BoxBlocks<N>::BoxBlocks(const SimplexPlanes<N>& simplices, unsigned threads, con
 }
 
 template <int N>
-void BoxBlocks<N>::find_near(std::size_t block, std::vector<Index>& near) const {
-  near.clear();
-  const Bounds bounds = levels_[0][block].whole();
+template <class Visit>
+void BoxBlocks<N>::visit_blocks(const Bounds& bounds, std::size_t first, const Visit& visit) const {
   struct Node {
     std::size_t level, number;
   };
   std::array<Node, 7 * 24 + 8> stack;  // at most seven siblings wait on each level
   std::size_t depth = 0;
-  stack[depth++] = {levels_.size() - 1, 0};
+  if (!order_.empty()) stack[depth++] = {levels_.size() - 1, 0};
   while (depth != 0) {
     const Node node = stack[--depth];
     if (node.level == 0) {
-      near.push_back(static_cast<Index>(node.number));
+      visit(node.number);
       continue;
     }
     const unsigned bits = levels_[node.level][node.number].meeting(bounds);
+    const unsigned shift = 3 * static_cast<unsigned>(node.level - 1);  // eight blocks below each block
     for (unsigned i = kBlock; i-- > 0;) {
       const std::size_t child = node.number * kBlock + i;
-      // the last block below the child
-      const unsigned shift = 3 * static_cast<unsigned>(node.level - 1);
-      if ((bits >> i & 1u) != 0 && (child + 1) << shift > block) stack[depth++] = {node.level - 1, child};
+      if ((bits >> i & 1u) != 0 && (child + 1) << shift > first) stack[depth++] = {node.level - 1, child};
     }
   }
+}
+
+template <int N>
+void BoxBlocks<N>::find_near(std::size_t block, std::vector<Index>& near) const {
+  near.clear();
+  visit_blocks(levels_[0][block].whole(), block, [&](std::size_t found) { near.push_back(static_cast<Index>(found)); });
 }
 
 }  // namespace tegl::detail

@@ -126,8 +126,8 @@ std::uint64_t count_different(std::vector<Item>& items) {
 }
 
 template <int N>
-void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> intersecting, const IntersectionTiles<N>& tiles,
-                 Intersections<N>& result) {
+void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> intersecting,
+                 const IntersectionTiles<N>& tiles, Intersections<N>& result) {
   std::vector<std::array<double, N>> found(simplices.size());
   for (std::size_t s = 0; s < found.size(); ++s) found[s] = tile_of(simplices, static_cast<Index>(s), tiles);
   result.tiles = count_different(found);

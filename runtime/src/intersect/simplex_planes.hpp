@@ -80,11 +80,14 @@ class SimplexPlanes {
     double largest = 0.0;
     for (const PointN<N>& p : points) largest = std::max(largest, largest_of<N>(p));
     is_filtered_ = largest < kLargestFiltered;
-    for_each_item(simplices.size(), threads, progress, [&](std::size_t s) {
-      const CornersN<N> corners = this->corners(static_cast<Index>(s));
-      planes_[s] = plane_of<N>(corners, is_filtered_);
-      flat_[s] = is_flat_simplex(simplices_[s], corners, planes_[s]) ? 1 : 0;
-    });
+    for_each_item(simplices.size(), threads, progress, [&](std::size_t s) { update(static_cast<Index>(s)); });
+  }
+
+  /// Call it for each simplex whose vertices, or their points, have changed. The largest coordinate must not grow.
+  void update(Index s) {
+    const CornersN<N> corners = this->corners(s);
+    planes_[s] = plane_of<N>(corners, is_filtered_);
+    flat_[s] = is_flat_simplex(simplices_[s], corners, planes_[s]) ? 1 : 0;
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return simplices_.size(); }

@@ -68,7 +68,9 @@ EdgeCollapse<N>::EdgeCollapse(CollapseInput<N> input)
     scaled_[v] = to_scaled(points_[v]);
     if (complex_.on_border(static_cast<Index>(v))) bound_[v] |= kBorderBit;
   }
-  add_quadrics(part_of(input.progress, 0.6, 1.0));
+  add_quadrics(part_of(input.progress, 0.6, input.keep_embedded ? 0.8 : 1.0));
+  if (input.keep_embedded)
+    embedded_ = std::make_unique<MovingSimplices<N>>(points_, input.simplices, part_of(input.progress, 0.8, 1.0));
 }
 
 template <int N>
@@ -314,6 +316,19 @@ void EdgeCollapse<N>::blend_carried(Index u, Index v, double share) {
   }
 }
 
+/// The contraction of edge_, for the search of intersections.
+template <int N>
+typename MovingSimplices<N>::Contraction EdgeCollapse<N>::contraction(const PointN<N>& at) const {
+  return {edge_.u, edge_.v, edge_.only_u, edge_.only_v, edge_.both, at};
+}
+
+/// Whether everything except the tolerance allows the contraction of edge_; the slowest test last.
+template <int N>
+bool EdgeCollapse<N>::is_possible(const CollapseTarget<N>& target) {
+  return !edge_.both.empty() && keeps_shapes(edge_, to_scaled(target.at)) && complex_.is_contractible(edge_) &&
+         (!embedded_ || embedded_->stay_apart(contraction(target.at)));
+}
+
 template <int N>
 bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& target) {
   if (!within_tolerance(u, v, target)) {
@@ -321,12 +336,11 @@ bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& ta
     return false;
   }
   complex_.load(u, v, edge_);
-  if (edge_.both.empty()) return false;
-  const PointN<N> scaled_place = to_scaled(target.at);
-  if (!keeps_shapes(edge_, scaled_place) || !complex_.is_contractible(edge_)) return false;
+  if (!is_possible(target)) return false;
+  if (embedded_) embedded_->contract(contraction(target.at));
   complex_.contract(edge_);
   points_[u] = target.at;
-  scaled_[u] = scaled_place;
+  scaled_[u] = to_scaled(target.at);
   quadrics_[u] += quadrics_[v];
   bound_[u] |= bound_[v];
   tolerance_[u] = std::min(tolerance_[u], tolerance_[v]);
@@ -341,7 +355,7 @@ template <int N>
 void EdgeCollapse<N>::note_limit(Index u, Index v, const CollapseTarget<N>& target) {
   if (limited_) return;
   complex_.load(u, v, edge_);
-  limited_ = !edge_.both.empty() && keeps_shapes(edge_, to_scaled(target.at)) && complex_.is_contractible(edge_);
+  limited_ = is_possible(target);
 }
 
 template <int N>

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "intersect/moving_simplices.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/collapsible_complex.hpp"
 #include "simplify/quadric.hpp"
@@ -36,7 +38,8 @@ struct CollapseInput {
   std::vector<double> carried;    ///< #V x carried_width
   bool border_fixed = true;
   bool single_precision = false;
-  Progress progress = {};  ///< of the constructor
+  bool keep_embedded = false;  ///< refuses contractions that make simplices intersect
+  Progress progress = {};      ///< of the constructor
 };
 
 template <int N>
@@ -75,7 +78,7 @@ class EdgeCollapse {
   };
   [[nodiscard]] std::optional<CommonTarget> common_target(std::span<const Index> vertices) const;
 
-  /// Contracts u v into u, at `target`, if manifold, shape and tolerance allow it.
+  /// Contracts u v into u, at `target`, if manifold, shape, tolerance and (if requested) the other simplices allow it.
   bool try_contract(Index u, Index v, const CollapseTarget<N>& target);
   /// Call it for a contraction that a limit forbids, such as the tolerance. If everything else allows the contraction,
   /// is_limited() is true from then on.
@@ -90,6 +93,8 @@ class EdgeCollapse {
  private:
   void add_quadrics(const Progress& progress);
   void add_border_quadrics(Index s, const CornersN<N>& corners, double weight);
+  [[nodiscard]] bool is_possible(const CollapseTarget<N>& target);
+  [[nodiscard]] typename MovingSimplices<N>::Contraction contraction(const PointN<N>& at) const;
   [[nodiscard]] bool within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const;
   [[nodiscard]] bool keeps_shapes(const Edge& edge, const PointN<N>& scaled_place) const;
   [[nodiscard]] bool keeps_shape(Index s, Index moving, const PointN<N>& place, const Edge& edge,
@@ -116,6 +121,7 @@ class EdgeCollapse {
   bool border_fixed_;
   bool single_precision_;
   bool limited_ = false;
+  std::unique_ptr<MovingSimplices<N>> embedded_;  ///< in the contour's coordinates; null if intersections are allowed
   Edge edge_;
 };
 

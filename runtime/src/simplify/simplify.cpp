@@ -364,6 +364,7 @@ class Simplifier {
     input.carried = carried_;
     input.border_fixed = options_.border == SimplifyBorder::fixed;
     input.single_precision = is_single_;
+    input.keep_embedded = options_.keep_embedded;
     input.progress = progress;
     EdgeCollapse<N> collapse(std::move(input));
     bind_to_planes(collapse);

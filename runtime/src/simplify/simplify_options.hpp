@@ -34,6 +34,8 @@ void require_options(const SimplifyOptions<N>& options) {
     fail(fmt::format("max_curvature is {} for another method than facets; expected no limit", options.max_curvature));
   if (options.method != SimplifyMethod::fast && options.allow_nonmanifold)
     fail("allow_nonmanifold for another method than fast; expected false");
+  if (options.method == SimplifyMethod::fast && options.keep_embedded)
+    fail("keep_embedded for the method fast; expected another method, or false");
   if (options.planes.size() > kMostPlanes)
     fail(fmt::format("{} hyperplanes; expected at most {}", options.planes.size(), kMostPlanes));
   for (const double scale : options.scale)
