@@ -124,7 +124,7 @@ TEST_F(Check, FindsIntersections) {
   EXPECT_EQ(plain.exit, 0);
   EXPECT_FALSE(plain.json().contains("intersections"));
   const RunResult run = run_tegl({"check", path("crossed.ply"), "--intersections", "--json", "--places", "5", "--tile",
-                                  "10,10,1", "--origin", "-0.5", "--threads", "2"});
+                                  "10,10,1", "--tile-origin", "-0.5", "--threads", "2"});
   EXPECT_EQ(run.exit, 1);
   const auto found = run.json()["intersections"];
   EXPECT_EQ(found["pairs"], 1);
@@ -149,7 +149,7 @@ TEST_F(Check, FindsIntersections) {
 TEST_F(Check, RefusesBadOptionsOfIntersections) {
   const std::string file = save(octahedron());
   EXPECT_EQ(run_tegl({"check", file, "--tile", "1"}).exit, 2) << "without --intersections";
-  EXPECT_EQ(run_tegl({"check", file, "--intersections", "--origin", "1"}).exit, 2) << "without --tile";
+  EXPECT_EQ(run_tegl({"check", file, "--intersections", "--tile-origin", "1"}).exit, 2) << "without --tile";
   EXPECT_EQ(run_tegl({"check", file, "--intersections", "--places", "-1"}).exit, 2);
   const RunResult two = run_tegl({"check", file, "--intersections", "--tile", "1,2"});
   EXPECT_EQ(two.exit, 2);

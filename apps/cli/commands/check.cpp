@@ -49,10 +49,10 @@ class IntersectionSearch {
                                       "number for all axes or one for each")
                            ->type_name("NUMBERS")
                            ->needs(search);
-    app.add_option("--origin", origin_, "a corner of a tile: one number for all axes or one for each; default 0")
+    app.add_option("--tile-origin", origin_, "a corner of a tile: one number for all axes or one for each; default 0")
         ->type_name("NUMBERS")
         ->needs(tile);
-    app.add_option("--threads", threads_, "number of threads of --intersections; 0: all processors")
+    app.add_option("--threads", threads_, "number of threads; 0: all processors")
         ->type_name("COUNT")
         ->check(CLI::Range(0u, 4096u).description(""))
         ->capture_default_str()
@@ -131,7 +131,7 @@ class IntersectionSearch {
       for (const double size : options.tiles->size)
         if (!(size > 0.0))
           throw Error(ErrorCode::InvalidArgument, fmt::format("--tile is {}; expected positive numbers", tile_));
-      if (!origin_.empty()) options.tiles->origin = of_axes<N>("--origin", origin_);
+      if (!origin_.empty()) options.tiles->origin = of_axes<N>("--tile-origin", origin_);
     }
     const Intersections<N> found = find_intersections(contour, options);
     dim_ = N - 1;

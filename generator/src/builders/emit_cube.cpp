@@ -291,7 +291,7 @@ BuilderTexts emit_cube_builder(const BuilderRequest& request) {
   const Lists lists = lists_of(table);
   BuilderTexts texts;
   texts.certificate = fmt::format(
-      "{} triangulation, {} resolutions of 256 signatures, 3 ways each; {} proved to be embedded for all positions",
+      "{} triangulation, {} resolutions of 256 signatures, 3 ways each; {} proved to be embedded",
       triangulation_name(request.triangulation), table.entries.size(), certify_embedding(table));
   const std::string name = builder_name(request), space = builder_namespace(request);
   for (const Language language : request.languages) {

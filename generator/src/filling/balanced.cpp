@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "filling/ambiguity.hpp"
 #include "filling/certificate.hpp"
 #include "filling/embedding_evidence.hpp"
 

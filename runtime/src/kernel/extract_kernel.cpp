@@ -312,9 +312,9 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
 
   void expect_output() const {
     const double samples = static_cast<double>(shape_.rows() * shape_.size(0)) * static_cast<double>(shape_.layers());
-    const double own = tables_.tile->max_tile_vertices + (counter_.has_cubes() ? 4.0 * tables::kFaceSlots : 0.0);
+    const double own = tables_.max_tile_vertices + (counter_.has_cubes() ? 4.0 * tables::kFaceSlots : 0.0);
     output_.expect(std::min(samples * (N + own), static_cast<double>(max_vertices_)),
-                   samples * tables_.tile->max_simplices);
+                   samples * tables_.max_simplices);
   }
 
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
@@ -369,7 +369,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   typename EdgeTarget<Vertex>::Run run_in_slab(std::size_t k, std::size_t chunk, VertexRun<Vertex> vertices) {
     const Slab<N>& here = slab(k);
     Vertex* const first = &vertices[here.edges.chunk_first[chunk]];
-    const bool others = counter_.has_cubes() || tables_.tile->max_tile_vertices != 0;
+    const bool others = counter_.has_cubes() || tables_.max_tile_vertices != 0;
     return {k, others ? first : first + here.chunks[chunk].vertices};
   }
 

@@ -18,14 +18,19 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   set.tile = &tables::tile_table(N, triangulation);
   set.rows = tables::row_table(N, triangulation);
   set.compact = triangulation == Triangulation::compact;
+  set.max_simplices = set.tile->max_simplices;
+  set.max_tile_vertices = set.tile->max_tile_vertices;
   if constexpr (N == 4)
-    if (is_estimated(options.ambiguity))
-      set.rows = triangulation == Triangulation::barycentric ? &tables::kTile4EstimatedBarycentricRows
-                                                             : &tables::kTile4EstimatedCompactRows;
+    if (is_estimated(options.ambiguity)) {
+      set.rows = set.compact ? &tables::kTile4EstimatedCompactRows : &tables::kTile4EstimatedBarycentricRows;
+      if (set.compact) set.tile = &tables::kTile4Balanced;
+    }
   if constexpr (N < 4)
     if (is_estimated(options.ambiguity)) {
       const tables::VariantTable& variants = variant_table<N>(triangulation);
       set.tile = &variants.tile;
+      set.max_simplices = set.tile->max_simplices;
+      set.max_tile_vertices = set.tile->max_tile_vertices;
       set.rows = &variants.rows;
       if (options.close) set.high_face = &tables::region_table(N - 1, triangulation, Alternative::high);
     }

@@ -13,6 +13,8 @@ namespace tegl::detail {
 template <int N>
 struct TableSet {
   const tables::TileTable* tile = nullptr;      ///< dimension N
+  std::uint32_t max_simplices = 0;              ///< of a tile, as a table of the dimension has them
+  std::uint32_t max_tile_vertices = 0;          ///< the same
   const RowTable* rows = nullptr;               ///< flat form of `tile` for the fast path, if available
   bool compact = false;                         ///< whether `tile` is of the compact triangulation
   const tables::TileTable* cube = nullptr;      ///< dimension 3; N = 4 only

@@ -213,15 +213,20 @@ bool is_list_of_table(const Contour& contour, const tables::ResolvedList& list) 
          std::equal(contour.masks, contour.masks + contour.own_vertices, table.masks + list.first_mask);
 }
 
-/// Whether each facet of one polygon is a triangle or a cone over its polygon, with the contract's mask.
+/// Whether each facet of one polygon is a triangle or a cone over its polygon, from its barycentre or, for two hexagons,
+/// from a vertex on a ray; with the contract's mask.
 template <class Contour>
 bool is_coned(const Contour& contour) {
   constexpr std::uint32_t kBarycentre = 1u << 20;
   for (const LocalFacet<3>& facet : facets_of_cube(contour)) {
     const auto [euler, points] = figures_of<3>(facet, 12);
     if (euler != 1 || facet.size() == 1) continue;
-    for (const auto& t : facet)
-      if (t[0] != facet[0][0] || t[0] < 12 || contour.masks[t[0] - 12] != (kBarycentre | points << 8)) return false;
+    for (const auto& t : facet) {
+      if (t[0] != facet[0][0] || t[0] < 12) return false;
+      const std::uint32_t mask = contour.masks[t[0] - 12];
+      const bool is_on_ray = facet.size() == 6 && contour.facets == 2 && mask != 0 && mask < 256;
+      if (mask != (kBarycentre | points << 8) && !is_on_ray) return false;
+    }
   }
   return true;
 }

@@ -127,7 +127,7 @@ TEST(BuilderPage, TwoOppositeCornersAreTwoTrianglesOrATunnel) {
   EXPECT_EQ(contour.triangles, 2);
   tegl::builders::build_cube(signature, 0, tegl::builders::Choice::high, contour);
   EXPECT_EQ(contour.facets, 1);
-  EXPECT_EQ(contour.triangles, 6);
+  EXPECT_EQ(contour.triangles, 12);
 }
 // [/tunnel]
 

@@ -82,7 +82,7 @@ class GeneralTesseract {
       tile::Vertex vertex;
       vertex.kind = v < 32 ? tile::VertexKind::edge : tile::VertexKind::side;
       vertex.face = v < 32                         ? edge_face_[v]
-                    : v < ResolvedCubes::kVertices ? face_of_cube((v - 32) / 3)
+                    : v < ResolvedCubes::kVertices ? face_of_cube((v - 32) / ResolvedCubes::kMostOwn)
                                                    : lattice_.tile();
       vertex.number = v;
       tile.vertices.push_back(vertex);

@@ -115,7 +115,7 @@ function checkCubeBuilder() {
       }
     }
   }
-  const stride = 2 + 3 * 16 + 3;
+  const stride = 2 + 3 * 24 + 4;
   const result = new Uint32Array(expected.length * stride);
   const shader = `${text}
   @group(0) @binding(0) var<storage, read_write> result : array<u32>;

@@ -375,11 +375,12 @@ TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
     options.triangulation = Triangulation::barycentric;
     const auto by_tile = [](const auto&... arguments) { return extract_tile_by_tile(arguments...); };
     expect_contour_of_layer(random, options, by_tile);
-    // Where a component in a tesseract's boundary is a torus, 5D and 4D fill it with different simplices. There is none
-    // in the waves, and in the noise none if it is resolved from the data.
+    // Compact fillings of 5D contours are balanced by any rule, those of 4D contours only if the data resolve them.
+    if (ambiguity == Ambiguity::low) continue;
     options.triangulation = Triangulation::compact;
     const auto by_tables = [](const auto&... arguments) { return extract<double>(arguments...); };
-    expect_contour_of_layer(ambiguity == Ambiguity::low ? waves : random, options, by_tables);
+    expect_contour_of_layer(random, options, by_tables);
+    expect_contour_of_layer(waves, options, by_tables);
   }
 }
 
