@@ -110,6 +110,19 @@ std::vector<std::vector<LocalSimplex>> split(std::vector<LocalSimplex> rest, int
 
 constexpr std::uint8_t kNoVertex = 255;
 
+/// The corner of a square between two others, if all three belong to a polygon's vertices; else `lowest`. The fan from
+/// there is the one of the regions of cubes (builders/cube_regions.cpp), which are proved to be positive.
+std::uint8_t fan_apex(const Tile& square, const std::array<bool, 256>& polygon, std::uint8_t lowest) {
+  std::array<int, 256> neighbours{};
+  for (const auto& [a, b] : square.edges)
+    if (polygon[a] && polygon[b]) ++neighbours[a], ++neighbours[b];
+  int corners = 0;
+  for (std::uint8_t v = 0; v < square.corner_count(); ++v) corners += polygon[v] ? 1 : 0;
+  for (std::uint8_t v = 0; corners == 3 && v < square.corner_count(); ++v)
+    if (neighbours[v] == 2) return v;
+  return lowest;
+}
+
 }  // namespace
 
 /// The barycentre of the only facet in the boundary of a region with these vertices. From there, every point of the
@@ -147,7 +160,7 @@ TileRegions SignatureRegions::build(Signature signature, const TileContour& cont
     const std::uint8_t barycentre = only_barycentre(contour, seen);
     const bool simplex = vertices == static_cast<std::size_t>(k) + 1 && component.size() == vertices;
     const bool from_own_vertex = simplex || (k == 2 && style_ == RegionStyle::fan);
-    std::uint8_t apex = lowest;
+    std::uint8_t apex = k == 2 && tile_->kind == TileKind::cube ? fan_apex(*tile_, seen, lowest) : lowest;
     if (!from_own_vertex && barycentre != kNoVertex) {
       apex = barycentre;
     } else if (!from_own_vertex) {

@@ -224,7 +224,7 @@ bool is_coned(const Contour& contour) {
     for (const auto& t : facet) {
       if (t[0] != facet[0][0] || t[0] < 12) return false;
       const std::uint32_t mask = contour.masks[t[0] - 12];
-      const bool is_on_ray = facet.size() == 6 && contour.facets == 2 && mask != 0 && mask < 256;
+      const bool is_on_ray = facet.size() == 6 && mask != 0 && mask < 256;
       if (mask != (kBarycentre | points << 8) && !is_on_ray) return false;
     }
   }
