@@ -222,10 +222,11 @@ bool is_coned(const Contour& contour) {
     const auto [euler, points] = figures_of<3>(facet, 12);
     if (euler != 1 || facet.size() == 1) continue;
     for (const auto& t : facet) {
-      if (t[0] != facet[0][0] || t[0] < 12) return false;
-      const std::uint32_t mask = contour.masks[t[0] - 12];
+      const auto apex = *std::max_element(t.begin(), t.end());
+      if (apex < 12 || std::find(facet[0].begin(), facet[0].end(), apex) == facet[0].end()) return false;
+      const std::uint32_t mask = contour.masks[apex - 12];
       const bool is_on_ray = facet.size() == 6 && mask != 0 && mask < 256;
-      if (mask != (kBarycentre | points << 8) && !is_on_ray) return false;
+      if (is_on_ray ? false : t[0] != apex || mask != (kBarycentre | points << 8)) return false;
     }
   }
   return true;
