@@ -267,7 +267,7 @@ double depth_of(const SimplexPlanes<N>& simplices, Index s, Index t) noexcept {
     Range heights;
     heights.add(0.0);
     for (const Index v : simplices.simplex(of)) heights.add(dot(normal, minus(simplices.point(v), corner)));
-    depth = std::min(depth, std::min(heights.high, -heights.low) / norm(normal));
+    depth = std::min(depth, std::min(heights.high, 0.0 - heights.low) / norm(normal));
   }
   return depth;
 }

@@ -130,11 +130,13 @@ struct RegionTable {
 /// each high region around it is cut off by one facet. In `high`, the cube's centre is high and each low region is cut
 /// off. A region bounded by two polygons gives a tunnel between them; a region bounded by three or four gives a sphere
 /// with as many holes. In most entries two of the three lists are identical. A local vertex below 12 is an edge point;
-/// 12 + j is own vertex j of the list. Its mask has bit v for corner v and bit 8 + e for the point of edge e. If the
-/// mask holds edge points only, the vertex is their mean; if it holds a corner, the vertex is the midpoint of the
-/// cube's centre and the mean of the corners and points in the mask. The segments in a square are equal in all entries
-/// that resolve the square equally. Orientation as above. If all ambiguous squares are low, or none is
-/// ambiguous, `separate` equals the low-connected compact table; if all are high, the high-connected one.
+/// 12 + j is own vertex j of the list. Its mask has bit v for corner v and bit 8 + e for the point of edge e. If it has
+/// edges, the vertex is the mean of their points. If it has corners, they are those of a corner, an edge or a square of
+/// the cube, and the vertex is on the ray from the cube's centre to their mean, anywhere between the two; the library
+/// chooses the point where the trilinear interpolant has the isovalue. Vertices of tunnels are on rays. Wherever they and
+/// the edge points are, no two triangles of a list intersect. The segments in a square are equal in all entries that
+/// resolve the square equally. Orientation as above. Single polygons are fans whose first edge does not depend on which
+/// side is high, so `separate` can have other diagonals than the list of the compact tables.
 struct ResolvedList {
   std::uint16_t first_triangle;  ///< index into ResolvedTable::triangles, in triangles
   std::uint8_t triangle_count;   ///< number of triangles
