@@ -43,7 +43,10 @@ constexpr double kFarAway = 2.0;
 /// Relative width of the rim that is excluded if a simplex is decided without it, in longest edges. Much more than
 /// rounding errors.
 constexpr double kRim = 1e-11;
-/// In longest edges: much more than the rim.
+/// Relative width of a wider rim, and its largest fraction of the bound that is enough.
+constexpr double kWideRim = 1e-6;
+constexpr double kRimShare = 0.02;
+/// In longest edges: much more than the narrow rim.
 constexpr double kBeyond = 1e-9;
 /// Flatter simplices use the normal of the nearest simplex of the other contour.
 constexpr double kFlat = 1e-2;
@@ -339,20 +342,28 @@ class SimplexDeviation {
     // smaller for parts.
     if (!parts_.empty()) measure_by_distances(part);
     if (!parts_.empty() && is_enough(part, enough)) return;
-    // The part without a rim; every point of the rim is within kRim * edge_ of the rest. So borders and walls that
-    // begin at the edge of the part do not lie above it.
-    CornersN<N> inner = part.corners;
-    const PointN<N> middle = middle_of<N>(part.corners);
-    for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
-    const Prism<N> inner_prism(inner, edge_);
-    gather_ranges(inner_prism, part, true);
-    const bool found = take_best_cover(inner_prism, part, kRim * edge_);
+    // Borders and walls that begin at the edge of the part do not lie above the part without a rim. A wider rim: the edge
+    // may have moved by more than rounding errors, and still by much less than the bound that is enough.
+    bool found = cover_without_rim(part, kRim);
+    const double wide = std::min(kWideRim, kRimShare * std::max({enough, m_.enough, looseness_ * nearest_}) / edge_);
+    if (wide > kRim && !is_enough(part, enough)) found = cover_without_rim(part, wide) || found;
     if (part.bound <= 2.0 * kRim * edge_) {  // identical contours: without the rim the bound is exact up to rounding
       gather_ranges(prism, part, true);
       take_best_cover(prism, part, 0.0);
     }
-    if (found && !is_enough(part, enough) && !prism.thin()) probe(inner_prism, part);
+    if (found && !is_enough(part, enough) && !prism.thin()) probe(prism, part);
     if (parts_.empty() && !is_enough(part, enough)) measure_by_distances(part);
+  }
+
+  /// Takes the best cover of the part without a rim of this relative width. Every point of the rim is within
+  /// rim * edge_ of the rest. Returns false if none improves the bound.
+  bool cover_without_rim(Part& part, double rim) {
+    CornersN<N> inner = part.corners;
+    const PointN<N> middle = middle_of<N>(part.corners);
+    for (PointN<N>& corner : inner) corner = between(corner, middle, rim);
+    const Prism<N> prism(inner, edge_);
+    gather_ranges(prism, part, true);
+    return take_best_cover(prism, part, rim * edge_);
   }
 
   /// Collects the height ranges of the near simplices over the part: with `cut`, of their parts inside the prism; else
