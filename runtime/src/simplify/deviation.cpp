@@ -342,8 +342,8 @@ class SimplexDeviation {
     // smaller for parts.
     if (!parts_.empty()) measure_by_distances(part);
     if (!parts_.empty() && is_enough(part, enough)) return;
-    // Borders and walls that begin at the edge of the part do not lie above the part without a rim. A wider rim: the edge
-    // may have moved by more than rounding errors, and still by much less than the bound that is enough.
+    // Borders and walls that begin at the edge of the part do not lie above the part without a rim. A wider rim: the
+    // edge may have moved by more than rounding errors, and still by much less than the bound that is enough.
     bool found = cover_without_rim(part, kRim);
     const double wide = std::min(kWideRim, kRimShare * std::max({enough, m_.enough, looseness_ * nearest_}) / edge_);
     if (wide > kRim && !is_enough(part, enough)) found = cover_without_rim(part, wide) || found;
