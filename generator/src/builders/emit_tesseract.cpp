@@ -19,6 +19,7 @@
 #include "builders/emit_builder.hpp"
 #include "builders/templates.hpp"
 #include "builders/tesseract_arrays.hpp"
+#include "filling/embedding_proof.hpp"
 #include "tables/table_set.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -133,6 +134,21 @@ std::string corner_sets(std::size_t count, std::size_t per_line, const std::func
   return rows(count, per_line, [&](std::size_t i) { return fmt::format("{:#06x}", set(static_cast<unsigned>(i))); });
 }
 
+/// Hyperplanes through corners that divide the tesseract. Those with many corners separate most sets, so they come first.
+std::string dividers() {
+  const Lattice lattice(TileKind::cube, 4);
+  const EmbeddingProof proof(lattice.tile(4));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> planes;
+  for (const auto& [above, below] : proof.hyperplanes())
+    if (above != 0 && below != 0) planes.emplace_back(above, below);
+  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) {
+    return std::popcount(a.first | a.second) < std::popcount(b.first | b.second);
+  });
+  return rows(planes.size(), 6, [&](std::size_t i) {
+    return fmt::format("{{{:#06x}, {:#06x}}}", planes[i].first, planes[i].second);
+  });
+}
+
 std::uint32_t corners_of_square(unsigned number) {
   const Square q = all_squares()[number];
   std::uint32_t corners = 0;
@@ -180,6 +196,7 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                 {{"banner", banner},
                  {"name", builder_name(request)},
                  {"namespace", builder_namespace(request)},
+                 {"dividers", dividers()},
                  {"corners_of_squares", corner_sets(24, 8, corners_of_square)},
                  {"corners_of_cubes",
                   corner_sets(8, 8, [](unsigned f) { return static_cast<std::uint32_t>(detail::face_corners(4, f)); })},

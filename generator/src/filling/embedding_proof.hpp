@@ -43,6 +43,10 @@ class EmbeddingProof {
   /// The same for each simplex of `first` with each of `second`.
   [[nodiscard]] bool holds_between(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
                                    const Means& means = {}) const;
+  /// The hyperplanes: the points above and below each. Bit v: corner v; the tile's centre and the ends of rays follow.
+  [[nodiscard]] std::span<const std::pair<std::uint32_t, std::uint32_t>> hyperplanes() const noexcept {
+    return hyperplanes_;
+  }
   /// True if some positions make the simplex degenerate: a triangle with its vertices on a line, and so on.
   [[nodiscard]] bool may_be_flat(const LocalSimplex& simplex, const Means& means = {}) const;
 
