@@ -188,9 +188,7 @@ std::uint64_t expect_touching_at_doubled_vertices(std::size_t samples, double mi
     if (static_cast<double>(bits() >> 11) * 0x1p-53 < missing) value = std::numeric_limits<double>::quiet_NaN();
   const auto contour = extract<double>(image.view(), 0.5, way.options);
   const auto found = find_intersections(contour);
-  EXPECT_EQ(found.depth, 0.0);
   for (const auto& pair : found.pairs) {
-    EXPECT_EQ(pair.depth, 0.0);
     bool has_doubled = false;
     for (const Index v : contour.simplices[pair.first])
       for (const Index w : contour.simplices[pair.second])
