@@ -27,8 +27,10 @@ struct IntersectionTiles {
 template <int N>
 requires DimensionBetween<N, 2, 4>
 struct IntersectionOptions {
-  /// Maximum number of pairs in Intersections::pairs. All pairs are found and counted anyway.
+  /// Maximum number of pairs in Intersections::pairs. All pairs are found and counted anyway; only the listed ones take
+  /// memory.
   std::size_t most_listed = std::numeric_limits<std::size_t>::max();
+  bool deepest_first = false;  ///< lists pairs by descending depth, pairs of equal depth by numbers; else by numbers
   /// If given, tiles are counted. For an image without a world map: its grid's spacing and the position of its first
   /// sample.
   std::optional<IntersectionTiles<N>> tiles = {};
@@ -42,8 +44,9 @@ struct IntersectingPair {
   Index first = 0;                ///< number of a simplex
   Index second = 0;               ///< number of the other, greater than `first`
   std::array<double, N> place{};  ///< a common point outside of their common face, rounded
-  /// How far one simplex reaches through the hyperplane of the other: the smallest distance that one of them has to be
-  /// moved along the normal of the other until it lies on one side of it. 0 if they touch, or lie in one hyperplane.
+  /// The smallest distance by which one of the simplices has to be moved, in any direction, until a hyperplane
+  /// separates them or contains both. 0 if they touch, or lie in one hyperplane. Rounded: a depth below about 1e-13 of
+  /// the simplices' size may be 0. Always finite.
   double depth = 0.0;
 };
 
@@ -52,15 +55,15 @@ template <int N>
 requires DimensionBetween<N, 2, 4>
 struct Intersections {
   std::uint64_t simplices = 0;               ///< number of all simplices
-  std::uint64_t flat = 0;                    ///< simplices of measure zero, exactly; they are not in any pair
+  std::uint64_t flat = 0;                    ///< simplices of measure zero, exactly; not tested, in no pair
   std::uint64_t pair_count = 0;              ///< number of intersecting pairs
   std::uint64_t intersecting = 0;            ///< number of simplices in at least one pair
-  std::vector<IntersectingPair<N>> pairs{};  ///< ascending by `first`, then `second`; at most `most_listed`
-  double depth = 0.0;                        ///< the greatest depth of the listed pairs
+  std::vector<IntersectingPair<N>> pairs{};  ///< the first `most_listed`, by `first`, then `second`, or deepest first
+  double depth = 0.0;                        ///< the greatest depth of all pairs
   std::uint64_t tiles = 0;                   ///< tiles that contain the centroid of a simplex; 0 if not requested
   std::uint64_t tiles_hit = 0;               ///< tiles that contain the centroid of a simplex in a pair
 
-  /// Whether no two simplices intersect and none is flat.
+  /// Whether no two simplices intersect and none is flat: flat simplices are not tested, so they may hide intersections.
   [[nodiscard]] bool is_embedded() const noexcept { return pair_count == 0 && flat == 0; }
 };
 
@@ -72,7 +75,7 @@ struct Intersections {
 /// - two simplices with the same N vertices.
 ///
 /// Flat simplices have no interior: their vertices lie in an (N-2)-dimensional plane, or one is repeated. They are
-/// counted in `flat` and excluded from pairs.
+/// counted in `flat` and are not tested for intersections, although they may pass through others.
 ///
 /// The result is exact for the coordinates as stored, float or double: signs of determinants that rounding errors could
 /// change are computed with integers. For triangles the pairs equal those of CGAL's

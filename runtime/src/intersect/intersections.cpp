@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/workers.hpp"
 #include "intersect/box_blocks.hpp"
+#include "intersect/found_pairs.hpp"
+#include "intersect/pair_depth.hpp"
 #include "intersect/pair_test.hpp"
 #include "intersect/star_test.hpp"
 #include "mesh/validate.hpp"
@@ -41,15 +44,21 @@ std::vector<std::uint8_t> embedded_stars(const SimplexPlanes<N>& simplices, std:
   return result;
 }
 
-/// Finds the pairs of one simplex with others.
+/// Finds the pairs of simplices in some blocks. One object per thread.
 template <int N>
 class PairFinder {
  public:
-  PairFinder(const SimplexPlanes<N>& simplices, std::span<const std::uint8_t> embedded, const BoxBlocks<N>& boxes)
-      : simplices_(simplices), embedded_(embedded), boxes_(boxes), test_(simplices) {}
+  PairFinder(const SimplexPlanes<N>& simplices, std::span<const std::uint8_t> embedded, const BoxBlocks<N>& boxes,
+             const FoundPairs<N>& none, SimplexSet& intersecting)
+      : simplices_(simplices),
+        embedded_(embedded),
+        boxes_(boxes),
+        test_(simplices),
+        found_(none),
+        intersecting_(intersecting) {}
 
-  /// Appends the pairs of the simplices in a block with those in it and in later ones.
-  void find(std::size_t block, std::vector<IntersectingPair<N>>& pairs) {
+  /// Adds the pairs of the simplices in a block with those in it and in later ones.
+  void find(std::size_t block) {
     boxes_.find_near(block, near_);
     const std::span<const Index> here = boxes_.simplices(block);
     for (std::size_t k = 0; k < here.size(); ++k) {
@@ -57,9 +66,11 @@ class PairFinder {
       test_.load(here[k]);
       for (const Index near : near_)
         for (unsigned bits = boxes_.meeting(block, k, near); bits != 0; bits &= bits - 1)
-          test(here[k], boxes_.simplices(near)[static_cast<std::size_t>(std::countr_zero(bits))], pairs);
+          test(here[k], boxes_.simplices(near)[static_cast<std::size_t>(std::countr_zero(bits))]);
     }
   }
+  /// The pairs since it was last cleared.
+  [[nodiscard]] FoundPairs<N>& found() noexcept { return found_; }
 
  private:
   static constexpr Index kNone = std::numeric_limits<Index>::max();
@@ -76,12 +87,16 @@ class PairFinder {
       for (const Index w : simplices_.simplex(t)) shared |= v == w ? 1u : 0u;
     return shared != 0;
   }
-  void test(Index s, Index t, std::vector<IntersectingPair<N>>& pairs) {
+  void test(Index s, Index t) {
     if (share_embedded_vertex(t)) return;
     IntersectingPair<N> pair;
     pair.first = std::min(s, t);
     pair.second = std::max(s, t);
-    if (test_.meets(t, pair.place)) pairs.push_back(pair);
+    if (!test_.meets(t, pair.place)) return;
+    pair.depth = depth_of<N>(simplices_.corners(pair.first), simplices_.corners(pair.second));
+    found_.add(pair);
+    intersecting_.add(s);
+    intersecting_.add(t);
   }
 
   const SimplexPlanes<N>& simplices_;
@@ -90,23 +105,25 @@ class PairFinder {
   PairTest<N> test_;
   std::array<Index, N> embedded_vertices_{};
   std::vector<Index> near_;
+  FoundPairs<N> found_;
+  SimplexSet& intersecting_;
 };
 
-/// All pairs, ascending.
+/// Adds all pairs to `found`, which is empty, and their simplices to `intersecting`.
 template <int N>
-std::vector<IntersectingPair<N>> all_pairs(const SimplexPlanes<N>& simplices, std::span<const std::uint8_t> embedded,
-                                           const BoxBlocks<N>& boxes, unsigned threads, const Progress& progress) {
-  std::vector<std::vector<IntersectingPair<N>>> of_blocks(block_count(boxes.size(), kPairBlock));
+void find_pairs(const SimplexPlanes<N>& simplices, std::span<const std::uint8_t> embedded, unsigned threads,
+                const Progress& progress, FoundPairs<N>& found, SimplexSet& intersecting) {
+  const BoxBlocks<N> boxes(simplices, threads, part_of(progress, 0.0, 0.15));
+  const FoundPairs<N> none = found;
+  std::mutex mutex;
   for_each_block(
-      boxes.size(), kPairBlock, threads, progress, [&] { return PairFinder<N>(simplices, embedded, boxes); },
-      [&](std::size_t part, std::size_t from, std::size_t to, PairFinder<N>& finder) {
-        for (std::size_t block = from; block < to; ++block) finder.find(block, of_blocks[part]);
+      boxes.size(), kPairBlock, threads, part_of(progress, 0.15, 1.0),
+      [&] { return PairFinder<N>(simplices, embedded, boxes, none, intersecting); },
+      [&](std::size_t, std::size_t from, std::size_t to, PairFinder<N>& finder) {
+        for (std::size_t block = from; block < to; ++block) finder.find(block);
+        const std::lock_guard lock(mutex);
+        found.take(finder.found());
       });
-  std::vector<IntersectingPair<N>> result;
-  for (const auto& pairs : of_blocks) result.insert(result.end(), pairs.begin(), pairs.end());
-  std::sort(result.begin(), result.end(),
-            [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second < b.second; });
-  return result;
 }
 
 /// The tile that contains the centroid of a simplex, by the number of tiles along each axis from the origin.
@@ -126,13 +143,14 @@ std::uint64_t count_different(std::vector<Item>& items) {
 }
 
 template <int N>
-void count_tiles(const SimplexPlanes<N>& simplices, std::span<const Index> intersecting,
-                 const IntersectionTiles<N>& tiles, Intersections<N>& result) {
+void count_tiles(const SimplexPlanes<N>& simplices, const SimplexSet& intersecting, const IntersectionTiles<N>& tiles,
+                 Intersections<N>& result) {
   std::vector<std::array<double, N>> found(simplices.size());
   for (std::size_t s = 0; s < found.size(); ++s) found[s] = tile_of(simplices, static_cast<Index>(s), tiles);
   result.tiles = count_different(found);
   found.clear();
-  for (const Index s : intersecting) found.push_back(tile_of(simplices, s, tiles));
+  for (std::size_t s = 0; s < simplices.size(); ++s)
+    if (intersecting.contains(static_cast<Index>(s))) found.push_back(tile_of(simplices, static_cast<Index>(s), tiles));
   result.tiles_hit = count_different(found);
 }
 
@@ -159,19 +177,14 @@ Intersections<N> intersections_of(std::span<const PointN<N>> points, std::span<c
   for (std::size_t s = 0; s < simplices.size(); ++s) result.flat += simplices.is_flat(static_cast<Index>(s)) ? 1 : 0;
   const std::vector<std::uint8_t> embedded =
       embedded_stars<N>(simplices, flat_rows(rows), threads, part_of(progress, 0.1, 0.3));
-  const BoxBlocks<N> boxes(simplices, threads, part_of(progress, 0.3, 0.4));
-  result.pairs = all_pairs<N>(simplices, embedded, boxes, threads, part_of(progress, 0.4, 1.0));
-  result.pair_count = result.pairs.size();
-  std::vector<Index> intersecting;
-  for (const auto& pair : result.pairs) intersecting.insert(intersecting.end(), {pair.first, pair.second});
-  result.intersecting = count_different(intersecting);
-  intersecting.resize(result.intersecting);
+  FoundPairs<N> found(options.most_listed, options.deepest_first);
+  SimplexSet intersecting(rows.size());
+  find_pairs<N>(simplices, embedded, threads, part_of(progress, 0.3, 1.0), found, intersecting);
+  result.pair_count = found.count();
+  result.depth = found.depth();
+  result.intersecting = intersecting.size();
   if (options.tiles) count_tiles<N>(simplices, intersecting, *options.tiles, result);
-  if (result.pairs.size() > options.most_listed) result.pairs.resize(options.most_listed);
-  for (auto& pair : result.pairs) {
-    pair.depth = depth_of<N>(simplices, pair.first, pair.second);
-    result.depth = std::max(result.depth, pair.depth);
-  }
+  result.pairs = found.first_pairs();
   return result;
 }
 

@@ -4,10 +4,9 @@
 // one of the simplices, C the common ones. The simplices meet only in conv(C) if and only if a hyperplane through C has
 // A strictly on one side and B strictly on the other (see meeting_tableau.hpp).
 // 1. Boxes. If the boxes touch in a plane across an axis, both simplices are replaced by their faces in that plane.
-// 2. The hyperplanes of the simplices. If B is strictly on one side of the hyperplane of A and C, then a slightly
-// turned
-//    hyperplane separates strictly, as A and C are affinely independent. If A and B have two vertices each and N - 2
-//    are common, the four sides are the coefficients of the only affine dependency modulo C, and different signs
+// 2. The hyperplanes of the simplices. If B is strictly on one side of the hyperplane of A and C, then a hyperplane that
+//    is turned slightly separates strictly, as A and C are affinely independent. If A and B have two vertices each and
+//    N - 2 are common, the four sides are the coefficients of the only affine dependency modulo C, and different signs
 //    exclude positive weights.
 // 3. A separating direction, found by linear programming in floating-point numbers and tested with a bound of the
 //    rounding errors.
@@ -258,25 +257,8 @@ bool PairTest<N>::meets(Index t, PointN<N>& place) {
   return meet_by_integers(place);
 }
 
-template <int N>
-double depth_of(const SimplexPlanes<N>& simplices, Index s, Index t) noexcept {
-  double depth = std::numeric_limits<double>::infinity();
-  for (const auto& [of, through] : {std::pair(s, t), std::pair(t, s)}) {
-    const PointN<N>& normal = simplices.plane(through).normal;
-    const PointN<N>& corner = simplices.point(simplices.simplex(through)[0]);
-    Range heights;
-    heights.add(0.0);
-    for (const Index v : simplices.simplex(of)) heights.add(dot(normal, minus(simplices.point(v), corner)));
-    depth = std::min(depth, std::min(heights.high, 0.0 - heights.low) / norm(normal));
-  }
-  return depth;
-}
-
 template class PairTest<2>;
 template class PairTest<3>;
 template class PairTest<4>;
-template double depth_of<2>(const SimplexPlanes<2>&, Index, Index) noexcept;
-template double depth_of<3>(const SimplexPlanes<3>&, Index, Index) noexcept;
-template double depth_of<4>(const SimplexPlanes<4>&, Index, Index) noexcept;
 
 }  // namespace tegl::detail

@@ -59,9 +59,4 @@ class PairTest {
   std::array<int, N> partner_{};  ///< by common corner of a_, that of b_
 };
 
-/// How far two simplices reach through each other's hyperplanes: the smaller one, over both, of the greatest heights of
-/// corners on either side. 0 if a simplex is on one side of the other's hyperplane.
-template <int N>
-double depth_of(const SimplexPlanes<N>& simplices, Index s, Index t) noexcept;
-
 }  // namespace tegl::detail
