@@ -47,18 +47,18 @@ class Intersections:
     """The pairs of simplices that intersect outside of their common face."""
 
     simplices: int  #: of the contour
-    flat: int  #: simplices of measure zero, which are in no pair
+    flat: int  #: simplices of measure zero: not examined, and in no pair
     count: int  #: number of pairs
     intersecting: int  #: number of simplices in at least one pair
     pairs: np.ndarray  #: #P x 2 numbers of simplices, ascending; all pairs, or the first `most_listed`
     places: np.ndarray  #: #P x N: a common point of each pair
-    depths: np.ndarray  #: #P: how far one simplex reaches through the hyperplane of the other
+    depths: np.ndarray  #: #P: how far one simplex has to be moved so that they do not cross; 0 if they touch
     tiles: int  #: tiles that contain simplices; 0 without `tile`
     tiles_hit: int  #: tiles that contain simplices in pairs
 
     @property
     def is_embedded(self) -> bool:
-        """Whether no two simplices intersect and none is flat."""
+        """Whether no two simplices intersect and none is flat: flat ones are not examined, as by `tegl check`."""
         return self.count == 0 and self.flat == 0
 
 

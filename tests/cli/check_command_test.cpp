@@ -141,9 +141,44 @@ TEST_F(Check, FindsIntersections) {
   const RunResult text = run_tegl({"check", path("crossed.ply"), "--intersections", "--places", "1", "--tile", "5"});
   EXPECT_EQ(text.exit, 1);
   EXPECT_THAT(text.out, HasSubstr("intersect    1 pair of 2 triangles, up to 0.5 deep"));
-  EXPECT_THAT(text.out, HasSubstr("1 triangle without area, in no pair"));
+  EXPECT_THAT(text.out, HasSubstr("flat         1 triangle of zero size, not examined"));
   EXPECT_THAT(text.out, HasSubstr("tiles        1 of 2 with intersections (50 %)"));
   EXPECT_THAT(text.out, HasSubstr("pair         0 and 1 at ("));
+}
+
+TEST_F(Check, FailsIfFlatSimplicesAreNotExamined) {
+  // the flat triangle passes through the other one
+  Mesh mesh;
+  mesh.coordinates = {0, 0, 0, 1, 0, 0, 2, 0, 0, 1, -1, -1, 1, -1, 1, 1, 2, 0};
+  mesh.simplices = {0, 1, 2, 3, 4, 5};
+  write_mesh(mesh, path("flat.ply"));
+  EXPECT_EQ(run_tegl({"check", path("flat.ply")}).exit, 0);
+  const RunResult run = run_tegl({"check", path("flat.ply"), "--intersections"});
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("intersect    none among the others"));
+  EXPECT_THAT(run.out, HasSubstr("flat         1 triangle of zero size, not examined"));
+  EXPECT_EQ(run_tegl({"check", path("flat.ply"), "--intersections", "--quiet"}).exit, 1);
+}
+
+TEST_F(Check, ListsTheDeepestPairs) {
+  // edges that reach 0.25, 1 and 0.5 below a large triangle
+  Mesh mesh;
+  mesh.coordinates = {-90, -90, 0, 90, -90, 0, 0, 90, 0};
+  mesh.simplices = {0, 1, 2};
+  double x = 0;
+  for (const double below : {0.25, 1.0, 0.5}) {
+    mesh.coordinates.insert(mesh.coordinates.end(), {x, 0, -below, x + 0.3, 0, 7, x, 0.3, 7});
+    for (Index i = 0; i < 3; ++i) mesh.simplices.push_back(static_cast<Index>(mesh.simplices.size()));
+    x += 5;
+  }
+  write_mesh(mesh, path("deep.ply"));
+  const RunResult run = run_tegl({"check", path("deep.ply"), "--intersections", "--json", "--places", "2"});
+  const auto found = run.json()["intersections"];
+  EXPECT_EQ(found["pairs"], 3);
+  EXPECT_NEAR(found["depth"].get<double>(), 1.0, 1e-12);
+  ASSERT_EQ(found["places"].size(), 2u);
+  EXPECT_EQ(found["places"][0]["simplices"], nlohmann::json({0, 2}));
+  EXPECT_EQ(found["places"][1]["simplices"], nlohmann::json({0, 3}));
 }
 
 TEST_F(Check, RefusesBadOptionsOfIntersections) {
@@ -151,6 +186,8 @@ TEST_F(Check, RefusesBadOptionsOfIntersections) {
   EXPECT_EQ(run_tegl({"check", file, "--tile", "1"}).exit, 2) << "without --intersections";
   EXPECT_EQ(run_tegl({"check", file, "--intersections", "--tile-origin", "1"}).exit, 2) << "without --tile";
   EXPECT_EQ(run_tegl({"check", file, "--intersections", "--places", "-1"}).exit, 2);
+  EXPECT_THAT(run_tegl({"check", file, "--intersections", "--threads", "5000"}).err,
+              HasSubstr("--threads: '5000'; expected a whole number from 0 to 4096"));
   const RunResult two = run_tegl({"check", file, "--intersections", "--tile", "1,2"});
   EXPECT_EQ(two.exit, 2);
   EXPECT_THAT(two.err, HasSubstr("--tile 1,2 has 2 numbers; expected one, or 3, one for each axis"));

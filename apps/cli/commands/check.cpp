@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -28,7 +27,7 @@ constexpr const char* kCheckExamples =
     "  tegl check --require closed --json ball.vtkhdf\n"
     "  tegl check --intersections --places 10 --tile 1 skull.ply\n"
     "The exit code is 0 for an oriented manifold, with or without a border, and 1 for anything else; also 1 if\n"
-    "--intersections finds a pair.";
+    "--intersections finds a pair, or simplices of zero size, which it cannot examine.";
 
 /// Options of --intersections, and the numbers of one run.
 class IntersectionSearch {
@@ -38,8 +37,8 @@ class IntersectionSearch {
                                       "also find all pairs of simplices that intersect outside of their common face, "
                                       "by exact arithmetic");
     app.add_option("--places", places_,
-                   "list the first pairs, at most this many: numbers of both simplices, a common "
-                   "point, and the depth")
+                   "list the deepest pairs, at most this many: numbers of both simplices, a common point, "
+                   "and the depth")
         ->type_name("COUNT")
         ->check(whole_number(0))
         ->capture_default_str()
@@ -54,7 +53,7 @@ class IntersectionSearch {
         ->needs(tile);
     app.add_option("--threads", threads_, "number of threads; 0: all processors")
         ->type_name("COUNT")
-        ->check(CLI::Range(0u, 4096u).description(""))
+        ->check(whole_number(0, 4096))
         ->capture_default_str()
         ->needs(search);
   }
@@ -66,20 +65,15 @@ class IntersectionSearch {
     std::visit([&](const auto& c) { find(c, progress); }, contour);
   }
 
-  /// Whether the last run found a pair.
-  [[nodiscard]] bool has_pairs() const { return pairs_ > 0; }
+  /// Whether the last run found a pair, or flat simplices, which are not examined.
+  [[nodiscard]] bool has_faults() const { return pairs_ > 0 || flat_ > 0; }
 
   /// Lines of the report.
   [[nodiscard]] std::string text(const Console& console) const {
-    std::string text = report_line(
-        "intersect", pairs_ == 0 ? console.green("none")
-                                 : console.red(fmt::format("{} of {}, up to {} deep", counted(pairs_, "pair", "pairs"),
-                                                           counted_simplices(dim_, intersecting_), number(depth_))));
+    std::string text = report_line("intersect", result_text(console));
     if (flat_ > 0)
-      text += report_line("", fmt::format("{} without {}, in no pair", counted_simplices(dim_, flat_),
-                                          dim_ == 1   ? "length"
-                                          : dim_ == 2 ? "area"
-                                                      : "volume"));
+      text += report_line(
+          "flat", console.red(fmt::format("{} of zero size, not examined", counted_simplices(dim_, flat_))));
     if (!tile_.empty())
       text += report_line("tiles", fmt::format("{} of {} with intersections ({:.3g} %)", grouped(tiles_hit_),
                                                grouped(tiles_), 100.0 * share()));
@@ -109,6 +103,13 @@ class IntersectionSearch {
     double depth;
   };
 
+  [[nodiscard]] std::string result_text(const Console& console) const {
+    if (pairs_ > 0)
+      return console.red(fmt::format("{} of {}, up to {} deep", counted(pairs_, "pair", "pairs"),
+                                     counted_simplices(dim_, intersecting_), number(depth_)));
+    return flat_ > 0 ? "none among the others" : console.green("none");
+  }
+
   /// The numbers of an option, one for each axis.
   template <int N>
   static std::array<double, N> of_axes(const char* option, const std::string& text) {
@@ -126,6 +127,8 @@ class IntersectionSearch {
   void find(const Contour<N, double>& contour, const Progress& progress) {
     IntersectionOptions<N> options;
     options.work = {threads_, progress};
+    options.most_listed = places_;
+    options.deepest_first = true;
     if (!tile_.empty()) {
       options.tiles = IntersectionTiles<N>{of_axes<N>("--tile", tile_), {}};
       for (const double size : options.tiles->size)
@@ -142,10 +145,8 @@ class IntersectionSearch {
     tiles_ = found.tiles;
     tiles_hit_ = found.tiles_hit;
     listed_.clear();
-    for (std::size_t i = 0; i < std::min<std::uint64_t>(places_, found.pairs.size()); ++i) {
-      const IntersectingPair<N>& pair = found.pairs[i];
+    for (const IntersectingPair<N>& pair : found.pairs)
       listed_.push_back({pair.first, pair.second, {pair.place.begin(), pair.place.end()}, pair.depth});
-    }
   }
 
   [[nodiscard]] double share() const {
@@ -209,7 +210,7 @@ class CheckCommand final : public Command {
       if (intersections_.is_on()) seconds += fmt::format(" + intersections {:.3f}", intersection_seconds);
       streams.out.write(text + report_line("seconds", seconds));
     }
-    return has_faults(report) || !missed.empty() || intersections_.has_pairs() ? ExitCode::Faults : ExitCode::Ok;
+    return has_faults(report) || !missed.empty() || intersections_.has_faults() ? ExitCode::Faults : ExitCode::Ok;
   }
 
  private:

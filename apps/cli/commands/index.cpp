@@ -102,7 +102,7 @@ class IndexCommand final : public Command {
     app()
         .add_option("--threads", threads_, "number of threads; 0: all processors")
         ->type_name("COUNT")
-        ->check(CLI::Range(0u, 4096u).description(""))
+        ->check(whole_number(0, 4096))
         ->capture_default_str();
     add_image_options();
     add_quiet();

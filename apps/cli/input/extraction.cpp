@@ -56,7 +56,7 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
           ->capture_default_str(),
       app.add_option("--threads", threads_, "number of threads; 0: all processors")
           ->type_name("COUNT")
-          ->check(CLI::Range(0u, 4096u).description(""))
+          ->check(whole_number(0, 4096))
           ->capture_default_str(),
       app.add_option("--precision", precision_, "precision of the vertices")
           ->check(CLI::IsMember({"float", "double"}))

@@ -27,7 +27,7 @@ Surface surface_of(std::initializer_list<std::array<double, 3>> vertices,
 
 TEST(Intersections, ATriangleThatPiercesAnother) {
   const auto found = find_intersections(
-      surface_of({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {-9, 9, 3}}, {{0, 1, 2}, {3, 4, 5}}));
+      surface_of({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {2, 2, -1}, {2, 2, 1}, {-9, 9, 3}}, {{0, 1, 2}, {3, 4, 5}}));
   ASSERT_EQ(found.pair_count, 1u);
   EXPECT_FALSE(found.is_embedded());
   EXPECT_EQ(found.pairs[0].first, 0u);
@@ -36,7 +36,7 @@ TEST(Intersections, ATriangleThatPiercesAnother) {
   EXPECT_NEAR(place[2], 0.0, 1e-12);
   EXPECT_GE(place[0], -1e-12);
   EXPECT_GE(place[1], -1e-12);
-  EXPECT_LE(place[0] + place[1], 4.0 + 1e-12);
+  EXPECT_LE(place[0] + place[1], 9.0 + 1e-12);
   EXPECT_DOUBLE_EQ(found.depth, 1.0);  // the second reaches 1 below the first
   EXPECT_EQ(found.intersecting, 2u);
 }
