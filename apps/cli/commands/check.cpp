@@ -103,11 +103,11 @@ class IntersectionSearch {
     double depth;
   };
 
-  [[nodiscard]] std::string result_text(const Console& console) const {
+  [[nodiscard]] Styled result_text(const Console& console) const {
     if (pairs_ > 0)
       return console.red(fmt::format("{} of {}, up to {} deep", counted(pairs_, "pair", "pairs"),
                                      counted_simplices(dim_, intersecting_), number(depth_)));
-    return flat_ > 0 ? "none among the others" : console.green("none");
+    return flat_ > 0 ? Styled{"none among the others"} : console.green("none");
   }
 
   /// The numbers of an option, one for each axis.
