@@ -167,7 +167,7 @@ TEST_F(Check, ListsTheDeepestPairs) {
   mesh.simplices = {0, 1, 2};
   double x = 0;
   for (const double below : {0.25, 1.0, 0.5}) {
-    mesh.coordinates.insert(mesh.coordinates.end(), {x, 0, -below, x + 0.3, 0, 7, x, 0.3, 7});
+    for (const double c : {x, 0.0, -below, x + 0.3, 0.0, 7.0, x, 0.3, 7.0}) mesh.coordinates.push_back(c);
     for (Index i = 0; i < 3; ++i) mesh.simplices.push_back(static_cast<Index>(mesh.simplices.size()));
     x += 5;
   }
