@@ -24,4 +24,15 @@ Number whole_number(std::string_view argument, std::string_view text, Number lea
   return number;
 }
 
+/// Parses all of `text` as a number from `least` to `most`. Otherwise throws InvalidArgument with the argument's name,
+/// the text and the range.
+inline double real_number(std::string_view argument, std::string_view text, double least, double most) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !(number >= least && number <= most))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{}: '{}'; expected a number from {} to {}", argument, text, least, most));
+  return number;
+}
+
 }  // namespace tegl::bench

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -209,14 +208,6 @@ std::size_t choice(std::string_view option, std::string_view name, const std::ar
   throw Error(ErrorCode::InvalidArgument, fmt::format("{}: '{}'; expected one of {}", option, name, expected));
 }
 
-double positive_number(std::string_view option, std::string_view text) {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !(number > 0.0 && number <= 300.0))
-    throw Error(ErrorCode::InvalidArgument, fmt::format("{}: '{}'; expected a number in (0, 300]", option, text));
-  return number;
-}
-
 Settings parsed(int argc, char** argv) {
   constexpr std::array kAmbiguities = {"low", "high", "mean", "saddle", "squares", "decider"};
   static_assert(static_cast<int>(Ambiguity::decider) == 5);
@@ -246,7 +237,7 @@ Settings parsed(int argc, char** argv) {
     else if (option == "--positions")
       settings.positions = static_cast<Positions>(choice(option, value, kPositions));
     else if (option == "--spread")
-      settings.spread = positive_number(option, value);
+      settings.spread = bench::real_number(option, value, 0.001, 300.0);
     else if (option == "--threads")
       settings.threads = bench::whole_number(option, value, 0u, 1024u);
     else if (option == "--seed")
