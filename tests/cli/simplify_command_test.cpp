@@ -198,6 +198,25 @@ TEST_F(SimplifyCommand, KeepsContoursEmbeddedIfRequested) {
   EXPECT_EQ(exit_of_check({"--keep-embedded"}), 0);
 }
 
+TEST_F(SimplifyCommand, ReportsIntersectionsOfTheResult) {
+  const std::string rough = write("noise.nrrd", nrrd_bytes(noise({12, 12, 12}, 1)));
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"simplify", rough,        "--iso", "127.5",      "--ratio",
+                                          "0.3",      "--no-bound", "-o",    path("a.ply")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_tegl(arguments);
+  };
+  const auto found = run({"--json"}).json()["intersections"];
+  const auto checked = run_tegl({"check", path("a.ply"), "--intersections", "--json"}).json()["intersections"];
+  EXPECT_GT(found["pairs"], 0);
+  EXPECT_EQ(found["pairs"], checked["pairs"]);
+  EXPECT_EQ(found["simplices"], checked["simplices"]);
+  EXPECT_THAT(run({}).out, HasSubstr(fmt::format("intersect    {} pairs of {} triangles", found["pairs"].get<int>(),
+                                                 found["simplices"].get<int>())));
+  EXPECT_THAT(run({"--keep-embedded"}).out, HasSubstr("intersect    none"));
+  EXPECT_TRUE(run({"--no-check", "--json"}).json()["intersections"].is_null());
+}
+
 TEST_F(SimplifyCommand, RefusesWhatIsNoManifoldUnlessAllowed) {
   if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
   const std::string rough = write("noise.nrrd", nrrd_bytes(noise({12, 12, 12}, 1)));

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "base/numbers.hpp"
@@ -16,6 +17,7 @@
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
+#include "tegl/intersections.hpp"
 
 namespace tegl::cli {
 
@@ -76,7 +78,7 @@ class SimplifyCommand final : public ContourInputCommand {
         .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
-    app().add_flag("--no-check", no_check_, "skip the check of the result");
+    app().add_flag("--no-check", no_check_, "skip the check of the result, and the search for intersections in it");
     compress_.add_to(app());
     app().footer(kSimplifyExamples);
   }
@@ -100,6 +102,7 @@ class SimplifyCommand final : public ContourInputCommand {
         [&](const auto& contour) {
           auto [fewer, found] = simplified(contour, input, bar);
           stats = found;
+          if (!no_check_) count_intersections(fewer, bar);
           result.mesh = to_mesh(std::move(fewer));
         },
         input.contour);
@@ -179,6 +182,39 @@ class SimplifyCommand final : public ContourInputCommand {
     if (input.image) options.planes = planes<N>(input.image->image);
     options.work = {threads(), bar.stage("simplify")};
     return simplify_or_explain(contour, options);
+  }
+
+  /// Pairs of simplices that intersect in the result; a contraction may cause them without --keep-embedded.
+  struct OfResult {
+    int dim = 0;
+    std::uint64_t pairs = 0, intersecting = 0, simplices = 0;
+    double seconds = 0.0;
+  };
+
+  template <int N>
+  void count_intersections(const Contour<N, double>& contour, ProgressBar& bar) {
+    Stopwatch watch;
+    IntersectionOptions<N> options;
+    options.most_listed = 0;
+    options.work = {threads(), bar.stage("intersections")};
+    const Intersections<N> found = find_intersections(contour, options);
+    intersections_ = OfResult{N - 1, found.pair_count, found.intersecting, found.simplices, watch.lap()};
+  }
+
+  [[nodiscard]] Json intersections_json() const {
+    if (!intersections_) return nullptr;
+    return {{"pairs", intersections_->pairs}, {"simplices", intersections_->intersecting}};
+  }
+
+  [[nodiscard]] std::string intersections_text() const {
+    if (!intersections_) return {};
+    if (intersections_->pairs == 0) return report_line("intersect", "none");
+    const double share =
+        static_cast<double>(intersections_->intersecting) / static_cast<double>(intersections_->simplices);
+    return report_line("intersect",
+                       fmt::format("{} of {}, {:.2g} %{}", counted(intersections_->pairs, "pair", "pairs"),
+                                   counted_simplices(intersections_->dim, intersections_->intersecting), 100.0 * share,
+                                   keep_embedded_ ? "" : "; --keep-embedded causes none"));
   }
 
   [[nodiscard]] std::uint64_t parse_count() const {
@@ -267,9 +303,12 @@ class SimplifyCommand final : public ContourInputCommand {
     json["error_of_result"] = or_null(stats.error_of_result);
     json["end"] = name_of(stats.end);
     json["rounds"] = stats.rounds;
+    json["intersections"] = intersections_json();
     seconds["simplify"] = stats.simplify_seconds;
     seconds["bound"] = stats.measure_seconds;
-    seconds["total"] = result.seconds.total() + stats.simplify_seconds + stats.measure_seconds;
+    if (intersections_) seconds["intersections"] = intersections_->seconds;
+    seconds["total"] = result.seconds.total() + stats.simplify_seconds + stats.measure_seconds +
+                       (intersections_ ? intersections_->seconds : 0.0);
     json["seconds"] = seconds;
     return json;
   }
@@ -297,9 +336,11 @@ class SimplifyCommand final : public ContourInputCommand {
         lines += report_line("", "(mixes axes of different units; --scale sets the ratio of their lengths)");
       if (!scale_.empty()) lines += report_line("scale", fmt::format("{:.4g}", fmt::join(used_scale_, ", ")));
     }
-    lines += check_text(console, result.size(), result.report);
-    lines += report_line("seconds", fmt::format("simplify {:.3f} + bound {:.3f} + others {:.3f}",
-                                                stats.simplify_seconds, stats.measure_seconds, result.seconds.total()));
+    lines += check_text(console, result.size(), result.report) + intersections_text();
+    lines += report_line(
+        "seconds", fmt::format("simplify {:.3f} + bound {:.3f} + others {:.3f}", stats.simplify_seconds,
+                               stats.measure_seconds,
+                               result.seconds.total() + (intersections_ ? intersections_->seconds : 0.0)));
     lines += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
     return lines;
   }
@@ -312,6 +353,7 @@ class SimplifyCommand final : public ContourInputCommand {
   bool allow_nonmanifold_ = false;
   bool keep_embedded_ = false;
   bool no_check_ = false;
+  std::optional<OfResult> intersections_;  ///< without --no-check
   CompressOption compress_;
 };
 
