@@ -105,8 +105,9 @@ class IntersectionSearch {
 
   [[nodiscard]] Styled result_text(const Console& console) const {
     if (pairs_ > 0)
-      return console.red(fmt::format("{} of {}, up to {} deep", counted(pairs_, "pair", "pairs"),
-                                     counted_simplices(dim_, intersecting_), number(depth_)));
+      return console.red(fmt::format("{} of {}, {}", counted(pairs_, "pair", "pairs"),
+                                     counted_simplices(dim_, intersecting_),
+                                     depth_ > 0.0 ? fmt::format("up to {} deep", number(depth_)) : "all of depth 0"));
     return flat_ > 0 ? Styled{"none among the others"} : console.green("none");
   }
 
