@@ -41,9 +41,9 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
   });
 }
 
-py::dict check_any(const AnyContour& contour, const py::object& progress) {
+py::dict check_any(const AnyContour& contour, unsigned threads, const py::object& progress) {
   Call call(progress);
-  const WorkOptions work{.progress = call.progress()};
+  const WorkOptions work{threads, call.progress()};
   const MeshReport report =
       call.run([&] { return std::visit([&](const auto& c) { return check(c, work); }, contour.contour); });
   py::dict result;
@@ -316,7 +316,7 @@ void sample_any(AnyContour& contour, const AnyImage& image, const std::string& n
 void bind_operations(py::module_& m) {
   m.def("slice_stack", &cuts, py::arg("contour"), py::arg("normal"), py::arg("offsets"), py::arg("threads"),
         py::arg("progress"), doc::slice_stack);
-  m.def("check", &check_any, py::arg("contour"), py::arg("progress"), doc::check_2);
+  m.def("check", &check_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::check_2);
   m.def("find_intersections", &intersections_any, py::arg("contour"), py::arg("tile"), py::arg("origin"),
         py::arg("most_listed"), py::arg("threads"), py::arg("progress"), doc::find_intersections);
   m.def("measure", &measure_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::measure);

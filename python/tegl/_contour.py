@@ -288,9 +288,9 @@ class Contour:
             found[name] = np.array(self._listed(found[name]))
         return Measures(**found)
 
-    def check(self, *, progress: Progress | None = None) -> MeshReport:
+    def check(self, *, threads: int = 0, progress: Progress | None = None) -> MeshReport:
         """Checks whether the contour is a manifold: see `tegl.check`."""
-        return MeshReport(**_tegl.check(self._core, progress))
+        return MeshReport(**_tegl.check(self._core, _arguments.threads_of(threads), progress))
 
     def intersections(self, *, tile: float | Sequence[float] | None = None, origin: float | Sequence[float] = 0.0,
                       most_listed: int | None = None, threads: int = 0,
@@ -548,10 +548,10 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bo
 
 
 @_arguments.documents("MeshReport")
-def check(contour: Contour, *, progress: Progress | None = None) -> MeshReport:
+def check(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> MeshReport:
     """Checks whether a contour is an oriented manifold and closed, and counts its components and faults."""
     _arguments.core_of(contour)
-    return Contour.check(contour, progress=progress)
+    return Contour.check(contour, threads=threads, progress=progress)
 
 
 @_arguments.documents("find_intersections", "Intersections")

@@ -51,18 +51,13 @@ class IntersectionSearch {
     app.add_option("--tile-origin", origin_, "a corner of a tile: one number for all axes or one for each; default 0")
         ->type_name("NUMBERS")
         ->needs(tile);
-    app.add_option("--threads", threads_, "number of threads; 0: all processors")
-        ->type_name("COUNT")
-        ->check(whole_number(0, 4096))
-        ->capture_default_str()
-        ->needs(search);
   }
 
   [[nodiscard]] bool is_on() const { return is_on_; }
 
-  void run(Mesh&& mesh, const Progress& progress) {
+  void run(Mesh&& mesh, const WorkOptions& work) {
     const AnyContour contour = to_any_contour(std::move(mesh));
-    std::visit([&](const auto& c) { find(c, progress); }, contour);
+    std::visit([&](const auto& c) { find(c, work); }, contour);
   }
 
   /// Whether the last run found a pair, or flat simplices, which are not examined.
@@ -125,9 +120,9 @@ class IntersectionSearch {
   }
 
   template <int N>
-  void find(const Contour<N, double>& contour, const Progress& progress) {
+  void find(const Contour<N, double>& contour, const WorkOptions& work) {
     IntersectionOptions<N> options;
-    options.work = {threads_, progress};
+    options.work = work;
     options.most_listed = places_;
     options.deepest_first = true;
     if (!tile_.empty()) {
@@ -157,7 +152,6 @@ class IntersectionSearch {
   bool is_on_ = false;
   std::uint64_t places_ = 0;
   std::string tile_, origin_;
-  unsigned threads_ = 0;
 
   int dim_ = 0;
   std::uint64_t pairs_ = 0, intersecting_ = 0, flat_ = 0, tiles_ = 0, tiles_hit_ = 0;
@@ -178,6 +172,11 @@ class CheckCommand final : public Command {
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"closed", "nondegenerate"}));
     intersections_.add_to(app());
+    app()
+        .add_option("--threads", threads_, "number of threads; 0: all processors")
+        ->type_name("COUNT")
+        ->check(whole_number(0, 4096))
+        ->capture_default_str();
     app().footer(kCheckExamples);
   }
 
@@ -187,10 +186,10 @@ class CheckCommand final : public Command {
     Stopwatch watch;
     Mesh mesh = read_finite_mesh(file(), mesh_options(bar.stage("read")));
     const double read_seconds = watch.lap();
-    const MeshReport report = check_mesh(mesh, bar.stage("check"));
+    const MeshReport report = check_mesh(mesh, {threads_, bar.stage("check")});
     const double check_seconds = watch.lap();
     const MeshSize size = size_of(mesh);
-    if (intersections_.is_on()) intersections_.run(std::move(mesh), bar.stage("intersections"));
+    if (intersections_.is_on()) intersections_.run(std::move(mesh), {threads_, bar.stage("intersections")});
     const double intersection_seconds = watch.lap();
     bar.clear();
     const std::string missed = missed_requirement(report);
@@ -236,6 +235,7 @@ class CheckCommand final : public Command {
 
   std::vector<std::string> required_;
   IntersectionSearch intersections_;
+  unsigned threads_ = 0;
 };
 
 }  // namespace

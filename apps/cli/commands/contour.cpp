@@ -233,7 +233,7 @@ class ContourCommand final : public Command {
   }
 
   void check_and_write(ContourResult& result, ProgressBar& bar, WrittenFiles& written) const {
-    if (!no_check_) check_result(result, bar);
+    if (!no_check_) check_result(result, options_.threads(), bar);
     write_result(result, bar, written);
   }
 

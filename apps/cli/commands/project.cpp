@@ -155,7 +155,7 @@ class ProjectCommand final : public ContourInputCommand {
           "the projection along this direction has no outline: the contour does not move along it; expected a "
           "moving contour, another direction or --as cuts");
     // check, write, report
-    if (!no_check_ && kind_ != "tetrahedra") check_result(result, bar);
+    if (!no_check_ && kind_ != "tetrahedra") check_result(result, threads(), bar);
     write_result(result, bar);
     remark(result.lost.remark(output_));
     bar.clear();

@@ -108,7 +108,7 @@ class SimplifyCommand final : public ContourInputCommand {
         input.contour);
     input.contour = AnyContour();
     // check and write
-    if (!no_check_) check_result(result, bar);
+    if (!no_check_) check_result(result, threads(), bar);
     write_result(result, bar);
     remark(result.lost.remark(output_));
     // report

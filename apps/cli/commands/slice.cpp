@@ -253,7 +253,7 @@ class SliceCommand final : public Command {
       results[i].input = inputs();
       results[i].output = outputs_[i];
       results[i].compression = compress_.compression();
-      if (!no_check_) check_result(results[i], bar);
+      if (!no_check_) check_result(results[i], options_.threads(), bar);
     }
     write_all(results, bar);
     bar.clear();

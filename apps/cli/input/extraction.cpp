@@ -190,9 +190,9 @@ std::string remark_on_missing(double isovalue) {
   return fmt::format("no contour at {}: every active tile has a missing sample", number(isovalue));
 }
 
-void check_result(ContourResult& result, ProgressBar& bar) {
+void check_result(ContourResult& result, unsigned threads, ProgressBar& bar) {
   Stopwatch watch;
-  result.report = check_mesh(result.mesh, bar.stage("check"));
+  result.report = check_mesh(result.mesh, {threads, bar.stage("check")});
   result.seconds.check = watch.lap();
 }
 

@@ -100,7 +100,7 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
 }
 
 /// Checks the mesh; sets the report and the seconds of the check.
-void check_result(ContourResult& result, ProgressBar& bar);
+void check_result(ContourResult& result, unsigned threads, ProgressBar& bar);
 
 /// Writes the mesh to its output; sets the file size and the seconds.
 void write_result(ContourResult& result, ProgressBar& bar);

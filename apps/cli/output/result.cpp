@@ -144,8 +144,8 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
   return text;
 }
 
-MeshReport check_mesh(const Mesh& mesh, const Progress& progress) {
-  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, {.progress = progress});
+MeshReport check_mesh(const Mesh& mesh, const WorkOptions& work) {
+  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, work);
 }
 
 void StageSeconds::add(const ExtractStats& stats) {

@@ -80,7 +80,7 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
 std::string counted_simplices(int dim, std::uint64_t count);
 
 /// Checks a mesh (tegl/check.hpp).
-MeshReport check_mesh(const Mesh& mesh, const Progress& progress);
+MeshReport check_mesh(const Mesh& mesh, const WorkOptions& work);
 
 /// The frame of a hyperplane, as from `frame_of`.
 struct CutFrame {

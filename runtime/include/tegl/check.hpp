@@ -42,7 +42,7 @@ struct MeshReport {
 /// by orders of magnitude if coordinates have float precision.
 ///
 /// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit), Cancelled.
-/// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input. One thread. Thread-safe.
+/// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input, O(V) for each thread. Thread-safe.
 [[nodiscard]] MeshReport check(int d, std::span<const Index> simplices, int space_dim,
                                std::span<const double> coordinates, const WorkOptions& work = {});
 

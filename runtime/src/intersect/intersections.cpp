@@ -33,7 +33,7 @@ std::vector<std::uint8_t> embedded_stars(const SimplexPlanes<N>& simplices, std:
                                          unsigned threads, const Progress& progress) {
   std::vector<std::uint8_t> result(simplices.point_count());
   if constexpr (N > 2) {
-    const Stars stars = make_stars<N>(rows, simplices.point_count(), part_of(progress, 0.0, 0.4));
+    const Stars stars = make_stars<N>(rows, simplices.point_count(), threads, part_of(progress, 0.0, 0.4));
     for_each_block(
         result.size(), kStarBlock, threads, part_of(progress, 0.4, 1.0), [&] { return StarTest<N>(simplices); },
         [&](std::size_t, std::size_t from, std::size_t to, StarTest<N>& test) {

@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -19,6 +21,8 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/progress.hpp"
+#include "base/workers.hpp"
+#include "mesh/oriented_link.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "tegl/error.hpp"
 #include "tegl/tile/complex.hpp"
@@ -27,7 +31,8 @@
 namespace tegl {
 namespace {
 
-/// Links between two progress calls; if each link is a surface, this takes some hundredths of a second.
+/// Links between two progress calls; if each link is a surface of thousands of triangles, this takes some hundredths of a
+/// second.
 constexpr std::size_t kVerticesAtOnce = 1024;
 
 /// A complex of D-simplices, valid vertex numbers only.
@@ -47,12 +52,22 @@ struct Complex {
 template <int D>
 class LinkChecker {
  public:
-  explicit LinkChecker(const Complex<D>& complex) : complex_(complex), seen_(complex.vertex_count, kNever) {
+  explicit LinkChecker(const Complex<D>& complex)
+      : complex_(complex), usual_(complex.rows.data(), complex.vertex_count), seen_(complex.vertex_count, kNever) {
     if constexpr (D == 4) number_.resize(complex.vertex_count);
   }
 
   /// Adds the counts at the star of `v` to the report.
   void visit(Index v, std::span<const Index> star, MeshReport& report) {
+    if constexpr (D == 2 || D == 3) {
+      detail::FacesAbove faces;
+      if (usual_.settle(v, star, faces)) {
+        edges_ += faces.edges;
+        if constexpr (D == 3) triangles_ += faces.ridges;
+        report.boundary_simplices += faces.boundary;
+        return;
+      }
+    }
     load(v, star);
     const std::uint64_t link_vertices = count_link_vertices(v);
     if constexpr (D == 4) count_link_edges(v);
@@ -61,9 +76,10 @@ class LinkChecker {
     if (!is_sphere_or_ball(link_vertices)) ++report.bad_links;
     if constexpr (D >= 2) edges_ += edges_above_;
   }
-  [[nodiscard]] std::uint64_t edges() const { return edges_; }            ///< 1-faces met so far, D >= 2
-  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }    ///< 2-faces met so far, D >= 3
-  [[nodiscard]] std::uint64_t tetrahedra() const { return tetrahedra_; }  ///< 3-faces met so far, D = 4
+  /// Numbers of faces met since the last call.
+  [[nodiscard]] std::uint64_t take_edges() { return std::exchange(edges_, 0); }            ///< D >= 2
+  [[nodiscard]] std::uint64_t take_triangles() { return std::exchange(triangles_, 0); }    ///< D >= 3
+  [[nodiscard]] std::uint64_t take_tetrahedra() { return std::exchange(tetrahedra_, 0); }  ///< D = 4
 
  private:
   static constexpr Index kNever = std::numeric_limits<Index>::max();
@@ -222,7 +238,13 @@ class LinkChecker {
     return tile::shape_of(link_);
   }
 
+  /// In place of OrientedLink in other dimensions.
+  struct NoLink {
+    NoLink(const Index*, std::size_t) {}
+  };
+
   const Complex<D>& complex_;
+  std::conditional_t<D == 2 || D == 3, detail::OrientedLink<D == 2 ? 2 : 3>, NoLink> usual_;
   std::vector<Index> seen_;  // by vertex: the last vertex in whose link it was met
   std::vector<Piece> pieces_;
   std::vector<Ridge> ridges_;
@@ -261,19 +283,49 @@ class Coordinates {
   std::size_t size_;
 };
 
+/// Edge vectors of a simplex from its first corner.
+template <int D, int Space, class Real>
+std::array<std::array<double, Space>, D> edges_of(const Index* row, std::size_t space_dim, const Real* values) {
+  std::array<std::array<double, Space>, D> edges;
+  for (int j = 0; j < D; ++j)
+    for (std::size_t a = 0; a < Space && a < space_dim; ++a)
+      edges[j][a] = static_cast<double>(values[row[j + 1] * space_dim + a]) -
+                    static_cast<double>(values[row[0] * space_dim + a]);
+  return edges;
+}
+
+/// True only if no height of a simplex is less than 1e-6 of its longest edge: let V be the volume of the parallelepiped
+/// of its edges, whose longest is L. A height is V over the volume of a face of it, which is at most (2 L)^(D-1). V² is
+/// Gram's determinant, up to a few 1e-15 L^(2D). False if there is doubt. D = 2, 3.
+template <int D, class Real>
+bool is_surely_solid(const Index* row, const Real* values) {
+  const auto edges = edges_of<D, D + 1>(row, D + 1, values);
+  std::array<std::array<double, D>, D> gram;
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j) {
+      gram[i][j] = 0.0;
+      for (int a = 0; a <= D; ++a) gram[i][j] += edges[i][a] * edges[j][a];
+    }
+  double longest = std::max(gram[0][0], gram[1][1]);
+  double square = gram[0][0] * gram[1][1] - gram[0][1] * gram[0][1];
+  double limit = longest * longest;
+  if constexpr (D == 3) {
+    square = square * gram[2][2] - gram[0][0] * gram[1][2] * gram[1][2] - gram[1][1] * gram[0][2] * gram[0][2] +
+             2.0 * gram[0][1] * gram[0][2] * gram[1][2];
+    longest = std::max(longest, gram[2][2]);
+    limit = longest * longest * longest;
+  }
+  // false for NaN; extreme lengths are left to is_flat
+  return square > 1e-10 * limit && limit > 1e-200 && limit < 1e200;
+}
+
 /// Whether D edge vectors from one corner span less than D dimensions, up to rounding. Gram–Schmidt with pivoting,
 /// longest remainder first; the remainders are heights of the simplex in decreasing order.
-template <int D>
-bool is_flat(const Index* row, int space_dim, const Coordinates& coordinates) {
+template <int D, class Real>
+bool is_flat_by_heights(const Index* row, int space_dim, const Real* values) {
   constexpr int kMaxSpace = 8;
   constexpr double kFlat = 1e-14;
-  std::array<std::array<double, kMaxSpace>, D> edges;
-  coordinates.with_values([&](const auto* values) {
-    for (int j = 0; j < D; ++j)
-      for (int a = 0; a < space_dim; ++a)
-        edges[j][a] = static_cast<double>(values[std::size_t{row[j + 1]} * space_dim + a]) -
-                      static_cast<double>(values[std::size_t{row[0]} * space_dim + a]);
-  });
+  auto edges = edges_of<D, kMaxSpace>(row, static_cast<std::size_t>(space_dim), values);
   const auto dot = [space_dim](const auto& x, const auto& y) {
     double sum = 0.0;
     for (int a = 0; a < space_dim; ++a) sum += x[a] * y[a];
@@ -304,21 +356,34 @@ bool is_flat(const Index* row, int space_dim, const Coordinates& coordinates) {
   return false;
 }
 
-void require_vertex_numbers(std::span<const Index> rows, std::size_t vertices, std::size_t corners,
-                            const Progress& progress) {
-  detail::in_parts(rows.size(), progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i)
-      if (rows[i] >= vertices)
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
-                                i / corners, rows[i], vertices));
-  });
+template <int D, class Real>
+bool is_flat(const Index* row, int space_dim, const Real* values) {
+  if constexpr (D == 2 || D == 3)
+    if (space_dim == D + 1 && is_surely_solid<D>(row, values)) return false;
+  return is_flat_by_heights<D>(row, space_dim, values);
 }
 
-std::uint64_t count_nonfinite(const Coordinates& coordinates, std::size_t vertices, const Progress& progress) {
+void require_vertex_numbers(std::span<const Index> rows, std::size_t vertices, std::size_t corners, unsigned threads,
+                            const Progress& progress) {
+  std::atomic<std::size_t> first = rows.size();  // with a wrong number
+  detail::for_each_part(rows.size(), threads, progress, [&](std::size_t from, std::size_t to) {
+    const auto at = std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(from),
+                                 rows.begin() + static_cast<std::ptrdiff_t>(to), [&](Index v) { return v >= vertices; });
+    const auto found = static_cast<std::size_t>(at - rows.begin());
+    if (found == to) return;
+    for (std::size_t known = first; found < known && !first.compare_exchange_weak(known, found);) continue;
+  });
+  if (first < rows.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
+                            first / corners, rows[first], vertices));
+}
+
+std::uint64_t count_nonfinite(const Coordinates& coordinates, std::size_t vertices, unsigned threads,
+                              const Progress& progress) {
   const std::size_t space_dim = vertices == 0 ? 0 : coordinates.size() / vertices;
-  std::uint64_t count = 0;
-  detail::in_parts(vertices, progress, [&](std::size_t from, std::size_t to) {
+  std::atomic<std::uint64_t> count = 0;
+  detail::for_each_part(vertices, threads, progress, [&](std::size_t from, std::size_t to) {
     count += coordinates.with_values([&](const auto* values) {
       const auto is_finite = [](auto x) { return std::isfinite(x); };
       std::uint64_t found = 0;
@@ -332,65 +397,97 @@ std::uint64_t count_nonfinite(const Coordinates& coordinates, std::size_t vertic
 
 /// Counts over simplices.
 struct SimplexCounts {
-  std::uint64_t degenerate = 0;
-  std::uint64_t sound = 0;  ///< with different corners
-  std::uint64_t joins = 0;  ///< edges that join two components of the vertices
+  std::atomic<std::uint64_t> degenerate = 0;
+  std::atomic<std::uint64_t> sound = 0;  ///< with different corners
 };
 
 template <int D>
-SimplexCounts count_simplices(const Complex<D>& complex, int space_dim, const Coordinates& coordinates,
-                              const Progress& progress) {
-  SimplexCounts counts;
-  detail::DisjointSets connected(complex.vertex_count);
-  detail::in_parts(complex.size(), progress, [&](std::size_t from, std::size_t to) {
-    const Complex<D> local = complex;  // stays in registers
-    for (std::size_t s = from; s < to; ++s) {
-      const bool is_collapsed = local.is_collapsed(s);
-      if (is_collapsed || is_flat<D>(local[s], space_dim, coordinates)) ++counts.degenerate;
-      if (is_collapsed) continue;
-      ++counts.sound;
-      for (int i = 1; i <= D; ++i)
-        if (connected.join(local[s][0], local[s][i])) ++counts.joins;
-    }
+void count_simplices(const Complex<D>& complex, int space_dim, const Coordinates& coordinates,
+                     detail::SharedDisjointSets& connected, unsigned threads, const Progress& progress,
+                     SimplexCounts& counts) {
+  detail::for_each_part(complex.size(), threads, progress, [&](std::size_t from, std::size_t to) {
+    coordinates.with_values([&](const auto* values) {
+      const Complex<D> local = complex;  // stays in registers
+      std::uint64_t degenerate = 0, sound = 0;
+      for (std::size_t s = from; s < to; ++s) {
+        const bool is_collapsed = local.is_collapsed(s);
+        if (is_collapsed || is_flat<D>(local[s], space_dim, values)) ++degenerate;
+        if (is_collapsed) continue;
+        ++sound;
+        for (int i = 1; i <= D; ++i) connected.join(local[s][0], local[s][i]);
+      }
+      counts.degenerate += degenerate;
+      counts.sound += sound;
+    });
   });
-  return counts;
+}
+
+/// Sums over links, of one thread or all.
+struct LinkCounts {
+  MeshReport report;
+  std::uint64_t edges = 0, triangles = 0, tetrahedra = 0;
+};
+
+/// Visits the links of all vertices.
+template <int D>
+LinkCounts count_links(const Complex<D>& complex, const detail::Stars& stars, detail::SharedDisjointSets& connected,
+                       unsigned threads, const Progress& progress) {
+  LinkCounts all;
+  std::mutex mutex;
+  detail::for_each_block(
+      complex.vertex_count, kVerticesAtOnce, threads, progress, [&] { return LinkChecker<D>(complex); },
+      [&](std::size_t, std::size_t from, std::size_t to, LinkChecker<D>& links) {
+        MeshReport report;
+        for (std::size_t v = from; v < to; ++v) {
+          const std::span<const Index> star = stars.of(v);
+          if (star.empty()) continue;
+          ++report.vertices;
+          if (connected.find(static_cast<Index>(v)) == v) ++report.components;
+          links.visit(static_cast<Index>(v), star, report);
+        }
+        const std::lock_guard lock(mutex);
+        for (const auto count : {&MeshReport::vertices, &MeshReport::components, &MeshReport::boundary_simplices,
+                                 &MeshReport::nonmanifold_simplices, &MeshReport::bad_links,
+                                 &MeshReport::orientation_conflicts})
+          all.report.*count += report.*count;
+        all.edges += links.take_edges();
+        all.triangles += links.take_triangles();
+        all.tetrahedra += links.take_tetrahedra();
+      });
+  return all;
 }
 
 template <int D>
 MeshReport check_complex(std::span<const Index> rows, int space_dim, const Coordinates& coordinates,
-                         const Progress& progress) {
+                         const WorkOptions& work) {
   using detail::part_of;
+  const unsigned threads = work.threads;
+  const Progress& progress = work.progress;
   const Complex<D> complex{rows, coordinates.size() / static_cast<std::size_t>(space_dim)};
-  require_vertex_numbers(rows, complex.vertex_count, D + 1, part_of(progress, 0.0, 0.02));
-  MeshReport report;
+  require_vertex_numbers(rows, complex.vertex_count, D + 1, threads, part_of(progress, 0.0, 0.02));
+  const std::uint64_t nonfinite =
+      count_nonfinite(coordinates, complex.vertex_count, threads, part_of(progress, 0.02, 0.03));
+  const detail::Stars stars =
+      detail::make_stars<D + 1>(rows, complex.vertex_count, threads, part_of(progress, 0.03, 0.2));
+  detail::SharedDisjointSets connected(complex.vertex_count);
+  SimplexCounts simplices;
+  count_simplices<D>(complex, space_dim, coordinates, connected, threads, part_of(progress, 0.2, 0.4), simplices);
+  const LinkCounts links = count_links<D>(complex, stars, connected, threads, part_of(progress, 0.4, 1.0));
+  MeshReport report = links.report;
   report.dim = D;
   report.simplices = complex.size();
-  report.nonfinite_vertices = count_nonfinite(coordinates, complex.vertex_count, part_of(progress, 0.02, 0.03));
-  const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count, part_of(progress, 0.03, 0.08));
-  const SimplexCounts counts = count_simplices<D>(complex, space_dim, coordinates, part_of(progress, 0.08, 0.15));
-  report.degenerate_simplices = counts.degenerate;
-  // links of vertices
-  LinkChecker<D> links(complex);
-  const auto visit_links = [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) {
-      const std::span<const Index> star = stars.of(v);
-      if (star.empty()) continue;
-      ++report.vertices;
-      links.visit(static_cast<Index>(v), star, report);
-    }
-  };
-  detail::in_parts(complex.vertex_count, part_of(progress, 0.15, 1.0), visit_links, kVerticesAtOnce);
+  report.nonfinite_vertices = nonfinite;
+  report.degenerate_simplices = simplices.degenerate;
   report.unused_vertices = complex.vertex_count - report.vertices;
-  report.components = report.vertices - counts.joins;
   // V - E + F - …, with the simplices last. For D < 2, 3, 4 the counts of edges, triangles and tetrahedra are 0.
-  report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges()) +
-                 static_cast<std::int64_t>(links.triangles()) - static_cast<std::int64_t>(links.tetrahedra()) +
-                 (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(counts.sound);
+  report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges) +
+                 static_cast<std::int64_t>(links.triangles) - static_cast<std::int64_t>(links.tetrahedra) +
+                 (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(simplices.sound.load());
   return report;
 }
 
 MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, const Coordinates& coordinates,
-                     const Progress& progress) {
+                     const WorkOptions& work) {
   if (d < 1 || d > 4)
     throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2, 3 or 4", d));
   if (space_dim < d || space_dim > 8)
@@ -410,17 +507,17 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, con
   if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
     throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",
                                                  simplices.size() / width, coordinates.size() / space_dim, kLimit));
-  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates, progress);
-  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates, progress);
-  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates, progress);
-  return check_complex<4>(simplices, space_dim, coordinates, progress);
+  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates, work);
+  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates, work);
+  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates, work);
+  return check_complex<4>(simplices, space_dim, coordinates, work);
 }
 
 }  // namespace
 
 MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
                  const WorkOptions& work) {
-  return check_any(d, simplices, space_dim, Coordinates(coordinates), work.progress);
+  return check_any(d, simplices, space_dim, Coordinates(coordinates), work);
 }
 
 template <int N, Coordinate Real>
@@ -429,7 +526,7 @@ requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& cont
                                     contour.simplices.size() * N);
   const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
                                           contour.vertices.size() * N);
-  return check_any(N - 1, rows, N, Coordinates(coordinates), work.progress);
+  return check_any(N - 1, rows, N, Coordinates(coordinates), work);
 }
 
 #define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) template MeshReport check(const Contour<N, Real>&, const WorkOptions&);

@@ -188,7 +188,7 @@ std::vector<Component<N>> measure_components(const detail::SimplexView<N>& conto
   std::vector<detail::FaceCounts> faces;
   {
     const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertex_count(), detail::part_of(work.progress, 0.05, 0.1));
+        detail::make_stars<N>(rows, contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.05, 0.1));
     faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, work.threads,
                                    detail::part_of(work.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });

@@ -112,7 +112,7 @@ std::vector<bool> find_open_cuts(const detail::SimplexView<N>& contour, const Cu
                                  const WorkOptions& work) {
   std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertex_count(), kBlock));
   const detail::Stars stars =
-      detail::make_stars<N>(contour.rows(), contour.vertex_count(), detail::part_of(work.progress, 0.0, 0.1));
+      detail::make_stars<N>(contour.rows(), contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.0, 0.1));
   detail::count_faces<N>(contour.rows(), stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.6),
                          [&](std::size_t block, const auto& ridge) {
                            const auto time = [&](Index v) { return contour.coordinate(v, N - 1); };
@@ -164,7 +164,7 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
   detail::FaceCounts faces;
   {
     const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertex_count(), detail::part_of(work.progress, 0.0, 0.1));
+        detail::make_stars<N>(rows, contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.0, 0.1));
     faces = detail::count_faces<N>(rows, stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.7),
                                    [](std::size_t, const auto&) { /* counted */ })
                 .front();

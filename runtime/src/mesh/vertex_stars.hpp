@@ -33,8 +33,9 @@ struct Stars {
 };
 
 /// Stars of a complex of simplices with Width vertices each. All vertex numbers must be below `vertex_count`. `rows`:
-/// #S x Width, row = simplex.
+/// #S x Width, row = simplex. Threads: 0 for all of the machine; the result does not depend on them.
 template <int Width>
-Stars make_stars(std::span<const Index> rows, std::size_t vertex_count, const Progress& progress = {});
+Stars make_stars(std::span<const Index> rows, std::size_t vertex_count, unsigned threads,
+                 const Progress& progress = {});
 
 }  // namespace tegl::detail

@@ -117,7 +117,7 @@ class BoundaryFaces {
 
   void find(std::size_t vertices, unsigned threads, const Progress& progress) {
     const std::span<const Index> rows(rows_.empty() ? nullptr : rows_[0].data(), rows_.size() * N);
-    const Stars stars = make_stars<N>(rows, vertices, part_of(progress, 0.0, 0.2));
+    const Stars stars = make_stars<N>(rows, vertices, threads, part_of(progress, 0.0, 0.2));
     std::vector<std::vector<Ridge>> parts(block_count(vertices, kBlock));
     count_faces<N>(rows, stars, {}, 1, false, threads, part_of(progress, 0.2, 1.0),
                    [&](std::size_t block, const Ridge& ridge) { parts[block].push_back(ridge); });

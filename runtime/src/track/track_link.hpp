@@ -65,7 +65,7 @@ class SweptComplex {
   using Simplex = std::array<Index, N>;
 
   SweptComplex(const SimplexView<N>& contour, unsigned threads, const Progress& progress)
-      : contour_(contour), stars_(make_stars<N>(contour.rows(), contour.vertex_count(), part_of(progress, 0.0, 0.3))) {
+      : contour_(contour), stars_(make_stars<N>(contour.rows(), contour.vertex_count(), threads, part_of(progress, 0.0, 0.3))) {
     rank_vertices(part_of(progress, 0.3, 0.5));
     find_border(threads, part_of(progress, 0.5, 1.0));
   }
