@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "builders/region_proof.hpp"
+#include "filling/region_proof.hpp"
 #include "builders/region_vertices.hpp"
 
 namespace tegl::gen {

@@ -7,22 +7,13 @@
 #include <bit>
 #include <stdexcept>
 
+#include "base/determinant.hpp"
+
 namespace tegl::gen {
 
 namespace {
 
 using IntPoint = std::array<int, 4>;
-
-/// A normal of the hyperplane in n-space parallel to n - 1 vectors: their generalized cross product.
-IntPoint normal_to(const std::array<IntPoint, 3>& d, int n) {
-  const auto minor2 = [&](int a, int b) { return d[0][a] * d[1][b] - d[0][b] * d[1][a]; };
-  const auto minor3 = [&](int a, int b, int c) {
-    return minor2(a, b) * d[2][c] - minor2(a, c) * d[2][b] + minor2(b, c) * d[2][a];
-  };
-  if (n == 2) return {d[0][1], -d[0][0], 0, 0};
-  if (n == 3) return {minor2(1, 2), -minor2(0, 2), minor2(0, 1), 0};
-  return {minor3(1, 2, 3), -minor3(0, 2, 3), minor3(0, 1, 3), -minor3(0, 1, 2)};
-}
 
 /// Calls visit(chosen) for all ascending sequences of `count` numbers below `end`.
 template <class Visit>
@@ -89,7 +80,7 @@ void EmbeddingProof::add_hyperplane(std::span<const std::size_t> through) {
     const IntPoint& point = points_[through[r]];
     for (int i = 0; i < tile_->dim; ++i) directions[r - 1][i] = point[i] - base[i];
   }
-  const IntPoint normal = normal_to(directions, tile_->dim);
+  const IntPoint normal = cross_product(directions, static_cast<std::size_t>(tile_->dim));
   std::uint32_t above = 0, below = 0;
   for (std::uint32_t v = 0; v < points_.size(); ++v) {
     const IntPoint& point = points_[v];
@@ -196,7 +187,7 @@ bool EmbeddingProof::may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) con
 }
 
 /// True if simplices a and b may meet outside of the simplex of their common vertices. Then the relative interiors of
-/// two disjoint faces meet; by Radon's theorem, faces with n + 2 vertices in total are enough.
+/// two disjoint faces meet; by Kirchberger's theorem, faces with at most n + 2 vertices in total are enough.
 bool EmbeddingProof::may_meet(const Simplex& a, const Simplex& b) const {
   if (are_divided(a, b)) return false;
   for (const auto& [p, q] : face_pairs_) {

@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "builders/region_proof.hpp"
+#include "filling/region_proof.hpp"
 #include "builders/tesseract_arrays.hpp"
 #include "tegl/tile/corners.hpp"
 
