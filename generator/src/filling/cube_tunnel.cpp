@@ -257,7 +257,7 @@ std::optional<CubeSurface> RadialFilling::search(const Region& region) const {
       return radial.may_add(t, others);
     };
     search.accepts = [&](const CubeTriangles& all) {
-      return has_fans(all, chosen.size()) && radial.embedding().holds(all);
+      return has_fans(all, chosen.size()) && radial.embedding().is_embedded(all);
     };
     if (auto found = search.run(best_cost)) {
       best = {std::move(*found), chosen};

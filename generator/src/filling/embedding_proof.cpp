@@ -222,6 +222,16 @@ bool EmbeddingProof::holds(std::span<const LocalSimplex> simplices, const Means&
   return true;
 }
 
+void EmbeddingProof::add_meeting(std::span<const LocalSimplex> simplices, const Means& means,
+                                 std::vector<SimplexPair>& pairs) const {
+  std::vector<Simplex> all;
+  for (std::size_t i = 0; i < simplices.size(); ++i) {
+    all.push_back(prepared(simplices[i], means));
+    for (std::size_t j = 0; j < i; ++j)
+      if (may_meet(all[i], all[j])) pairs.emplace_back(simplices[i], simplices[j]);
+  }
+}
+
 bool EmbeddingProof::holds_between(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
                                    const Means& means) const {
   std::vector<Simplex> others;
@@ -230,6 +240,17 @@ bool EmbeddingProof::holds_between(std::span<const LocalSimplex> first, std::spa
     const Simplex one = prepared(s, means);
     return std::any_of(others.begin(), others.end(), [&](const Simplex& t) { return may_meet(one, t); });
   });
+}
+
+void EmbeddingProof::add_meeting(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
+                                 const Means& means, std::vector<SimplexPair>& pairs) const {
+  std::vector<Simplex> others;
+  for (const LocalSimplex& s : second) others.push_back(prepared(s, means));
+  for (const LocalSimplex& s : first) {
+    const Simplex one = prepared(s, means);
+    for (std::size_t j = 0; j < others.size(); ++j)
+      if (may_meet(one, others[j])) pairs.emplace_back(s, second[j]);
+  }
 }
 
 }  // namespace tegl::gen
