@@ -57,8 +57,8 @@ TEST(SimplexMeeting, KnownTriangles) {
 TEST(SimplexMeeting, MissesLessTheNearerItIs) {
   double last = 1;
   for (const std::int64_t height : {kOne / 2, kOne / 4, kOne / 64, kOne / 4096, std::int64_t{1}}) {
-    const std::vector<GridPoint> points = {{0, 0, 0},      {kOne, 0, 0},   {0, kOne, 0}, {kOne / 4, kOne / 4, height},
-                                           {0, 0, kOne},   {kOne, 0, kOne}};
+    const std::vector<GridPoint> points = {{0, 0, 0},    {kOne, 0, 0},   {0, kOne, 0}, {kOne / 4, kOne / 4, height},
+                                           {0, 0, kOne}, {kOne, 0, kOne}};
     const double miss = miss_of(points, {3, 4, 5});
     EXPECT_LT(miss, last);
     EXPECT_GT(miss, 0);
@@ -135,8 +135,8 @@ detail::TilePoint<4> cube_barycentre(const Tile& tile, Signature s, unsigned cub
   const detail::SimplexList<3> list(table, static_cast<unsigned>(tile.restrict_to(cube, s)));
   std::array<detail::TilePoint<3>, 8> own{};
   detail::own_places<3>(
-      list, false,
-      [&](unsigned v) { return detail::edge_point<3>(list.mapped(v), at[face.edge[list.mapped(v)]]); }, own.data());
+      list, false, [&](unsigned v) { return detail::edge_point<3>(list.mapped(v), at[face.edge[list.mapped(v)]]); },
+      own.data());
   return detail::cube_point(cube, own[slot]);
 }
 

@@ -34,7 +34,8 @@ std::vector<TileContour> balanced_cubes(const Lattice& lattice) {
   const EmbeddingCertifier embedding(builder);
   for (std::size_t s = 0; s < contours.size(); ++s)
     if (!embedding.unproved_pairs(contours[s]).empty())
-      throw Error(ErrorCode::CertificateFailed, fmt::format("balanced cube of signature {}: not proved to be embedded", s));
+      throw Error(ErrorCode::CertificateFailed,
+                  fmt::format("balanced cube of signature {}: not proved to be embedded", s));
   return contours;
 }
 

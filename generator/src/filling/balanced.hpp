@@ -28,7 +28,8 @@ struct BalancedTesseracts {
 };
 
 /// Builds and certifies them: each is a manifold bounded by Sigma, proved to be embedded for all positions, within its
-/// cubes and between them, and the complement's contour with reversed orientation. `depends_on_data`: by signature. Throws Error{CertificateFailed}.
+/// cubes and between them, and the complement's contour with reversed orientation. `depends_on_data`: by signature.
+/// Throws Error{CertificateFailed}.
 [[nodiscard]] BalancedTesseracts make_balanced_tesseracts(const Lattice& lattice,
                                                           const std::vector<bool>& depends_on_data);
 

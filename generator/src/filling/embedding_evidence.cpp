@@ -10,8 +10,8 @@ namespace tegl::gen {
 
 namespace {
 
-/// On which side of a hyperplane through corners a cube's centre is: 1 above, -1 below, 0 in it. The heights of opposite
-/// corners have the same sum, and at least one corner is in the hyperplane.
+/// On which side of a hyperplane through corners a cube's centre is: 1 above, -1 below, 0 in it. The heights of
+/// opposite corners have the same sum, and at least one corner is in the hyperplane.
 int side_of_centre(const Tile& cube, std::uint32_t above, std::uint32_t below) {
   const std::uint32_t last = cube.corner_count() - 1;
   for (std::uint32_t v = 0; v <= last; ++v) {

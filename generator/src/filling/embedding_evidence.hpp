@@ -25,9 +25,9 @@ class EmbeddingCertifier {
   /// `builder` must outlive this object.
   explicit EmbeddingCertifier(const ContourBuilder& builder);
 
-  /// The pairs of simplices that no theorem shows to be apart; empty: the contour is proved to be embedded. Looks at the
-  /// simplices only, not at how they were found. Two constructions need no comparison of pairs: the cone from an own
-  /// vertex inside the tile, from which every ray meets the tile's boundary once; and the copy of a side of the
+  /// The pairs of simplices that no theorem shows to be apart; empty: the contour is proved to be embedded. Looks at
+  /// the simplices only, not at how they were found. Two constructions need no comparison of pairs: the cone from an
+  /// own vertex inside the tile, from which every ray meets the tile's boundary once; and the copy of a side of the
   /// boundary, whose vertices move along such rays, if its tetrahedra in the cubes are proved to be positive.
   /// `contour` has passed TableCertifier.
   [[nodiscard]] std::vector<SimplexPair> unproved_pairs(const TileContour& contour) const;

@@ -18,8 +18,8 @@ struct SearchPlan {
   std::uint64_t seed = 1;          ///< mixed with the contour's signature
   std::uint32_t uniform = 2048;    ///< random positions, uniform on each edge
   std::uint32_t near_ends = 2048;  ///< random distances from a random end: uniform logarithm, 2^-21 to 1/2 of an edge
-  std::uint32_t descents = 64;    ///< random starts from which points are moved so that a pair comes nearer
-  std::uint32_t steps = 192;      ///< moves of one point tried in each descent
+  std::uint32_t descents = 64;     ///< random starts from which points are moved so that a pair comes nearer
+  std::uint32_t steps = 192;       ///< moves of one point tried in each descent
 
   /// All positions: these and the one in the middle of all edges.
   [[nodiscard]] std::uint64_t positions() const noexcept {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Exact test whether two simplices with vertices at integer points meet outside of the simplex of their common vertices.
+// Exact test whether two simplices with vertices at integer points meet outside of the simplex of their common
+// vertices.
 //
-// They do if and only if the relative interiors of the convex hulls of two disjoint sets P and Q of their vertices meet.
-// Sets with at most n + 2 points in total are enough (P. Kirchberger, 1903), and of these the ones with a single affine
-// dependence: then P and Q meet if and only if the dependence has one sign on P and the other one on Q, zeros apart.
+// They do if and only if the relative interiors of the convex hulls of two disjoint sets P and Q of their vertices
+// meet. Sets with at most n + 2 points in total are enough (P. Kirchberger, 1903), and of these the ones with a single
+// affine dependence: then P and Q meet if and only if the dependence has one sign on P and the other one on Q, zeros
+// apart.
 #pragma once
 
 #include <array>

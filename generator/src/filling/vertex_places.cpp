@@ -16,7 +16,8 @@ __extension__ using Wide128 = __int128;
 
 constexpr std::int64_t kUnit = std::int64_t{1} << kGridBits;
 
-/// The largest integer whose square is at most x < 2^120. The result does not depend on the rounding of the first guess.
+/// The largest integer whose square is at most x < 2^120. The result does not depend on the rounding of the first
+/// guess.
 Wide128 root_of(Wide128 x) {
   auto root = static_cast<Wide128>(std::sqrt(static_cast<double>(x)));
   if (root != 0) root = (root + x / root) / 2;  // a step of Newton's method
@@ -114,8 +115,7 @@ void VertexPlaces::compute(std::span<const std::int64_t> at, std::span<GridPoint
     places[e] = point;
   }
   for (const Cone& cone : cones_)
-    places[cone.apex] =
-        triangulation_ == Triangulation::compact ? mean(cone, places) : barycentre(cone, places);
+    places[cone.apex] = triangulation_ == Triangulation::compact ? mean(cone, places) : barycentre(cone, places);
   for (std::size_t j = 0; j < side_masks_.size(); ++j) places[first_side_ + j] = side_place(side_masks_[j], places);
 }
 

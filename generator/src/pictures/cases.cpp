@@ -214,7 +214,8 @@ class Catalogue4d {
     page +=
         "## All classes\n\n*Ambiguous*: the numbers of ambiguous squares and cubes, and 1 if the tile itself is "
         "ambiguous. *Facets*: the number of edge\npoints of each facet; **T** marks a facet around a torus. "
-        "*Tetrahedra*: in the compact and in the barycentric triangulation. *Embedded*: whether these\nare [proved not to "
+        "*Tetrahedra*: in the compact and in the barycentric triangulation. *Embedded*: whether these\nare [proved not "
+        "to "
         "intersect themselves, or searched](../embedding.md#proved-and-searched).\n\n"
         "| class | high corners | signatures | ambiguous | facets | tetrahedra | embedded |\n"
         "|---:|---|---:|---|---|---:|---|\n" +
@@ -230,8 +231,8 @@ class Catalogue4d {
     std::vector<std::string> facets;
     for (const LocalFacet& facet : barycentric.facets)
       facets.push_back(fmt::format("{}{}", facet.points.size(), facet.boundary_euler == 2 ? "" : " **T**"));
-    return fmt::format("| {} | {} | {} | {} {} {} | {} | {}, {} | {}, {} |\n", c.signature, high_corners(c.signature), c.orbit,
-                       c.ambiguous[2], c.ambiguous[3], c.ambiguous[4],
+    return fmt::format("| {} | {} | {} | {} {} {} | {} | {}, {} | {}, {} |\n", c.signature, high_corners(c.signature),
+                       c.orbit, c.ambiguous[2], c.ambiguous[3], c.ambiguous[4],
                        facets.empty() ? "none" : fmt::format("{}", fmt::join(facets, ", ")), simplex_count(compact),
                        simplex_count(barycentric), evidence_for(compact_evidence_, compact, c.signature),
                        evidence_for(barycentric_evidence_, barycentric, c.signature));

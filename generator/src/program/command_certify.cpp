@@ -192,8 +192,8 @@ std::string figures_json(const CertifiedFigures& f) {
       alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
       f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
       f.highest_genus, f.simplices, f.max_simplices,
-      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), evidence_json(f),
-      f.pairs.pairs, f.pairs.unmatched);
+      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), evidence_json(f), f.pairs.pairs,
+      f.pairs.unmatched);
 }
 
 int run_certify(const Options& options) {

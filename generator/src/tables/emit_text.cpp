@@ -24,8 +24,8 @@ std::string evidence_text(const CertifiedFigures& f) {
   if (f.searched == 0) return "all signatures proved for all positions";
   std::vector<Signature> classes;
   for (const SearchedEntry& entry : f.searches) classes.push_back(entry.signature);
-  return fmt::format("{} signatures proved for all positions, {} searched, in the classes of {}", f.embedded, f.searched,
-                     fmt::join(classes, " "));
+  return fmt::format("{} signatures proved for all positions, {} searched, in the classes of {}", f.embedded,
+                     f.searched, fmt::join(classes, " "));
 }
 
 }  // namespace

@@ -325,10 +325,11 @@ std::string evidence_json(const CertifiedFigures& figures) {
     classes += fmt::format("{}{{\"signature\": {}, \"entries\": {}, \"unproved_pairs\": {}}}",
                            classes.empty() ? "" : ", ", e.signature, e.entries, e.pairs);
   const SearchPlan& plan = figures.plan;
-  return text + fmt::format(
-                    ", \"search\": {{\"seed\": {}, \"middle\": 1, \"uniform\": {}, \"near_ends\": {}, \"descents\": {}, "
-                    "\"steps\": {}, \"intersections\": 0, \"classes\": [{}]}}",
-                    plan.seed, plan.uniform, plan.near_ends, plan.descents, plan.steps, classes);
+  return text +
+         fmt::format(
+             ", \"search\": {{\"seed\": {}, \"middle\": 1, \"uniform\": {}, \"near_ends\": {}, \"descents\": {}, "
+             "\"steps\": {}, \"intersections\": 0, \"classes\": [{}]}}",
+             plan.seed, plan.uniform, plan.near_ends, plan.descents, plan.steps, classes);
 }
 
 void check_inversion(int dim, const std::vector<TileContour>& low, const std::vector<TileContour>& high) {

@@ -93,7 +93,8 @@ struct CertifiedFigures {
 };
 
 /// Makes the contours of all signatures by `make`, thread-safe, and certifies each as a contour of `builder`. `classes`:
-/// of the builder's tile. Uses all processors; the result does not depend on their number. Throws Error{CertificateFailed} with the first signature that fails.
+/// of the builder's tile. Uses all processors; the result does not depend on their number. Throws
+/// Error{CertificateFailed} with the first signature that fails.
 std::vector<TileContour> certified_contours(const ContourBuilder& builder,
                                             const std::function<TileContour(Signature)>& make,
                                             const Transversal& classes, CertifiedFigures& figures);
