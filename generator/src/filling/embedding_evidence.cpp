@@ -34,7 +34,8 @@ EmbeddingCertifier::EmbeddingCertifier(const ContourBuilder& builder) : builder_
 /// is its apex. The barycentres of faces are collected first, as cones from the tile's barycentres contain them.
 EmbeddingProof::Means EmbeddingCertifier::means_of(const TileContour& contour) const {
   const std::uint32_t edges = builder_->tile().edge_count();
-  EmbeddingProof::Means means(256 - edges, 0);
+  constexpr std::size_t kLocalVertices = 256;  // as many as a byte numbers
+  EmbeddingProof::Means means(kLocalVertices - edges, 0);
   const auto add = [&](const LocalSimplex& s, int count) {
     if (s[0] < edges) return;
     for (int i = 1; i < count; ++i) means[s[0] - edges] |= s[i] < edges ? 1u << s[i] : means[s[i] - edges];

@@ -42,6 +42,9 @@ EmbeddingProof::EmbeddingProof(const Tile& tile, std::span<const Ray> rays) : ti
       for (int i = 0; i < tile.dim; ++i) end[i] += ray[i];
     }
   }
+  constexpr std::size_t kMostInMask = 32;  // sets of points and of segments are masks of 32 bits
+  if (points_.size() > kMostInMask || segments_.size() > kMostInMask)
+    throw std::logic_error("a tile with more corners, edges and rays than a mask has bits");
   std::vector<std::size_t> chosen;
   for_each_choice(static_cast<std::size_t>(tile.dim), points_.size(), chosen, [&] { add_hyperplane(chosen); });
   if (hyperplanes_.size() > kWords * 64) throw std::logic_error("a tile with more hyperplanes than expected");

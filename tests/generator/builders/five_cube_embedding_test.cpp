@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which contours of 5-cubes are proved to be embedded for all positions of the points on edges. The contours in the ten
-// tesseracts are (gen --dim 4 --certify), so the theorems on cones apply. Compact contours, low-connected: all choices
+// Which compact contours of 5-cubes are proved to be embedded for all positions of the points on edges: those made of
+// cones, if the contours in the ten tesseracts are made of cones, too, so that the theorems on cones apply. All choices
 // of the keys are low.
 #include <gtest/gtest.h>
 
@@ -62,14 +62,18 @@ struct Part {
 
 class FiveEvidence {
  public:
-  enum Kind { no_contour, proved, cones_not_divided, not_cones };
+  /// has_copies: also if two facets in one tesseract are coned from inside, which its builder does beside copies.
+  enum Kind { no_contour, proved, cones_not_divided, has_copies };
 
   Kind of(const builders::FiveKey& key) {
     const auto contour = builder_.build(key);
     if (contour.simplices.empty()) return no_contour;
+    std::array<int, FiveCubeBuilder::kTile + 1> inside{};
+    for (const FiveCubeBuilder::Own& own : contour.own)
+      if (own.points.corners != 0 || (++inside[own.face] > 1 && own.face != FiveCubeBuilder::kTile)) return has_copies;
     const std::vector<Part> parts = parts_of(contour);
     for (const Part& part : parts)
-      if (!is_embedded_cone(contour, part)) return not_cones;
+      if (!is_embedded_cone(contour, part)) return has_copies;
     for (std::size_t a = 0; a < parts.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)
         if (!are_divided(parts[a], parts[b])) return cones_not_divided;
@@ -124,7 +128,7 @@ class FiveEvidence {
         continue;
       if (apex >= FiveCubeBuilder::kFirstOwn &&
           contour.own[apex - FiveCubeBuilder::kFirstOwn].face == FiveCubeBuilder::kTile)
-        return contour.own[apex - FiveCubeBuilder::kFirstOwn].points.corners == 0;
+        return true;
       if (apex >= FiveCubeBuilder::kFirstOfCubes) continue;
       const bool holds = std::all_of(part.sigma.begin(), part.sigma.end(), [&](std::size_t i) {
         std::uint32_t corners = 0;
@@ -168,12 +172,12 @@ TEST(FiveCubeEmbedding, SharesThatAreProved) {
     for (std::size_t i = 0; i < tiles; ++i) ++count[evidence.of(random_five_key<builders::FiveKey>(random, how))];
     std::printf("  keys %d: %zu proved, %zu with cones that no hyperplane divides, %zu with copies\n",
                 static_cast<int>(how), count[FiveEvidence::proved], count[FiveEvidence::cones_not_divided],
-                count[FiveEvidence::not_cones]);
+                count[FiveEvidence::has_copies]);
     const std::size_t active = tiles - count[FiveEvidence::no_contour];
     if (how == FiveKeys::smooth) {
       EXPECT_EQ(active, count[FiveEvidence::proved]);
     }
-    EXPECT_GT(count[FiveEvidence::proved], 0u);
+    EXPECT_GT(count[FiveEvidence::proved], active / 10);
   }
 }
 
