@@ -252,9 +252,9 @@ TEST(EmbeddedCubes, AFlatTriangleIsFound) {
   // The vertices of a square's two rays and of its own ray are on a line for some levels.
   const CubeFrame frame;
   const std::vector<std::uint32_t> masks = {0b00000001, 0b00001000, 0b00001111};
-  EXPECT_FALSE(CubeEmbedding(frame, masks).holds({{12, 13, 14}}));
+  EXPECT_FALSE(CubeEmbedding(frame, masks).is_embedded({{12, 13, 14}}));
   const std::vector<std::uint32_t> apart = {0b00000001, 0b00001000, 0b01000000};
-  EXPECT_TRUE(CubeEmbedding(frame, apart).holds({{12, 13, 14}}));
+  EXPECT_TRUE(CubeEmbedding(frame, apart).is_embedded({{12, 13, 14}}));
 }
 
 TEST(EmbeddedCubes, ComplementsOfTunnelsHaveTheSameTriangles) {

@@ -35,9 +35,8 @@ struct CubeRegions : RegionVertices {
 };
 
 /// `has_square_centres`: squares are triangulated as in tables::region_table of the barycentric triangulation, to close
-/// contours at the image border; else each polygon in a square is a fan from its lowest corner, or
-/// from the middle one of three corners. Certifies every region.
-/// Throws Error{CertificateFailed}.
+/// contours at the image border; else each polygon in a square is a fan from its lowest corner, or from the middle one
+/// of three corners. Certifies every region. Throws Error{CertificateFailed}.
 [[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres);
 
 }  // namespace tegl::gen

@@ -243,31 +243,62 @@ std::string five_cube_faces() {
   return text;
 }
 
+namespace {
+
+/// Throws if a face is not as in the face lattice.
+void require_face(bool holds, const char* what, unsigned number) {
+  if (!holds)
+    throw Error(ErrorCode::CertificateFailed, fmt::format("5-cube, {} {}: not as in the face lattice", what, number));
+}
+
+Signature corners_of_square(const Faces& faces, unsigned q) {
+  std::vector<unsigned> corners;
+  for (unsigned v = 0; v < 4; ++v) corners.push_back(faces.squares[q].base | spread(v, faces.squares[q].axes));
+  return set_of(corners);
+}
+
+/// The faces of a tesseract, each once, at the corners that the frame of the tesseract gives them.
+void certify_faces_of(const Faces& faces, unsigned f) {
+  const TesseractFace& t = faces.tesseracts[f];
+  for (unsigned e = 0; e < 32; ++e) {
+    const unsigned base = edge_base(4, e);
+    const std::array<unsigned, 2> ends = {t.corners[base], t.corners[base | 1u << e / 8]};
+    require_face(set_of(ends) == set_of(faces.edges[t.edges[e]]), "tesseract", f);
+  }
+  for (unsigned c = 0; c < 8; ++c) {
+    std::vector<unsigned> own;
+    for (unsigned v = 0; v < 8; ++v) own.push_back(t.corners[lifted_corner(c, v)]);
+    require_face(own == faces.cube_corners[t.cubes[c]], "tesseract", f);
+  }
+  unsigned q = 0;
+  for (unsigned c = 0; c < 4; ++c)
+    for (unsigned d = c + 1; d < 4; ++d)
+      for (unsigned sides = 0; sides < 4; ++sides, ++q) {
+        Signature own = 0;
+        for (unsigned v = 0; v < 16; ++v)
+          if ((v >> c & 1u) == (sides & 1u) && (v >> d & 1u) == sides >> 1) own |= Signature{1} << t.corners[v];
+        require_face(own == corners_of_square(faces, t.squares[q]), "tesseract", f);
+      }
+}
+
+}  // namespace
+
 void certify_five_cube_faces() {
   const Faces faces;
   const tile::FaceLattice lattice = tile::FaceLattice::cube(kDim);
-  const auto require = [](bool holds, const char* what, unsigned number) {
-    if (!holds)
-      throw Error(ErrorCode::CertificateFailed, fmt::format("5-cube, {} {}: not as in the face lattice", what, number));
-  };
   const auto dim_of = [&](Signature corners) {
     const auto face = lattice.find(corners);
     return face ? lattice.faces()[*face].dim : -1;
   };
-  const auto square = [&](unsigned q) {
-    std::vector<unsigned> corners;
-    for (unsigned v = 0; v < 4; ++v) corners.push_back(faces.squares[q].base | spread(v, faces.squares[q].axes));
-    return set_of(corners);
-  };
-  for (unsigned e = 0; e < faces.edges.size(); ++e) require(dim_of(set_of(faces.edges[e])) == 1, "edge", e);
-  for (unsigned q = 0; q < faces.squares.size(); ++q) require(dim_of(square(q)) == 2, "square", q);
+  for (unsigned e = 0; e < faces.edges.size(); ++e) require_face(dim_of(set_of(faces.edges[e])) == 1, "edge", e);
+  for (unsigned q = 0; q < faces.squares.size(); ++q)
+    require_face(dim_of(corners_of_square(faces, q)) == 2, "square", q);
   for (unsigned c = 0; c < faces.cubes.size(); ++c) {
-    const Signature corners = set_of(faces.cube_corners[c]);
-    require(dim_of(corners) == 3, "cube", c);
+    require_face(dim_of(set_of(faces.cube_corners[c])) == 3, "cube", c);
     for (unsigned e = 0; e < 12; ++e) {
       const unsigned base = edge_base(3, e);
       const std::array<unsigned, 2> ends = {faces.cube_corners[c][base], faces.cube_corners[c][base | 1u << e / 4]};
-      require(set_of(ends) == set_of(faces.edges[faces.cube_edges[c][e]]), "cube", c);
+      require_face(set_of(ends) == set_of(faces.edges[faces.cube_edges[c][e]]), "cube", c);
     }
   }
   const auto& tesseracts = lattice.faces().back().faces;
@@ -276,29 +307,10 @@ void certify_five_cube_faces() {
     const Signature corners = set_of(t.corners);
     const auto at = std::find_if(tesseracts.begin(), tesseracts.end(),
                                  [&](std::uint32_t g) { return lattice.faces()[g].corners == corners; });
-    require(at != tesseracts.end(), "tesseract", f);
-    require((lattice.faces().back().signs[static_cast<std::size_t>(at - tesseracts.begin())] < 0) == t.is_reversed,
-            "tesseract", f);
-    // its faces, each once, at the corners that the frame of the tesseract gives them
-    for (unsigned e = 0; e < 32; ++e) {
-      const unsigned base = edge_base(4, e);
-      const std::array<unsigned, 2> ends = {t.corners[base], t.corners[base | 1u << e / 8]};
-      require(set_of(ends) == set_of(faces.edges[t.edges[e]]), "tesseract", f);
-    }
-    for (unsigned c = 0; c < 8; ++c) {
-      std::vector<unsigned> own;
-      for (unsigned v = 0; v < 8; ++v) own.push_back(t.corners[lifted_corner(c, v)]);
-      require(own == faces.cube_corners[t.cubes[c]], "tesseract", f);
-    }
-    unsigned q = 0;
-    for (unsigned c = 0; c < 4; ++c)
-      for (unsigned d = c + 1; d < 4; ++d)
-        for (unsigned sides = 0; sides < 4; ++sides, ++q) {
-          Signature own = 0;
-          for (unsigned v = 0; v < 16; ++v)
-            if ((v >> c & 1u) == (sides & 1u) && (v >> d & 1u) == sides >> 1) own |= Signature{1} << t.corners[v];
-          require(own == square(t.squares[q]), "tesseract", f);
-        }
+    require_face(at != tesseracts.end(), "tesseract", f);
+    require_face((lattice.faces().back().signs[static_cast<std::size_t>(at - tesseracts.begin())] < 0) == t.is_reversed,
+                 "tesseract", f);
+    certify_faces_of(faces, f);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <bitset>
 #include <set>
 
+#include "base/determinant.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::gen {
@@ -72,13 +73,6 @@ class Samples {
     }
     for (double& x : sum) x /= std::max(count, 1.0);
     return sum;
-  }
-
-  static double six_volumes(const Position& a, const Position& b, const Position& c, const Position& d) {
-    std::array<Position, 3> m{};
-    for (std::size_t i = 0; i < 3; ++i) m[0][i] = b[i] - a[i], m[1][i] = c[i] - a[i], m[2][i] = d[i] - a[i];
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   }
 
   [[nodiscard]] Bits in_simplex(const std::array<Position, 4>& p) const {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "builders/region_proof.hpp"
 #include "builders/region_vertices.hpp"
+#include "filling/region_proof.hpp"
 
 namespace tegl::gen {
 

@@ -61,21 +61,27 @@ std::vector<std::uint8_t> flat(const std::vector<Element>& elements, std::size_t
   return bytes;
 }
 
-/// Numbers that do not depend on the triangulation: signatures, squares and entries of cubes, and frames.
-void define_frames(std::string& text, const TesseractArrays& arrays) {
-  const auto class_array = [](const char* type, const char* name) {
-    return fmt::format("{} ResolvedCubes::{}", type, name);
-  };
-  // signatures of the cubes: those of a tile with the corners 0 to 7, or 8 to 15
+std::string class_array(const std::string& type, const char* name) {
+  return fmt::format("{} ResolvedCubes::{}", type, name);
+}
+
+std::string inner_array(std::span<const std::uint64_t> values) {
+  return fmt::format("{{{{{:#x}}}}}", fmt::join(values, ","));
+}
+
+/// Signatures of the cubes: those of a tile with the corners 0 to 7, or 8 to 15.
+void define_signatures(std::string& text) {
   std::array<std::array<std::uint64_t, 256>, 2> signatures{};
   for (unsigned half = 0; half < 2; ++half)
     for (unsigned tile = 0; tile < 256; ++tile)
       for (unsigned f = 0; f < 8; ++f)
         signatures[half][tile] |= std::uint64_t{detail::face_signature(4, tile << (8 * half), f)} << (8 * f);
-  const auto inner = [](const auto& values) { return fmt::format("{{{{{:#x}}}}}", fmt::join(values, ",")); };
-  define(text, class_array("std::array<std::array<std::uint64_t, 256>, 2>", "kSignatures"), signatures, inner, "{{",
+  define(text, class_array("std::array<std::array<std::uint64_t, 256>, 2>", "kSignatures"), signatures, inner_array, "{{",
          "}}");
-  // squares of the cubes
+}
+
+/// Squares of the cubes, by pair of axes and set of the pair's squares.
+void define_squares(std::string& text) {
   std::array<std::array<std::uint64_t, 16>, 6> squares{};
   for (unsigned pair = 0, c = 0; c < 4; ++c)
     for (unsigned d = c + 1; d < 4; ++d, ++pair)
@@ -87,9 +93,12 @@ void define_frames(std::string& text, const TesseractArrays& arrays) {
           if ((set >> sides & 1u) != 0)
             squares[pair][set] |= std::uint64_t{1} << (8 * f_of_c + q_of_c) | std::uint64_t{1} << (8 * f_of_d + q_of_d);
       }
-  define(text, class_array("std::array<std::array<std::uint64_t, 16>, 6>", "kSquaresOfPairs"), squares, inner, "{{",
+  define(text, class_array("std::array<std::array<std::uint64_t, 16>, 6>", "kSquaresOfPairs"), squares, inner_array, "{{",
          "}}");
-  // entries
+}
+
+/// Entries of cubes, by signature and resolution.
+void define_entries(std::string& text, const TesseractArrays& arrays) {
   std::vector<unsigned> all(256);
   for (unsigned s = 0; s < 256; ++s) all[s] = s;
   define(
@@ -113,7 +122,7 @@ void define_frames(std::string& text, const TesseractArrays& arrays) {
   std::vector<std::size_t> entries(arrays.cube.entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = i;
   define(
-      text, class_array(fmt::format("std::array<ResolvedCubes::Entry, {}>", entries.size()).c_str(), "kEntries"),
+      text, class_array(fmt::format("std::array<ResolvedCubes::Entry, {}>", entries.size()), "kEntries"),
       entries,
       [&](std::size_t entry) {
         std::array<std::size_t, 3> by_choice{};
@@ -125,7 +134,10 @@ void define_frames(std::string& text, const TesseractArrays& arrays) {
                            arrays.cube.entries[entry].components > 1 ? 1 : 0);
       },
       "{{", "}}");
-  // frames
+}
+
+/// Edges and local vertices of the cubes in the tesseract's numbering.
+void define_frames(std::string& text) {
   std::array<std::uint64_t, 32> beside{};
   std::array<std::uint32_t, 8> edges{};
   for (unsigned f = 0; f < 8; ++f) {
@@ -142,7 +154,7 @@ void define_frames(std::string& text, const TesseractArrays& arrays) {
       text,
       class_array("std::array<std::array<std::uint8_t, 12 + ResolvedCubes::kMostOwn>, ResolvedCubes::kCubes>",
                   "kLifted"),
-      std::span(all).first(8),
+      std::array{0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u},
       [](unsigned f) {
         std::array<unsigned, CubeLists::kCubeEdges + CubeLists::kMostOwn> lifted{};
         for (unsigned v = 0; v < lifted.size(); ++v) lifted[v] = lifted_vertex(f, v);
@@ -240,7 +252,10 @@ TesseractArrays make_tesseract_arrays() {
 
 std::string arrays_text(const TesseractArrays& arrays) {
   std::string text;
-  define_frames(text, arrays);
+  define_signatures(text);
+  define_squares(text);
+  define_entries(text, arrays);
+  define_frames(text);
   text += "\nnamespace {\n";
   define_lists(text, arrays.lists[0], "Barycentric");
   define_lists(text, arrays.lists[1], "Compact");

@@ -18,6 +18,7 @@ namespace tegl::gen {
 namespace {
 
 /// The low-connected contours of all cubes, in which every polygon of a cube with a single polygon is a balanced fan.
+/// Each is proved to be embedded.
 std::vector<TileContour> balanced_cubes(const Lattice& lattice) {
   std::vector<TileContour> contours =
       contours_by_dimension(lattice, 3, Alternative::low, Triangulation::compact).back();
@@ -28,6 +29,13 @@ std::vector<TileContour> balanced_cubes(const Lattice& lattice) {
     facet.simplices.clear();
     for (const auto& [a, b, c] : balanced_fan(facet.points)) facet.simplices.push_back({a, b, c});
   }
+  // The proof for a tesseract does not compare simplices in one cube.
+  const ContourBuilder builder(lattice, 3, Alternative::low, Triangulation::compact);
+  const EmbeddingCertifier embedding(builder);
+  for (std::size_t s = 0; s < contours.size(); ++s)
+    if (!embedding.unproved_pairs(contours[s]).empty())
+      throw Error(ErrorCode::CertificateFailed,
+                  fmt::format("balanced cube of signature {}: not proved to be embedded", s));
   return contours;
 }
 
@@ -59,7 +67,7 @@ BalancedTesseracts make_balanced_tesseracts(const Lattice& lattice, const std::v
     contour = complement < s ? inverted(result.contours[complement]) : builder.build(s);
     const tile::Fault fault = certifier.certify(s, contour);
     require(fault == tile::Fault::none, s, tile::name_of(fault));
-    require(embedding.of(contour) == Evidence::proved, s, "not proved to be embedded");
+    require(embedding.unproved_pairs(contour).empty(), s, "not proved to be embedded");
     ++result.signatures;
     for (const LocalFacet& facet : contour.facets) result.simplices += facet.simplices.size();
   }

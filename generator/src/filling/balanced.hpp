@@ -19,16 +19,17 @@ namespace tegl::gen {
 /// contain each triangle around that vertex. (Fans from the smallest vertex give 0.7 % more tetrahedra on smooth data.)
 [[nodiscard]] std::vector<std::array<std::uint8_t, 3>> balanced_fan(const std::vector<std::uint8_t>& polygon);
 
-/// The compact contours of the tesseracts that do not depend on the data beyond their signature, by signature; the others are
-/// empty.
+/// The compact contours of the tesseracts that do not depend on the data beyond their signature, by signature; the
+/// others are empty.
 struct BalancedTesseracts {
   std::vector<TileContour> contours;
   std::uint64_t signatures = 0;  ///< number of tesseracts with a contour
   std::uint64_t simplices = 0;   ///< sum over them
 };
 
-/// Builds and certifies them: each is a manifold bounded by Sigma, proved to be embedded for all positions, and the
-/// complement's contour with reversed orientation. `depends_on_data`: by signature. Throws Error{CertificateFailed}.
+/// Builds and certifies them: each is a manifold bounded by Sigma, proved to be embedded for all positions, within its
+/// cubes and between them, and the complement's contour with reversed orientation. `depends_on_data`: by signature.
+/// Throws Error{CertificateFailed}.
 [[nodiscard]] BalancedTesseracts make_balanced_tesseracts(const Lattice& lattice,
                                                           const std::vector<bool>& depends_on_data);
 

@@ -12,7 +12,7 @@ namespace tegl::gen {
 
 void CubeListCertifier::certify(const CubeTriangles& triangles, std::span<const std::uint32_t> masks,
                                 const std::string& name) {
-  if (!CubeEmbedding(frame_, masks).holds(triangles))
+  if (!CubeEmbedding(frame_, masks).is_embedded(triangles))
     throw Error(ErrorCode::CertificateFailed, fmt::format("{}: triangles may intersect", name));
   ++proved_;
 }

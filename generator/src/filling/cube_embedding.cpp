@@ -49,7 +49,7 @@ std::vector<LocalSimplex> CubeEmbedding::local(const CubeTriangles& triangles) c
   return result;
 }
 
-bool CubeEmbedding::holds(const CubeTriangles& triangles) const {
+bool CubeEmbedding::is_embedded(const CubeTriangles& triangles) const {
   const std::vector<LocalSimplex> simplices = local(triangles);
   const auto has_mean = [&](const LocalSimplex& s) {
     return std::any_of(s.begin(), s.begin() + 3, [&](std::uint8_t v) { return v >= first_mean_; });

@@ -22,7 +22,7 @@ class CubeEmbedding {
   CubeEmbedding(const CubeFrame& frame, std::span<const std::uint32_t> masks);
 
   /// True if no two of the triangles intersect outside of their common vertices and edges, and none can be flat.
-  [[nodiscard]] bool holds(const CubeTriangles& triangles) const;
+  [[nodiscard]] bool is_embedded(const CubeTriangles& triangles) const;
   /// True if no triangle of `first` intersects one of `second`.
   [[nodiscard]] bool holds_between(const CubeTriangles& first, const CubeTriangles& second) const;
   /// True if a triangle intersects none of the others outside of common vertices and edges. For searches: remembers

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/determinant.hpp"
 #include "filling/cube_embedding.hpp"
 #include "filling/surface_search.hpp"
 
@@ -19,8 +20,10 @@ namespace {
 
 using Ray = EmbeddingProof::Ray;
 
+/// Determinant of three rays.
 int determinant_of(const Ray& a, const Ray& b, const Ray& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  const std::array<Ray, 3> rows = {a, b, c};
+  return minor_of(rows, 0, 3, 7);
 }
 
 /// The polygon from its smallest edge on.
@@ -253,7 +256,9 @@ std::optional<CubeSurface> RadialFilling::search(const Region& region) const {
     search.may_add = [&](const CubeTriangle& t, const CubeTriangles& others) {
       return radial.may_add(t, others);
     };
-    search.accepts = [&](const CubeTriangles& all) { return has_fans(all, chosen.size()) && radial.embedding().holds(all); };
+    search.accepts = [&](const CubeTriangles& all) {
+      return has_fans(all, chosen.size()) && radial.embedding().is_embedded(all);
+    };
     if (auto found = search.run(best_cost)) {
       best = {std::move(*found), chosen};
       best_cost = search.cost();

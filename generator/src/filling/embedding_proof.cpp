@@ -7,22 +7,13 @@
 #include <bit>
 #include <stdexcept>
 
+#include "base/determinant.hpp"
+
 namespace tegl::gen {
 
 namespace {
 
 using IntPoint = std::array<int, 4>;
-
-/// A normal of the hyperplane in n-space parallel to n - 1 vectors: their generalized cross product.
-IntPoint normal_to(const std::array<IntPoint, 3>& d, int n) {
-  const auto minor2 = [&](int a, int b) { return d[0][a] * d[1][b] - d[0][b] * d[1][a]; };
-  const auto minor3 = [&](int a, int b, int c) {
-    return minor2(a, b) * d[2][c] - minor2(a, c) * d[2][b] + minor2(b, c) * d[2][a];
-  };
-  if (n == 2) return {d[0][1], -d[0][0], 0, 0};
-  if (n == 3) return {minor2(1, 2), -minor2(0, 2), minor2(0, 1), 0};
-  return {minor3(1, 2, 3), -minor3(0, 2, 3), minor3(0, 1, 3), -minor3(0, 1, 2)};
-}
 
 /// Calls visit(chosen) for all ascending sequences of `count` numbers below `end`.
 template <class Visit>
@@ -51,6 +42,9 @@ EmbeddingProof::EmbeddingProof(const Tile& tile, std::span<const Ray> rays) : ti
       for (int i = 0; i < tile.dim; ++i) end[i] += ray[i];
     }
   }
+  constexpr std::size_t kMostInMask = 32;  // sets of points and of segments are masks of 32 bits
+  if (points_.size() > kMostInMask || segments_.size() > kMostInMask)
+    throw std::logic_error("a tile with more corners, edges and rays than a mask has bits");
   std::vector<std::size_t> chosen;
   for_each_choice(static_cast<std::size_t>(tile.dim), points_.size(), chosen, [&] { add_hyperplane(chosen); });
   if (hyperplanes_.size() > kWords * 64) throw std::logic_error("a tile with more hyperplanes than expected");
@@ -89,7 +83,7 @@ void EmbeddingProof::add_hyperplane(std::span<const std::size_t> through) {
     const IntPoint& point = points_[through[r]];
     for (int i = 0; i < tile_->dim; ++i) directions[r - 1][i] = point[i] - base[i];
   }
-  const IntPoint normal = normal_to(directions, tile_->dim);
+  const IntPoint normal = cross_product(directions, static_cast<std::size_t>(tile_->dim));
   std::uint32_t above = 0, below = 0;
   for (std::uint32_t v = 0; v < points_.size(); ++v) {
     const IntPoint& point = points_[v];
@@ -196,7 +190,7 @@ bool EmbeddingProof::may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) con
 }
 
 /// True if simplices a and b may meet outside of the simplex of their common vertices. Then the relative interiors of
-/// two disjoint faces meet; by Radon's theorem, faces with n + 2 vertices in total are enough.
+/// two disjoint faces meet; by Kirchberger's theorem, faces with at most n + 2 vertices in total are enough.
 bool EmbeddingProof::may_meet(const Simplex& a, const Simplex& b) const {
   if (are_divided(a, b)) return false;
   for (const auto& [p, q] : face_pairs_) {
@@ -231,6 +225,16 @@ bool EmbeddingProof::holds(std::span<const LocalSimplex> simplices, const Means&
   return true;
 }
 
+void EmbeddingProof::add_meeting(std::span<const LocalSimplex> simplices, const Means& means,
+                                 std::vector<SimplexPair>& pairs) const {
+  std::vector<Simplex> all;
+  for (std::size_t i = 0; i < simplices.size(); ++i) {
+    all.push_back(prepared(simplices[i], means));
+    for (std::size_t j = 0; j < i; ++j)
+      if (may_meet(all[i], all[j])) pairs.emplace_back(simplices[i], simplices[j]);
+  }
+}
+
 bool EmbeddingProof::holds_between(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
                                    const Means& means) const {
   std::vector<Simplex> others;
@@ -239,6 +243,17 @@ bool EmbeddingProof::holds_between(std::span<const LocalSimplex> first, std::spa
     const Simplex one = prepared(s, means);
     return std::any_of(others.begin(), others.end(), [&](const Simplex& t) { return may_meet(one, t); });
   });
+}
+
+void EmbeddingProof::add_meeting(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
+                                 const Means& means, std::vector<SimplexPair>& pairs) const {
+  std::vector<Simplex> others;
+  for (const LocalSimplex& s : second) others.push_back(prepared(s, means));
+  for (const LocalSimplex& s : first) {
+    const Simplex one = prepared(s, means);
+    for (std::size_t j = 0; j < others.size(); ++j)
+      if (may_meet(one, others[j])) pairs.emplace_back(s, second[j]);
+  }
 }
 
 }  // namespace tegl::gen

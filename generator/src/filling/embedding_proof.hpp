@@ -23,6 +23,9 @@
 
 namespace tegl::gen {
 
+/// Two simplices of one contour.
+using SimplexPair = std::pair<LocalSimplex, LocalSimplex>;
+
 /// The hyperplanes spanned by a tile's corners, and the proofs that they give. n = 2, 3, 4.
 class EmbeddingProof {
  public:
@@ -43,6 +46,11 @@ class EmbeddingProof {
   /// The same for each simplex of `first` with each of `second`.
   [[nodiscard]] bool holds_between(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second,
                                    const Means& means = {}) const;
+  /// Adds to `pairs` the pairs of the simplices for which `holds` is false.
+  void add_meeting(std::span<const LocalSimplex> simplices, const Means& means, std::vector<SimplexPair>& pairs) const;
+  /// The same for each simplex of `first` with each of `second`.
+  void add_meeting(std::span<const LocalSimplex> first, std::span<const LocalSimplex> second, const Means& means,
+                   std::vector<SimplexPair>& pairs) const;
   /// The hyperplanes: the points above and below each. Bit v: corner v; the tile's centre and the ends of rays follow.
   [[nodiscard]] std::span<const std::pair<std::uint32_t, std::uint32_t>> hyperplanes() const noexcept {
     return hyperplanes_;

@@ -12,29 +12,13 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/determinant.hpp"
+
 namespace tegl::gen {
 
 namespace {
 
 using Point = std::array<int, 4>;
-
-/// Determinant of the leading n x n submatrix, exact (E. Bareiss, 1968: all divisions are without remainder).
-int determinant(std::array<Point, 4> m, int n) {
-  int sign = 1, previous = 1;
-  for (int k = 0; k + 1 < n; ++k) {
-    int pivot = k;
-    while (pivot < n && m[pivot][k] == 0) ++pivot;
-    if (pivot == n) return 0;
-    if (pivot != k) {
-      std::swap(m[pivot], m[k]);
-      sign = -sign;
-    }
-    for (int i = k + 1; i < n; ++i)
-      for (int j = k + 1; j < n; ++j) m[i][j] = (m[i][j] * m[k][k] - m[i][k] * m[k][j]) / previous;
-    previous = m[k][k];
-  }
-  return sign * m[n - 1][n - 1];
-}
 
 int dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
 
@@ -117,18 +101,12 @@ void HullContours::add_hyperplanes(std::vector<std::uint8_t>& chosen) {
   hyperplanes_.push_back(plane);
 }
 
-/// The generalised cross product of the differences; zero if they are linearly dependent.
+/// A normal of the hyperplane through the chosen midpoints; zero if they are affinely dependent.
 Point HullContours::normal_of(const std::vector<std::uint8_t>& chosen) const {
-  std::array<Point, 4> m{};
+  std::array<Point, 3> differences{};
   for (int r = 1; r < tile_.dim; ++r)
-    for (int i = 0; i < 4; ++i) m[r][i] = midpoints_[chosen[r]][i] - midpoints_[chosen[0]][i];
-  Point normal{};
-  for (int i = 0; i < tile_.dim; ++i) {
-    m[0] = Point{};
-    m[0][i] = 1;
-    normal[i] = determinant(m, tile_.dim);
-  }
-  return normal;
+    for (int i = 0; i < 4; ++i) differences[r - 1][i] = midpoints_[chosen[r]][i] - midpoints_[chosen[0]][i];
+  return cross_product(differences, static_cast<std::size_t>(tile_.dim));
 }
 
 bool HullContours::spans_facet(Edges vertices) const {
@@ -193,7 +171,7 @@ void HullContours::emit(LocalSimplex simplex, const Point& outward, std::vector<
   for (int r = 1; r < n; ++r)
     for (int i = 0; i < 4; ++i) m[r - 1][i] = midpoints_[simplex[r]][i] - midpoints_[simplex[0]][i];
   m[n - 1] = outward;
-  if (determinant(m, n) < 0) std::swap(simplex[n - 1], simplex[n - 2]);
+  if (cofactor_determinant(m, static_cast<std::size_t>(n)) < 0) std::swap(simplex[n - 1], simplex[n - 2]);
   result.push_back(simplex);
 }
 

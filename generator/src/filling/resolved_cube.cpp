@@ -179,7 +179,7 @@ class Table {
   [[nodiscard]] CubeSurface disc(const std::vector<Polygon>& boundary) {
     Alone alone(frame_, tile_, boundary);
     const auto is_admissible = [&](const Triangles& filling, const std::vector<std::uint32_t>& masks) {
-      return embedding(masks).holds(filling) && alone.passes(filling);
+      return embedding(masks).is_embedded(filling) && alone.passes(filling);
     };
     if (const Triangles fan = balanced_fan(boundary[0]); is_admissible(fan, {})) return {fan, {}};
     SurfaceSearch flat(frame_, boundary, {});

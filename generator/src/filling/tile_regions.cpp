@@ -134,7 +134,8 @@ std::uint8_t SignatureRegions::only_barycentre(const TileContour& contour, const
   for (const LocalFacet& facet : contour.facets) {
     if (facet.points.empty() || !region[tile_->corner_count() + facet.points[0]]) continue;
     ++facets;
-    if (facet.filling == Filling::cone) result = static_cast<std::uint8_t>(tile_->corner_count() + facet.simplices[0][0]);
+    if (facet.filling == Filling::cone)
+      result = static_cast<std::uint8_t>(tile_->corner_count() + facet.simplices[0][0]);
   }
   return facets == 1 && tile_->dim == 3 ? result : kNoVertex;
 }

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "filling/embedding_evidence.hpp"
 #include "filling/facets.hpp"
 #include "pictures/picture.hpp"
 #include "pictures/tile_cut.hpp"
@@ -76,13 +78,26 @@ std::string described(int dim, const TileContour& contour) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Few positions: `gen --certify` searches longer (SearchPlan).
+constexpr SearchPlan kCatalogueSearch{.seed = 2, .uniform = 64, .near_ends = 64, .descents = 4, .steps = 64};
+
+/// "proved", or "searched". Throws if simplices intersect.
+const char* evidence_for(const EmbeddingCertifier& certifier, const TileContour& contour, Signature signature) {
+  const Evidence evidence = certifier.of(contour, signature, kCatalogueSearch);
+  if (evidence == Evidence::absent)
+    throw Error(ErrorCode::CertificateFailed, fmt::format("signature {}: its simplices intersect", signature));
+  return name_of(evidence);
+}
+
 class FlatCatalogue {
  public:
   explicit FlatCatalogue(int dim)
       : dim_(dim),
         lattice_(TileKind::cube, dim),
         low_(lattice_, dim, Alternative::low, Triangulation::compact),
-        high_(lattice_, dim, Alternative::high, Triangulation::compact) {}
+        high_(lattice_, dim, Alternative::high, Triangulation::compact),
+        low_evidence_(low_),
+        high_evidence_(high_) {}
 
   // table rows, each with its pictures; then mirror images that are classes under rotations only
   std::vector<EmittedFile> files() {
@@ -93,7 +108,8 @@ class FlatCatalogue {
         "The {} signatures of a {} fall into {} classes under its {} symmetries{}. The smallest signature of each "
         "class is shown.\nBlack corners are high, white ones low. {}\n\nA square with two high corners on a diagonal "
         "is ambiguous: *low-connected* joins the two low corners and separates the high ones,\n*high-connected* joins "
-        "the two high corners and separates the low ones. Both are in the tables. [How to read the "
+        "the two high corners and separates the low ones. Both are in the tables. *Proved*: the contour [does not "
+        "intersect itself](../embedding.md#proved-and-searched), wherever it\nmeets the edges. [How to read the "
         "pages](README.md)\n\n",
         1u << lattice_.tile(dim_).corner_count(), dim_ == 2 ? "square" : "cube", cases.size(),
         cases.front().orbit * cases.front().stabiliser,
@@ -129,12 +145,15 @@ class FlatCatalogue {
     picture.scale = dim_ == 2 ? 110 : 120;
     const std::string name = fmt::format("{}d/{:03}_{}.svg", dim_, s, alternative);
     files_.push_back({name, to_svg(picture)});
-    return fmt::format("![{}]({})<br>{}", picture.title, name, described(dim_, contour));
+    const EmbeddingCertifier& certifier = std::string_view(alternative) == "low" ? low_evidence_ : high_evidence_;
+    return fmt::format("![{}]({})<br>{}<br>{}", picture.title, name, described(dim_, contour),
+                       evidence_for(certifier, contour, s));
   }
 
   int dim_;
   Lattice lattice_;
   ContourBuilder low_, high_;
+  EmbeddingCertifier low_evidence_, high_evidence_;
   std::vector<EmittedFile> files_;
 };
 
@@ -167,7 +186,9 @@ class Catalogue4d {
   Catalogue4d()
       : lattice_(TileKind::cube, 4),
         barycentric_(lattice_, 4, Alternative::low, Triangulation::barycentric),
-        compact_(lattice_, 4, Alternative::low, Triangulation::compact) {}
+        compact_(lattice_, 4, Alternative::low, Triangulation::compact),
+        barycentric_evidence_(barycentric_),
+        compact_evidence_(compact_) {}
 
   std::vector<EmittedFile> files() {
     const auto cases = cases_of(lattice_, GroupKind::Full);
@@ -193,8 +214,11 @@ class Catalogue4d {
     page +=
         "## All classes\n\n*Ambiguous*: the numbers of ambiguous squares and cubes, and 1 if the tile itself is "
         "ambiguous. *Facets*: the number of edge\npoints of each facet; **T** marks a facet around a torus. "
-        "*Tetrahedra*: in the compact and in the barycentric triangulation.\n\n"
-        "| class | high corners | signatures | ambiguous | facets | tetrahedra |\n|---:|---|---:|---|---|---:|\n" +
+        "*Tetrahedra*: in the compact and in the barycentric triangulation. *Embedded*: whether these\nare [proved not "
+        "to "
+        "intersect themselves, or searched](../embedding.md#proved-and-searched).\n\n"
+        "| class | high corners | signatures | ambiguous | facets | tetrahedra | embedded |\n"
+        "|---:|---|---:|---|---|---:|---|\n" +
         table;
     files_.insert(files_.begin(), {"4d.md", std::move(page)});
     return std::move(files_);
@@ -203,14 +227,15 @@ class Catalogue4d {
  private:
   static const std::string kTorusText;
 
-  static std::string row(const Case& c, const TileContour& barycentric, const TileContour& compact) {
+  [[nodiscard]] std::string row(const Case& c, const TileContour& barycentric, const TileContour& compact) const {
     std::vector<std::string> facets;
     for (const LocalFacet& facet : barycentric.facets)
       facets.push_back(fmt::format("{}{}", facet.points.size(), facet.boundary_euler == 2 ? "" : " **T**"));
-    return fmt::format("| {} | {} | {} | {} {} {} | {} | {}, {} |\n", c.signature, high_corners(c.signature), c.orbit,
-                       c.ambiguous[2], c.ambiguous[3], c.ambiguous[4],
+    return fmt::format("| {} | {} | {} | {} {} {} | {} | {}, {} | {}, {} |\n", c.signature, high_corners(c.signature),
+                       c.orbit, c.ambiguous[2], c.ambiguous[3], c.ambiguous[4],
                        facets.empty() ? "none" : fmt::format("{}", fmt::join(facets, ", ")), simplex_count(compact),
-                       simplex_count(barycentric));
+                       simplex_count(barycentric), evidence_for(compact_evidence_, compact, c.signature),
+                       evidence_for(barycentric_evidence_, barycentric, c.signature));
   }
 
   /// The section of one class with a torus: figures and a film.
@@ -253,6 +278,7 @@ class Catalogue4d {
 
   Lattice lattice_;
   ContourBuilder barycentric_, compact_;
+  EmbeddingCertifier barycentric_evidence_, compact_evidence_;
   std::vector<EmittedFile> files_;
 };
 

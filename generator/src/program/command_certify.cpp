@@ -146,6 +146,17 @@ int certify_resolutions(const Options& options) {
 
 }  // namespace
 
+namespace {
+
+std::string searches_text(const CertifiedFigures& f) {
+  std::vector<std::string> entries;
+  for (const SearchedEntry& e : f.searches)
+    entries.push_back(fmt::format("{} ({}, {})", e.signature, e.entries, e.pairs));
+  return fmt::format("{}", fmt::join(entries, ", "));
+}
+
+}  // namespace
+
 void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
   fmt::print("{}-{}, {} alternative, {} triangulation\n", dim, tile == TileKind::cube ? "tile" : tile_kind_name(tile),
              alternative_name(f.alternative), triangulation_name(f.triangulation));
@@ -163,6 +174,11 @@ void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
   fmt::print("  embedded     {} proved for all positions", f.embedded);
   if (f.searched != 0) fmt::print(", {} searched", f.searched);
   fmt::print("\n");
+  if (f.searched != 0) {
+    fmt::print("  searched     {} classes, {} positions each, seed {}: no intersection\n", f.searches.size(),
+               f.plan.positions(), f.plan.seed);
+    fmt::print("               signature (entries, pairs not proved): {}\n", searches_text(f));
+  }
   if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);
 }
 
@@ -171,12 +187,12 @@ std::string figures_json(const CertifiedFigures& f) {
       "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
       "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
       "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
-      "\"mean_simplices\": {:.4f}, \"embedded_proved\": {}, \"embedded_searched\": {}, \"pairs\": {}, "
+      "\"mean_simplices\": {:.4f}, {}, \"pairs\": {}, "
       "\"unmatched_pairs\": {}}}",
       alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
       f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
       f.highest_genus, f.simplices, f.max_simplices,
-      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.embedded, f.searched, f.pairs.pairs,
+      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), evidence_json(f), f.pairs.pairs,
       f.pairs.unmatched);
 }
 

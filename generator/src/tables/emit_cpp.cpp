@@ -172,10 +172,10 @@ EmittedFile emit_manifest(const TableSet& set) {
         Appender(text),
         "{}    {{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"facets\": {}, "
         "\"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, \"simplices\": {}, "
-        "\"max_simplices\": {}, \"mean_simplices\": {:.4f}}}",
+        "\"max_simplices\": {}, \"mean_simplices\": {:.4f}, {}}}",
         separator, alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.facets,
         f.spheres, f.others, f.signatures_with_others, f.simplices, f.max_simplices,
-        static_cast<double>(f.simplices) / static_cast<double>(f.signatures));
+        static_cast<double>(f.simplices) / static_cast<double>(f.signatures), evidence_json(f));
     separator = ",\n";
   }
   text += "\n  ],\n  \"tables\": [";

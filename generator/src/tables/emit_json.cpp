@@ -48,9 +48,9 @@ std::string opening(const TableSet& set, const char* kind, int dim) {
   for (const CertifiedFigures& f : set.figures) {
     fmt::format_to(Appender(text),
                    "{}    {{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"facets\": {}, "
-                   "\"spherical\": {}, \"non_spherical\": {}, \"simplices\": {}}}",
+                   "\"spherical\": {}, \"non_spherical\": {}, \"simplices\": {}, {}}}",
                    separator, alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures,
-                   f.facets, f.spheres, f.others, f.simplices);
+                   f.facets, f.spheres, f.others, f.simplices, evidence_json(f));
     separator = ",\n";
   }
   text += "\n  ]";

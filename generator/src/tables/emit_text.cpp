@@ -3,6 +3,10 @@
 // The banner of generated files.
 #include "tables/emit_text.hpp"
 
+#include <vector>
+
+#include <fmt/ranges.h>
+
 #include "filling/cube_certificate.hpp"
 #include "tegl/table_contract.hpp"
 
@@ -12,6 +16,19 @@ std::string command_for(const TableSet& set, Language language) {
   return language == Language::cpp ? set.command
                                    : fmt::format("{} --language {}", set.command, language_name(language));
 }
+
+namespace {
+
+/// The evidence for each entry: "all signatures proved", or the classes that are searched.
+std::string evidence_text(const CertifiedFigures& f) {
+  if (f.searched == 0) return "all signatures proved for all positions";
+  std::vector<Signature> classes;
+  for (const SearchedEntry& entry : f.searches) classes.push_back(entry.signature);
+  return fmt::format("{} signatures proved for all positions, {} searched, in the classes of {}", f.embedded,
+                     f.searched, fmt::join(classes, " "));
+}
+
+}  // namespace
 
 std::string banner(const TableSet& set, Language language, const std::string& what) {
   std::string text;
@@ -27,6 +44,9 @@ std::string banner(const TableSet& set, Language language, const std::string& wh
                    "{} simplices\n",
                    alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.facets,
                    f.spheres, f.others, f.simplices);
+  for (const CertifiedFigures& f : set.figures)
+    fmt::format_to(Appender(text), "// Embedded: {} alternative, {}: {}\n", alternative_name(f.alternative),
+                   triangulation_name(f.triangulation), evidence_text(f));
   return text;
 }
 

@@ -3,6 +3,7 @@
 // Builds a table set in order: contours, certificates, tables, regions.
 #include "tables/table_set.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -30,24 +31,35 @@ PairFigures matching_pairs(const ContourBuilder& builder, const std::vector<Tile
   return pairs;
 }
 
+/// The evidence for the other alternative: its entries are the reversed ones of the complements.
+void take_inverse(const CertifiedFigures& of_low, const Transversal& classes, CertifiedFigures& of_high) {
+  of_high.embedded = of_low.embedded;
+  of_high.searched = of_low.searched;
+  of_high.searches = of_low.searches;
+  of_high.plan = of_low.plan;
+  for (SearchedEntry& entry : of_high.searches)
+    entry.signature = classes.representatives[classes.class_of[of_low.signatures - 1 - entry.signature]];
+  std::sort(of_high.searches.begin(), of_high.searches.end(),
+            [](const SearchedEntry& a, const SearchedEntry& b) { return a.signature < b.signature; });
+}
+
 /// Builds and certifies both alternatives of one triangulation and checks their inversion. Returns the low-connected
 /// contours.
 std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high,
-                                       const Transversal& classes, bool pairs, std::vector<CertifiedFigures>& figures) {
+                                       const TileClasses& classes, bool pairs, std::vector<CertifiedFigures>& figures) {
   CertifiedFigures of_low, of_high;
   auto contours = certified_contours(
-      low, [&](Signature s) { return low.build(s); }, classes, of_low);
+      low, [&](Signature s) { return low.build(s); }, classes.classes, of_low);
   // Building all compact 4D contours takes most of the time. Of the high-connected ones, a share is built, to see that
   // they are the inverted ones.
   constexpr Signature kShare = 16;
   const auto make_high = [&](Signature s) {
     return low.dim() < 4 || s % kShare == 0 ? high.build(s) : inverted(contours[contours.size() - 1 - s]);
   };
-  const auto high_contours = certified_contours(high, make_high, classes, of_high);
+  const auto high_contours = certified_contours(high, make_high, classes.classes, of_high);
   check_inversion(low.dim(), contours, high_contours);
-  certify_embedding(low, contours, of_low);  // the inverse is embedded as well
-  of_high.embedded = of_low.embedded;
-  of_high.searched = of_low.searched;
+  certify_embedding(low, contours, classes, of_low);
+  take_inverse(of_low, classes.classes, of_high);
   if (pairs) {
     of_low.pairs = matching_pairs(low, contours);
     of_high.pairs = matching_pairs(high, high_contours);
@@ -106,7 +118,7 @@ TableSet make_table_set(const TableRequest& request) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
     const auto contours =
-        certified_low(low, high, classes.classes, request.pairs && request.tile == TileKind::cube, set.figures);
+        certified_low(low, high, classes, request.pairs && request.tile == TileKind::cube, set.figures);
     set.tiles.push_back(make_tile_tables(
         low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t), classes));
     if (request.tile != TileKind::cube) continue;  // regions close contours of images, whose tiles are cubes
@@ -128,7 +140,7 @@ std::vector<CertifiedFigures> certify_all(int dim, TileKind tile) {
   std::vector<CertifiedFigures> figures;
   for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
     certified_low(ContourBuilder(lattice, dim, Alternative::low, t), ContourBuilder(lattice, dim, Alternative::high, t),
-                  classes.classes, tile == TileKind::cube, figures);
+                  classes, tile == TileKind::cube, figures);
   return figures;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <map>
 
 #include <fmt/format.h>
@@ -172,6 +171,16 @@ bool same_contour(const ContourBuilder& builder, const TileContour& a, const Til
   return form(a) == form(b);
 }
 
+/// Whether the symmetry that maps the smallest signature of the class to this one also maps its contour to this one's.
+bool is_image_of_representative(const ContourBuilder& builder, const std::vector<TileContour>& contours,
+                                const TileClasses& of_tile, std::uint32_t s) {
+  const Signature r = of_tile.classes.representatives[of_tile.classes.class_of[s]];
+  const TileSymmetry& g = of_tile.symmetries[of_tile.classes.element_of[s]];
+  const auto row = permutation_row(builder.tile(), g);
+  const std::uint8_t swaps = builder.dim() == 4 ? swaps_of(builder, r, s, row) : std::uint8_t{0};
+  return same_contour(builder, carried(builder, contours[r], row, swaps, g.reverses_orientation()), contours[s]);
+}
+
 void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>& contours, const TileClasses& of_tile,
                    TileTables& table) {
   const Transversal& classes = of_tile.classes;
@@ -274,27 +283,53 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder,
 }
 
 void certify_embedding(const ContourBuilder& builder, const std::vector<TileContour>& contours,
-                       CertifiedFigures& figures) {
+                       const TileClasses& classes, CertifiedFigures& figures) {
   const EmbeddingCertifier certifier(builder);
-  std::atomic<std::uint64_t> embedded = 0, searched = 0;
-  const auto judge = [&](int, std::uint64_t s) {
-    switch (certifier.of(contours[s])) {
-      case Evidence::proved:
-        ++embedded;
-        return;
-      case Evidence::searched:
-        ++searched;
-        return;
-      case Evidence::absent:
-        throw Error(
-            ErrorCode::CertificateFailed,
-            fmt::format("signature {} of the {}-tile: its simplices intersect for some positions", s, builder.dim()));
-    }
+  const auto nothing = [] { return 0; };
+  const auto finish = [](int) {};
+  std::vector<std::uint8_t> is_open(contours.size());
+  const auto prove = [&](int, std::uint64_t s) { is_open[s] = certifier.unproved_pairs(contours[s]).empty() ? 0 : 1; };
+  in_parallel(contours.size(), kChunk, 0, nothing, prove, finish);
+  // of each class one entry, and those that are not its images
+  std::map<Signature, SearchedEntry> entries;
+  for (std::uint32_t s = 0; s < contours.size(); ++s) {
+    if (is_open[s] == 0) continue;
+    const Signature of = is_image_of_representative(builder, contours, classes, s)
+                             ? classes.classes.representatives[classes.classes.class_of[s]]
+                             : s;
+    entries[of].signature = of;
+    ++entries[of].entries;
+    ++figures.searched;
+  }
+  figures.embedded = contours.size() - figures.searched;
+  figures.searches.clear();
+  for (const auto& [s, entry] : entries) figures.searches.push_back(entry);
+  const auto search = [&](int, std::uint64_t i) {
+    SearchedEntry& entry = figures.searches[i];
+    const auto pairs = certifier.unproved_pairs(contours[entry.signature]);
+    entry.pairs = pairs.size();
+    if (certifier.of(contours[entry.signature], entry.signature, pairs, figures.plan) == Evidence::absent)
+      throw Error(ErrorCode::CertificateFailed,
+                  fmt::format("signature {} of the {}-tile: its simplices intersect for some positions",
+                              entry.signature, builder.dim()));
   };
-  in_parallel(
-      contours.size(), kChunk, 0, [] { return 0; }, judge, [](int) {});
-  figures.embedded = embedded;
-  figures.searched = searched;
+  in_parallel(figures.searches.size(), 1, 0, nothing, search, finish);
+}
+
+std::string evidence_json(const CertifiedFigures& figures) {
+  std::string text =
+      fmt::format("\"embedded_proved\": {}, \"embedded_searched\": {}", figures.embedded, figures.searched);
+  if (figures.searches.empty()) return text;
+  std::string classes;
+  for (const SearchedEntry& e : figures.searches)
+    classes += fmt::format("{}{{\"signature\": {}, \"entries\": {}, \"unproved_pairs\": {}}}",
+                           classes.empty() ? "" : ", ", e.signature, e.entries, e.pairs);
+  const SearchPlan& plan = figures.plan;
+  return text +
+         fmt::format(
+             ", \"search\": {{\"seed\": {}, \"middle\": 1, \"uniform\": {}, \"near_ends\": {}, \"descents\": {}, "
+             "\"steps\": {}, \"intersections\": 0, \"classes\": [{}]}}",
+             plan.seed, plan.uniform, plan.near_ends, plan.descents, plan.steps, classes);
 }
 
 void check_inversion(int dim, const std::vector<TileContour>& low, const std::vector<TileContour>& high) {

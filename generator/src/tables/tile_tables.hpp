@@ -13,6 +13,7 @@
 #include "base/lattice.hpp"
 #include "filling/facets.hpp"
 #include "filling/pairs.hpp"
+#include "filling/position_search.hpp"
 #include "filling/regions.hpp"
 #include "filling/tile_contour.hpp"
 #include "symmetry/tile_symmetry.hpp"
@@ -62,6 +63,13 @@ struct RegionTables {
   std::vector<std::uint32_t> masks;                          ///< as in tables::RegionTable
 };
 
+/// An entry that is not proved to be embedded, and was searched for all entries of its class.
+struct SearchedEntry {
+  Signature signature = 0;    ///< the smallest of the class
+  std::uint64_t entries = 0;  ///< number of signatures that it stands for
+  std::uint64_t pairs = 0;    ///< pairs of its simplices that are not proved to be apart
+};
+
 /// Counts made while certifying one triangulation of one alternative.
 struct CertifiedFigures {
   Alternative alternative = Alternative::low;                ///< resolution of ambiguous squares
@@ -79,19 +87,27 @@ struct CertifiedFigures {
   std::array<std::uint64_t, 4> by_filling{};                 ///< number of facets by Filling
   std::uint64_t embedded = 0;                                ///< signatures proved to be embedded
   std::uint64_t searched = 0;                                ///< other signatures, embedded as far as a search shows
+  std::vector<SearchedEntry> searches;                       ///< one per class of these, by ascending signature
+  SearchPlan plan;                                           ///< the positions that each search tried
   PairFigures pairs;                                         ///< pairs of neighbours; all 0 if pairs were not certified
 };
 
 /// Makes the contours of all signatures by `make`, thread-safe, and certifies each as a contour of `builder`. `classes`:
-/// of the builder's tile. Uses all processors; the result does not depend on their number. Throws Error{CertificateFailed} with the first signature that fails.
+/// of the builder's tile. Uses all processors; the result does not depend on their number. Throws
+/// Error{CertificateFailed} with the first signature that fails.
 std::vector<TileContour> certified_contours(const ContourBuilder& builder,
                                             const std::function<TileContour(Signature)>& make,
                                             const Transversal& classes, CertifiedFigures& figures);
 
-/// Counts the contours that are proved to be embedded for all positions (filling/embedding_evidence.hpp). Throws
-/// Error{CertificateFailed} with the first signature whose simplices intersect for some positions.
+/// Counts the contours that are proved to be embedded for all positions, and searches the others
+/// (filling/embedding_evidence.hpp). Of contours that a symmetry carries into each other, one is searched. Throws
+/// Error{CertificateFailed} with the first signature whose simplices intersect for some positions. `classes`: of the
+/// builder's tile.
 void certify_embedding(const ContourBuilder& builder, const std::vector<TileContour>& contours,
-                       CertifiedFigures& figures);
+                       const TileClasses& classes, CertifiedFigures& figures);
+
+/// The numbers of proved and searched signatures and the searches, as members of a JSON object.
+std::string evidence_json(const CertifiedFigures& figures);
 
 /// Throws Error{Internal} unless, for every signature s, the contour `high[s]` is `low[~s]` with reversed orientation,
 /// vertex by vertex. This property lets one table serve both alternatives.

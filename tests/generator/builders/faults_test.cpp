@@ -6,6 +6,7 @@
 #include <string>
 
 #include "builder_checks.hpp"
+#include "meeting_cones.hpp"
 #include "missing_axis.hpp"
 #include "missing_cube.hpp"
 #include "missing_neighbours.hpp"
@@ -130,6 +131,29 @@ TEST(FaultyBuilder, OfTheTesseractWithItsArraysIsFound) {
   EXPECT_TRUE(is_found(TEGL_COPY(swapped_frame)));
   EXPECT_TRUE(is_found(TEGL_COPY(swapped_pair)));
   EXPECT_TRUE(is_found(TEGL_COPY(swapped_part)));
+}
+
+/// Cones of several components without the test that a hyperplane divides them: the topology is right, but cones meet.
+TEST(FaultyBuilder, OfConesThatMeetIsFound) {
+  GeneralTesseract general;
+  const gen::CubeLattice lattice(4);
+  const gen::EmbeddingProof proof(lattice.tile(4));
+  builders::edges::meeting_cones::ResolvedTesseract wrong;
+  builders::ResolvedTesseract right;
+  RandomKeys keys(5);
+  int found = 0;
+  for (int i = 0; i < 200000 && found < 3; ++i) {
+    ResolvedKey key = keys();
+    key.low_cubes = key.high_cubes = 0;
+    const auto view = wrong.find(key);
+    if (!is_on_edges(view) || tesseract_numbers(wrong, key) == tesseract_numbers(right, key)) continue;
+    EXPECT_EQ(fault_of_tesseract(wrong, general, key, Triangulation::compact, false), "");
+    const std::string fault = fault_of_embedding(proof, key, view);
+    if (fault.empty()) continue;
+    EXPECT_EQ(text_of(key) + "simplices intersect for some positions", fault);
+    ++found;
+  }
+  EXPECT_EQ(3, found);
 }
 
 /// Only masks depend on these edges: the numbers differ from those by table.

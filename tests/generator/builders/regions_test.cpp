@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
-#include "builders/region_proof.hpp"
 #include "builders/tesseract_arrays.hpp"
+#include "filling/region_proof.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::gen {

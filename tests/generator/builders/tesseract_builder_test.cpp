@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <vector>
 
 #include "../../support/share.hpp"
@@ -54,6 +55,27 @@ TEST(TesseractBuilder, EveryResolutionOfSquaresIsThatOfTheGeneralBuilderAndOfThe
         ASSERT_EQ(fault_of_tesseract(barycentric, general, key, Triangulation::barycentric, defined), "");
       }
     }
+}
+
+TEST(TesseractBuilder, FillingsOnEdgesAreProvedToBeEmbedded) {
+  const GeneralTesseract general;
+  const gen::CubeLattice lattice(4);
+  const gen::EmbeddingProof proof(lattice.tile(4));
+  const std::vector<ResolvedKey> keys = pairs_up_to_symmetry(general);
+  const std::size_t step = keys.size() / cases_to_test(keys.size(), unless_sanitized(keys.size() / 4, keys.size() / 48));
+  builders::ResolvedTesseract builder;
+  std::size_t proved = 0;
+  for (std::size_t i = 0; i < keys.size(); i += step)
+    for (const Choice centre : {Choice::separate, Choice::low, Choice::high}) {
+      ResolvedKey key = keys[i];
+      key.tile = centre;
+      const builders::ResolvedView view = builder.find(key);
+      if (!is_on_edges(view)) continue;
+      ASSERT_EQ(fault_of_embedding(proof, key, view), "");
+      ++proved;
+    }
+  std::printf("  %zu fillings have only vertices on edges\n", proved);
+  EXPECT_GT(proved, keys.size() / step / 50);
 }
 
 TEST(TesseractBuilder, RandomChoicesOfCubesAreThoseOfTheGeneralBuilder) {

@@ -18,6 +18,7 @@
 
 #include "../definition_oracle.hpp"
 #include "builder4.hpp"
+#include "filling/embedding_proof.hpp"
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tegl/tile/facets.hpp"
@@ -205,6 +206,20 @@ std::string fault_of_tesseract(Builder& builder, GeneralTesseract& general, cons
                   again.simplices + 4 * std::size_t{again.simplex_count}))
     return text_of(key) + "another filling without the plan";
   return "";
+}
+
+/// Whether a filling's vertices are all on edges of the tile, so that the proof is exact for it.
+inline bool is_on_edges(const builders::ResolvedView& view) {
+  return std::all_of(view.simplices, view.simplices + 4 * std::size_t{view.simplex_count},
+                     [](std::uint8_t v) { return v < 32; });
+}
+
+/// What is wrong with a filling on edges: "" if it is embedded for all positions of the points on them.
+inline std::string fault_of_embedding(const gen::EmbeddingProof& proof, const ResolvedKey& key,
+                                      const builders::ResolvedView& view) {
+  std::vector<gen::LocalSimplex> simplices(view.simplex_count);
+  for (std::size_t s = 0; s < simplices.size(); ++s) std::copy_n(view.simplices + 4 * s, 4, simplices[s].begin());
+  return proof.holds(simplices) ? "" : text_of(key) + "simplices intersect for some positions";
 }
 
 /// Random keys. Half have uniform signatures, the others fewer high or fewer low corners.

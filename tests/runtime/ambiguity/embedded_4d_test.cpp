@@ -11,6 +11,7 @@
 
 #include "estimators.hpp"
 #include "fields.hpp"
+#include "share.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
 
@@ -54,6 +55,53 @@ TEST(Embedded4d, RandomTilesDoNotIntersectThemselves) {
                                 << static_cast<int>(triangulation) << ", spread " << spread << ": " << hit.pairs
                                 << " pairs, " << hit.flat << " flat tetrahedra";
       }
+}
+
+/// Tests the signatures first, first + step, ... with all points in the middle of edges.
+TilesHit count_middle_tiles(Ambiguity ambiguity, Triangulation triangulation, unsigned first, unsigned step) {
+  ExtractOptions options;
+  options.ambiguity = ambiguity;
+  options.triangulation = triangulation;
+  options.work.threads = 1;
+  IntersectionOptions<4> alone;
+  alone.work.threads = 1;
+  TilesHit result;
+  std::vector<double> values(16);
+  for (unsigned signature = first; signature < 65'535; signature += step) {
+    for (unsigned v = 0; v < 16; ++v) values[v] = (signature >> v & 1u) != 0 ? 1.0 : -1.0;
+    const auto found = find_intersections(
+        extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options), alone);
+    result.tiles += found.is_embedded() ? 0 : 1;
+    result.pairs += found.pair_count;
+    result.flat += found.flat;
+  }
+  return result;
+}
+
+/// Cells of masks have all points in the middle. Compact cells by `mean`: all signatures; by other rules, a share.
+TEST(Embedded4d, PointsInTheMiddleDoNotIntersect) {
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+    for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::decider, Ambiguity::squares}) {
+      const bool is_whole = triangulation == Triangulation::compact && ambiguity == Ambiguity::mean;
+      const std::size_t count = cases_to_test(65'534, is_whole ? unless_sanitized(65'534, 1024) : 1024);
+      const auto step = static_cast<unsigned>(65'534 / count);
+      const TilesHit hit = count_middle_tiles(ambiguity, triangulation, 1, step);
+      EXPECT_EQ(hit.tiles, 0) << "ambiguity " << static_cast<int>(ambiguity) << ", triangulation "
+                              << static_cast<int>(triangulation) << ": " << hit.pairs << " pairs, " << hit.flat
+                              << " flat tetrahedra";
+    }
+}
+
+TEST(Embedded4d, ContoursOfMasksDoNotIntersectThemselves) {
+  std::mt19937 random(14);
+  std::vector<std::uint8_t> mask(6 * 6 * 6 * 6);
+  for (std::uint8_t& value : mask) value = static_cast<std::uint8_t>(random() & 1u);
+  const Image<std::uint8_t, 4> image(mask.data(), Grid<4>::unit({6, 6, 6, 6}));
+  for (const auto& [name, options] : all_ways()) {
+    const auto found = find_intersections(extract<double>(image, 0.5, options));
+    EXPECT_EQ(found.pair_count, 0u) << name;
+    EXPECT_EQ(found.flat, 0u) << name;
+  }
 }
 
 TEST(Embedded4d, ContoursOfNoiseDoNotIntersectThemselves) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Volumes of all tetrahedra of corners, and from these the signs for points on edges and for means.
-#include "builders/region_proof.hpp"
+#include "filling/region_proof.hpp"
 
 #include <bit>
 
+#include "base/determinant.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::gen {
@@ -13,21 +14,13 @@ namespace {
 
 constexpr std::uint8_t kPositive = 1, kNegative = 2;
 
-constexpr std::uint8_t kUnknown = 0xff;
-
-template <class Point>
-int volume(const Point& a, const Point& b, const Point& c, const Point& d) {
-  std::array<Point, 3> m{};
-  for (std::size_t i = 0; i < 3; ++i) m[0][i] = b[i] - a[i], m[1][i] = c[i] - a[i], m[2][i] = d[i] - a[i];
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
+constexpr std::uint8_t kNotComputed = 0xff;
 
 unsigned lowest(RegionProof::Points points) { return static_cast<unsigned>(std::countr_zero(points)); }
 
 }  // namespace
 
-RegionProof::RegionProof() : signs_(index(kPoints - 1, kPoints - 1, kPoints - 1, kPoints - 1) + 1, kUnknown) {
+RegionProof::RegionProof() : signs_(index(kPoints - 1, kPoints - 1, kPoints - 1, kPoints - 1) + 1, kNotComputed) {
   const auto corner = [](unsigned v) {
     return Point{static_cast<int>(2 * (v & 1u)), static_cast<int>(2 * (v >> 1 & 1u)), static_cast<int>(2 * (v >> 2))};
   };
@@ -50,11 +43,11 @@ RegionProof::Points RegionProof::on_ray(unsigned corners) {
 
 std::uint8_t RegionProof::signs_of(unsigned a, unsigned b, unsigned c, unsigned d) const {
   std::uint8_t& known = signs_[index(a, b, c, d)];
-  if (known != kUnknown) return known;
+  if (known != kNotComputed) return known;
   unsigned signs = 0;
   const bool has_equal = a == b || a == c || a == d || b == c || b == d || c == d;
   for (unsigned i = 0; i < 16 && !has_equal; ++i) {
-    const int sign = volume(ends_[a][i & 1u], ends_[b][i >> 1 & 1u], ends_[c][i >> 2 & 1u], ends_[d][i >> 3]);
+    const int sign = six_volumes(ends_[a][i & 1u], ends_[b][i >> 1 & 1u], ends_[c][i >> 2 & 1u], ends_[d][i >> 3]);
     signs |= sign > 0 ? kPositive : sign < 0 ? kNegative : 0u;
   }
   return known = static_cast<std::uint8_t>(signs);

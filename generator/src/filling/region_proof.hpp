@@ -17,7 +17,8 @@
 
 namespace tegl::gen {
 
-/// Signs of volumes of tetrahedra in the unit cube, for all positions. Not thread-safe: remembers what it was asked.
+/// Signs of volumes of tetrahedra in the unit cube, for all positions. Not thread-safe: const functions, too, store the
+/// signs that they compute.
 class RegionProof {
  public:
   /// A set of points: bit v for a corner, bit 8 + e for the point on an edge, kCentre for the cube's centre, and one
@@ -48,7 +49,7 @@ class RegionProof {
 
   using Point = std::array<int, 3>;
   std::array<std::array<Point, 2>, kPoints> ends_{};  ///< of each point's range, in halves of an edge
-  /// By points: bit 0, 1: whether the volume is positive, negative for some positions. kUnknown before it is asked for.
+  /// By points: bit 0, 1: whether the volume is positive, negative for some positions. kNotComputed: not known yet.
   mutable std::vector<std::uint8_t> signs_;
 };
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Places of all vertices of a tile's contour for given points on its edges, as the runtime computes them (table
+// contract: "Positions"), in integers: the same on all machines.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "filling/facets.hpp"
+#include "filling/simplex_meeting.hpp"
+
+namespace tegl::gen {
+
+/// Computes the places of one contour's vertices.
+class VertexPlaces {
+ public:
+  /// Copies what it needs of `contour`, a contour of `faces`, which must outlive this object.
+  VertexPlaces(const FaceContours& faces, const TileContour& contour);
+
+  /// The edges with a vertex.
+  [[nodiscard]] std::span<const std::uint8_t> edges() const noexcept { return edges_; }
+  /// The edges on which the place of a vertex depends (bit e).
+  [[nodiscard]] std::uint32_t edges_of(std::uint8_t vertex) const { return edges_of_[vertex]; }
+  /// `at`: by edge, the distance from its first end, in (0, 2^kGridBits). `places`: 256, by local vertex.
+  void compute(std::span<const std::int64_t> at, std::span<GridPoint> places) const;
+
+ private:
+  /// The simplices opposite to the apex of a cone, n - 1 or (in a 4-tile's cubes) two vertices each.
+  struct Cone {
+    std::uint8_t apex;
+    std::uint8_t per_face;
+    std::vector<LocalSimplex> faces;
+  };
+  void add_to_cone(const LocalSimplex& simplex, int count);
+  [[nodiscard]] GridPoint barycentre(const Cone& cone, std::span<const GridPoint> places) const;
+  [[nodiscard]] GridPoint mean(const Cone& cone, std::span<const GridPoint> places) const;
+  [[nodiscard]] GridPoint side_place(std::uint64_t mask, std::span<const GridPoint> places) const;
+
+  const Tile* tile_;
+  Triangulation triangulation_;
+  std::vector<std::uint8_t> edges_;
+  std::vector<Cone> cones_;  ///< cones in faces first
+  std::uint32_t first_side_;
+  std::vector<std::uint64_t> side_masks_;
+  std::array<std::uint32_t, 256> edges_of_{};
+};
+
+}  // namespace tegl::gen
