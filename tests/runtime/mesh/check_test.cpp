@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <random>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -387,6 +389,142 @@ TEST(Check, AgreesWithTheFacesCountedApart) {
       contour.simplices.push_back({rows[4 * s], rows[4 * s + 1], rows[4 * s + 2], rows[4 * s + 3]});
   EXPECT_EQ(check(contour).boundary_simplices, test::boundary_faces(contour).size());
   EXPECT_GT(check(contour).boundary_simplices, 0u);
+}
+
+/// Simplices of any dimension by their vertices.
+using Pieces = std::vector<Rows>;
+
+Pieces link_of(const Pieces& pieces, Index v) {
+  Pieces link;
+  for (Rows piece : pieces)
+    if (std::erase(piece, v) > 0) link.push_back(std::move(piece));
+  return link;
+}
+
+/// By definition, up to two dimensions: a 0-sphere has two points, a 0-ball one; else all links are spheres or balls,
+/// the pieces are connected, and surfaces have the Euler characteristic of a sphere or a disc.
+bool is_sphere_or_ball(const Pieces& pieces) {
+  const std::size_t width = pieces.front().size();
+  if (width == 1) return pieces.size() <= 2;
+  std::set<Index> vertices, reached{pieces.front().front()};
+  std::set<Rows> edges;
+  bool is_closed = true;
+  for (const Rows& piece : pieces) vertices.insert(piece.begin(), piece.end());
+  for (std::size_t round = 0; round < vertices.size(); ++round)
+    for (const Rows& piece : pieces)
+      if (std::any_of(piece.begin(), piece.end(), [&](Index v) { return reached.contains(v); }))
+        reached.insert(piece.begin(), piece.end());
+  if (reached != vertices) return false;
+  for (const Index v : vertices) {
+    const Pieces link = link_of(pieces, v);
+    if (!is_sphere_or_ball(link)) return false;
+    for (const Rows& piece : link)
+      for (const Index w : piece) {
+        is_closed = is_closed && link_of(link, w).size() != 1;
+        edges.insert({std::min(v, w), std::max(v, w)});
+      }
+  }
+  if (width == 2) return true;
+  return vertices.size() + pieces.size() == edges.size() + (is_closed ? 2 : 1);
+}
+
+/// Counts of `check` by definition.
+MeshReport counted(int d, const Rows& rows) {
+  MeshReport report;
+  std::map<Rows, std::vector<bool>> faces;  // the orientations that simplices induce
+  std::set<Index> vertices;
+  Pieces pieces;
+  const auto width = static_cast<std::size_t>(d) + 1;
+  for (std::size_t i = 0; i < rows.size(); i += width) {
+    const auto first = rows.begin() + static_cast<std::ptrdiff_t>(i);
+    const Rows row(first, first + d + 1);
+    vertices.insert(row.begin(), row.end());
+    pieces.push_back(row);
+    for (std::size_t omitted = 0; omitted < width; ++omitted) {
+      Rows face = row;
+      face.erase(face.begin() + static_cast<std::ptrdiff_t>(omitted));
+      bool is_odd = omitted % 2 != 0;
+      for (std::size_t k = 0; k + 1 < face.size(); ++k)
+        for (std::size_t j = 0; j + 1 < face.size(); ++j)
+          if (face[j] > face[j + 1]) {
+            std::swap(face[j], face[j + 1]);
+            is_odd = !is_odd;
+          }
+      faces[face].push_back(is_odd);
+    }
+  }
+  for (const auto& [face, sides] : faces) {
+    report.boundary_simplices += sides.size() == 1 ? 1 : 0;
+    report.nonmanifold_simplices += sides.size() > 2 ? 1 : 0;
+    report.orientation_conflicts += sides.size() == 2 && sides[0] == sides[1] ? 1 : 0;
+  }
+  std::set<Rows> edges;
+  for (const Rows& piece : pieces)
+    for (const Index v : piece)
+      for (const Index w : piece)
+        if (v < w) edges.insert({v, w});
+  report.vertices = vertices.size();
+  report.euler = static_cast<std::int64_t>(vertices.size()) - static_cast<std::int64_t>(edges.size()) +
+                 (d == 3 ? static_cast<std::int64_t>(faces.size()) : 0) +
+                 (d == 3 ? -1 : 1) * static_cast<std::int64_t>(pieces.size());
+  for (const Index v : vertices) report.bad_links += is_sphere_or_ball(link_of(pieces, v)) ? 0 : 1;
+  return report;
+}
+
+/// Parts of a torus with some vertices drawn together, and some simplices turned.
+Rows damaged(int d, const Rows& rows, std::mt19937_64& bits) {
+  const Index count = *std::max_element(rows.begin(), rows.end()) + 1;
+  std::vector<Index> drawn(count);
+  std::iota(drawn.begin(), drawn.end(), Index{0});
+  for (auto together = bits() % 3; together > 0; --together) drawn[bits() % count] = static_cast<Index>(bits() % count);
+  const double kept = 0.7 + 0.4 * test::unit_random(bits), turned = bits() % 2 == 0 ? 0.0 : 0.02;
+  const auto width = static_cast<std::size_t>(d) + 1;
+  Rows result;
+  for (std::size_t i = 0; i < rows.size(); i += width) {
+    Rows row;
+    for (std::size_t j = 0; j < width; ++j) row.push_back(drawn[rows[i + j]]);
+    if (std::set<Index>(row.begin(), row.end()).size() < width || test::unit_random(bits) >= kept) continue;
+    if (test::unit_random(bits) < turned) std::swap(row[0], row[1]);
+    result = joined(std::move(result), row);
+  }
+  return result;
+}
+
+TEST(Check, CountsAsByDefinition) {
+  std::mt19937_64 bits(7);
+  std::uint64_t good = 0, bad = 0;
+  for (int round = 0; round < 200; ++round)
+    for (const int d : {2, 3}) {
+      const Rows rows = damaged(d, d == 2 ? torus(5, 4) : three_torus(3), bits);
+      const MeshReport report = check_rows(d, rows), expected = counted(d, rows);
+      EXPECT_EQ(report.vertices, expected.vertices);
+      EXPECT_EQ(report.euler, expected.euler) << d << ", round " << round;
+      EXPECT_EQ(report.boundary_simplices, expected.boundary_simplices) << d << ", round " << round;
+      EXPECT_EQ(report.nonmanifold_simplices, expected.nonmanifold_simplices) << d << ", round " << round;
+      EXPECT_EQ(report.orientation_conflicts, expected.orientation_conflicts) << d << ", round " << round;
+      EXPECT_EQ(report.bad_links, expected.bad_links) << d << ", round " << round;
+      bad += expected.bad_links;
+      good += expected.vertices - expected.bad_links;
+    }
+  EXPECT_GT(bad, 100u);
+  EXPECT_GT(good, 1000u);
+}
+
+TEST(Check, IsTheSameForAnyNumberOfThreads) {
+  std::mt19937_64 bits(8);
+  const Rows rows = damaged(3, three_torus(16), bits);
+  const auto coordinates = moment_curve(16 * 16 * 16, 4);
+  const MeshReport one = check(3, rows, 4, coordinates, {.threads = 1});
+  EXPECT_GT(one.bad_links + one.boundary_simplices, 0u);
+  for (const unsigned threads : {2u, 5u, 0u}) {
+    const MeshReport report = check(3, rows, 4, coordinates, {.threads = threads});
+    for (const auto count :
+         {&MeshReport::vertices, &MeshReport::unused_vertices, &MeshReport::simplices, &MeshReport::components,
+          &MeshReport::boundary_simplices, &MeshReport::nonmanifold_simplices, &MeshReport::bad_links,
+          &MeshReport::orientation_conflicts, &MeshReport::degenerate_simplices, &MeshReport::nonfinite_vertices})
+      EXPECT_EQ(report.*count, one.*count) << threads << " threads";
+    EXPECT_EQ(report.euler, one.euler) << threads << " threads";
+  }
 }
 
 TEST(Check, AFanRoundOneVertexCostsNoMoreThanItsSize) {
