@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The compiled tables of cubes with resolved ambiguities do not intersect themselves: by the proof, which reads triangles
-// and masks only; by sampled positions, in exact integers, which share nothing with it; faults.
+// The compiled tables of cubes with resolved ambiguities do not intersect themselves: by the proof, which reads
+// triangles and masks only; by sampled positions, in exact integers, which share nothing with it; faults.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -65,9 +65,9 @@ struct Side {
 
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == high; }
 
-  /// Appends the side's part of a square: each polygon as a fan from its lowest corner, or from the middle one of three,
-  /// or coned. Adjacent cubes get the same triangles. Oriented outwards for the low side, inwards for the high side: this
-  /// continues the contour, which is oriented towards high.
+  /// Appends the side's part of a square: each polygon as a fan from its lowest corner, or from the middle one of
+  /// three, or coned. Adjacent cubes get the same triangles. Oriented outwards for the low side, inwards for the high
+  /// side: this continues the contour, which is oriented towards high.
   void add_square(unsigned q, std::vector<Triangle>& to) const {
     const unsigned axis = q / 2, b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2, at = (q % 2) << axis;
     std::array<unsigned, 4> ring = {at, at | 1u << b, at | 1u << b | 1u << c, at | 1u << c};

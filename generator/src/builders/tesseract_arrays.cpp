@@ -76,8 +76,8 @@ void define_signatures(std::string& text) {
     for (unsigned tile = 0; tile < 256; ++tile)
       for (unsigned f = 0; f < 8; ++f)
         signatures[half][tile] |= std::uint64_t{detail::face_signature(4, tile << (8 * half), f)} << (8 * f);
-  define(text, class_array("std::array<std::array<std::uint64_t, 256>, 2>", "kSignatures"), signatures, inner_array, "{{",
-         "}}");
+  define(text, class_array("std::array<std::array<std::uint64_t, 256>, 2>", "kSignatures"), signatures, inner_array,
+         "{{", "}}");
 }
 
 /// Squares of the cubes, by pair of axes and set of the pair's squares.
@@ -93,8 +93,8 @@ void define_squares(std::string& text) {
           if ((set >> sides & 1u) != 0)
             squares[pair][set] |= std::uint64_t{1} << (8 * f_of_c + q_of_c) | std::uint64_t{1} << (8 * f_of_d + q_of_d);
       }
-  define(text, class_array("std::array<std::array<std::uint64_t, 16>, 6>", "kSquaresOfPairs"), squares, inner_array, "{{",
-         "}}");
+  define(text, class_array("std::array<std::array<std::uint64_t, 16>, 6>", "kSquaresOfPairs"), squares, inner_array,
+         "{{", "}}");
 }
 
 /// Entries of cubes, by signature and resolution.

@@ -14,8 +14,8 @@
 
 namespace tegl::gen {
 
-/// The triangles of a polygon as a fan from its vertex with the largest number, with the polygon's orientation. If every
-/// polygon of a tesseract's cubes is such a fan, the cone from a component's largest vertex is embedded: the fans
+/// The triangles of a polygon as a fan from its vertex with the largest number, with the polygon's orientation. If
+/// every polygon of a tesseract's cubes is such a fan, the cone from a component's largest vertex is embedded: the fans
 /// contain each triangle around that vertex. (Fans from the smallest vertex give 0.7 % more tetrahedra on smooth data.)
 [[nodiscard]] std::vector<std::array<std::uint8_t, 3>> balanced_fan(const std::vector<std::uint8_t>& polygon);
 

@@ -32,7 +32,8 @@ class EmbeddingProof {
   /// A vector from the tile's centre to a point of its boundary, in halves of an edge.
   using Ray = std::array<int, 4>;
 
-  /// Local vertices from the edge count on are free on these rays: anywhere between the tile's centre and the ray's end.
+  /// Local vertices from the edge count on are free on these rays: anywhere between the tile's centre and the ray's
+  /// end. At most 32 corners and ray ends, and 32 edges and rays.
   explicit EmbeddingProof(const Tile& tile, std::span<const Ray> rays = {});
 
   /// For the local vertices after those on edges and rays: the set of edges (bit e; rays follow) of whose points the

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fills one or several polygons on a cube's boundary: a single polygon as a balanced fan, unless a chord of it lies in a
-// square; then by search. The surface between several polygons is radial (cube_tunnel.hpp). Every filling must pass the
-// certificate, and every list is proved to be embedded.
+// Fills one or several polygons on a cube's boundary: a single polygon as a balanced fan, unless a chord of it lies in
+// a square; then by search. The surface between several polygons is radial (cube_tunnel.hpp). Every filling must pass
+// the certificate, and every list is proved to be embedded.
 #include "filling/resolved_cube.hpp"
 
 #include <fmt/format.h>

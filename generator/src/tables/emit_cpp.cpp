@@ -198,8 +198,8 @@ EmittedFile emit_manifest(const TableSet& set) {
                    t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1), digest(t));
   if (set.resolved)
     fmt::format_to(Appender(text),
-                   "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"embedded_proved\": {}, \"stored_simplices\": {}, "
-                   "\"fnv1a\": \"{:016x}\"}}",
+                   "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"embedded_proved\": {}, "
+                   "\"stored_simplices\": {}, \"fnv1a\": \"{:016x}\"}}",
                    separator, set.resolved->entries.size(), certify_embedding(*set.resolved),
                    set.resolved->triangles.size() / 3, digest(*set.resolved));
   const auto add_rows = [&](const std::string& name, const RowTables& rows) {

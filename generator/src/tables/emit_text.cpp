@@ -52,8 +52,8 @@ std::string banner(const TableSet& set, Language language, const std::string& wh
 
 std::string resolved_certificate(const ResolvedCube& table) {
   return fmt::format(
-      "Certified: {} entries in 3 ways each, {} triangles, {} vertices beside edge points; {} proved to be embedded for "
-      "all positions",
+      "Certified: {} entries in 3 ways each, {} triangles, {} vertices beside edge points; {} proved to be embedded "
+      "for all positions",
       table.entries.size(), table.triangles.size() / 3, table.masks.size(), certify_embedding(table));
 }
 

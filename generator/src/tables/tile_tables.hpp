@@ -92,8 +92,8 @@ struct CertifiedFigures {
   PairFigures pairs;                                         ///< pairs of neighbours; all 0 if pairs were not certified
 };
 
-/// Makes the contours of all signatures by `make`, thread-safe, and certifies each as a contour of `builder`. `classes`:
-/// of the builder's tile. Uses all processors; the result does not depend on their number. Throws
+/// Makes the contours of all signatures by `make`, thread-safe, and certifies each as a contour of `builder`.
+/// `classes`: of the builder's tile. Uses all processors; the result does not depend on their number. Throws
 /// Error{CertificateFailed} with the first signature that fails.
 std::vector<TileContour> certified_contours(const ContourBuilder& builder,
                                             const std::function<TileContour(Signature)>& make,

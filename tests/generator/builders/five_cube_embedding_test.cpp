@@ -106,7 +106,8 @@ class FiveEvidence {
     roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
     std::vector<Part> parts(roots.size());
     const auto part_of = [&](Id v) -> Part& {
-      return parts[static_cast<std::size_t>(std::lower_bound(roots.begin(), roots.end(), sets.find(v)) - roots.begin())];
+      return parts[static_cast<std::size_t>(std::lower_bound(roots.begin(), roots.end(), sets.find(v)) -
+                                            roots.begin())];
     };
     for (std::size_t i = 0; i < contour.simplices.size(); ++i) {
       Part& part = part_of(contour.simplices[i][0]);

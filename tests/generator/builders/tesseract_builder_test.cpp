@@ -62,7 +62,8 @@ TEST(TesseractBuilder, FillingsOnEdgesAreProvedToBeEmbedded) {
   const gen::CubeLattice lattice(4);
   const gen::EmbeddingProof proof(lattice.tile(4));
   const std::vector<ResolvedKey> keys = pairs_up_to_symmetry(general);
-  const std::size_t step = keys.size() / cases_to_test(keys.size(), unless_sanitized(keys.size() / 4, keys.size() / 48));
+  const std::size_t share = unless_sanitized(keys.size() / 4, keys.size() / 48);
+  const std::size_t step = keys.size() / cases_to_test(keys.size(), share);
   builders::ResolvedTesseract builder;
   std::size_t proved = 0;
   for (std::size_t i = 0; i < keys.size(); i += step)
