@@ -91,24 +91,38 @@ function(tegl_quick_compile target)
   endif()
 endfunction()
 
-# tegl_test_precompile(target): the same for a test program. All of them share what one of them has read.
+# tegl_quick_level(level targets...): the optimisation level of targets with TEGL_QUICK_BUILD, whatever the configuration.
+function(tegl_quick_level level)
+  if(TEGL_QUICK_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    foreach(target IN LISTS ARGN)
+      target_compile_options(${target} PRIVATE ${level})
+    endforeach()
+  endif()
+endfunction()
+
+# tegl_test_precompile(target [level]): the same for a test program. All of them with the same level of tegl_quick_level share
+# what one of them has read.
 function(tegl_test_precompile target)
   if(NOT TEGL_PRECOMPILE_HEADERS OR CMAKE_CXX_COMPILER_LAUNCHER)
     return()
   endif()
-  if(NOT TARGET tegl_test_headers)
+  set(headers tegl_test_headers${ARGN})
+  if(NOT TARGET ${headers})
     set(source ${PROJECT_BINARY_DIR}/tegl_test_headers.cpp)
     if(NOT EXISTS ${source})
       file(WRITE ${source} "int main() { return 0; }\n")
     endif()
     # A program, as tests are: objects of libraries have other flags.
-    add_executable(tegl_test_headers EXCLUDE_FROM_ALL ${source})
-    target_link_libraries(tegl_test_headers PRIVATE tegl::tegl Eigen3::Eigen GTest::gmock)
-    tegl_quick_compile(tegl_test_headers)
-    target_precompile_headers(tegl_test_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
+    add_executable(${headers} EXCLUDE_FROM_ALL ${source})
+    target_link_libraries(${headers} PRIVATE tegl::tegl Eigen3::Eigen GTest::gmock)
+    tegl_quick_compile(${headers})
+    if(ARGN)
+      tegl_quick_level(${ARGN} ${headers})
+    endif()
+    target_precompile_headers(${headers} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
       <functional> <map> <random> <set> <string> <vector> <gtest/gtest.h> <gmock/gmock.h> <Eigen/Core>)
   endif()
-  target_precompile_headers(${target} REUSE_FROM tegl_test_headers)
+  target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
 
 # tegl_define_where_used(macro text SOURCES sources...): defines the macro as a string for those sources that name it. The
@@ -126,9 +140,10 @@ function(tegl_define_where_used macro text)
   endforeach()
 endfunction()
 
-# tegl_add_test(name sources... LIBS libraries...): a GoogleTest program, its cases known to ctest one by one.
+# tegl_add_test(name sources... LIBS libraries... [UNOPTIMISED]): a GoogleTest program, its cases known to ctest one by one.
+# UNOPTIMISED: its own code is short of loops, and is not optimised with TEGL_QUICK_BUILD.
 function(tegl_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LIBS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "UNOPTIMISED" "TIMEOUT" "LIBS")
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} Eigen3::Eigen GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
@@ -142,8 +157,13 @@ function(tegl_add_test name)
   endif()
   tegl_warnings(${name})
   tegl_quick_compile(${name})
+  set(level)
+  if(arg_UNOPTIMISED AND TEGL_QUICK_BUILD)
+    set(level -O0)
+    tegl_quick_level(${level} ${name})
+  endif()
   tegl_unity(${name})
-  tegl_test_precompile(${name})
+  tegl_test_precompile(${name} ${level})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()

@@ -103,13 +103,13 @@ job_count() {
   echo $((cores < by_memory ? cores : by_memory))
 }
 
-# build PRESET [TARGET...]: configures and builds it in build/PRESET (`program`: build/release); generates the tables on the way.
+# build PRESET [TARGET...]: configures and builds it in build/PRESET (`program`: build/release); generates the tables first.
 build() {
   local preset=$1
   shift
   # ccache, where it is installed, makes a rebuild after a change of branch quick. CMake reads these variables. The presets
-  # test and program compile many sources together, which it rarely has, and test precompiles headers instead.
-  if [[ $preset != test && $preset != program ]] && command -v ccache >/dev/null; then
+  # test, demo and program compile many sources together, which it rarely has, and test precompiles headers instead.
+  if [[ ! $preset =~ ^(test|demo|program)$ ]] && command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
     # Checkouts in other folders share what is in the cache: paths below the checkout count from it.
     export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
