@@ -130,14 +130,14 @@ def test_intersections_are_found_with_their_places():
     assert embedded.is_embedded and embedded.count == 0 and embedded.tiles == 0
     assert embedded.pairs.shape == (0, 2) and embedded.places.shape == (0, 3) and embedded.depths.shape == (0,)
     # a triangle in the plane z = 0 (the last column), pierced by another; one far away; a flat one
-    vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 2, -1], [1, 2, 3], [9, 9, 3], [20, 0, 0], [21, 0, 0], [20, 1, 0],
+    vertices = np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0], [2, 2, -1], [2, 2, 1], [-9, 9, 3], [20, 0, 0], [21, 0, 0], [20, 1, 0],
                          [5, 5, 5], [6, 6, 6], [7, 7, 7]], float)
     contour = tegl.Contour(vertices, np.arange(12, dtype=np.uint32).reshape(4, 3))
     found = tegl.intersections(contour, tile=[10, 10, 2], origin=0.5)
     assert (found.simplices, found.count, found.intersecting, found.flat) == (4, 1, 2, 1) and not found.is_embedded
     assert np.array_equal(found.pairs, [[0, 1]]) and found.pairs.dtype == np.uint32
     x, y, z = found.places[0]
-    assert abs(z) < 1e-12 and x >= 1 and y >= 2 and x + y <= 4 + 1e-12
+    assert abs(z) < 1e-12 and x >= -1e-12 and y >= -1e-12 and x + y <= 9 + 1e-12
     assert found.depths[0] == pytest.approx(1.0)  # the second reaches 1 below the first
     assert found.tiles == 4 and found.tiles_hit == 2
     assert contour.intersections(most_listed=0).count == 1 and len(contour.intersections(most_listed=0).pairs) == 0

@@ -78,7 +78,7 @@ class SimplifyCommand final : public ContourInputCommand {
         .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
-    app().add_flag("--no-check", no_check_, "skip the check of the result, and the search for intersections in it");
+    app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
     app().footer(kSimplifyExamples);
   }
