@@ -57,7 +57,7 @@ double content_outwards(const CanonicalSimplex<N, Real>& simplex, int side, cons
 
 /// Expects `closed` to contain all simplices of `open`, and each of its other simplices, the caps, to lie in one side
 /// of the border with no corner outside the image. Returns the content of the caps in each side; caps that face inwards
-/// count negatively (in noise, 4D caps of one cube may overlap).
+/// count negatively.
 template <int N, class Real, Value T>
 std::array<double, 2 * N> expect_caps_in_border(const Contour<N, Real>& closed, const Contour<N, Real>& open,
                                                 const Image<T, N>& image) {

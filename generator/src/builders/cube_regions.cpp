@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A region of a cube is bounded by parts of its squares and of the contour. A region bounded by a sphere is a ball. It
-// is coned: from one of its corners if the cone adds no simplex in a square, otherwise from a new vertex. A region
-// along a tunnel is a thickened sphere with holes, one hole per polygon. Cuts from each polygon to the next around a
-// ring divide it into two balls.
-//
-// Theory: side filling; regions that contain the cube's centre are star-shaped, the others are collars.
+// is divided into tetrahedra that are proved to be positive (region_maker.hpp). If none are found, a region that is a
+// ball is coned: from one of its corners if the cone adds no simplex in a square, otherwise from a new vertex.
 #include "builders/cube_regions.hpp"
 
 #include <algorithm>
@@ -15,8 +12,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "builders/region_maker.hpp"
 #include "filling/cube_frame.hpp"
+#include "filling/region_maker.hpp"
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -25,28 +22,19 @@ namespace tegl::gen {
 namespace {
 
 using detail::edge_number;
-using detail::face_corners;
-using detail::face_edges;
 using detail::face_sign;
 
 using Triangle = std::array<std::uint8_t, 3>;
 using Tetrahedron = CubeRegions::Tetrahedron;
 using Set = std::uint64_t;  ///< bit set of local vertices
 
-constexpr unsigned kFirstEdge = CubeRegions::kFirstEdge, kFirstOwn = CubeRegions::kFirstOwn,
-                   kFirstSquare = CubeRegions::kFirstSquare;
-constexpr unsigned kEnd = kFirstSquare + 6;  ///< one past the last local vertex
+constexpr unsigned kFirstEdge = CubeRegions::kFirstEdge, kFirstOwn = CubeRegions::kFirstOwn;
 
 constexpr Set bit(unsigned v) { return Set{1} << v; }
 constexpr Set set_of(const Triangle& t) { return bit(t[0]) | bit(t[1]) | bit(t[2]); }
 
 /// Local vertices in each square.
-const std::array<Set, 6> kSquares = [] {
-  std::array<Set, 6> result{};
-  for (unsigned q = 0; q < 6; ++q)
-    result[q] = face_corners(3, q) | Set{face_edges(3, q)} << kFirstEdge | bit(kFirstSquare + q);
-  return result;
-}();
+const std::array<Set, 6> kSquares = RegionFrame().squares;
 
 bool in_one_square(Set vertices) {
   return std::any_of(kSquares.begin(), kSquares.end(), [&](Set square) { return (vertices & ~square) == 0; });
@@ -61,13 +49,12 @@ std::uint8_t edge_between(unsigned a, unsigned b) {
 struct Side {
   unsigned signature, high_squares;
   bool high;
-  bool has_square_centres;  ///< polygons with more than three vertices are coned from their barycentre
 
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == high; }
 
   /// Appends the side's part of a square: each polygon as a fan from its lowest corner, or from the middle one of
-  /// three, or coned. Adjacent cubes get the same triangles. Oriented outwards for the low side, inwards for the high
-  /// side: this continues the contour, which is oriented towards high.
+  /// three. Adjacent cubes get the same triangles. Oriented outwards for the low side, inwards for the high side: this
+  /// continues the contour, which is oriented towards high.
   void add_square(unsigned q, std::vector<Triangle>& to) const {
     const unsigned axis = q / 2, b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2, at = (q % 2) << axis;
     std::array<unsigned, 4> ring = {at, at | 1u << b, at | 1u << b | 1u << c, at | 1u << c};
@@ -84,9 +71,6 @@ struct Side {
     if (apart) {
       for (std::size_t i = 0; i < n; ++i)
         if (outline[i] < 8) to.push_back({outline[(i + n - 1) % n], outline[i], outline[(i + 1) % n]});
-    } else if (corners != 0 && n > 3 && has_square_centres) {
-      for (std::size_t i = 0; i < n; ++i)
-        to.push_back({static_cast<std::uint8_t>(kFirstSquare + q), outline[i], outline[(i + 1) % n]});
     } else if (corners != 0) {
       const auto is_apex = [&](std::size_t i) {
         return corners != 3 ? outline[i] == *std::min_element(outline.begin(), outline.end())
@@ -140,7 +124,7 @@ std::vector<std::vector<Triangle>> parts_of(const std::vector<Triangle>& triangl
 
 /// Whether the cone of a sphere from `apex` adds no simplex in a square beyond the square's own triangulation.
 bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
-  std::array<Set, kEnd> around{};
+  std::array<Set, RegionFrame::kEnd> around{};
   std::set<Set> triangles;
   for (const Triangle& t : sphere) {
     triangles.insert(set_of(t));
@@ -159,25 +143,17 @@ bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
 }
 
 /// The vertices of a list and of a side for divide_region.
-RegionFrame frame_of(const CubeLists& lists, std::size_t number, const std::vector<Triangle>& contour,
-                     const Side& side) {
+RegionFrame frame_of(const CubeLists& lists, std::size_t number, const std::vector<Triangle>& contour, bool is_cap) {
   RegionFrame frame;
-  frame.squares = kSquares;
-  for (unsigned v = 0; v < kFirstOwn; ++v) frame.points[v] = RegionProof::Points{1} << v;
+  frame.is_cap = is_cap;
   if (number < lists.lists.size())
     for (unsigned j = 0; j < lists.lists[number].own_vertices; ++j) {
       const std::uint32_t mask = lists.lists[number].masks[j];
       frame.points[kFirstOwn + j] = is_on_ray(mask) ? RegionProof::on_ray(mask) : mask;
-      if (j < lists.lists[number].barycentres && !side.has_square_centres) frame.barycentres |= bit(kFirstOwn + j);
+      if (j < lists.lists[number].barycentres && !is_cap) frame.barycentres |= bit(kFirstOwn + j);
     }
-  for (unsigned q = 0; q < 6; ++q) {
-    std::vector<Triangle> square;
-    side.add_square(q, square);
-    for (const Triangle& t : square)
-      for (const std::uint8_t v : t)
-        if (v < kFirstOwn) frame.points[kFirstSquare + q] |= RegionProof::Points{1} << v;
-  }
-  for (const Triangle& t : contour) frame.on_contour |= set_of(t);
+  for (const Triangle& t : contour)
+    if (!is_cap) frame.on_contour |= set_of(t);
   return frame;
 }
 
@@ -199,218 +175,33 @@ class RegionMaker {
     tetrahedra = division->tetrahedra;
     if (high)
       for (Tetrahedron& t : tetrahedra) std::swap(t[2], t[3]);
-    if (division->centre != 0) centres.push_back(division->centre);
+    centres = division->centres;
     return true;
   }
 
-  /// `surface`: the whole boundary of the region. `contour`: triangles of the list.
-  void fill(const std::vector<Triangle>& surface, const std::vector<Triangle>& contour) {
-    const int euler = euler_characteristic(surface);
-    if (euler == 2) return fill_ball(surface);
-    contour_ = contour;
-    fill_collar(surface, static_cast<unsigned>(2 - euler / 2));
-  }
-
- private:
-  void fill_ball(const std::vector<Triangle>& sphere) {
+  /// Cones a ball, given by its whole boundary.
+  void fill(const std::vector<Triangle>& sphere) {
+    if (euler_characteristic(sphere) != 2)
+      throw Error(ErrorCode::CertificateFailed, "a region of a cube that is not a ball and has no proved division");
     const bool is_simplex = sphere.size() == 4;
     Set corners = 0;
     for (const Triangle& t : sphere) corners |= set_of(t) & 0xffu;
     for (; corners != 0 && (is_simplex || !is_barycentric_); corners &= corners - 1)
       if (const auto v = static_cast<std::uint8_t>(std::countr_zero(corners)); may_be_apex(sphere, v))
         return cone(sphere, v);
-    cone(sphere, add_centre(sphere));
+    Set vertices = 0;
+    for (const Triangle& t : sphere) vertices |= set_of(t);
+    centres.push_back(static_cast<std::uint32_t>(vertices & (bit(kFirstOwn) - 1)));
+    cone(sphere, static_cast<std::uint8_t>(CubeRegions::kFirstCentre));
   }
 
+ private:
   void cone(const std::vector<Triangle>& sphere, std::uint8_t apex) {
     for (const Triangle& t : sphere)
       if ((set_of(t) & bit(apex)) == 0) tetrahedra.push_back({apex, t[0], t[1], t[2]});
   }
 
-  std::uint8_t add_centre(const std::vector<Triangle>& around) {
-    Set vertices = 0;
-    for (const Triangle& t : around) vertices |= set_of(t);
-    return add_centre(vertices);
-  }
-  std::uint8_t add_centre(Set around) {
-    centres.push_back(static_cast<std::uint32_t>(around & (bit(kFirstOwn) - 1)));
-    if (CubeRegions::kFirstCentre + centres.size() > CubeRegions::kVertices)
-      throw Error(ErrorCode::Internal, "a region of a cube with too many centres");
-    return static_cast<std::uint8_t>(CubeRegions::kFirstCentre + centres.size() - 1);
-  }
-
-  /// A closed curve across the collar: from one polygon to another along the cube's boundary, and back along the
-  /// contour.
-  struct Curve {
-    std::vector<std::uint8_t> vertices;
-    Set set = 0;
-    unsigned from = 0, to = 0;  ///< polygons
-  };
-
-  void fill_collar(const std::vector<Triangle>& surface, unsigned polygons) {
-    find_curves(surface);
-    for (unsigned count = polygons; count < polygons + kMoreCurves; ++count) {
-      std::vector<const Curve*> chosen;
-      if (choose(surface, polygons, count, 0, 0, chosen)) return;
-    }
-    throw Error(ErrorCode::CertificateFailed, "a collar in a cube that is not cut into balls");
-  }
-
-  /// Searches for `count` disjoint curves that cut the collar into balls, and fills it with them.
-  bool choose(const std::vector<Triangle>& surface, unsigned polygons, unsigned count, std::size_t next, Set used,
-              std::vector<const Curve*>& chosen) {
-    if (chosen.size() == count) return meet_all_twice(polygons, chosen) && cut(surface, polygons, chosen);
-    for (; next < curves_.size(); ++next) {
-      if ((curves_[next].set & used) != 0) continue;
-      chosen.push_back(&curves_[next]);
-      if (choose(surface, polygons, count, next + 1, used | curves_[next].set, chosen)) return true;
-      chosen.pop_back();
-    }
-    return false;
-  }
-
-  static bool meet_all_twice(unsigned polygons, const std::vector<const Curve*>& curves) {
-    std::array<unsigned, 8> ends{};
-    for (const Curve* curve : curves) ++ends[curve->from], ++ends[curve->to];
-    return std::all_of(ends.begin(), ends.begin() + polygons, [](unsigned n) { return n >= 2; });
-  }
-
-  /// Cuts the surface along the curves. If each part, closed by the curves' discs, is a sphere whose part on the cube's
-  /// boundary is a disc, fills all parts and returns true.
-  bool cut(const std::vector<Triangle>& surface, unsigned polygons, const std::vector<const Curve*>& curves) {
-    std::map<DirectedEdge, std::size_t> curve_of;
-    for (std::size_t c = 0; c < curves.size(); ++c)
-      for (std::size_t i = 0, n = curves[c]->vertices.size(); i < n; ++i) {
-        const DirectedEdge e{curves[c]->vertices[i], curves[c]->vertices[(i + 1) % n]};
-        curve_of[e] = curve_of[reversed(e)] = c;
-      }
-    auto parts = parts_of(surface, [&](DirectedEdge e) { return !curve_of.contains(e); });
-    if (parts.size() + polygons != curves.size() + 2) return false;  // Euler's formula, if all parts are discs
-    // close the parts by discs
-    const std::size_t before = centres.size();
-    std::vector<std::uint8_t> middle;
-    for (const Curve* curve : curves) middle.push_back(add_centre(curve->set));
-    for (auto& part : parts) {
-      const bool is_product = is_outer_part_a_disc(part);
-      const std::vector<Triangle> own = part;
-      for (const Triangle& t : own)
-        for (unsigned i = 0; i < 3; ++i)
-          if (const auto at = curve_of.find(edge(t, i)); at != curve_of.end())
-            part.push_back({middle[at->second], at->first.second, at->first.first});
-      if (is_product && is_closed(part) && euler_characteristic(part) == 2) continue;
-      centres.resize(before);
-      return false;
-    }
-    // fill
-    for (const auto& part : parts) cone(part, add_centre(part));
-    return true;
-  }
-
-  /// Whether the part on the cube's boundary is a disc. The collar is then its product with an interval.
-  [[nodiscard]] bool is_outer_part_a_disc(const std::vector<Triangle>& part) const {
-    std::vector<Triangle> outer;
-    std::set<Set> edges;
-    Set vertices = 0;
-    for (const Triangle& t : part) {
-      if (std::find(contour_.begin(), contour_.end(), t) != contour_.end()) continue;
-      outer.push_back(t);
-      vertices |= set_of(t);
-      for (unsigned i = 0; i < 3; ++i) edges.insert(bit(t[i]) | bit(t[(i + 1) % 3]));
-    }
-    return parts_of(outer, [](DirectedEdge) { return true; }).size() == 1 &&
-           std::popcount(vertices) - static_cast<int>(edges.size()) + static_cast<int>(outer.size()) == 1;
-  }
-
-  static bool is_closed(const std::vector<Triangle>& triangles) {
-    std::set<DirectedEdge> edges;
-    for (const Triangle& t : triangles)
-      for (unsigned i = 0; i < 3; ++i)
-        if (!edges.insert(edge(t, i)).second) return false;
-    return std::all_of(edges.begin(), edges.end(), [&](DirectedEdge e) { return edges.contains(reversed(e)); }) &&
-           parts_of(triangles, [](DirectedEdge) { return true; }).size() == 1;
-  }
-
-  /// Finds all short curves, sorted by length.
-  void find_curves(const std::vector<Triangle>& surface) {
-    outside_ = {}, inside_ = {}, polygon_of_.fill(kNoPolygon);
-    std::set<Set> contour;
-    for (const Triangle& t : contour_) contour.insert(set_of(t));
-    for (const Triangle& t : surface)
-      for (const std::uint8_t v : t) (contour.contains(set_of(t)) ? inside_ : outside_)[v] |= set_of(t) & ~bit(v);
-    number_polygons();
-    curves_.clear();
-    for (std::uint8_t p = kFirstEdge; p < kFirstOwn; ++p)
-      if (polygon_of_[p] != kNoPolygon) {
-        path_ = {p};
-        go_outside();
-      }
-    std::stable_sort(curves_.begin(), curves_.end(),
-                     [](const Curve& a, const Curve& b) { return a.vertices.size() < b.vertices.size(); });
-  }
-
-  /// Numbers the polygons: vertices connected by edges that belong both to the contour and to a square.
-  void number_polygons() {
-    unsigned count = 0;
-    for (unsigned p = kFirstEdge; p < kFirstOwn; ++p) {
-      if (inside_[p] == 0 || polygon_of_[p] != kNoPolygon) continue;
-      std::vector<unsigned> reached{p};
-      polygon_of_[p] = count;
-      for (std::size_t k = 0; k < reached.size(); ++k)
-        for (Set rest = inside_[reached[k]] & outside_[reached[k]]; rest != 0; rest &= rest - 1) {
-          const auto q = static_cast<unsigned>(std::countr_zero(rest));
-          if (polygon_of_[q] != kNoPolygon) continue;
-          polygon_of_[q] = count;
-          reached.push_back(q);
-        }
-      ++count;
-    }
-  }
-
-  /// Extends the path along the cube's boundary, over corners and barycentres of squares, to another polygon.
-  void go_outside() {
-    constexpr std::size_t kMostCorners = 3;
-    const std::uint8_t here = path_.back();
-    for (Set rest = outside_[here]; rest != 0; rest &= rest - 1) {
-      const auto next = static_cast<std::uint8_t>(std::countr_zero(rest));
-      if (std::find(path_.begin(), path_.end(), next) != path_.end()) continue;
-      const bool is_corner = next < kFirstEdge || next >= kFirstSquare;
-      if (!is_corner && (polygon_of_[next] <= polygon_of_[path_[0]] || path_.size() == 1)) continue;
-      if (is_corner && path_.size() > kMostCorners) continue;
-      path_.push_back(next);
-      is_corner ? go_outside() : go_inside();
-      path_.pop_back();
-    }
-  }
-
-  /// Closes the path along the contour, over at most kMostBetween vertices in between.
-  void go_inside() {
-    const std::size_t outer = path_.size();
-    go_inside(outer, polygon_of_[path_.back()]);
-  }
-  void go_inside(std::size_t outer, unsigned to) {
-    constexpr std::size_t kMostBetween = 1;
-    const std::uint8_t here = path_.back();
-    if ((inside_[here] & bit(path_[0])) != 0) {
-      Curve& curve = curves_.emplace_back(Curve{path_, 0, polygon_of_[path_[0]], to});
-      for (const std::uint8_t v : path_) curve.set |= bit(v);
-    }
-    if (path_.size() == outer + kMostBetween) return;
-    for (Set rest = inside_[here]; rest != 0; rest &= rest - 1) {
-      const auto next = static_cast<std::uint8_t>(std::countr_zero(rest));
-      if (std::find(path_.begin(), path_.end(), next) != path_.end()) continue;
-      path_.push_back(next);
-      go_inside(outer, to);
-      path_.pop_back();
-    }
-  }
-
-  static constexpr unsigned kNoPolygon = ~0u, kMoreCurves = 3;
-  std::vector<Triangle> contour_;
   bool is_barycentric_;
-  std::array<Set, kEnd> outside_{}, inside_{};  ///< neighbours in squares and on the contour
-  std::array<unsigned, kEnd> polygon_of_{};
-  std::vector<std::uint8_t> path_;
-  std::vector<Curve> curves_;
 };
 
 /// The certificate of a region: its boundary is the surface, with orientations; the link of every vertex is a disc, or
@@ -466,17 +257,18 @@ std::size_t CubeRegions::proved() const {
       std::count_if(regions.begin(), regions.end(), [](const Region& r) { return r.is_proved; }));
 }
 
-CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
+CubeRegions make_cube_regions(const CubeLists& lists, bool is_cap) {
   const RegionProof proof;
   CubeRegions result;
   const std::size_t whole = lists.lists.size();
   for (std::size_t number = 0; number <= whole; ++number)
     for (const bool high : {false, true}) {
       result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
+      if (is_cap && !high) continue;
       const bool is_whole = number == whole;
       // boundary of the side
       const Side side{is_whole ? (high ? 255u : 0u) : lists.lists[number].signature,
-                      is_whole ? 0u : lists.lists[number].high_squares, high, has_square_centres};
+                      is_whole ? 0u : lists.lists[number].high_squares, high};
       std::vector<Triangle> surface, contour;
       for (unsigned q = 0; q < 6; ++q) side.add_square(q, surface);
       if (!is_whole) {
@@ -487,11 +279,14 @@ CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres) {
                              static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
         surface.insert(surface.end(), contour.begin(), contour.end());
       }
-      const RegionFrame frame = frame_of(lists, number, contour, side);
+      const RegionFrame frame = frame_of(lists, number, contour, is_cap);
       // regions
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
         RegionMaker maker(lists.triangulation == Triangulation::barycentric);
-        if (!maker.divide(proof, frame, part, high)) maker.fill(part, contour);
+        if (!maker.divide(proof, frame, part, high)) {
+          if (is_cap) throw Error(ErrorCode::CertificateFailed, "a cap of a cube without a proved division");
+          maker.fill(part);
+        }
         certify(maker.tetrahedra, part);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);

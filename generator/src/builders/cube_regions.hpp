@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "builders/cube_lists.hpp"
-#include "builders/region_vertices.hpp"
+#include "filling/region_vertices.hpp"
 
 namespace tegl::gen {
 
@@ -29,14 +29,15 @@ struct CubeRegions : RegionVertices {
   std::vector<Region> regions;
   std::vector<Tetrahedron> tetrahedra;  ///< oriented so that they induce the list's triangles
   std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near, or
-                                        ///< kFirstDouble << j: on the ray of own vertex j
+                                        ///< kFirstDouble << j: on the ray of own vertex j, or
+                                        ///< kNear | corner | edge: near the corner, on the way to the edge's point
 
   [[nodiscard]] std::size_t proved() const;  ///< number of regions that are proved
 };
 
-/// `has_square_centres`: squares are triangulated as in tables::region_table of the barycentric triangulation, to close
-/// contours at the image border; else each polygon in a square is a fan from its lowest corner, or from the middle one
-/// of three corners. Certifies every region. Throws Error{CertificateFailed}.
-[[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool has_square_centres);
+/// `is_cap`: to close contours at the image border; then only the high sides. In squares, each
+/// polygon is a fan from its lowest corner, or from the middle one of three corners, as in the regions of
+/// RegionStyle::fan. Certifies every region. Throws Error{CertificateFailed}.
+[[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool is_cap);
 
 }  // namespace tegl::gen

@@ -246,7 +246,7 @@ TesseractArrays make_tesseract_arrays() {
     arrays.lists.push_back(make_cube_lists(arrays.cube, variants));
     arrays.regions.push_back(make_cube_regions(arrays.lists.back(), false));
   }
-  arrays.regions.push_back(make_cube_regions(arrays.lists.front(), true));
+  for (const CubeLists& lists : arrays.lists) arrays.regions.push_back(make_cube_regions(lists, true));
   return arrays;
 }
 
@@ -261,7 +261,8 @@ std::string arrays_text(const TesseractArrays& arrays) {
   define_lists(text, arrays.lists[1], "Compact");
   define_regions(text, arrays.regions[0], "Barycentric");
   define_regions(text, arrays.regions[1], "Compact");
-  define_regions(text, arrays.regions[2], "Caps");
+  define_regions(text, arrays.regions[2], "CapsBarycentric");
+  define_regions(text, arrays.regions[3], "CapsCompact");
   text += R"(
 }  // namespace
 
@@ -274,7 +275,7 @@ const CubeRegions& CubeRegions::instance(Triangulation triangulation) noexcept {
 }
 
 const CubeRegions& CubeRegions::of_caps(Triangulation triangulation) noexcept {
-  return triangulation == Triangulation::barycentric ? kRegionsOfCaps : kRegionsOfCompact;
+  return triangulation == Triangulation::barycentric ? kRegionsOfCapsBarycentric : kRegionsOfCapsCompact;
 }
 )";
   return text;

@@ -16,7 +16,7 @@ namespace tegl::gen {
 struct TesseractArrays {
   ResolvedCube cube;
   std::vector<CubeLists> lists;      ///< barycentric, compact
-  std::vector<CubeRegions> regions;  ///< barycentric, compact, barycentric with square centres (for closed borders)
+  std::vector<CubeRegions> regions;  ///< barycentric, compact; caps of both, for closed borders
 
   [[nodiscard]] std::size_t region_count() const;
   [[nodiscard]] std::size_t proved_regions() const;  ///< those positive for all positions (CubeRegions)

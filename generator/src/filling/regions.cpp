@@ -9,6 +9,6 @@ namespace tegl::gen {
 
 RegionBuilder::RegionBuilder(const Lattice& lattice, int k, Alternative alternative, Triangulation triangulation,
                              RegionStyle style)
-    : SignatureRegions(lattice, k, contours_by_dimension(lattice, k, alternative, triangulation), style) {}
+    : SignatureRegions(lattice, k, contours_by_dimension(lattice, k, alternative, triangulation), style, true) {}
 
 }  // namespace tegl::gen

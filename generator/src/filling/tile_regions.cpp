@@ -9,14 +9,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/error.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::gen {
 
 SignatureRegions::SignatureRegions(const Lattice& lattice, int k, std::span<const std::vector<TileContour>> contours,
-                                   RegionStyle style)
+                                   RegionStyle style, bool is_cap)
     : tile_(&lattice.tile(k)), style_(style) {
   if (k > 1) of_faces_ = std::make_unique<SignatureRegions>(lattice, k - 1, contours, style);
+  if (is_cap && k == 3 && style == RegionStyle::fan && tile_->kind == TileKind::cube)
+    proof_ = std::make_unique<RegionProof>();
   const std::vector<TileContour>& own = contours[static_cast<std::size_t>(k) - 1];
   for (Signature s = 0; s <= tile_->full(); ++s) regions_.push_back(build(s, own[s]));
 }
@@ -110,6 +113,18 @@ std::vector<std::vector<LocalSimplex>> split(std::vector<LocalSimplex> rest, int
 
 constexpr std::uint8_t kNoVertex = 255;
 
+/// Adds a division of a region of a cube, whose own vertices start at `own_base`.
+void append(const RegionDivision& division, std::uint32_t own_base, TileRegions& to) {
+  if (division.centres.size() > 1 || (division.centres.size() == 1 && division.centres[0] >= RegionVertices::kNear))
+    throw std::logic_error("a region of a table has a vertex that is not a mean");
+  const auto centre = static_cast<std::uint8_t>(own_base + to.own_masks.size());
+  to.own_masks.insert(to.own_masks.end(), division.centres.begin(), division.centres.end());
+  for (LocalSimplex tetrahedron : division.tetrahedra) {
+    std::replace(tetrahedron.begin(), tetrahedron.end(), std::uint8_t{RegionVertices::kFirstCentre}, centre);
+    to.simplices.push_back(tetrahedron);
+  }
+}
+
 /// The corner of a square between two others, if all three belong to a polygon's vertices; else `lowest`. The fan from
 /// there is the one of the regions of cubes (builders/cube_regions.cpp), which are proved to be positive.
 std::uint8_t fan_apex(const Tile& square, const std::array<bool, 256>& polygon, std::uint8_t lowest) {
@@ -140,11 +155,31 @@ std::uint8_t SignatureRegions::only_barycentre(const TileContour& contour, const
   return facets == 1 && tile_->dim == 3 ? result : kNoVertex;
 }
 
+/// The division of a region of a cube that is proved to be positive, if one is found.
+std::optional<RegionDivision> SignatureRegions::divided(const TileContour& contour,
+                                                        std::span<const LocalSimplex> surface) const {
+  RegionFrame frame;
+  frame.is_cap = true;
+  for (const LocalFacet& facet : contour.facets)
+    for (const std::uint8_t point : facet.points)
+      if (facet.filling == Filling::cone)
+        frame.points[tile_->corner_count() + facet.simplices[0][0]] |= frame.points[tile_->corner_count() + point];
+  std::vector<std::array<std::uint8_t, 3>> triangles;
+  for (const LocalSimplex& s : surface) triangles.push_back({s[0], s[1], s[2]});
+  return divide_region(*proof_, frame, triangles);
+}
+
 TileRegions SignatureRegions::build(Signature signature, const TileContour& contour) const {
   const int k = tile_->dim;
   if (k == 1) return regions_of_edge(signature);
   TileRegions result;
   for (const auto& component : split(boundary(signature, contour), k)) {
+    if (proof_) {
+      const auto division = divided(contour, component);
+      if (!division) throw Error(ErrorCode::CertificateFailed, "a cap of a cube without a proved division");
+      append(*division, own_base(), result);
+      continue;
+    }
     // mask, smallest vertex and number of vertices of the component
     std::uint32_t mask = 0;
     std::uint8_t lowest = 255;

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "filling/region_maker.hpp"
 #include "filling/tile_contour.hpp"
 
 namespace tegl::gen {
@@ -27,9 +29,10 @@ struct TileRegions {
 class SignatureRegions {
  public:
   /// Builds k-tiles of `lattice`, which must outlive this object. `contours[d - 1]`: the contours of every signature of
-  /// the d-tile, d = 1 to k.
-  SignatureRegions(const Lattice& lattice, int k, std::span<const std::vector<TileContour>> contours,
-                   RegionStyle style);
+  /// the d-tile, d = 1 to k. `is_cap`: divides the regions of a 3-cube by
+  /// divide_region if the style is `fan`. Throws Error{CertificateFailed} if one is not proved.
+  SignatureRegions(const Lattice& lattice, int k, std::span<const std::vector<TileContour>> contours, RegionStyle style,
+                   bool is_cap = false);
 
   /// The regions of a signature.
   [[nodiscard]] const TileRegions& regions(Signature signature) const { return regions_[signature]; }
@@ -41,12 +44,15 @@ class SignatureRegions {
 
  private:
   [[nodiscard]] TileRegions build(Signature signature, const TileContour& contour) const;
+  [[nodiscard]] std::optional<RegionDivision> divided(const TileContour& contour,
+                                                      std::span<const LocalSimplex> surface) const;
   [[nodiscard]] std::vector<LocalSimplex> boundary(Signature signature, const TileContour& contour) const;
   [[nodiscard]] std::uint8_t only_barycentre(const TileContour& contour, const std::array<bool, 256>& region) const;
   [[nodiscard]] std::uint8_t lift(std::uint32_t f, std::uint8_t vertex) const;
 
   const Tile* tile_;
   RegionStyle style_;
+  std::unique_ptr<RegionProof> proof_;          ///< to divide the regions of a cap
   std::unique_ptr<SignatureRegions> of_faces_;  ///< k > 1
   std::vector<TileRegions> regions_;
 };

@@ -123,8 +123,8 @@ TableSet make_table_set(const TableRequest& request) {
         low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t), classes));
     if (request.tile != TileKind::cube) continue;  // regions close contours of images, whose tiles are cubes
     for (const Alternative a : {Alternative::low, Alternative::high}) {
-      const RegionStyle style = t == Triangulation::compact ? RegionStyle::fan : RegionStyle::cone;
-      set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, style), t, a));
+      // fans in squares: then all regions of cubes are proved, and a slice at a time step equals the 3D contour
+      set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, RegionStyle::fan), t, a));
     }
   }
   if (request.tile != TileKind::cube) return set;

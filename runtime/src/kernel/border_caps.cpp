@@ -15,20 +15,6 @@
 namespace tegl::detail {
 namespace {
 
-/// Index in CapPlanes::squares of the squares along the two axes of `axes`.
-constexpr std::size_t square_plane(unsigned axes) noexcept {
-  switch (axes) {
-    case 3:
-    case 9:
-      return 0;  // 01, 03
-    case 5:
-    case 10:
-      return 1;  // 02, 13
-    default:
-      return 2;  // 12, 23
-  }
-}
-
 /// Mean of the corners and edge points in a region's mask, in the frame of the cell.
 template <int N, unsigned Axes>
 TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, std::uint32_t mask) noexcept {
@@ -42,31 +28,60 @@ TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, s
   return sum.point;
 }
 
-/// Whether all corners and edges in a region's mask belong to one square of the cube.
-bool lies_in_square(std::uint32_t mask) noexcept {
-  static constexpr auto kSquares = [] {
-    std::array<std::uint32_t, 6> squares{};
-    for (unsigned q = 0; q < 6; ++q)
-      squares[q] = static_cast<std::uint32_t>(face_corners(3, q)) | face_edges(3, q) << 8;
-    return squares;
-  }();
-  return std::any_of(kSquares.begin(), kSquares.end(), [&](std::uint32_t square) { return (mask & ~square) == 0; });
-}
-
 /// Position of a vertex that a region of a cube adds in the barycentric triangulation. The weights are unequal, as in
-/// mask_place and unless all points are corners, so that the vertex is hardly ever coplanar with three others. All points of a region along a tunnel
-/// (`is_collar`) may lie in one square, and the cube on the other side may add a vertex there as well. Such vertices
-/// are moved towards the cube's centre.
+/// mask_place and unless all points are corners, so that the vertex is hardly ever coplanar with three others.
 template <unsigned Axes>
-TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask, bool is_collar) noexcept {
+TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask) noexcept {
   Weighted<3> sum;
   const double step = mask >> 8 != 0 ? 0.01 : 0.0;
   for (; mask != 0; mask &= mask - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(mask));
     sum.add(v < 8 ? corner_point<3>(v) : places(v - 8), 1.0 + step * v);
   }
-  for (double& x : sum.point) x = is_collar ? 0.9 * (x / sum.weight) + 0.1 * 0.5 : x / sum.weight;
+  for (double& x : sum.point) x /= sum.weight;
   return sum.point;
+}
+
+/// Six times the volume of a tetrahedron, with its sign.
+double six_volumes(const std::array<TilePoint<3>, 4>& p) noexcept {
+  const auto to = [&](unsigned j, unsigned axis) { return p[j][axis] - p[0][axis]; };
+  return to(1, 0) * (to(2, 1) * to(3, 2) - to(2, 2) * to(3, 1)) -
+         to(1, 1) * (to(2, 0) * to(3, 2) - to(2, 2) * to(3, 0)) +
+         to(1, 2) * (to(2, 0) * to(3, 1) - to(2, 1) * to(3, 0));
+}
+
+/// The places of a region's vertices near corners (CubeRegions::kNear). They are close enough to the corners if all
+/// tetrahedra of the region, which is a high side, are negatively oriented. If samples equal the isovalue, there may be
+/// no such place.
+template <unsigned Axes>
+void near_places(const EdgePlaces<4, Axes>& places, const CubeRegions& regions, const CubeRegions::Region& region,
+                 std::span<TilePoint<3>> result) {
+  const auto masks = regions.centres(region);
+  const auto place_of = [&](unsigned v) {
+    return v < 8                        ? corner_point<3>(v)
+           : v < CubeRegions::kFirstOwn ? places(v - 8)
+                                        : result[v - CubeRegions::kFirstCentre];
+  };
+  const auto place_at = [&](double share) {
+    for (std::size_t j = 0; j < masks.size(); ++j) {
+      const TilePoint<3> corner = corner_point<3>(static_cast<unsigned>(std::countr_zero(masks[j])));
+      const TilePoint<3> towards = places(static_cast<unsigned>(std::countr_zero(masks[j] >> 8)));
+      for (std::size_t a = 0; a < 3; ++a) result[j][a] = corner[a] + share * (towards[a] - corner[a]);
+    }
+  };
+  const auto is_oriented = [&](const CubeRegions::Tetrahedron& t) {
+    return six_volumes({place_of(t[0]), place_of(t[1]), place_of(t[2]), place_of(t[3])}) < 0;
+  };
+  const auto tetrahedra = regions.tetrahedra(region);
+  constexpr double kLeast = 1.0 / (std::uint64_t{1} << 40);
+  bool was_oriented = false;  // at twice the share: then no tetrahedron is nearly flat
+  for (double share = 0.5; share > kLeast; share *= 0.5) {
+    place_at(share);
+    const bool oriented = std::all_of(tetrahedra.begin(), tetrahedra.end(), is_oriented);
+    if (was_oriented && oriented) return;
+    was_oriented = oriented;
+  }
+  place_at(0.25);
 }
 
 }  // namespace
@@ -86,11 +101,7 @@ Caps<N, Real>::Caps(const EdgeCrossings<N>& source, const RowShape<N>& shape, co
       closed_axes_(closed_axes),
       border_(shape.words()),
       valid_(shape.words()) {
-  for (CapPlanes* planes : {&layers_[0], &layers_[1], &slab_}) {
-    planes->corners.allocate(shape_.rows(), shape_.words());
-    if constexpr (N == 4)
-      for (EdgePlane& plane : planes->squares) plane.allocate(shape_.rows(), shape_.words());
-  }
+  for (EdgePlane& corners : corners_) corners.allocate(shape_.rows(), shape_.words());
 }
 
 template <int N, class Real>
@@ -139,48 +150,8 @@ void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const R
 }
 
 template <int N, class Real>
-template <unsigned Axes>
-void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at) {
-  plane.offset[at.row] = static_cast<Index>(vertices_.size());
-  auto index = shape_.index_of(at.row);
-  index[N - 1] = at.layer;
-  if (!shape_.has_cells(index, Axes)) return;
-  const Word* const border = border_cells(Axes, at);
-  CellBits<N, Axes> cells(view, at.row);
-  for (std::size_t w = 0; w < shape_.words(); ++w) {
-    const std::size_t word = at.row * shape_.words() + w;
-    plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
-    plane.bits[0][word] = 0;
-    if (border[w] == 0) continue;
-    cells.load(w);
-    for (Word rest = border[w]; rest != 0; rest &= rest - 1) {
-      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      const unsigned signature = cells.signature(bit);
-      index[0] = w * kWordBits + bit;
-      const tables::RegionTable& table = table_of<Axes>(*tables_.square, original(signature, 4), index);
-      const tables::RegionList& list = table.lists[original(signature, 4)];
-      if (list.own_vertices == 0) continue;
-      plane.bits[0][word] |= Word{1} << bit;
-      const EdgePlaces<N, Axes> places(source_, index, signature);
-      add_vertex<Axes>(index, region_place<N, Axes>(places, table.masks[list.first_mask]));
-    }
-  }
-}
-
-template <int N, class Real>
 void Caps<N, Real>::add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) {
-  CapPlanes& planes = layers_[k % 2];
-  for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    const Row at{row, k, below, above};
-    add_corners(planes.corners, layer, at);
-    if constexpr (N == 4) {
-      if (!has_squares()) continue;
-      const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr};
-      add_squares<3>(planes.squares[square_plane(3)], view, at);
-      add_squares<5>(planes.squares[square_plane(5)], view, at);
-      add_squares<6>(planes.squares[square_plane(6)], view, at);
-    }
-  }
+  for (std::size_t row = 0; row < shape_.rows(); ++row) add_corners(corners_[k % 2], layer, {row, k, below, above});
 }
 
 template <int N, class Real>
@@ -191,25 +162,8 @@ void Caps<N, Real>::corner_ids(std::size_t row, std::size_t layer, std::size_t i
   for (unsigned corner = 0; corner < 1u << (N - 1); ++corner) {
     if ((signature >> corner & 1u) == 0) continue;
     const unsigned mask = Frame::spread(corner);
-    const EdgePlane& plane = layers_[(layer + (mask >> (N - 1) & 1u)) % 2].corners;
+    const EdgePlane& plane = corners_[(layer + (mask >> (N - 1) & 1u)) % 2];
     out[corner] = plane.id(shape_.shifted(row, mask), shape_.words(), i + (mask & 1u));
-  }
-}
-
-template <int N, class Real>
-template <int Omitted>
-void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const {
-  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
-  constexpr auto kList = CellFrame<N, kAxes>::axes();
-  for (unsigned square = 0; square < 2 * kList.size(); ++square) {
-    const unsigned away = 1u << kList[square / 2];
-    const unsigned mask = square % 2 != 0 ? away : 0;
-    const unsigned pair = kAxes ^ away;
-    const CapPlanes& planes = (pair >> (N - 1) & 1u) != 0 ? slab_ : layers_[(layer + (mask >> (N - 1))) % 2];
-    const EdgePlane& plane = planes.squares[square_plane(pair)];
-    const std::size_t of_row = shape_.shifted(row, mask), at = i + (mask & 1u);
-    const bool has_one = (plane.bits[0][of_row * shape_.words() + at / kWordBits] >> (at % kWordBits) & 1u) != 0;
-    out[square] = has_one ? plane.id(of_row, shape_.words(), at) : kNoSquare;
   }
 }
 
@@ -277,7 +231,6 @@ void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::si
     if (counter_.has_cubes())
       for (unsigned j = 0; j < tables::kFaceSlots; ++j)
         cubes[j] = face.cubes(Omitted, 0).id(row, shape_.words(), i) + j;
-    square_ids<Omitted>(row, layer, i, cubes + tables::kFaceSlots);
   }
 }
 
@@ -343,7 +296,6 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
     const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);
     for (unsigned j = 0; j < own; ++j) ids[Regions::kFirstOwn + j] = first + j;
   }
-  if (has_squares()) square_ids<Omitted>(row, layer, index[0], ids.data() + Regions::kFirstSquare);
   const auto number = [&](unsigned v) {
     if (v < Regions::kFirstEdge || v >= Regions::kFirstCentre) return kCapVertex | ids[v];
     return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
@@ -353,18 +305,15 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   const bool barycentric = estimator_->triangulation() == Triangulation::barycentric;
   const Regions& regions = Regions::of_caps(estimator_->triangulation());
   for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
-    // A caller's estimator may change its answer: then a square has no barycentre although one is needed now.
-    if (estimator_->is_callers() && has_squares())
-      for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region))
-        for (const unsigned v : tetrahedron)
-          if (v >= Regions::kFirstSquare && ids[v] == kNoSquare) return estimator_->report_change(index);
-    unsigned centre = Regions::kFirstCentre;
-    for (const std::uint32_t mask : regions.centres(region)) {
-      ids[centre++] = static_cast<Index>(vertices_.size());
-      const bool is_collar = region.centre_count > 1;
-      add_vertex<kAxes>(index, barycentric || (is_collar && lies_in_square(mask))
-                                   ? centre_place<kAxes>(places, mask, is_collar)
-                                   : region_place<N, kAxes>(places, mask));
+    const std::span<const std::uint32_t> masks = regions.centres(region);
+    std::array<TilePoint<3>, Regions::kVertices - Regions::kFirstCentre> near;
+    const bool is_near = !masks.empty() && masks[0] >= Regions::kNear;
+    if (is_near) near_places<kAxes>(places, regions, region, std::span(near).first(masks.size()));
+    for (std::size_t j = 0; j < masks.size(); ++j) {
+      ids[Regions::kFirstCentre + j] = static_cast<Index>(vertices_.size());
+      add_vertex<kAxes>(index, is_near       ? near[j]
+                               : barycentric ? centre_place<kAxes>(places, masks[j])
+                                             : region_place<N, kAxes>(places, masks[j]));
     }
     for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region)) {
       Simplex simplex;
@@ -395,13 +344,6 @@ void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned si
 
 template <int N, class Real>
 void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
-  if constexpr (N == 4)
-    for (std::size_t row = 0; row < shape_.rows() && has_squares(); ++row) {
-      const Row at{row, k, nullptr, view.slab};
-      add_squares<9>(slab_.squares[square_plane(9)], view, at);
-      add_squares<10>(slab_.squares[square_plane(10)], view, at);
-      add_squares<12>(slab_.squares[square_plane(12)], view, at);
-    }
   for (unsigned side = 0; side < 2; ++side) {
     add_face<0>(view, k, side);
     add_face<1>(view, k, side);

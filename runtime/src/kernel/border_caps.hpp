@@ -15,13 +15,6 @@
 
 namespace tegl::detail {
 
-/// Cap vertices of one layer or slab that are not on the contour: high samples on the border and (N = 4) barycentres of
-/// squares' high regions. Numbers count cap vertices only.
-struct CapPlanes {
-  EdgePlane corners;                 ///< layers only
-  std::array<EdgePlane, 3> squares;  ///< layers: axes 01, 02, 12; slabs: axes 03, 13, 23
-};
-
 template <int N, class Real>
 class Caps {
  public:
@@ -62,19 +55,12 @@ class Caps {
     const Slab<N>* above;
   };
   using Ids = std::array<Index, 256>;
-  static constexpr Index kNoSquare = ~Index{0};  ///< square without a barycentre
 
   /// Bits of the cells along `axes` based in this row that lie in the border and belong to a valid tile.
   const Word* border_cells(unsigned axes, const Row& at);
   template <unsigned Axes>
   void add_vertex(const typename RowShape<N>::Index& index, const std::array<double, std::popcount(Axes)>& place);
   void add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at);
-  template <unsigned Axes>
-  void add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at);
-  /// Whether squares of the border have barycentres that adjacent cubes share (N = 4).
-  [[nodiscard]] bool has_squares() const noexcept {
-    return N == 4 && tables_.square != nullptr && tables_.square->max_own_vertices != 0;
-  }
   template <int Omitted>
   void add_face(const SlabView<N>& view, std::size_t k, unsigned side);
   /// Adds the caps of a row of cells, in the border face at `side` of axis `Omitted`. `face`: the layers that contain
@@ -84,7 +70,7 @@ class Caps {
   /// Cells of a border face that belong to a valid tile.
   template <int Omitted>
   Word face_cells(const Slab<N>& slab, std::size_t row, std::size_t w, unsigned side) const;
-  /// Writes to `ids` the numbers of a cell's corners and of cubes' and squares' barycentres, by local vertex.
+  /// Writes to `ids` the numbers of a cell's corners and of cubes' barycentres, by local vertex.
   template <int Omitted>
   void shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
                   Ids& ids) const;
@@ -101,8 +87,6 @@ class Caps {
                     const typename RowShape<N>::Index& index, unsigned signature, Ids& ids, bool flip);
   template <int Omitted>
   void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
-  template <int Omitted>
-  void square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const;
   [[nodiscard]] bool closes(int axis) const noexcept { return (closed_axes_ >> axis & 1u) != 0; }
   [[nodiscard]] unsigned original(unsigned signature, unsigned corners) const noexcept {
     return inverted_ ? ~signature & ((1u << corners) - 1) : signature;
@@ -117,8 +101,8 @@ class Caps {
   bool inverted_;
   bool flip_;
   unsigned closed_axes_;
-  std::array<CapPlanes, 2> layers_;  ///< by k % 2
-  CapPlanes slab_;
+  std::array<EdgePlane, 2>
+      corners_;  ///< by k % 2: the high samples of a layer in the border, which caps have as vertices
   std::vector<Word> border_;
   std::vector<Word> valid_;
   Buffer<Vertex> vertices_;

@@ -36,10 +36,6 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
     }
   if (N == 4) set.cube = &tables::tile_table(3, triangulation);
   if (options.close) set.face = &tables::region_table(N - 1, triangulation, alternative);
-  if (options.close && N == 4) {
-    set.square = &tables::region_table(2, triangulation, alternative);
-    if (is_estimated(options.ambiguity)) set.high_face = &tables::region_table(2, triangulation, Alternative::high);
-  }
   return set;
 }
 

@@ -115,10 +115,13 @@ TEST(OperationsEmbedded, SamplesAtTheIsovalueWithEpsilon) {
   expect_embedded_with_epsilon<4>(5);
 }
 
+/// `spread` > 0: the distances from the isovalue 0.5 are distributed log-uniformly over that many powers of ten.
 template <int N>
-void expect_embedded_with_caps(std::size_t samples) {
-  const auto image = noise<double, N>(samples, 43);
-  for (Way way : ways_of({Ambiguity::low, Ambiguity::mean, Ambiguity::saddle})) {
+void expect_embedded_with_caps(std::size_t samples, unsigned seed = 43, double spread = 0.0) {
+  auto image = noise<double, N>(samples, seed);
+  for (double& value : image.values)
+    if (spread > 0.0) value = 0.5 + std::copysign(std::pow(10.0, -spread * std::abs(2.0 * value - 1.0)), value - 0.5);
+  for (Way way : ways_of({Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle})) {
     const std::string name = std::to_string(N) + "D, " + way.name;
     const std::size_t open = extract<double>(image.view(), 0.5, way.options).simplices.size();
     way.options.close = true;
@@ -131,6 +134,23 @@ void expect_embedded_with_caps(std::size_t samples) {
 TEST(OperationsEmbedded, Caps) {
   expect_embedded_with_caps<2>(24);
   expect_embedded_with_caps<3>(10);
+}
+
+TEST(OperationsEmbedded, CapsIn4D) {
+  for (const unsigned seed : {43u, 46u, 47u})
+    for (const double spread : {0.0, 3.0}) expect_embedded_with_caps<4>(5, seed, spread);
+}
+
+// Zeros and ones, with equal values everywhere: the contour's vertices are in the middle of edges, or near samples.
+TEST(OperationsEmbedded, CapsOfMasksIn4D) {
+  auto image = noise<double, 4>(5, 48);
+  for (double& value : image.values) value = value < 0.5 ? 0.0 : 1.0;
+  for (Way way : ways_of({Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}))
+    for (const double isovalue : {0.5, 1.0}) {
+      way.options.close = true;
+      way.options.epsilon = 0.02;
+      expect_embedded(extract<double>(image.view(), isovalue, way.options), "mask, " + way.name);
+    }
 }
 
 TEST(OperationsEmbedded, SelectedComponents) {

@@ -94,8 +94,8 @@ struct TileTable {
 ///   [0, 2^k)              corner v
 ///   [2^k, 2^k + E)        edge point e
 ///   k = 3: next kFaceSlots  barycentre j of the cube's own facets, as in the 3D tile table
-///   k = 3: next 6         square q = 2 a + side: the barycentre of its high region, in the cubes' squares
-///                         whose region has one in the k = 2 table
+///   k = 3: next 6         not used in these tables (the barycentres of squares, while cubes are filled
+///                         in the barycentric way)
 ///   [own_base, ...)       the tile's own vertices: barycentres of its regions
 /// The position of a region's barycentre is the mean of the corners (bit v) and edge points
 /// (bit 2^k + e) in its mask. Simplices are oriented by det[v_1 - v_0, ..., v_k - v_0] > 0.
