@@ -14,6 +14,7 @@
 
 #include "base/error.hpp"
 #include "tegl/tile/corners.hpp"
+#include "tegl/tile/face_lattice.hpp"
 
 namespace tegl::gen {
 
