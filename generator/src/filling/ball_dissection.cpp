@@ -45,6 +45,10 @@ class Front {
   [[nodiscard]] unsigned degree(std::uint8_t v) const { return degree_[v]; }
   [[nodiscard]] const std::vector<LocalSimplex>& tetrahedra() const { return tetrahedra_; }
 
+  /// The third vertex of the triangle at each directed edge, or kNoThird.
+  using Thirds = std::array<std::array<std::uint8_t, kMost>, kMost>;
+  [[nodiscard]] const Thirds& thirds() const { return third_; }
+
   /// Removes the tetrahedron around a vertex of degree 3. If 4 vertices are left, the rest is one tetrahedron.
   bool remove(std::uint8_t v) {
     const std::uint8_t a = neighbour(v), b = third_[v][a], c = third_[v][b];
@@ -69,23 +73,24 @@ class Front {
     return true;
   }
 
-  /// The vertices around v, in cyclic order.
-  void ring(std::uint8_t v, std::vector<std::uint8_t>& out) const {
-    out.clear();
+  /// Writes the vertices around v, in cyclic order, and returns their number.
+  std::uint32_t ring(std::uint8_t v, std::array<std::uint8_t, kMost>& out) const {
     const std::uint8_t first = neighbour(v);
     std::uint8_t at = first;
+    std::uint32_t count = 0;
     do {
-      out.push_back(at);
+      out[count++] = at;
       at = third_[v][at];
     } while (at != first);
+    return count;
   }
 
-  /// The triangles, each with ascending vertices.
-  [[nodiscard]] std::vector<LocalSimplex> triangles() const {
+  /// The triangles of `thirds`, each with ascending vertices.
+  [[nodiscard]] std::vector<LocalSimplex> triangles_of(const Thirds& thirds) const {
     std::vector<LocalSimplex> result;
     for (std::uint8_t a = 0; a < vertices_.size(); ++a)
       for (std::uint8_t b = 0; b < vertices_.size(); ++b)
-        if (const std::uint8_t c = third_[a][b]; c != kNoThird && a < b && a < c) {
+        if (const std::uint8_t c = thirds[a][b]; c != kNoThird && a < b && a < c) {
           LocalSimplex t{vertices_[a], vertices_[b], vertices_[c], 0};
           std::sort(t.begin(), t.begin() + 3);
           if (std::find(result.begin(), result.end(), t) == result.end()) result.push_back(t);
@@ -135,7 +140,7 @@ class Front {
   const std::vector<std::uint8_t>& vertices_;
   const SigmaComplex* sigma_;
   std::size_t left_;
-  std::array<std::array<std::uint8_t, kMost>, kMost> third_;  ///< by directed edge: third vertex of its triangle
+  Thirds third_;
   std::array<std::uint8_t, kMost> degree_{};
   std::bitset<kMost * kMost> used_edges_;  ///< edges of the front, now or earlier
   std::bitset<kMost * kMost * kMost> used_triangles_;
@@ -149,19 +154,20 @@ bool step(Front& front, std::size_t vertices, Dice& dice) {
   const unsigned slack = dice.below(4) == 0 ? 1 : 0;
   for (std::uint8_t v = 0; v < vertices; ++v)
     if (front.degree(v) >= 3) least = std::min(least, front.degree(v));
-  std::vector<std::uint8_t> ties, ring;
+  std::array<std::uint8_t, kMost> ties{}, ring;
+  std::uint32_t tie_count = 0;
   for (std::uint8_t v = 0; v < vertices; ++v)
-    if (front.degree(v) >= 3 && front.degree(v) <= least + slack) ties.push_back(v);
-  for (std::size_t tries = 0; tries < 2 * ties.size(); ++tries) {
-    const std::uint8_t v = ties[dice.below(static_cast<std::uint32_t>(ties.size()))];
+    if (front.degree(v) >= 3 && front.degree(v) <= least + slack) ties[tie_count++] = v;
+  for (std::size_t tries = 0; tries < 2 * tie_count; ++tries) {
+    const std::uint8_t v = ties[dice.below(tie_count)];
     if (front.degree(v) == 3) {
       if (front.remove(v)) return true;
       continue;
     }
-    front.ring(v, ring);
-    const auto start = dice.below(static_cast<std::uint32_t>(ring.size()));
-    for (std::size_t i = 0; i < ring.size(); ++i)
-      if (front.flip(v, ring[(start + i) % ring.size()])) return true;
+    const std::uint32_t count = front.ring(v, ring);
+    const std::uint32_t start = dice.below(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (front.flip(v, ring[(start + i) % count])) return true;
   }
   return false;
 }
@@ -207,19 +213,26 @@ BallDissection dissect_ball(const std::vector<LocalSimplex>& sphere, const Sigma
   // dissection.
   for (int i = 0; i < kTries && limit + 3 >= vertices.size(); ++i) {
     Front front = start;
-    BallDissection smallest;
-    std::size_t most = limit;
+    std::size_t count = 0, most = limit;  // tetrahedra of the smallest dissection, which cones the rest
+    Front::Thirds rest;
+    bool rest_is_empty = true;
     while (front.tetrahedra().size() + front.vertices_left() <= most + 3) {
       const bool is_last = front.vertices_left() == 4;
       if (is_last ? !front.take_last() : !step(front, vertices.size(), dice)) break;
       const std::size_t coned = is_last ? 0 : 2 * front.vertices_left() - 4;
       if ((is_last || front.vertices_left() > 4) && front.tetrahedra().size() + coned <= most) {
-        smallest = {front.tetrahedra(), is_last ? std::vector<LocalSimplex>{} : front.triangles()};
-        most = front.tetrahedra().size() + coned - 1;
+        count = front.tetrahedra().size();
+        if (!is_last) rest = front.thirds();
+        rest_is_empty = is_last;
+        most = count + coned - 1;
       }
       if (is_last) break;
     }
-    if (smallest.empty() || (accepts && !accepts(smallest))) continue;
+    if (most == limit) continue;  // no dissection is small enough
+    BallDissection smallest;
+    smallest.tetrahedra.assign(front.tetrahedra().begin(), front.tetrahedra().begin() + std::ptrdiff_t(count));
+    if (!rest_is_empty) smallest.rest = front.triangles_of(rest);
+    if (accepts && !accepts(smallest)) continue;
     best = std::move(smallest);
     limit = most;
   }

@@ -15,6 +15,8 @@ namespace {
 
 using IntPoint = std::array<int, 4>;
 
+constexpr int kKnownBits = 14;  // 2^14 known pairs of sets of edges in four dimensions; fewer dimensions need none
+
 /// Calls visit(chosen) for all ascending sequences of `count` numbers below `end`.
 template <class Visit>
 void for_each_choice(std::size_t count, std::size_t end, std::vector<std::size_t>& chosen, const Visit& visit) {
@@ -28,7 +30,10 @@ void for_each_choice(std::size_t count, std::size_t end, std::vector<std::size_t
 
 }  // namespace
 
-EmbeddingProof::EmbeddingProof(const Tile& tile, std::span<const Ray> rays) : tile_(&tile) {
+EmbeddingProof::EmbeddingProof(const Tile& tile, std::span<const Ray> rays)
+    : tile_(&tile),
+      meeting_(tile.dim == 4 ? std::size_t{1} << kKnownBits : 0),
+      apart_(meeting_.size()) {
   points_.resize(tile.corner_count());
   for (std::size_t v = 0; v < tile.corner_count(); ++v)
     for (int i = 0; i < tile.dim; ++i) points_[v][i] = 2 * static_cast<int>(tile.corners[v][i]);
@@ -104,7 +109,13 @@ EmbeddingProof::Simplex EmbeddingProof::prepared(const LocalSimplex& simplex, co
     for (int i = 0; i < tile_->dim; ++i)
       if ((set >> i & 1u) != 0) result.faces[set] |= Vertices{1} << simplex[i];
     result.edges[set] = edges_of(result.faces[set], means);
-    result.sides[set] = sides_of(result.edges[set]);
+    const unsigned rest = set & (set - 1);
+    if (rest == 0) {
+      result.sides[set] = sides_of(result.edges[set]);
+    } else {
+      result.sides[set] = result.sides[rest];
+      result.sides[set].add(result.sides[set ^ rest]);
+    }
   }
   return result;
 }
@@ -159,9 +170,8 @@ bool EmbeddingProof::are_divided(const Simplex& a, const Simplex& b) const {
   return false;
 }
 
-/// True if a hyperplane contains the edges `both` and separates p and q properly.
-bool EmbeddingProof::are_separate_around(std::uint32_t p, std::uint32_t q, std::uint32_t both) const {
-  const Sides a = sides_of(p), b = sides_of(q), on = sides_of(both);
+/// True if a hyperplane contains the edges with the sides `on` and separates a and b properly.
+bool EmbeddingProof::are_separate_around(const Sides& a, const Sides& b, const Sides& on) noexcept {
   std::uint64_t separating = 0;
   for (std::size_t k = 0; k < kWords; ++k) {
     const std::uint64_t through = ~on.above[k] & ~on.below[k];
@@ -173,20 +183,38 @@ bool EmbeddingProof::are_separate_around(std::uint32_t p, std::uint32_t q, std::
 
 /// True if the relative interiors of p and q meet for some positions and weights. A mean was replaced by its points. A
 /// point on both sides counts on either or, if its weights are equal, on none.
-bool EmbeddingProof::may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) const {
+bool EmbeddingProof::decide_inside(std::uint32_t of_p, std::uint32_t of_q) const {
   const std::uint32_t both = of_p & of_q;
-  if (are_separate_around(of_p & ~both, of_q & ~both, both)) return false;
+  const std::uint32_t only_p = of_p & ~both, only_q = of_q & ~both;
+  const Sides p = sides_of(only_p), q = sides_of(only_q);
+  if (are_separate_around(p, q, sides_of(both))) return false;
   for (std::uint32_t to_p = both;; to_p = (to_p - 1) & both) {
-    const std::uint32_t rest = both & ~to_p, left = (of_p & ~both) | to_p;
-    const Sides sides = sides_of(left);
+    const std::uint32_t rest = both & ~to_p;
+    Sides left = sides_of(to_p);
+    left.add(p);
     for (std::uint32_t to_q = rest;; to_q = (to_q - 1) & rest) {
-      const std::uint32_t right = (of_q & ~both) | to_q;
-      if (left != 0 && right != 0 && !have_separate_interiors(sides, sides_of(right))) return true;
+      if ((only_p | to_p) != 0 && (only_q | to_q) != 0) {
+        Sides right = sides_of(to_q);
+        right.add(q);
+        if (!have_separate_interiors(left, right)) return true;
+      }
       if (to_q == 0) break;
     }
     if (to_p == 0) break;
   }
   return false;
+}
+
+/// The same, known from an earlier pair or decided now.
+bool EmbeddingProof::may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) const {
+  if (meeting_.empty()) return decide_inside(of_p, of_q);
+  const std::uint64_t pair = std::uint64_t{of_p} << 32 | of_q;
+  const std::size_t place = pair * 0x9e3779b97f4a7c15u >> (64 - kKnownBits);
+  if (meeting_[place].load(std::memory_order_relaxed) == pair) return true;
+  if (apart_[place].load(std::memory_order_relaxed) == pair) return false;
+  const bool meet = decide_inside(of_p, of_q);
+  (meet ? meeting_ : apart_)[place].store(pair, std::memory_order_relaxed);
+  return meet;
 }
 
 /// True if simplices a and b may meet outside of the simplex of their common vertices. Then the relative interiors of

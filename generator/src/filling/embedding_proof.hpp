@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -84,10 +85,11 @@ class EmbeddingProof {
   [[nodiscard]] Sides sides_of_edge(std::uint32_t e) const;
   [[nodiscard]] bool in_one_facet(std::uint32_t edges) const;
   [[nodiscard]] static bool have_separate_interiors(const Sides& p, const Sides& q) noexcept;
-  [[nodiscard]] bool are_separate_around(std::uint32_t p, std::uint32_t q, std::uint32_t both) const;
+  [[nodiscard]] static bool are_separate_around(const Sides& a, const Sides& b, const Sides& on) noexcept;
   [[nodiscard]] bool are_divided(const Simplex& a, const Simplex& b) const;
   [[nodiscard]] bool may_meet(const Simplex& a, const Simplex& b) const;
   [[nodiscard]] bool may_meet_inside(std::uint32_t of_p, std::uint32_t of_q) const;
+  [[nodiscard]] bool decide_inside(std::uint32_t of_p, std::uint32_t of_q) const;
 
   const Tile* tile_;
   std::vector<Point> points_;                                         ///< corners, the centre, ends of rays; doubled
@@ -98,6 +100,11 @@ class EmbeddingProof {
   using SidesOfByte = std::array<Sides, 256>;
   std::vector<SidesOfByte> of_edges_;                              ///< by 8 edges: of every set of these
   std::vector<std::pair<std::uint8_t, std::uint8_t>> face_pairs_;  ///< pairs of faces of two simplices to compare
+
+  /// Results of decide_inside for pairs of sets of edges, by a hash of the pair; a new pair replaces the one in its place.
+  /// The cones of a tile's contour compare the same barycentres many times. Threads share it; 0 is no pair.
+  using KnownPairs = std::vector<std::atomic<std::uint64_t>>;
+  mutable KnownPairs meeting_, apart_;
 };
 
 }  // namespace tegl::gen

@@ -14,17 +14,48 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// The differences of up to 6 points from the first one: by coordinate, then by point.
-using Differences = std::array<std::array<Wide, 5>, 4>;
+/// The differences of up to 6 points from the first one: by coordinate, then by point. Below 2^(kGridBits + 1).
+template <class T>
+using DifferencesOf = std::array<std::array<T, 5>, 4>;
+using Differences = DifferencesOf<std::int64_t>;
+static_assert(2 * (kGridBits + 1) + 1 < 63, "2 x 2 minors of differences fit into 64 bits");
+
+/// The cross product of all four rows, by Laplace's expansion along pairs of rows: 30 products with 128 bits, where
+/// cofactors take 200.
+std::array<Wide, 5> cross_product_of_all(const Differences& rows) {
+  using Minors = std::array<std::array<std::int64_t, 5>, 5>;  // by columns i < j
+  const auto minors_of = [&](std::size_t row) {
+    Minors result{};
+    for (std::size_t i = 0; i < 5; ++i)
+      for (std::size_t j = i + 1; j < 5; ++j)
+        result[i][j] = rows[row][i] * rows[row + 1][j] - rows[row][j] * rows[row + 1][i];
+    return result;
+  };
+  const Minors a = minors_of(0), b = minors_of(2);
+  const auto product = [](std::int64_t x, std::int64_t y) { return static_cast<Wide>(x) * y; };
+  std::array<Wide, 5> result{};
+  for (std::size_t c = 0; c < 5; ++c) {
+    const std::size_t p = c == 0 ? 1 : 0, q = c <= 1 ? 2 : 1, r = c <= 2 ? 3 : 2, s = c <= 3 ? 4 : 3;  // all but c
+    const Wide minor = product(a[p][q], b[r][s]) - product(a[p][r], b[q][s]) + product(a[p][s], b[q][r]) +
+                       product(a[q][r], b[p][s]) - product(a[q][s], b[p][r]) + product(a[r][s], b[p][q]);
+    result[c] = c % 2 == 0 ? minor : -minor;
+  }
+  return result;
+}
 
 /// A solution of sum(weight[i] * difference i) = 0 for `count` points, up to a factor, by the coordinates in `axes`,
 /// which are count - 2. All zero if they do not determine it. The last weight is that of the first point.
 std::array<Wide, 6> dependence(const Differences& differences, unsigned axes, std::size_t count) {
-  Differences rows{};
-  std::size_t next = 0;
-  for (unsigned a = 0; a < 4; ++a)
-    if ((axes >> a & 1u) != 0) rows[next++] = differences[a];
-  const std::array<Wide, 5> weights = cross_product(rows, count - 1);
+  std::array<Wide, 5> weights;
+  if (count == 6) {
+    weights = cross_product_of_all(differences);
+  } else {
+    DifferencesOf<Wide> rows{};
+    std::size_t next = 0;
+    for (unsigned a = 0; a < 4; ++a)
+      if ((axes >> a & 1u) != 0) std::copy(differences[a].begin(), differences[a].end(), rows[next++].begin());
+    weights = cross_product(rows, count - 1);
+  }
   std::array<Wide, 6> result{};
   for (std::size_t i = 0; i + 1 < count; ++i) result[i] = weights[i], result[5] -= weights[i];
   return result;
