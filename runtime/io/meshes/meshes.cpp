@@ -118,7 +118,7 @@ std::span<const T> flat(const Buffer<std::array<T, Width>>& rows) {
 /// The numbers of all rows as double; of a temporary in the same memory if they have that type.
 template <class Rows>
 MeshArray<double> as_doubles(Rows&& rows) {
-  using Real = std::remove_cvref_t<Rows>::value_type::value_type;
+  using Real = typename std::remove_cvref_t<Rows>::value_type::value_type;
   if constexpr (std::is_same_v<Real, double>) {
     return std::forward<Rows>(rows);
   } else {
@@ -130,7 +130,7 @@ MeshArray<double> as_doubles(Rows&& rows) {
 /// The mesh of a contour, which is a temporary (its memory is taken over) or not.
 template <class AnyContour>
 Mesh mesh_of(AnyContour&& contour) {
-  using Vertex = std::remove_cvref_t<AnyContour>::Vertex;
+  using Vertex = typename std::remove_cvref_t<AnyContour>::Vertex;
   constexpr int kDim = std::tuple_size_v<Vertex>;
   Mesh mesh;
   mesh.dim = kDim - 1;
@@ -163,7 +163,7 @@ void require_contour(const Mesh& mesh) {
 /// The first Width of each `stride` numbers, as rows; of a temporary in the same memory if it holds such rows.
 template <std::size_t Width, class Numbers>
 auto rows_of(Numbers&& numbers, std::size_t stride) {
-  using T = std::remove_cvref_t<Numbers>::value_type;
+  using T = typename std::remove_cvref_t<Numbers>::value_type;
   if constexpr (!std::is_lvalue_reference_v<Numbers>)
     if (stride == Width) return std::move(numbers).template rows<Width>();
   Buffer<std::array<T, Width>> rows(numbers.size() / stride);
