@@ -92,8 +92,12 @@ function(tegl_quick_compile target)
 endfunction()
 
 # tegl_quick_level(level targets...): the optimisation level of targets with TEGL_QUICK_BUILD, whatever the configuration.
+# Clang compiles at -O0 in less than half of its time at -O1; GCC saves nothing.
 function(tegl_quick_level level)
   if(TEGL_QUICK_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    if(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND level STREQUAL "-O1")
+      set(level -O0)
+    endif()
     foreach(target IN LISTS ARGN)
       target_compile_options(${target} PRIVATE ${level})
     endforeach()
