@@ -286,7 +286,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
          time_step: float | None = None, time_unit: str | None = None, sort: _kinds.SeriesOrder | None = None,
          time_axis: int = 0, fix: Mapping[str, int] | None = None, allow_outside_paths: bool = False,
          separate_process: bool = False, progress: Progress | None = None) -> Image:
-    """Reads an image: NIfTI, NRRD, MetaImage, netCDF, DICOM. The values are not copied from the library's memory.
+    """Reads an image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF, DICOM. The values are not copied from the library's memory.
 
     ::
 
@@ -300,7 +300,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         A file or a folder; or a list of files of one shape that form one image with one more axis: 3D files over time,
         2D files as the slices of a volume. `tegl contour` reads them in the same way.
     variable, series
-        netCDF: the variable to read. DICOM: the series, by its UID, its description or its number. Needed if there are
+        netCDF: the variable to read; .npz: the array. DICOM: the series, by its UID, its description or its number. Needed if there are
         several.
     times, time_step, time_unit
         For a list: the coordinate of each file along the new axis, in the order of the list; or the distance of

@@ -37,6 +37,28 @@ def test_an_image_from_a_file_has_its_coordinates():
         tegl.read(OCEAN.with_name("no_such.nc"))
 
 
+@pytest.mark.parametrize("dtype", [np.uint8, ">i2", np.float16, np.float32, np.int64, bool])
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_saved_arrays_have_the_contour_of_the_array(dtype, order, tmp_path):
+    array = np.asarray(40 * ball(4) + 50).astype(dtype, order=order)
+    level = 0.5 if dtype is bool else 49.5
+    np.save(tmp_path / "a.npy", array)
+    np.savez(tmp_path / "stored.npz", words=np.array(["a", "b"]), array=array)
+    np.savez_compressed(tmp_path / "deflated.npz", other=array[0], array=array)
+    numbers = array.astype(np.float32) if dtype is np.float16 else array.astype(np.uint8) if dtype is bool else array
+    expected = tegl.contour(numbers, level)
+    for image in (tegl.read(tmp_path / "a.npy"), tegl.read(tmp_path / "stored.npz"),
+                  tegl.read(tmp_path / "deflated.npz", "array")):
+        assert image.format == "NumPy" and image.array.shape == array.shape
+        assert np.array_equal(image.array, numbers)
+        assert_same(image.contour(level), expected)
+    with pytest.raises(ValueError, match="2 arrays.*other.*array"):
+        tegl.read(tmp_path / "deflated.npz")
+    np.save(tmp_path / "objects.npy", np.array([[1, "a"]], dtype=object), allow_pickle=True)
+    with pytest.raises(ValueError, match="'|O'"):
+        tegl.read(tmp_path / "objects.npy")
+
+
 def test_one_index_of_a_dimension_is_read():
     image = tegl.read(OCEAN)
     part = tegl.read(OCEAN, fix={image.axis_names[0]: np.int64(3)})

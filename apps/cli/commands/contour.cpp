@@ -75,7 +75,8 @@ class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
       : Command(program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D, 3D or 4D",
-                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); several files form "
+                "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM (a "
+                "folder); several files form "
                 "one image with one more axis",
                 Files::image) {
     options_.add_to(app(), true);

@@ -310,10 +310,10 @@ Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& vari
 class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
-      : Command(
-            program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
-            "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); or an index (.tindex)",
-            Files::image) {
+      : Command(program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
+                "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM (a "
+                "folder); or an index (.tindex)",
+                Files::image) {
     add_image_options();
     app().footer(kInfoExamples);
   }

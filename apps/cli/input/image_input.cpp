@@ -85,7 +85,8 @@ std::string with_option_names(std::string message) {
 
 void ImageOptions::add_to(CLI::App& app) {
   options_ = {
-      app.add_option("--var", variable_, "netCDF: the variable to read; needed if the file has several")
+      app.add_option("--var", variable_,
+                     "netCDF: the variable to read; .npz: the array; needed if the file has several")
           ->type_name("NAME"),
       app.add_option("--series", series_,
                      "DICOM: the series to read, by its UID, its description or its number in the list of 'tegl info'; "

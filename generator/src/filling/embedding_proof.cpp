@@ -31,9 +31,7 @@ void for_each_choice(std::size_t count, std::size_t end, std::vector<std::size_t
 }  // namespace
 
 EmbeddingProof::EmbeddingProof(const Tile& tile, std::span<const Ray> rays)
-    : tile_(&tile),
-      meeting_(tile.dim == 4 ? std::size_t{1} << kKnownBits : 0),
-      apart_(meeting_.size()) {
+    : tile_(&tile), meeting_(tile.dim == 4 ? std::size_t{1} << kKnownBits : 0), apart_(meeting_.size()) {
   points_.resize(tile.corner_count());
   for (std::size_t v = 0; v < tile.corner_count(); ++v)
     for (int i = 0; i < tile.dim; ++i) points_[v][i] = 2 * static_cast<int>(tile.corners[v][i]);

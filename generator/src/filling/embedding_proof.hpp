@@ -101,8 +101,8 @@ class EmbeddingProof {
   std::vector<SidesOfByte> of_edges_;                              ///< by 8 edges: of every set of these
   std::vector<std::pair<std::uint8_t, std::uint8_t>> face_pairs_;  ///< pairs of faces of two simplices to compare
 
-  /// Results of decide_inside for pairs of sets of edges, by a hash of the pair; a new pair replaces the one in its place.
-  /// The cones of a tile's contour compare the same barycentres many times. Threads share it; 0 is no pair.
+  /// Results of decide_inside for pairs of sets of edges, by a hash of the pair; a new pair replaces the one in its
+  /// place. The cones of a tile's contour compare the same barycentres many times. Threads share it; 0 is no pair.
   using KnownPairs = std::vector<std::atomic<std::uint64_t>>;
   mutable KnownPairs meeting_, apart_;
 };

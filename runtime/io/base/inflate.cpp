@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Decompression of gzip and zlib streams, by zlib's inflate.
+// Decompression of gzip, zlib and deflate streams, by zlib's inflate.
 //
-// Based on: RFC 1950 and 1952; zlib's manual, inflateInit2.
+// Based on: RFC 1950 to 1952; zlib's manual, inflateInit2.
 #include "base/inflate.hpp"
 
 #include <algorithm>
@@ -26,17 +26,20 @@ constexpr std::size_t kBlock = std::size_t{1} << 18;
 
 }  // namespace
 
-/// A z_stream that detects gzip or zlib by the header, and its input file.
+/// A z_stream, and its input file. It detects gzip or zlib by the header; raw deflate has none.
 class InflateStream::Inflater {
  public:
-  Inflater(const fs::path& path, std::uint64_t offset, std::uint64_t length)
-      : path_(path), input_(kBlock), left_(length > 0 ? length : std::numeric_limits<std::uint64_t>::max()) {
+  Inflater(const fs::path& path, std::uint64_t offset, std::uint64_t length, std::optional<std::uint32_t> crc)
+      : path_(path),
+        input_(kBlock),
+        left_(length > 0 ? length : std::numeric_limits<std::uint64_t>::max()),
+        expected_crc_(crc) {
     file_.reset(std::fopen(path.c_str(), "rb"));
     if (!file_) fail(ErrorCode::FileNotFound, path, "cannot be opened ({})", std::strerror(errno));
     if (fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0)
       fail(ErrorCode::FileNotFound, path, "cannot be read ({})", std::strerror(errno));
-    constexpr int kWindowAndDetect = 15 + 32;
-    if (inflateInit2(&stream_, kWindowAndDetect) != Z_OK) throw std::bad_alloc();
+    constexpr int kWindowAndDetect = 15 + 32, kWindowOfRaw = -15;
+    if (inflateInit2(&stream_, crc ? kWindowOfRaw : kWindowAndDetect) != Z_OK) throw std::bad_alloc();
   }
   ~Inflater() { inflateEnd(&stream_); }
   Inflater(const Inflater&) = delete;
@@ -69,12 +72,19 @@ class InflateStream::Inflater {
     if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
       fail(ErrorCode::MalformedFile, path_, "compressed data is damaged after {} decompressed bytes ({})", sofar,
            stream_.msg != nullptr ? stream_.msg : "not a gzip or zlib stream");
-    if (status == Z_STREAM_END) {
+    const std::size_t written = room - stream_.avail_out;
+    if (expected_crc_) crc_ = static_cast<std::uint32_t>(crc32_z(crc_, to.data(), written));
+    if (status == Z_STREAM_END && expected_crc_) {
+      ended_ = true;
+      if (crc_ != *expected_crc_)
+        fail(ErrorCode::MalformedFile, path_, "compressed data is damaged: its CRC-32 is {:08x}; expected {:08x}", crc_,
+             *expected_crc_);
+    } else if (status == Z_STREAM_END) {
       // If another gzip member follows directly, decompression continues; other bytes after the end are padding.
       ended_ = !refill() || stream_.avail_in < 2 || stream_.next_in[0] != 0x1f || stream_.next_in[1] != 0x8b ||
                inflateReset(&stream_) != Z_OK;
     }
-    return room - stream_.avail_out;
+    return written;
   }
 
   /// Ensures that there is input; false at the end of the file.
@@ -99,11 +109,14 @@ class InflateStream::Inflater {
   z_stream stream_{};
   std::uint64_t left_;  ///< bytes of the compressed stream that are not read yet
   std::uint64_t position_ = 0;
+  std::optional<std::uint32_t> expected_crc_;  ///< of raw deflate
+  std::uint32_t crc_ = 0;                      ///< of raw deflate, up to the position
   bool ended_ = false;
 };
 
-InflateStream::InflateStream(const fs::path& path, std::uint64_t offset, std::uint64_t length)
-    : inflater_(std::make_unique<Inflater>(path, offset, length)) {}
+InflateStream::InflateStream(const fs::path& path, std::uint64_t offset, std::uint64_t length,
+                             std::optional<std::uint32_t> crc)
+    : inflater_(std::make_unique<Inflater>(path, offset, length, crc)) {}
 InflateStream::~InflateStream() = default;
 InflateStream::InflateStream(InflateStream&&) noexcept = default;
 InflateStream& InflateStream::operator=(InflateStream&&) noexcept = default;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Compressed streams (gzip and zlib), decompressed only as far as their reader needs.
+// Compressed streams (gzip, zlib, and deflate as in zip archives), decompressed only as far as their reader needs.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,12 +21,14 @@ inline constexpr std::uint64_t kMostInflation = 1032;
 /// Assumed maximum expansion ratio of other compressions.
 inline constexpr std::uint64_t kMostExpansion = 4096;
 
-/// Decompresses the gzip (any number of members) or zlib stream that starts at byte `offset` of a file. Ignores bytes
-/// after the stream. Keeps the file open.
+/// Decompresses the gzip (any number of members), zlib or raw deflate stream that starts at byte `offset` of a file.
+/// Ignores bytes after the stream. Keeps the file open.
 class InflateStream {
  public:
-  /// `length`: size of the compressed stream; 0: up to the end of the file. Errors: FileNotFound.
-  InflateStream(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t length = 0);
+  /// `length`: size of the compressed stream; 0: up to the end of the file. `crc`: the stream is raw deflate, and this
+  /// is the CRC-32 of its decompressed bytes. Errors: FileNotFound.
+  InflateStream(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t length = 0,
+                std::optional<std::uint32_t> crc = std::nullopt);
   ~InflateStream();
   InflateStream(InflateStream&&) noexcept;
   InflateStream& operator=(InflateStream&&) noexcept;

@@ -205,4 +205,36 @@ ValueArray with_axis_last(const ValueArray& values, std::size_t inner, std::size
       values);
 }
 
+ValueArray with_axes_reversed(const ValueArray& values, const std::vector<std::size_t>& sizes) {
+  constexpr std::size_t kBlock = 32;
+  const std::size_t n = sizes.size(), first = sizes.front(), last = sizes.back();
+  std::size_t inner = first;  // distance of neighbours along the last axis: before, and (outer) along the first: after
+  for (std::size_t a = 1; a + 1 < n; ++a) inner *= sizes[a];
+  const std::size_t middle = inner / first, outer = middle * last;
+  // The index of the middle axes in reverse order.
+  const auto reversed = [&](std::size_t index) {
+    std::size_t result = 0;
+    for (std::size_t a = 1; a + 1 < n; ++a) {
+      result = result * sizes[a] + index % sizes[a];
+      index /= sizes[a];
+    }
+    return result;
+  };
+  return std::visit(
+      [&]<class T>(const ValueVector<T>& from) -> ValueArray {
+        ValueVector<T> to(from.size());
+        for (std::size_t m = 0; m < middle; ++m) {
+          const T* const source = from.data() + m * first;
+          T* const target = to.data() + reversed(m) * last;
+          for (std::size_t z = 0; z < last; z += kBlock)
+            for (std::size_t x = 0; x < first; x += kBlock)
+              for (std::size_t i = x; i < std::min(first, x + kBlock); ++i)
+                for (std::size_t j = z; j < std::min(last, z + kBlock); ++j)
+                  target[i * outer + j] = source[j * inner + i];
+        }
+        return to;
+      },
+      values);
+}
+
 }  // namespace tegl::io_detail

@@ -88,4 +88,8 @@ ValueArray array_of_type(std::string_view name);
 /// `count`: of the axis, `outer`: of the axes after it. One copy.
 ValueArray with_axis_last(const ValueArray& values, std::size_t inner, std::size_t count, std::size_t outer);
 
+/// Reverses the order of the axes, whose sizes in `values` are given fastest first: the last becomes the fastest. One
+/// copy, in square blocks of the first and the last axis.
+ValueArray with_axes_reversed(const ValueArray& values, const std::vector<std::size_t>& sizes);
+
 }  // namespace tegl::io_detail

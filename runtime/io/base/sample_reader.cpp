@@ -221,7 +221,7 @@ class SampleReader::Source {
       text_.emplace(samples_.path, samples_.offset);
       return;
     }
-    inflater_.emplace(samples_.path, samples_.offset, samples_.compressed_bytes);
+    inflater_.emplace(samples_.path, samples_.offset, samples_.compressed_bytes, samples_.crc);
     if (inflater_->skip(samples_.skip) < samples_.skip)
       fail_length(inflater_->position(), "bytes", " after decompression", samples_.skip + total_ * item_);
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace tegl::io_detail {
 /// The encoding of samples.
 enum class Encoding {
   raw,      ///< bytes
-  deflate,  ///< bytes, as a gzip or zlib stream
+  deflate,  ///< bytes, as a gzip, zlib or (with a CRC-32) raw deflate stream
   text,     ///< decimal numbers between blanks or commas
   hex,      ///< two hexadecimal digits per byte
 };
@@ -27,12 +28,13 @@ enum class Encoding {
 struct StoredSamples {
   std::filesystem::path path;
   Encoding encoding = Encoding::raw;
-  std::uint64_t offset = 0;            ///< of the first sample, or of the compressed stream, in the file
-  std::uint64_t skip = 0;              ///< decompressed bytes before the first sample; deflate only
-  std::uint64_t compressed_bytes = 0;  ///< of the stream; 0: to the end of the file
-  std::string_view type;               ///< "uint8", ... as type_name returns it
-  std::vector<std::uint64_t> sizes;    ///< of the axes, fastest first
-  bool swapped = false;                ///< not in this machine's byte order
+  std::uint64_t offset = 0;               ///< of the first sample, or of the compressed stream, in the file
+  std::uint64_t skip = 0;                 ///< decompressed bytes before the first sample; deflate only
+  std::uint64_t compressed_bytes = 0;     ///< of the stream; 0: to the end of the file
+  std::string_view type;                  ///< "uint8", ... as type_name returns it
+  std::vector<std::uint64_t> sizes;       ///< of the axes, fastest first
+  bool swapped = false;                   ///< not in this machine's byte order
+  std::optional<std::uint32_t> crc = {};  ///< raw deflate: CRC-32 of all decompressed bytes
 };
 
 /// Size of a sample of a type in bytes.

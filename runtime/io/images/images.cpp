@@ -16,6 +16,7 @@
 #include "images/metaimage.hpp"
 #include "images/netcdf.hpp"
 #include "images/nifti.hpp"
+#include "images/npy.hpp"
 #include "images/nrrd.hpp"
 #include "process/separate_reading.hpp"
 
@@ -27,14 +28,14 @@ namespace {
 
 using namespace io_detail;
 
-enum class Format { Nifti, Nrrd, MetaImage, NetCdf };
+enum class Format { Nifti, Nrrd, MetaImage, NetCdf, Npy, Npz };
 
 struct Extension {
   std::string_view text;
   Format format;
 };
 
-constexpr std::array<Extension, 17> kExtensions = {{{".nii", Format::Nifti},
+constexpr std::array<Extension, 19> kExtensions = {{{".nii", Format::Nifti},
                                                     {".nii.gz", Format::Nifti},
                                                     {".hdr", Format::Nifti},
                                                     {".hdr.gz", Format::Nifti},
@@ -50,7 +51,9 @@ constexpr std::array<Extension, 17> kExtensions = {{{".nii", Format::Nifti},
                                                     {".cdf.gz", Format::NetCdf},
                                                     {".nc4", Format::NetCdf},
                                                     {".nc4.gz", Format::NetCdf},
-                                                    {".netcdf", Format::NetCdf}}};
+                                                    {".netcdf", Format::NetCdf},
+                                                    {".npy", Format::Npy},
+                                                    {".npz", Format::Npz}}};
 
 /// By extension; a file with an unknown extension, by its first bytes.
 Format format_of(const fs::path& path) {
@@ -60,16 +63,18 @@ Format format_of(const fs::path& path) {
   const auto prefix = read_prefix(path, 348);
   const std::string_view start(reinterpret_cast<const char*>(prefix.data()), prefix.size());
   if (start.starts_with("NRRD000")) return Format::Nrrd;
+  if (start.starts_with("\x93NUMPY")) return Format::Npy;
   if (start.starts_with("CDF") || start.starts_with("\x89HDF")) return Format::NetCdf;
   if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;
   fail(ErrorCode::UnsupportedFormat, path,
        "unknown image format, by its name and first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
-       ".nhdr), MetaImage (.mha, .mhd), netCDF (.nc, .cdf, .nc4, also gzipped) or DICOM (.dcm, a folder)",
+       ".nhdr), MetaImage (.mha, .mhd), NumPy (.npy, .npz), netCDF (.nc, .cdf, .nc4, also gzipped) or DICOM (.dcm, a "
+       "folder)",
        shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
 }
 
 StoredImage open_stored(const fs::path& path, Format format, const ReadImageOptions& options) {
-  if (!options.variable.empty())
+  if (!options.variable.empty() && format != Format::Npz)
     fail(ErrorCode::InvalidArgument, path, "variable '{}' for a file with one image and no variables; expected none",
          options.variable);
   if (!options.fixed.empty())
@@ -81,6 +86,10 @@ StoredImage open_stored(const fs::path& path, Format format, const ReadImageOpti
       return open_nifti(path);
     case Format::Nrrd:
       return open_nrrd(path, options.allow_outside_paths);
+    case Format::Npy:
+      return open_npy(path);
+    case Format::Npz:
+      return open_npz(path, options.variable);
     default:
       return open_metaimage(path, options.allow_outside_paths);
   }
@@ -103,6 +112,7 @@ RawImage read_stored(StoredImage&& stored, Extent extent, const Progress& progre
     const std::uint64_t outer = count / sizes[*stored.list_axis] / inner;
     values = with_axis_last(values, inner, sizes[*stored.list_axis], outer);
   }
+  if (stored.is_reversed && extent == Extent::whole) values = with_axes_reversed(values, {sizes.begin(), sizes.end()});
   if (stored.convert) values = stored.convert(std::move(values));
   return {std::move(stored.grid), std::move(values), std::move(stored.info)};
 }
@@ -113,6 +123,10 @@ RawLayers open_stored_layers(StoredImage&& stored, const fs::path& path) {
          "a list of images along axis {} of {} in the file cannot be read layer by layer; expected the list along the "
          "last axis",
          *stored.list_axis, stored.samples.sizes.size());
+  if (stored.is_reversed)
+    fail(ErrorCode::UnsupportedData, path,
+         "an array in Fortran order, whose layers are not contiguous, cannot be read layer by layer; expected C order "
+         "(numpy.ascontiguousarray)");
   const std::uint64_t per_layer = checked_bytes(stored.samples.sizes, 1, path) / stored.grid.axes.back().size();
   RawLayers layers;
   layers.grid = std::move(stored.grid);
@@ -185,8 +199,9 @@ std::vector<ImageVariable> list_image_variables(const fs::path& path, const Read
     });
   if (is_dicom(path)) return list_dicom(path);
   require_readable_file(path);
-  return format_of(path) == Format::NetCdf ? list_netcdf(path, options.allow_outside_paths)
-                                           : std::vector<ImageVariable>();
+  const Format format = format_of(path);
+  if (format == Format::NetCdf) return list_netcdf(path, options.allow_outside_paths);
+  return format == Format::Npz ? list_npz(path) : std::vector<ImageVariable>();
 }
 
 }  // namespace tegl

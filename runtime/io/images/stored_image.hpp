@@ -18,6 +18,8 @@ struct StoredImage {
   StoredSamples samples;
   /// Index, among the file's axes, of the image's last axis if that is not last in the file: a list of images in NRRD.
   std::optional<std::size_t> list_axis;
+  /// The file stores the axes in the reverse order: the image's last axis is the fastest there.
+  bool is_reversed = false;
   /// Converts stored values to those of the image; empty if they are equal.
   std::function<ValueArray(ValueArray&&)> convert;
 };

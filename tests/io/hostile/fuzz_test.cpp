@@ -18,6 +18,7 @@
 #include "hostile/watched_runs.hpp"
 #include "images/netcdf_files.hpp"
 #include "images/nifti_files.hpp"
+#include "images/npy_files.hpp"
 #include "io_support.hpp"
 #include "tegl/io/active_tiles.hpp"
 
@@ -291,6 +292,21 @@ TEST(Fuzz, MetaImage) {
       "DimSize = 3 4 10\nElementType = MET_SHORT\nElementDataFile = ";
   fuzz({".mha"},
        {{"own.mha", header + "LOCAL\n" + bytes_of(counting<std::int16_t>(120))}, {"own.mhd", header + "values.raw\n"}},
+       read_as_image, kImageCommands);
+}
+
+TEST(Fuzz, Npy) {
+  const std::string samples = bytes_of(counting<std::int16_t>(120));
+  fuzz({".npy"}, {{"own.npy", npy("<i2", "10, 4, 3", samples)}, {"fortran.npy", npy(">i2", "10, 4, 3", samples, true)}},
+       read_as_image, kImageCommands);
+}
+
+TEST(Fuzz, Npz) {
+  const std::string array = npy("<i2", "10, 4, 3", bytes_of(counting<std::int16_t>(120)));
+  fuzz({".npz"},
+       {{"stored.npz", zip({{"a.npy", array}})},
+        {"deflated.npz", zip({{"a.npy", array, true}}, "comment")},
+        {"zip64.npz", zip({{"a.npy", array, true, 0, 0, true}, {"text.txt", "text"}})}},
        read_as_image, kImageCommands);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "images/nifti_files.hpp"
+#include "images/npy_files.hpp"
 #include "io_support.hpp"
 #include "process/limited_child.hpp"
 
@@ -52,6 +53,33 @@ std::string meta(const std::string& fields, const std::string& samples, const st
 }
 const std::string kBinary = "BinaryData = True\n";
 const std::string kText = "BinaryData = False\n";
+
+TEST(HostileImages, NumPy) {
+  const std::string little_data(1000, '\0');
+  const std::string large = npy("|u1", "1000, 1000, 1000", little_data);
+  std::string long_header = npy("|u1", "10, 100", little_data);
+  long_header[6] = 2;  // the length has four bytes, of which two are blanks and letters
+  // an archive whose entry claims a gigabyte
+  std::string bomb = zip({{"a.npy", large, true}});
+  const std::size_t entry = bomb.find("PK\1\2");
+  bomb.replace(entry + 24, 4, little(1'000'000'128, 4));
+  // thousands of entries for one member
+  const std::string one = zip({{"a.npy", npy("<U3", "2, 2", std::string(48, 'a'))}});
+  const std::size_t start = one.find("PK\1\2"), end = one.find("PK\5\6");
+  std::string many = one.substr(0, start);
+  for (int i = 0; i < 1000; ++i) many += one.substr(start, end - start);
+  many += one.substr(end, 8) + little(1000, 2) + little(1000, 2) + little(1000 * (end - start), 4) + little(start, 4) +
+          little(0, 2);
+  expect_all_refused({
+      {"large.npy", large, {"1000 bytes of data", "expected 1000000000"}},
+      {"header.npy", long_header, {"header of", "at most 1048576"}},
+      {"nested.npy", npy_with(std::string(60'000, '{'), ""), {"expected '"}},
+      {"axes.npy", npy("|u1", repeated("1, ", 100), "1"), {"whole numbers"}},
+      {"large.npz", zip({{"a.npy", large, true}}), {"1000 bytes of data", "expected 1000000000"}},
+      {"bomb.npz", bomb, {"of data", "expected"}},
+      {"many.npz", many, {"no array", "1000 members"}},
+  });
+}
 
 TEST(HostileImages, MetaImage) {
   const std::string zipped = compressed("1234", true);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reading of images: NIfTI, NRRD, MetaImage, netCDF, DICOM. Link with tegl::io; the rules for threads in tegl/io.hpp
-// apply.
+// Reading of images: NIfTI, NRRD, MetaImage, NumPy, netCDF, DICOM. Link with tegl::io; the rules for threads in
+// tegl/io.hpp apply.
 #pragma once
 
 #include <cstddef>
@@ -32,13 +32,13 @@ enum class AxisDirection : std::uint8_t { unknown, up, down };
 
 /// Metadata of an image file besides values and grid.
 struct ImageInfo {
-  std::string format = {};                          ///< "NIfTI", "NRRD", "MetaImage", "netCDF", "DICOM", "raw"
-  std::string variable = {};                        ///< netCDF: the variable read
-  std::vector<std::string> variables = {};          ///< netCDF: all variables that are readable as an image
+  std::string format = {};                          ///< "NIfTI", "NRRD", "MetaImage", "NumPy", "netCDF", "DICOM", "raw"
+  std::string variable = {};                        ///< netCDF, .npz: the variable read
+  std::vector<std::string> variables = {};          ///< netCDF, .npz: all variables that are readable as an image
   std::string value_unit = {};                      ///< such as "degC"; may be empty
   std::string value_name = {};                      ///< long name; may be empty
   std::string world_frame = {};                     ///< such as "RAS", "LPS"; empty if unknown
-  std::optional<ValueType> stored_type = {};        ///< value type in the file, before any conversion
+  std::optional<ValueType> stored_type = {};        ///< value type in the file, before any conversion; none: float16
   std::vector<AxisDirection> axis_directions = {};  ///< netCDF: one per axis of the image; else empty
   std::vector<std::string> remarks = {};            ///< DICOM: skipped files, uneven slice distances; else empty
 };
@@ -57,8 +57,9 @@ struct FixedIndex {
 
 /// Options of read_image.
 struct ReadImageOptions {
-  std::string variable = {};  ///< netCDF: variable; DICOM: UID, description or number of a series; empty: the only one
-  WorkOptions work = {};      ///< progress; files are read by one thread
+  std::string variable =
+      {};  ///< netCDF: variable; .npz: array; DICOM: UID, description or number of a series; empty: the only one
+  WorkOptions work = {};  ///< progress; files are read by one thread
   /// netCDF: reads only the samples at these indices. The image does not have these dimensions as axes.
   std::vector<FixedIndex> fixed = {};
   /// Headers may name a file of samples (NRRD `data file`, MetaImage `ElementDataFile`). By default it must lie in the
@@ -73,10 +74,11 @@ struct ReadImageOptions {
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
-/// (.mha, .mhd; one data file) and netCDF (.nc, .cdf, .nc4; also gzipped as a whole). Files with another extension are
-/// recognised by their first bytes. With DCMTK also DICOM: a file, a DICOMDIR, or a folder and everything below it.
-/// DICOM slices are sorted by position, and by time if several have one position. Files there that are not DICOM, or
-/// have colours, are skipped; slices at uneven distances give a rectilinear axis. ImageInfo::remarks reports both.
+/// (.mha, .mhd; one data file), NumPy (.npy, .npz; numbers only) and netCDF (.nc, .cdf, .nc4; also gzipped as a whole).
+/// Files with another extension are recognised by their first bytes. With DCMTK also DICOM: a file, a DICOMDIR, or a
+/// folder and everything below it. DICOM slices are sorted by position, and by time if several have one position. Files
+/// there that are not DICOM, or have colours, are skipped; slices at uneven distances give a rectilinear axis.
+/// ImageInfo::remarks reports both.
 ///
 /// Axes: the fastest axis in the file is axis 0, time is last. Trailing axes of one sample are dropped (in netCDF at
 /// any position); 2, 3 or 4 axes must remain. Units are those of the file. Orientations that couple axes become
@@ -102,9 +104,10 @@ struct ImageVariable {
   std::vector<std::string> axes = {};   ///< netCDF: dimension names, in the order of `sizes`
 };
 
-/// Lists the values for ReadImageOptions::variable: the variables of a netCDF file, or the series of DICOM (with the
-/// description as long_name). Empty for other formats, whose files hold one unnamed image. Variables of more than 4
-/// axes are only readable with ReadImageOptions::fixed. Reads no values. Errors: those of read_image.
+/// Lists the values for ReadImageOptions::variable: the variables of a netCDF file, the arrays of an .npz file, or the
+/// series of DICOM (with the description as long_name). Empty for other formats, whose files hold one unnamed image.
+/// Variables of more than 4 axes are only readable with ReadImageOptions::fixed. Reads no values. Errors: those of
+/// read_image.
 [[nodiscard]] std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
                                                               const ReadImageOptions& options = {});
 

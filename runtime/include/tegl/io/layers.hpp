@@ -36,14 +36,14 @@ struct OpenLayersResult {
 };
 
 /// Opens an image to be read layer by layer. Grid and values are those of read_image, except that uint32, int64 and
-/// uint64 become double. Formats: NIfTI, NRRD and MetaImage, compressed or not; variables of netCDF files and datasets
-/// of HDF5 files; DICOM, slice by slice. The file stays open as long as the reader exists. Memory: one layer, or all
-/// layers of one compressed block of a netCDF-4 or HDF5 file if these take at most 256 MiB. Compressed and text files
-/// of NIfTI, NRRD and MetaImage are read in one pass if layers are requested in ascending order; a layer before the
-/// last one starts a new pass. Errors: those of read_image, here or in read() (faults in compressed samples are found
-/// when they are read); UnsupportedData for a netCDF file that is gzipped as a whole, and for an NRRD list of images
-/// whose axis is not the last one in the file. Progress is called while the file is opened, once for each file of a
-/// DICOM folder, and not while layers are read.
+/// uint64 become double. Formats: NIfTI, NRRD, MetaImage and NumPy, compressed or not; variables of netCDF files and
+/// datasets of HDF5 files; DICOM, slice by slice. The file stays open as long as the reader exists. Memory: one layer,
+/// or all layers of one compressed block of a netCDF-4 or HDF5 file if these take at most 256 MiB. Compressed and text
+/// files of NIfTI, NRRD, MetaImage and NumPy are read in one pass if layers are requested in ascending order; a layer
+/// before the last one starts a new pass. Errors: those of read_image, here or in read() (faults in compressed samples
+/// are found when they are read); UnsupportedData for a netCDF file that is gzipped as a whole, for an NRRD list of
+/// images whose axis is not the last one in the file, and for a NumPy array in Fortran order. Progress is called while
+/// the file is opened, once for each file of a DICOM folder, and not while layers are read.
 [[nodiscard]] OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// The layout of a headerless raw file: contiguous values, axis 0 fastest.
