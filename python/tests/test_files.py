@@ -40,8 +40,8 @@ def test_an_image_from_a_file_has_its_coordinates():
 @pytest.mark.parametrize("dtype", [np.uint8, ">i2", np.float16, np.float32, np.int64, bool])
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_saved_arrays_have_the_contour_of_the_array(dtype, order, tmp_path):
-    array = np.asarray(40 * ball(4) + 50).astype(dtype, order=order)
-    level = 0.5 if dtype is bool else 49.5
+    array = np.asarray(40 * ball(4) + 60).astype(dtype, order=order)
+    level = 0.5 if dtype is bool else 59.5
     np.save(tmp_path / "a.npy", array)
     np.savez(tmp_path / "stored.npz", words=np.array(["a", "b"]), array=array)
     np.savez_compressed(tmp_path / "deflated.npz", other=array[0], array=array)
