@@ -297,7 +297,10 @@ TEST(Fuzz, MetaImage) {
 
 TEST(Fuzz, Npy) {
   const std::string samples = bytes_of(counting<std::int16_t>(120));
-  fuzz({".npy"}, {{"own.npy", npy("<i2", "10, 4, 3", samples)}, {"fortran.npy", npy(">i2", "10, 4, 3", samples, true)}},
+  fuzz({".npy"},
+       {{"own.npy", npy("<i2", "10, 4, 3", samples)},
+        {"fortran.npy", npy(">i2", "10, 4, 3", samples, true)},
+        {"version2.npy", npy_with("{'descr': '|u1', 'fortran_order': False, 'shape': (12, 20)}", samples, 2)}},
        read_as_image, kImageCommands);
 }
 
