@@ -362,18 +362,25 @@ template <int N>
     base[N - 1] = view.k;
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active});
+    // Subtract the table's sizes. In a loop of their own, entries are fetched together: they are seldom in a cache.
+    for (std::uint32_t i = 0; i < count.active; ++i) {
+      const unsigned signature = room.signatures[i];
+      if (!is_put_together(*estimator_, signature)) continue;
+      const std::uint32_t replaced = rows_->entries[signature];
+      count.simplices -= replaced & RowTable::kCountMask;
+      if ((replaced & RowTable::kOwnFlag) != 0) count.own_vertices -= rows_->own_vertices(signature);
+    }
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
       if (!is_put_together(*estimator_, signature)) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile tile = tiles.resolve(base, i, signature);
-      // replace the table's size by the filling's
+      // add the filling's size
       const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
       if (kept.resolved != nullptr) kept.resolved[i] = KeptTile(tile, filling.plan);
       if (kept.plans != nullptr) kept.plans[i] = filling.plan;
       count.simplices += filling.simplices;
-      count.simplices -= rows_->entries[signature] & RowTable::kCountMask;
-      count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
+      count.own_vertices += filling.own_vertices;
       // record its cubes that own vertices, each by one tile only
       if (found == nullptr || tile.with_vertices == 0) continue;
       const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
