@@ -36,8 +36,8 @@ class SimplexSet {
   std::vector<std::uint64_t> words_;
 };
 
-/// Counts pairs, and keeps at most `most` of them: the first ones by numbers, or by depth, the deepest first. The result
-/// does not depend on the order in which pairs are added.
+/// Counts pairs, and keeps at most `most` of them: the first ones by numbers, or by depth, the deepest first. The
+/// result does not depend on the order in which pairs are added.
 template <int N>
 class FoundPairs {
  public:

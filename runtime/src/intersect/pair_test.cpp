@@ -4,8 +4,8 @@
 // one of the simplices, C the common ones. The simplices meet only in conv(C) if and only if a hyperplane through C has
 // A strictly on one side and B strictly on the other (see meeting_tableau.hpp).
 // 1. Boxes. If the boxes touch in a plane across an axis, both simplices are replaced by their faces in that plane.
-// 2. The hyperplanes of the simplices. If B is strictly on one side of the hyperplane of A and C, then a hyperplane that
-//    is turned slightly separates strictly, as A and C are affinely independent. If A and B have two vertices each and
+// 2. The hyperplanes of the simplices. If B is strictly on one side of the hyperplane of A and C, then a slightly
+//    turned hyperplane separates strictly, as A and C are affinely independent. If A and B have two vertices each and
 //    N - 2 are common, the four sides are the coefficients of the only affine dependency modulo C, and different signs
 //    exclude positive weights.
 // 3. A separating direction, found by linear programming in floating-point numbers and tested with a bound of the

@@ -178,7 +178,9 @@ TEST(FiveCubeEmbedding, SharesThatAreProved) {
     if (how == FiveKeys::smooth) {
       EXPECT_EQ(active, count[FiveEvidence::proved]);
     }
-    EXPECT_GT(count[FiveEvidence::proved], active / 10);
+    // docs/embedding.md: 96.0 % with few high corners, 63.7 % in noise; the sample's standard deviation is below 1 %
+    const double least = how == FiveKeys::low ? 0.60 : 0.93;
+    EXPECT_GT(static_cast<double>(count[FiveEvidence::proved]), least * static_cast<double>(active));
   }
 }
 

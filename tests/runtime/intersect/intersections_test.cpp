@@ -202,7 +202,7 @@ TEST(Intersections, AnEmptyContourHasNone) {
 
 TEST(Intersections, BadContoursAreRefused) {
   Surface surface = surface_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}});
-  expect_error(ErrorCode::InvalidArgument, "3", [&] { find_intersections(surface); });
+  expect_error(ErrorCode::InvalidArgument, "vertex number 3", [&] { find_intersections(surface); });
   surface.simplices[0] = {0, 1, 2};
   surface.vertices[1][1] = std::numeric_limits<double>::infinity();
   expect_error(ErrorCode::InvalidArgument, "inf", [&] { find_intersections(surface); });
