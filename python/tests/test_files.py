@@ -40,7 +40,7 @@ def test_an_image_from_a_file_has_its_coordinates():
 @pytest.mark.parametrize("dtype", [np.uint8, ">i2", np.float16, np.float32, np.int64, bool])
 @pytest.mark.parametrize("order", ["C", "F"])
 def test_saved_arrays_have_the_contour_of_the_array(dtype, order, tmp_path):
-    array = np.asarray(40 * ball(4) + 60).astype(dtype, order=order)
+    array = np.asarray(ball(4) > 0 if dtype is bool else 40 * ball(4) + 60).astype(dtype, order=order)
     level = 0.5 if dtype is bool else 59.5
     np.save(tmp_path / "a.npy", array)
     np.savez(tmp_path / "stored.npz", words=np.array(["a", "b"]), array=array)
@@ -54,6 +54,12 @@ def test_saved_arrays_have_the_contour_of_the_array(dtype, order, tmp_path):
         assert_same(image.contour(level), expected)
     with pytest.raises(ValueError, match="2 arrays.*other.*array"):
         tegl.read(tmp_path / "deflated.npz")
+    if PROGRAM.exists():
+        subprocess.run([PROGRAM, "contour", tmp_path / "deflated.npz", "--var", "array", "--iso", str(level), "-o",
+                        tmp_path / "program.vtkhdf", "--quiet"], check=True)
+        theirs = tegl.load(tmp_path / "program.vtkhdf")
+        mine = tegl.read(tmp_path / "a.npy").contour(level, dtype=np.float64)
+        assert np.array_equal(theirs.vertices, mine.vertices) and np.array_equal(theirs.simplices, mine.simplices)
     np.save(tmp_path / "objects.npy", np.array([[1, "a"]], dtype=object), allow_pickle=True)
     with pytest.raises(ValueError, match="'|O'"):
         tegl.read(tmp_path / "objects.npy")
