@@ -178,8 +178,8 @@ TEST(FiveCubeEmbedding, SharesThatAreProved) {
     if (how == FiveKeys::smooth) {
       EXPECT_EQ(active, count[FiveEvidence::proved]);
     }
-    // docs/embedding.md: 96.0 % with few high corners, 63.7 % in noise; the sample's standard deviation is below 1 %
-    const double least = how == FiveKeys::low ? 0.60 : 0.93;
+    // docs/embedding.md: 96.0 % with few high corners, 63.7 % in noise; samples of 300 have a standard deviation of 3 %
+    const double least = how == FiveKeys::low ? 0.55 : 0.9;
     EXPECT_GT(static_cast<double>(count[FiveEvidence::proved]), least * static_cast<double>(active));
   }
 }
