@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "filling/ambiguity.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/ambiguity.hpp"
+#include "cubes/resolved_cube.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "filling/cube_certificate.hpp"
-#include "filling/cube_embedding.hpp"
+#include "cubes/cube_certificate.hpp"
+#include "cubes/cube_embedding.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::gen {

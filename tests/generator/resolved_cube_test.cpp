@@ -13,8 +13,8 @@
 #include <string>
 
 #include "base/lattice.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "filling/resolutions.hpp"
-#include "filling/resolved_cube.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/certificate.hpp"
 
@@ -149,7 +149,8 @@ TEST(ResolvedCube, TheComplementWithInvertedSquaresHasTheReversedTriangles) {
   // of lists without own vertices: those of single polygons
   const auto list_of = [&](std::uint32_t s, unsigned high) -> const tables::ResolvedList& {
     std::size_t entry = kTile3Resolved.first_entry[s];
-    for (unsigned at = 0; at != high; at = (at - kTile3Resolved.ambiguous_squares[s]) & kTile3Resolved.ambiguous_squares[s])
+    for (unsigned at = 0; at != high;
+         at = (at - kTile3Resolved.ambiguous_squares[s]) & kTile3Resolved.ambiguous_squares[s])
       ++entry;
     return kTile3Resolved.entries[entry].separate;
   };

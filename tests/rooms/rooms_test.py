@@ -46,6 +46,7 @@ SHARED = {
     "python/src": ["io/images/series_request.hpp"],
 }
 MOST_LINES = {".hpp": 400, ".cpp": 700}
+MOST_FILES = 40  # headers and sources of a room
 INCLUDE = re.compile(r'^\s*#\s*include\s+["<]([^">]+)[">]', re.MULTILINE)
 DOOR = re.compile(r"^May use: (.+)\.$", re.MULTILINE)
 
@@ -118,6 +119,9 @@ def doors_of(root):
             faults.append(f"{room.name}: expected a README.md with one line 'May use: a, b.' or 'May use: nothing.'")
         words = [word.strip() for word in found[0].split(",")] if len(found) == 1 else []
         doors[room.name] = [] if words == ["nothing"] else words
+        files = len(sources_below(room))
+        if files > MOST_FILES:
+            faults.append(f"{room.name}: {files} files; expected at most {MOST_FILES}")
     for room, words in doors.items():
         faults += [f"{room}: may use '{word}', which is not there" for word in words if not (root / word).exists()]
     return doors, faults
@@ -296,6 +300,11 @@ class Faults(unittest.TestCase):
     def test_too_long(self):
         self.write("low/a.hpp", "\n" * 401)
         self.expect("low/a.hpp: 401 lines; expected at most 400")
+
+    def test_too_many_files(self):
+        for number in range(MOST_FILES):
+            self.write(f"low/c{number}.hpp", "")
+        self.expect("low: 41 files; expected at most 40")
 
     def test_circle_of_modules(self):
         self.write("p/a.py", "def f():\n    from .b import g\n")

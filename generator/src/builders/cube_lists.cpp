@@ -8,7 +8,7 @@
 #include <bit>
 
 #include "base/error.hpp"
-#include "filling/ambiguity.hpp"
+#include "cubes/ambiguity.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::gen {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tables/variant_tables.hpp"
 #include "tegl/tile/triangulation.hpp"
 

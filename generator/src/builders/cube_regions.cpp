@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "filling/cube_frame.hpp"
-#include "filling/region_maker.hpp"
+#include "cubes/cube_frame.hpp"
+#include "embedding/region_maker.hpp"
 #include "tegl/tile/complex.hpp"
 #include "tegl/tile/corners.hpp"
 

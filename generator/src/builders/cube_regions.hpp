@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "builders/cube_lists.hpp"
-#include "filling/region_vertices.hpp"
+#include "embedding/region_vertices.hpp"
 
 namespace tegl::gen {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "filling/cube_frame.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/cube_frame.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tegl/tile/choices.hpp"
 
 namespace tegl::gen {
@@ -26,7 +26,8 @@ enum Squares : std::uint8_t {
   kHexagons = 8,  ///< some low, some high, and the facets are two hexagons, whose discs might intersect
 };
 
-/// The polygons, each from its smallest edge on, in the order in which the squares, visited in kSquareOrder, have their first segments.
+/// The polygons, each from its smallest edge on, in the order in which the squares, visited in kSquareOrder, have their
+/// first segments.
 [[nodiscard]] std::vector<CubePolygon> cube_polygons(unsigned signature, unsigned high_squares);
 
 /// The polygons of each facet, by index. Low centre: polygons around the same high region are joined; high centre:
@@ -58,8 +59,8 @@ struct FillingRow {
 [[nodiscard]] std::vector<FillingRow> make_filling_rule(const ResolvedCube& table);
 
 /// The table in the barycentric triangulation: every facet of one polygon with more than three edges is coned from its
-/// barycentre, whose mask has kBarycentreBit and the polygon's edges. Joined polygons, and polygons with own vertices on
-/// rays, are filled as in the table.
+/// barycentre, whose mask has kBarycentreBit and the polygon's edges. Joined polygons, and polygons with own vertices
+/// on rays, are filled as in the table.
 [[nodiscard]] ResolvedCube coned(const ResolvedCube& table);
 inline constexpr unsigned kBarycentreBit = 20;
 

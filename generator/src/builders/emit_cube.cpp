@@ -12,12 +12,12 @@
 
 #include "base/error.hpp"
 #include "base/lattice.hpp"
+#include "base/tile_contour.hpp"
 #include "builders/cube_rule.hpp"
 #include "builders/emit_builder.hpp"
 #include "builders/templates.hpp"
-#include "filling/cube_certificate.hpp"
-#include "filling/resolved_cube.hpp"
-#include "filling/tile_contour.hpp"
+#include "cubes/cube_certificate.hpp"
+#include "cubes/resolved_cube.hpp"
 
 namespace tegl::gen {
 
@@ -290,9 +290,9 @@ BuilderTexts emit_cube_builder(const BuilderRequest& request) {
   const std::vector<FillingRow> rule = make_filling_rule(table);
   const Lists lists = lists_of(table);
   BuilderTexts texts;
-  texts.certificate = fmt::format(
-      "{} triangulation, {} resolutions of 256 signatures, 3 ways each; {} proved to be embedded",
-      triangulation_name(request.triangulation), table.entries.size(), certify_embedding(table));
+  texts.certificate =
+      fmt::format("{} triangulation, {} resolutions of 256 signatures, 3 ways each; {} proved to be embedded",
+                  triangulation_name(request.triangulation), table.entries.size(), certify_embedding(table));
   const std::string name = builder_name(request), space = builder_namespace(request);
   for (const Language language : request.languages) {
     const auto banner = [&](const char* what) { return builder_banner(request, language, what, texts.certificate); };

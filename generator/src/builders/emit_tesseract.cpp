@@ -19,7 +19,7 @@
 #include "builders/emit_builder.hpp"
 #include "builders/templates.hpp"
 #include "builders/tesseract_arrays.hpp"
-#include "filling/embedding_proof.hpp"
+#include "embedding/embedding_proof.hpp"
 #include "tables/table_set.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -134,7 +134,8 @@ std::string corner_sets(std::size_t count, std::size_t per_line, const std::func
   return rows(count, per_line, [&](std::size_t i) { return fmt::format("{:#06x}", set(static_cast<unsigned>(i))); });
 }
 
-/// Hyperplanes through corners that divide the tesseract. Those with many corners separate most sets, so they come first.
+/// Hyperplanes through corners that divide the tesseract. Those with many corners separate most sets, so they come
+/// first.
 std::string dividers() {
   const Lattice lattice(TileKind::cube, 4);
   const EmbeddingProof proof(lattice.tile(4));
@@ -144,9 +145,8 @@ std::string dividers() {
   std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) {
     return std::popcount(a.first | a.second) < std::popcount(b.first | b.second);
   });
-  return rows(planes.size(), 6, [&](std::size_t i) {
-    return fmt::format("{{{:#06x}, {:#06x}}}", planes[i].first, planes[i].second);
-  });
+  return rows(planes.size(), 6,
+              [&](std::size_t i) { return fmt::format("{{{:#06x}, {:#06x}}}", planes[i].first, planes[i].second); });
 }
 
 std::uint32_t corners_of_square(unsigned number) {

@@ -8,7 +8,7 @@
 
 #include "builders/cube_lists.hpp"
 #include "builders/cube_regions.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 
 namespace tegl::gen {
 

@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include "base/tile_contour.hpp"
 #include "filling/sigma_complex.hpp"
-#include "filling/tile_contour.hpp"
 
 namespace tegl::gen {
 

@@ -7,10 +7,10 @@
 #include <mutex>
 #include <vector>
 
-#include "filling/embedding_proof.hpp"
+#include "embedding/embedding_proof.hpp"
+#include "embedding/region_proof.hpp"
 #include "filling/facets.hpp"
 #include "filling/position_search.hpp"
-#include "filling/region_proof.hpp"
 
 namespace tegl::gen {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "filling/tile_contour.hpp"
+#include "base/tile_contour.hpp"
 
 namespace tegl::gen {
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/lattice.hpp"
-#include "filling/embedding_proof.hpp"
+#include "base/tile_contour.hpp"
+#include "embedding/embedding_proof.hpp"
 #include "filling/face_contours.hpp"
 #include "filling/hull.hpp"
-#include "filling/tile_contour.hpp"
 #include "filling/tile_regions.hpp"
 
 namespace tegl::gen {
@@ -25,8 +25,8 @@ class ContourBuilder : public FaceContours {
  public:
   /// Builds n-tiles of `lattice`; n is at most its dimension. The lattice must outlive this object.
   ContourBuilder(const Lattice& lattice, int n, Alternative alternative, Triangulation triangulation);
-  /// Builds compact, low-connected n-tiles, n = 3, 4, whose faces have the given contours, by signature. For n = 4: only
-  /// tiles whose Sigma consists of spheres.
+  /// Builds compact, low-connected n-tiles, n = 3, 4, whose faces have the given contours, by signature. For n = 4:
+  /// only tiles whose Sigma consists of spheres.
   ContourBuilder(const Lattice& lattice, int n, std::vector<TileContour> of_faces);
   ContourBuilder(const ContourBuilder&) = delete;
   ContourBuilder& operator=(const ContourBuilder&) = delete;

@@ -14,10 +14,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/simplex_key.hpp"
 #include "filling/ball_dissection.hpp"
 #include "filling/side_filling.hpp"
 #include "filling/sigma_complex.hpp"
-#include "filling/simplex_key.hpp"
 #include "tegl/tile/disjoint_sets.hpp"
 
 namespace tegl::gen {

@@ -3,10 +3,10 @@
 // Fills the components of Sigma (private to the generator).
 #pragma once
 
-#include "filling/embedding_proof.hpp"
+#include "base/tile_contour.hpp"
+#include "embedding/embedding_proof.hpp"
 #include "filling/face_contours.hpp"
 #include "filling/hull.hpp"
-#include "filling/tile_contour.hpp"
 #include "filling/tile_regions.hpp"
 
 namespace tegl::gen {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "filling/simplex_key.hpp"
+#include "base/simplex_key.hpp"
 #include "symmetry/transversal.hpp"
 #include "tegl/table_contract.hpp"
 

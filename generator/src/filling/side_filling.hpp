@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "base/tile_contour.hpp"
 #include "filling/face_contours.hpp"
-#include "filling/tile_contour.hpp"
 #include "filling/tile_regions.hpp"
 
 namespace tegl::gen {

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/simplex_key.hpp"
+#include "base/tile_contour.hpp"
 #include "filling/face_contours.hpp"
-#include "filling/simplex_key.hpp"
-#include "filling/tile_contour.hpp"
 
 namespace tegl::gen {
 

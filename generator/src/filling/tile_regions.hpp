@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "filling/region_maker.hpp"
-#include "filling/tile_contour.hpp"
+#include "base/tile_contour.hpp"
+#include "embedding/region_maker.hpp"
 
 namespace tegl::gen {
 

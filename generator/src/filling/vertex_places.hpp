@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "embedding/simplex_meeting.hpp"
 #include "filling/facets.hpp"
-#include "filling/simplex_meeting.hpp"
 
 namespace tegl::gen {
 

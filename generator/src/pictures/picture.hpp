@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "filling/tile_contour.hpp"
+#include "base/tile_contour.hpp"
 
 namespace tegl::gen {
 

@@ -15,7 +15,7 @@
 
 #include "base/error.hpp"
 #include "builders/emit_builder.hpp"
-#include "filling/cube_certificate.hpp"
+#include "cubes/cube_certificate.hpp"
 #include "filling/facets.hpp"
 #include "pictures/cases.hpp"
 #include "program/print_figures.hpp"
@@ -235,7 +235,8 @@ int run_out(const Options& options) {
   for (const CertifiedFigures& f : set.figures) print_figures(options.tile, options.dim, f);
   if (set.resolved)
     fmt::print(
-        "{}-tile, every ambiguity resolved freely\n  certified    {} entries, 3 ways each\n  embedded     {} lists proved "
+        "{}-tile, every ambiguity resolved freely\n  certified    {} entries, 3 ways each\n  embedded     {} lists "
+        "proved "
         "for all positions\n",
         options.dim, set.resolved->entries.size(), certify_embedding(*set.resolved));
   fmt::print("made and certified in {:.2f} s\n", watch.lap());

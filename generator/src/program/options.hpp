@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/lattice.hpp"
+#include "base/tile_contour.hpp"
 #include "builders/builder_request.hpp"
-#include "filling/tile_contour.hpp"
 #include "symmetry/symmetry.hpp"
 #include "tables/language.hpp"
 

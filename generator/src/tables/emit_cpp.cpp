@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Emits the C++ tables and the manifest.
+#include "cubes/cube_certificate.hpp"
 #include "tables/emit.hpp"
-#include "filling/cube_certificate.hpp"
 #include "tables/emit_arrays.hpp"
 #include "tables/emit_rows.hpp"
 

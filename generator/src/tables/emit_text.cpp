@@ -7,7 +7,7 @@
 
 #include <fmt/ranges.h>
 
-#include "filling/cube_certificate.hpp"
+#include "cubes/cube_certificate.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::gen {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/lattice.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tables/language.hpp"
 #include "tables/table_set.hpp"
 

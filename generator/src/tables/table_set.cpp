@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "filling/ambiguity.hpp"
+#include "cubes/ambiguity.hpp"
 #include "filling/balanced.hpp"
 #include "filling/facets.hpp"
 #include "filling/regions.hpp"

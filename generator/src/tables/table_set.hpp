@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/lattice.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tables/tile_tables.hpp"
 #include "tables/variant_tables.hpp"
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "base/lattice.hpp"
+#include "base/tile_contour.hpp"
 #include "filling/facets.hpp"
 #include "filling/pairs.hpp"
 #include "filling/position_search.hpp"
 #include "filling/regions.hpp"
-#include "filling/tile_contour.hpp"
 #include "symmetry/tile_symmetry.hpp"
 #include "tegl/table_contract.hpp"
 

@@ -14,9 +14,9 @@
 
 #include "base/error.hpp"
 #include "base/fnv.hpp"
-#include "filling/ambiguity.hpp"
-#include "filling/cube_certificate.hpp"
-#include "filling/cube_frame.hpp"
+#include "cubes/ambiguity.hpp"
+#include "cubes/cube_certificate.hpp"
+#include "cubes/cube_frame.hpp"
 #include "tegl/tile/choices.hpp"
 #include "tegl/tile/complex.hpp"
 
@@ -32,7 +32,7 @@ constexpr unsigned kCubeVariants = 1 + 3 * 64;  ///< most variants of a signatur
 struct Polygons {
   static constexpr unsigned kFirstOwn = tables::first_tile_vertex(3);
   std::vector<std::uint8_t> triangles;
-  unsigned cones = 0;  ///< number of own vertices that are barycentres; they come first
+  unsigned cones = 0;                ///< number of own vertices that are barycentres; they come first
   std::vector<std::uint64_t> masks;  ///< of the other own vertices
 
   Polygons(const ResolvedCube& cube, const tables::ResolvedList& list) {
@@ -52,7 +52,8 @@ struct Polygons {
   [[nodiscard]] std::vector<std::uint32_t> all_masks() const {
     std::vector<std::uint32_t> result(cones);
     for (const CubeTriangle& t : as_triangles())
-      if (t[0] >= kFirstOwn && t[0] < kFirstOwn + cones) result[t[0] - kFirstOwn] |= 1u << (8 + t[1]) | 1u << (8 + t[2]);
+      if (t[0] >= kFirstOwn && t[0] < kFirstOwn + cones)
+        result[t[0] - kFirstOwn] |= 1u << (8 + t[1]) | 1u << (8 + t[2]);
     for (const std::uint64_t mask : masks) result.push_back(static_cast<std::uint32_t>(mask));
     return result;
   }

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tables/tile_tables.hpp"
 #include "tegl/table_contract.hpp"
 

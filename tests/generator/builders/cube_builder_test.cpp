@@ -14,7 +14,7 @@
 #include "builder3_edges.hpp"
 #include "builder_checks.hpp"
 #include "builders/cube_rule.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::test {

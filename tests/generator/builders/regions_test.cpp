@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 
 #include "builders/tesseract_arrays.hpp"
-#include "filling/region_proof.hpp"
+#include "embedding/region_proof.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::gen {

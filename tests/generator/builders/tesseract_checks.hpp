@@ -18,7 +18,7 @@
 
 #include "../definition_oracle.hpp"
 #include "builder4.hpp"
-#include "filling/embedding_proof.hpp"
+#include "embedding/embedding_proof.hpp"
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tegl/tile/facets.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Affine dependences from minors, in integers of 128 bits.
-#include "filling/simplex_meeting.hpp"
+#include "embedding/simplex_meeting.hpp"
 
 #include <algorithm>
 #include <bit>

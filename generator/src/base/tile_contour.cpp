@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The names of alternatives and triangulations, and the inversion of contours.
-#include "filling/tile_contour.hpp"
+#include "base/tile_contour.hpp"
 
 #include <utility>
 

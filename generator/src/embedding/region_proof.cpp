@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Volumes of all tetrahedra of corners, and from these the signs for points on edges and for means.
-#include "filling/region_proof.hpp"
+#include "embedding/region_proof.hpp"
 
 #include <bit>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Numbers of the cube's faces, and its rays.
-#include "filling/cube_frame.hpp"
+#include "cubes/cube_frame.hpp"
 
 #include <algorithm>
 #include <bit>

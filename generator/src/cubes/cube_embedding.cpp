@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Proofs for surfaces in a cube, by the proof for tiles.
-#include "filling/cube_embedding.hpp"
+#include "cubes/cube_embedding.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "filling/cube_frame.hpp"
-#include "filling/resolved_cube.hpp"
+#include "cubes/cube_frame.hpp"
+#include "cubes/resolved_cube.hpp"
 
 namespace tegl::gen {
 

@@ -2,7 +2,7 @@
 //
 // The search advances a front: for an open edge of the front, every vertex is tried as the third one of its triangle,
 // until no edge is open. The number of triangles determines the surface: a disc, or a sphere with holes.
-#include "filling/surface_search.hpp"
+#include "cubes/surface_search.hpp"
 
 #include <algorithm>
 #include <bit>

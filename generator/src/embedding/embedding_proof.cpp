@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Separation of sets of corners by the hyperplanes that corners span.
-#include "filling/embedding_proof.hpp"
+#include "embedding/embedding_proof.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/lattice.hpp"
-#include "filling/embedding_proof.hpp"
+#include "embedding/embedding_proof.hpp"
 #include "tegl/tile/face_lattice.hpp"
 
 namespace tegl::gen {

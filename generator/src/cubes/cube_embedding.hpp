@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "filling/cube_frame.hpp"
+#include "cubes/cube_frame.hpp"
+#include "embedding/embedding_proof.hpp"
 #include "filling/embedding_evidence.hpp"
-#include "filling/embedding_proof.hpp"
 
 namespace tegl::gen {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Derives the sets of ambiguous tiles, and the joins of cubes. Theory of the joins: runtime/src/ambiguity/saddle.cpp.
-#include "filling/ambiguity.hpp"
+#include "cubes/ambiguity.hpp"
 
 #include <algorithm>
 #include <bit>

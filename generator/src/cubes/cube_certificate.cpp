@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Certifies the lists of cubes.
-#include "filling/cube_certificate.hpp"
+#include "cubes/cube_certificate.hpp"
 
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "filling/cube_embedding.hpp"
+#include "cubes/cube_embedding.hpp"
 
 namespace tegl::gen {
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::gen {

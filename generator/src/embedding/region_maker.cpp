@@ -3,7 +3,7 @@
 // Depth-first search: takes tetrahedra away from the surface inwards, each at the triangle that has the fewest
 // admissible ones, until nothing is left, or until the rest is visible from a centre. Points of one position of the
 // contour's vertices show early that tetrahedra overlap; they only make the search faster.
-#include "filling/region_maker.hpp"
+#include "embedding/region_maker.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "filling/cube_frame.hpp"
+#include "cubes/cube_frame.hpp"
 
 namespace tegl::gen {
 

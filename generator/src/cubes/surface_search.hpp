@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "filling/cube_frame.hpp"
+#include "cubes/cube_frame.hpp"
 
 namespace tegl::gen {
 

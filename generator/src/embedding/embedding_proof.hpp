@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "filling/tile_contour.hpp"
+#include "base/tile_contour.hpp"
 
 namespace tegl::gen {
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "filling/region_proof.hpp"
-#include "filling/region_vertices.hpp"
+#include "embedding/region_proof.hpp"
+#include "embedding/region_vertices.hpp"
 
 namespace tegl::gen {
 

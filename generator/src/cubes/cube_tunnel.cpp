@@ -2,7 +2,7 @@
 //
 // Searches for the triangulation of a region of the cube's boundary, seen from the cube's centre, with own vertices on
 // rays that always end in the region. One region of each orbit under the cube's isometries is triangulated.
-#include "filling/cube_tunnel.hpp"
+#include "cubes/cube_tunnel.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "base/determinant.hpp"
-#include "filling/cube_embedding.hpp"
-#include "filling/surface_search.hpp"
+#include "cubes/cube_embedding.hpp"
+#include "cubes/surface_search.hpp"
 
 namespace tegl::gen {
 
@@ -61,8 +61,7 @@ void reverse(CubeTriangles& triangles) {
 /// Which triangles a radial surface with given own vertices may have. Remembers what it computed.
 class RadialTriangles {
  public:
-  RadialTriangles(const CubeFrame& frame, const std::vector<std::uint32_t>& masks)
-      : frame_(frame), masks_(masks) {
+  RadialTriangles(const CubeFrame& frame, const std::vector<std::uint32_t>& masks) : frame_(frame), masks_(masks) {
     for (const auto& ends : frame.cube().edges) ends_.push_back({ray_to_corner(ends[0]), ray_to_corner(ends[1])});
     for (const std::uint32_t mask : masks) ends_.push_back({ray_of(mask)});
   }
@@ -253,9 +252,7 @@ std::optional<CubeSurface> RadialFilling::search(const Region& region) const {
       own.push_back({0.5 * ray[0], 0.5 * ray[1], 0.5 * ray[2]});
     }
     SurfaceSearch search(frame_, region.polygons, own);
-    search.may_add = [&](const CubeTriangle& t, const CubeTriangles& others) {
-      return radial.may_add(t, others);
-    };
+    search.may_add = [&](const CubeTriangle& t, const CubeTriangles& others) { return radial.may_add(t, others); };
     search.accepts = [&](const CubeTriangles& all) {
       return has_fans(all, chosen.size()) && radial.embedding().is_embedded(all);
     };

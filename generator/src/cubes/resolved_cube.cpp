@@ -3,7 +3,7 @@
 // Fills one or several polygons on a cube's boundary: a single polygon as a balanced fan, unless a chord of it lies in
 // a square; then by search. The surface between several polygons is radial (cube_tunnel.hpp). Every filling must pass
 // the certificate, and every list is proved to be embedded.
-#include "filling/resolved_cube.hpp"
+#include "cubes/resolved_cube.hpp"
 
 #include <fmt/format.h>
 
@@ -16,12 +16,12 @@
 #include "base/error.hpp"
 #include "base/fnv.hpp"
 #include "base/lattice.hpp"
+#include "cubes/cube_embedding.hpp"
+#include "cubes/cube_frame.hpp"
+#include "cubes/cube_tunnel.hpp"
+#include "cubes/surface_search.hpp"
 #include "filling/balanced.hpp"
-#include "filling/cube_embedding.hpp"
-#include "filling/cube_frame.hpp"
-#include "filling/cube_tunnel.hpp"
 #include "filling/resolutions.hpp"
-#include "filling/surface_search.hpp"
 #include "tegl/tile/certificate.hpp"
 
 namespace tegl::gen {
@@ -189,8 +189,7 @@ class Table {
     SurfaceSearch::Point mean{};
     std::uint32_t mask = 0;
     for (const std::uint8_t e : boundary[0]) {
-      for (std::size_t a = 0; a < 3; ++a)
-        mean[a] += frame_.midpoint(e)[a] / static_cast<double>(boundary[0].size());
+      for (std::size_t a = 0; a < 3; ++a) mean[a] += frame_.midpoint(e)[a] / static_cast<double>(boundary[0].size());
       mask |= std::uint32_t{1} << (8 + e);
     }
     SurfaceSearch coned(frame_, boundary, {&mean, 1});
