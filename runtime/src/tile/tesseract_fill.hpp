@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contour of a 4D tile whose ambiguous faces are resolved one by one: names of the emitted builder (builder4.hpp,
-// which documents them) and of its data, the lists of cubes with every ambiguity resolved freely.
+// The contour of a 4D tile whose ambiguous faces are resolved one by one: names of the emitted builder and of its data,
+// the lists of cubes with every ambiguity resolved freely. The code that fills a tile is in the emitted builder4.cpp,
+// from generator/templates/builder4.cpp.in; the emitted builder4.hpp documents it.
 #pragma once
 
 #include <bit>
