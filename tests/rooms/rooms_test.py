@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rooms of the sources: folders with a README at the door that says which other rooms they may use.
+"""The rooms of the sources: folders with a README that lists the other rooms that they may include ('May use: a, b.').
 
-Fails on an include that no door allows, on a circle of files, on a source outside of the rooms, and on a file or a room
-that is too large to read. A *file* here is a stem: a header and the source of its name.
+Fails if a file includes a room that its own room's README does not allow, or if the README allows a room that no file
+includes; on circles of rooms, and of files (a header and its source count as one); on a source outside of rooms; on a
+room of more than 40 headers and sources. Fails on a header over 400 or a source over 700 lines, also in folders without
+rooms. Also checks which public and private headers each library includes, and finds circles of public headers and of
+Python modules.
 
     rooms_test.py SOURCE_FOLDER
 """
@@ -17,22 +20,25 @@ from pathlib import Path
 
 SOURCE = Path(sys.argv.pop(1)) if len(sys.argv) > 1 and os.path.isdir(sys.argv[1]) else Path(__file__).parents[2]
 
-# Folders of rooms, and which files elsewhere each may include, besides the public headers `tegl/...`.
+# Folders of rooms; for each, the folders outside that it may include from, besides public headers `tegl/...`.
 ROOTS = {
     "runtime/src": [],
     "runtime/io": ["runtime/src/base"],
     "apps/cli": [],
     "generator/src": [],
 }
-# Programs and libraries whose public headers each may include.
+# Folders without rooms whose files have limits of lines, too.
+OTHERS = ["tile", "runtime/include", "python/src"]
+# By library or program: the folders whose public headers it may include.
 PUBLIC = {
+    "tile/include": ["tile/include"],
     "tile/src": ["tile/include"],
     "generator/src": ["tile/include"],
     "runtime/src": ["tile/include", "runtime/include", "generated/include"],
     "runtime/io": ["tile/include", "runtime/include"],
     "apps/cli": ["tile/include", "runtime/include"],
 }
-# Private headers of a library that others may include, by these names from `runtime`. They are not installed.
+# Private headers of `runtime/io` that others may include, by these names from `runtime`. They are not installed.
 SHARED = {
     "apps/cli": [
         "io/base/pending_path.hpp",
@@ -110,7 +116,7 @@ def includes_within(root, file):
 
 
 def doors_of(root):
-    """What each room may use, by its README; and what is wrong with the doors."""
+    """The rooms and files that each room's README allows it to include, its *door*; and the faults of these lists."""
     doors, faults = {}, []
     for room in sorted(path for path in root.iterdir() if path.is_dir() and sources_below(path)):
         readme = room / "README.md"
@@ -127,19 +133,28 @@ def doors_of(root):
     return doors, faults
 
 
+def faults_of_lengths(folder):
+    """Files below `folder` with too many lines."""
+    faults = []
+    for file in sources_below(folder):
+        lines = file.read_text().count("\n")
+        if lines > MOST_LINES[file.suffix]:
+            faults.append(f"{file.relative_to(folder)}: {lines} lines; expected at most {MOST_LINES[file.suffix]}")
+    return faults
+
+
 def faults_of_rooms(root, elsewhere=()):
-    """What is wrong with the rooms below `root`. `elsewhere`: folders outside that they may include from."""
+    """Faults of the rooms below `root`. `elsewhere`: folders outside that they may include from."""
     doors, faults = doors_of(root)
+    faults += faults_of_lengths(root)
     arrows, rooms = {}, {room: set() for room in doors}
+    unused = {room: {word for word in words if (root / word).exists()} for room, words in doors.items()}
     for file in sources_below(root):
         name = str(file.relative_to(root))
         room = name.split("/")[0]
         if room not in doors:
             faults.append(f"{name}: in no room")
             continue
-        lines = file.read_text().count("\n")
-        if lines > MOST_LINES[file.suffix]:
-            faults.append(f"{name}: {lines} lines; expected at most {MOST_LINES[file.suffix]}")
         inside, outside = includes_within(root, file)
         for used in inside:
             if stem(used) != stem(name):
@@ -147,11 +162,14 @@ def faults_of_rooms(root, elsewhere=()):
             other = used.split("/")[0]
             if other != room:
                 rooms[room].add(other)
+                unused[room] -= {other, used}
                 if other not in doors[room] and used not in doors[room]:
                     faults.append(f"{name} includes {used}; '{room}' may use {', '.join(doors[room]) or 'nothing'}")
         for used, at in outside:
             if not any(at.is_relative_to(folder.resolve()) for folder in elsewhere):
                 faults.append(f"{name} includes {used}, outside of its rooms")
+    faults += [f"{room}: may use '{word}', which no file of it includes"
+               for room, words in unused.items() for word in sorted(words)]
     faults += ["a circle of files: " + ", ".join(part) for part in circles(arrows)]
     faults += ["a circle of rooms: " + ", ".join(part) for part in circles(rooms)]
     return faults
@@ -209,6 +227,12 @@ class Rooms(unittest.TestCase):
             with self.subTest(root):
                 faults = faults_of_rooms(SOURCE / root, [SOURCE / folder for folder in elsewhere])
                 self.assertEqual([], faults, "\n".join(faults))
+
+    def test_files_outside_of_rooms_are_short(self):
+        for folder in OTHERS:
+            with self.subTest(folder):
+                self.assertTrue(sources_below(SOURCE / folder))
+                self.assertEqual([], faults_of_lengths(SOURCE / folder))
 
     def test_libraries_use_those_below_them(self):
         for user, folders in PUBLIC.items():
@@ -275,7 +299,7 @@ class Faults(unittest.TestCase):
         self.write("side/c.cpp", '#include "high/b.hpp"\n')
         self.assertEqual([], faults_of_rooms(self.root))
         self.write("high/d.hpp", "")
-        self.write("side/c.cpp", '#include "high/d.hpp"\n')
+        self.write("side/c.cpp", '#include "high/b.hpp"\n#include "high/d.hpp"\n')
         self.expect("side/c.cpp includes high/d.hpp", "may use high/b.hpp")
 
     def test_circle_of_stems(self):
@@ -292,6 +316,13 @@ class Faults(unittest.TestCase):
     def test_door_to_nowhere(self):
         self.write("high/README.md", "# high\nMay use: low, attic.\n")
         self.expect("high: may use 'attic', which is not there")
+
+    def test_door_that_no_file_uses(self):
+        self.write("side/README.md", "# side\nMay use: high/b.hpp, low.\n")
+        self.write("side/c.cpp", '#include "low/a.hpp"\n')
+        self.expect("side: may use 'high/b.hpp', which no file of it includes")
+        self.write("side/c.cpp", '#include "high/b.hpp"\n')
+        self.expect("side: may use 'low', which no file of it includes")
 
     def test_outside_of_the_rooms(self):
         self.write("c.cpp", "")
