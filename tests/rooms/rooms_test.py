@@ -4,8 +4,8 @@
 
 Fails if a file includes a room that its own room's README does not allow, or if the README allows a room that no file
 includes; on circles of rooms, and of files (a header and its source count as one); on a source outside of rooms; on a
-room of more than 40 headers and sources. Fails on a header over 400 or a source over 700 lines, also in folders without
-rooms. Also checks which public and private headers each library includes, and finds circles of public headers and of
+room of more than 40 headers and sources. Fails on a header over 400 or a source over 700 lines, also in the folders
+OTHERS. Also checks which public and private headers each library includes, and finds circles of public headers and of
 Python modules.
 
     rooms_test.py SOURCE_FOLDER
