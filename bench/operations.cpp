@@ -77,14 +77,15 @@ std::string counted(std::size_t count, const char* what) { return fmt::format("{
 template <Value T>
 void add_cuts(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`slice` at one time", [&] {
-                    const auto cut = slice(subject.contour, Hyperplane<4>::across(3, subject.time(0.314)));
+                    const auto cut =
+                        slice(subject.contour, Hyperplane<4>::across(3, subject.time(0.314)), subject.work_options());
                     return counted(cut.simplices.size(), "triangles");
                   }});
   list.push_back({"`slice` along x", [&] {
                     double x = 0;
                     for (const auto& vertex : subject.contour.vertices) x += vertex[0];
                     x /= static_cast<double>(subject.contour.vertices.size());
-                    const auto cut = slice(subject.contour, Hyperplane<4>::across(0, x));
+                    const auto cut = slice(subject.contour, Hyperplane<4>::across(0, x), subject.work_options());
                     return counted(cut.simplices.size(), "triangles");
                   }});
   list.push_back({"`slice_stack`, 100 times", [&] {
@@ -164,7 +165,10 @@ void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
                     const auto facets = extract_facets<double>(subject.image, subject.isovalue, options);
                     return counted(facets.vertices.size(), "0-facets");
                   }});
-  list.push_back({"`project`", [&] { return counted(project(subject.contour).tetrahedra.size(), "tetrahedra"); }});
+  list.push_back({"`project`", [&] {
+                    const auto seen = project(subject.contour, {}, subject.work_options());
+                    return counted(seen.tetrahedra.size(), "tetrahedra");
+                  }});
   list.push_back({"`outline`", [&] {
                     const auto seen = outline(subject.contour, {}, subject.work_options());
                     return counted(seen.simplices.size(), "triangles");
@@ -211,7 +215,7 @@ std::vector<Operation> operations_on(Subject<T>& subject) {
                     return counted(extract<double>(subject.image, subject.isovalue, options).normals.size(), "normals");
                   }});
   list.push_back({"`check`", [&] {
-                    const MeshReport report = check(subject.contour);
+                    const MeshReport report = check(subject.contour, subject.work_options());
                     return fmt::format("{} bad links, Euler characteristic {}", report.bad_links, report.euler);
                   }});
   add_cuts(subject, list);

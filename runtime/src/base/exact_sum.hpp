@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Compensated summation of many numbers.
-// Based on: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen", ZAMM 54 (1974).
+// Based on: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen", ZAMM 54 (1974); with
+// the rounding error of a sum by D. E. Knuth, The Art of Computer Programming, volume 2, 4.2.2, which needs no branch.
 #pragma once
 
 #include <cmath>
 
 namespace tegl::detail {
 
-/// Adds numbers and, separately, their rounding errors. Requires code without re-association (no -ffast-math).
+/// Adds x to a sum, and the rounding error of that to `rest`. Requires code without re-association (no -ffast-math).
+inline void add_exactly(double x, double& sum, double& rest) noexcept {
+  const double before = sum;
+  sum = before + x;
+  const double added = sum - before;
+  rest += (before - (sum - added)) + (x - added);
+}
+
+/// Adds numbers and, separately, their rounding errors.
 class CompensatedSum {
  public:
-  void add(double x) noexcept {
-    const double sum = sum_ + x;
-    rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
-    sum_ = sum;
-  }
+  void add(double x) noexcept { add_exactly(x, sum_, rest_); }
   /// The sum including the rounding errors. These are ignored if they are not finite, as after infinite numbers.
   [[nodiscard]] double value() const noexcept { return std::isfinite(rest_) ? sum_ + rest_ : sum_; }
 

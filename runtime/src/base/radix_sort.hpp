@@ -8,12 +8,14 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/workers.hpp"
+
 namespace tegl::detail {
 
 /// Sorts stably by key(item), integers below 2^bits, starting with the lowest digit. O(n bits / 11) time; memory for n
-/// items.
+/// items. `threads`: 0 for all of the machine; the result does not depend on them.
 template <class Item, class Key>
-void sort_by_bits(std::vector<Item>& items, unsigned bits, const Key& key) {
+void sort_by_bits(std::vector<Item>& items, unsigned bits, const Key& key, unsigned threads = 1) {
   constexpr std::size_t kFew = 512;  // below this, comparisons cost less than counting digits
   if (items.size() < kFew) {
     std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
@@ -21,20 +23,37 @@ void sort_by_bits(std::vector<Item>& items, unsigned bits, const Key& key) {
   }
   constexpr unsigned kDigitBits = 11;
   constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  constexpr std::size_t kPart = std::size_t{1} << 16;  // smaller parts are not worth a thread
+  constexpr std::size_t kMostParts = 8;
+  const std::size_t parts = std::clamp<std::size_t>(items.size() / kPart, 1, threads == 1 ? 1 : kMostParts);
+  const auto first_of = [&](std::size_t part) { return items.size() * part / parts; };
+  const auto for_parts = [&](const auto& work) {
+    if (parts == 1) return work(0);
+    for_each_block(parts, 1, threads, {}, [&](std::size_t part, std::size_t, std::size_t) { work(part); });
+  };
   std::vector<Item> other(items.size());
+  std::vector<std::array<std::size_t, kDigits>> next(parts);  // by part and digit: counts, then places
   for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
     const auto digit = [&](const Item& item) { return static_cast<std::size_t>(key(item) >> shift) & (kDigits - 1); };
-    // count, skip a digit that all have in common, exclusive scan, move
-    std::array<std::size_t, kDigits> next{};
-    for (const Item& item : items) ++next[digit(item)];
-    if (next[digit(items[0])] == items.size()) continue;
+    for_parts([&](std::size_t part) {
+      next[part].fill(0);
+      for (std::size_t i = first_of(part); i < first_of(part + 1); ++i) ++next[part][digit(items[i])];
+    });
+    // skip a digit that all have in common
+    std::size_t like_first = 0;
+    for (const auto& counts : next) like_first += counts[digit(items[0])];
+    if (like_first == items.size()) continue;
+    // exclusive scan, by digit, then by part; move
     std::size_t sum = 0;
-    for (std::size_t& start : next) {
-      const std::size_t count = start;
-      start = sum;
-      sum += count;
-    }
-    for (const Item& item : items) other[next[digit(item)]++] = item;
+    for (std::size_t d = 0; d < kDigits; ++d)
+      for (auto& starts : next) {
+        const std::size_t count = starts[d];
+        starts[d] = sum;
+        sum += count;
+      }
+    for_parts([&](std::size_t part) {
+      for (std::size_t i = first_of(part); i < first_of(part + 1); ++i) other[next[part][digit(items[i])]++] = items[i];
+    });
     items.swap(other);
   }
 }

@@ -126,8 +126,8 @@ template <int N, class Real>
 class Cutter {
  public:
   Cutter(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
-         const std::vector<Index>& touching)
-      : contour_(contour), family_(family), level_(level), touching_(touching) {}
+         std::span<const Index> touching, unsigned threads)
+      : contour_(contour), family_(family), level_(level), touching_(touching), threads_(threads) {}
 
   Contour<N - 1, Real> cut() {
     classify();
@@ -534,9 +534,10 @@ class Cutter {
   const Contour<N, Real>& contour_;
   const HyperplaneFamily<N>& family_;
   const double level_;
-  const std::vector<Index>& touching_;  ///< simplices not entirely on one side
-  IndexMap on_;                         ///< vertices of these simplices on the hyperplane
-  std::vector<bool> is_low_;            ///< by on vertex: whether it counts as below
+  const std::span<const Index> touching_;  ///< simplices not entirely on one side
+  const unsigned threads_;
+  IndexMap on_;               ///< vertices of these simplices on the hyperplane
+  std::vector<bool> is_low_;  ///< by on vertex: whether it counts as below
   bool any_low_ = false;
   std::vector<Sides> sides_;  ///< by touching simplex
   Index most_ = 0;            ///< maximum number of their vertices
@@ -549,17 +550,17 @@ class Cutter {
 
 template <int N, class Real>
 Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
-                                   const std::vector<Index>& touching) {
-  return Cutter<N, Real>(contour, family, level, touching).cut();
+                                   std::span<const Index> touching, unsigned threads) {
+  return Cutter<N, Real>(contour, family, level, touching, threads).cut();
 }
 
 template Contour<2, float> cut_simplices(const Contour<3, float>&, const HyperplaneFamily<3>&, double,
-                                         const std::vector<Index>&);
+                                         std::span<const Index>, unsigned);
 template Contour<2, double> cut_simplices(const Contour<3, double>&, const HyperplaneFamily<3>&, double,
-                                          const std::vector<Index>&);
+                                          std::span<const Index>, unsigned);
 template Contour<3, float> cut_simplices(const Contour<4, float>&, const HyperplaneFamily<4>&, double,
-                                         const std::vector<Index>&);
+                                         std::span<const Index>, unsigned);
 template Contour<3, double> cut_simplices(const Contour<4, double>&, const HyperplaneFamily<4>&, double,
-                                          const std::vector<Index>&);
+                                          std::span<const Index>, unsigned);
 
 }  // namespace tegl::detail

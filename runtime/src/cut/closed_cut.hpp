@@ -3,7 +3,7 @@
 // Cut of some simplices of a contour by a hyperplane, shared by all cutting functions.
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "cut/hyperplane_family.hpp"
 #include "tegl/contour.hpp"
@@ -11,9 +11,10 @@
 namespace tegl::detail {
 
 /// The cut at `level`. `touching`: ascending, all simplices with vertices at the level or on both sides of it; no other
-/// simplex contributes to the cut. O(c) time for c of them, or O(c log c) if vertices lie at the level; O(c) memory.
+/// simplex contributes to the cut. Threads: 0 for all of the machine; the result does not depend on them. O(c) time for
+/// c of them, or O(c log c) if vertices lie at the level; O(c) memory.
 template <int N, class Real>
 Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
-                                   const std::vector<Index>& touching);
+                                   std::span<const Index> touching, unsigned threads = 1);
 
 }  // namespace tegl::detail

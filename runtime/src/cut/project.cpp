@@ -23,9 +23,11 @@
 #include <Eigen/LU>
 
 #include "base/progress.hpp"
+#include "base/workers.hpp"
 #include "cut/hyperplane_family.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
+#include "mesh/vertex_stars.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/slice.hpp"
 
@@ -87,7 +89,7 @@ bool is_far(const View<Real>& view, const std::array<Index, 4>& simplex, bool fl
 }
 
 template <class Real>
-View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection, const Progress& progress) {
+View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
   check_projection(projection);
   detail::require_sound(contour);
   const HyperplaneFamily<4> family(projection.direction);
@@ -95,15 +97,15 @@ View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection
   const Eigen::Vector4d up = as_eigen(frame.up);
   View<Real> view;
   view.is_right_handed = frame.is_right_handed;
-  detail::in_parts(contour.vertices.size(), progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) {
-      const auto& vertex = contour.vertices[v];
-      std::array<double, 4> x;
-      std::copy(vertex.begin(), vertex.end(), x.begin());
-      const std::array<double, 3> y = family.within(x);
-      view.points.emplace_back(y[0], y[1], y[2]);
-      view.heights.push_back(family.is_across_axis() ? family.height(vertex) : up.dot(Eigen::Vector4d(x.data())));
-    }
+  view.points.resize(contour.vertices.size());
+  view.heights.resize(contour.vertices.size());
+  detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
+    const auto& vertex = contour.vertices[v];
+    std::array<double, 4> x;
+    std::copy(vertex.begin(), vertex.end(), x.begin());
+    const std::array<double, 3> y = family.within(x);
+    view.points[v] = {y[0], y[1], y[2]};
+    view.heights[v] = family.is_across_axis() ? family.height(vertex) : up.dot(Eigen::Vector4d(x.data()));
   });
   draw_towards_middle(view, projection.eye_distance);
   return view;
@@ -169,22 +171,37 @@ void fill_from_neighbours(const Contour<4, Real>& contour, VertexNormals& normal
   }
 }
 
+/// By vertex, the sum of the normals of its tetrahedra, in the order of these.
+template <class Real>
+VertexNormals vertex_normals(const Contour<4, Real>& contour, const WorkOptions& work) {
+  Buffer<detail::PointOf<4>> of_simplices(contour.simplices.size());
+  detail::for_each_item(
+      of_simplices.size(), work.threads, detail::part_of(work.progress, 0.0, 0.3),
+      [&](std::size_t s) { of_simplices[s] = detail::normal_vector_of<4>(detail::corners_of(contour, s)); });
+  const detail::Stars stars =
+      detail::make_stars<4>(detail::flat_rows(std::span<const std::array<Index, 4>>(contour.simplices)),
+                            contour.vertices.size(), work.threads, detail::part_of(work.progress, 0.3, 0.6));
+  VertexNormals normals(contour.vertices.size());
+  detail::for_each_item(normals.size(), work.threads, detail::part_of(work.progress, 0.6, 1.0), [&](std::size_t v) {
+    normals[v].setZero();
+    for (const Index s : stars.of(v)) normals[v] += Eigen::Vector4d(of_simplices[s].data());
+  });
+  return normals;
+}
+
 /// By vertex, the cosine between the line of sight and its normal (the sum of the normals of its tetrahedra), directed
 /// towards low values: negative on the near side, positive on the far side. Values within rounding of 0 count as far,
 /// as for tetrahedra.
 template <class Real>
-std::vector<double> along_sight(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
+std::vector<double> along_sight(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view,
+                                const WorkOptions& work) {
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
   const Eigen::Vector4d up = as_eigen(frame.up);
   const Eigen::Matrix<double, 4, 3> axes = as_eigen(frame.axes).transpose();
-  VertexNormals normals(contour.vertices.size(), Eigen::Vector4d::Zero());
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
-    const auto normal = detail::normal_vector_of<4>(detail::corners_of(contour, s));
-    for (const Index v : contour.simplices[s]) normals[v] += Eigen::Vector4d(normal.data());
-  }
+  VertexNormals normals = vertex_normals(contour, {work.threads, detail::part_of(work.progress, 0.0, 0.8)});
   fill_from_neighbours(contour, normals);
   std::vector<double> result(normals.size());
-  for (std::size_t v = 0; v < normals.size(); ++v) {
+  detail::for_each_item(normals.size(), work.threads, detail::part_of(work.progress, 0.8, 1.0), [&](std::size_t v) {
     Eigen::Vector4d sight = up;
     if (projection.eye_distance > 0.0)
       sight = axes * (view.flat[v] - view.middle) + up * (projection.eye_distance + view.heights[v] - view.least);
@@ -193,7 +210,7 @@ std::vector<double> along_sight(const Contour<4, Real>& contour, const Projectio
     double cosine = size > 0.0 ? normals[v].dot(sight) / size : 0.0;
     if (contour.direction == GradientDirection::ascent) cosine = -cosine;
     result[v] = std::abs(cosine) > kRounding ? cosine : kRounding;
-  }
+  });
   return result;
 }
 
@@ -201,10 +218,13 @@ std::vector<double> along_sight(const Contour<4, Real>& contour, const Projectio
 
 template <Coordinate Real>
 ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
-  const View<Real> view = view_of(contour, projection, detail::part_of(work.progress, 0.0, 0.4));
+  const View<Real> view = view_of(contour, projection, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
   ProjectedContour<Real> result;
-  for (const Eigen::Vector3d& point : view.points)
-    result.vertices.push_back({static_cast<Real>(point[0]), static_cast<Real>(point[1]), static_cast<Real>(point[2])});
+  result.vertices.resize(view.points.size());
+  detail::for_each_item(view.points.size(), work.threads, {}, [&](std::size_t v) {
+    const Eigen::Vector3d& point = view.points[v];
+    result.vertices[v] = {static_cast<Real>(point[0]), static_cast<Real>(point[1]), static_cast<Real>(point[2])};
+  });
   result.tetrahedra = contour.simplices;
   name_axes(contour, projection, result.axis_names, result.axis_units);
   result.vertex_attributes = contour.vertex_attributes;
@@ -212,11 +232,9 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
   result.simplex_attributes = contour.simplex_attributes;
   Attribute side{"side", "", 1, {}};
   const bool flip = view.is_right_handed == (contour.direction == GradientDirection::ascent);
-  detail::in_parts(contour.simplices.size(), detail::part_of(work.progress, 0.4, 1.0),
-                   [&](std::size_t from, std::size_t to) {
-                     for (std::size_t s = from; s < to; ++s)
-                       side.values.push_back(is_far(view, contour.simplices[s], flip) ? 1.0 : -1.0);
-                   });
+  side.values.resize(contour.simplices.size());
+  detail::for_each_item(contour.simplices.size(), work.threads, detail::part_of(work.progress, 0.4, 1.0),
+                        [&](std::size_t s) { side.values[s] = is_far(view, contour.simplices[s], flip) ? 1.0 : -1.0; });
   replace(result.simplex_attributes, std::move(side));
   return result;
 }
@@ -224,10 +242,9 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
 template <Coordinate Real>
 Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
   detail::tell(work.progress, 0.0, kCancelledProject);
-  const View<Real> view = view_of(contour, projection, detail::part_of(work.progress, 0.0, 0.3));
-  detail::tell(work.progress, 0.3, kCancelledProject);
-  const std::vector<double> sides = along_sight(contour, projection, view);
-  detail::tell(work.progress, 0.6, kCancelledProject);
+  const View<Real> view = view_of(contour, projection, {work.threads, detail::part_of(work.progress, 0.0, 0.2)});
+  const std::vector<double> sides =
+      along_sight(contour, projection, view, {work.threads, detail::part_of(work.progress, 0.2, 0.6)});
   // The projected contour with the side function as last coordinate; the outline is its cut at 0.
   Contour<4, double> raised;
   raised.vertices.resize(view.points.size());
@@ -238,7 +255,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   raised.vertex_attributes = contour.vertex_attributes;
   replace(raised.vertex_attributes, height_attribute(contour, projection, view));
   raised.simplex_attributes = contour.simplex_attributes;
-  Contour<3, double> cut = slice(raised, Hyperplane<4>::across(3, 0.0));
+  Contour<3, double> cut = slice(raised, Hyperplane<4>::across(3, 0.0), {work.threads, {}});
   detail::tell(work.progress, 0.9, kCancelledProject);
   Contour<3, Real> result;
   result.direction = contour.direction;

@@ -4,6 +4,8 @@
 #include "tegl/slice.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -16,56 +18,109 @@ namespace {
 
 using detail::HyperplaneFamily;
 
+constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< vertices or simplices of a part of the work
+
 /// The simplices that touch the level, ascending.
 template <int N, class Real>
 std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
-                                      const Progress& progress) {
+                                      const WorkOptions& work) {
   enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on: counts as both
-  std::vector<unsigned char> sides(contour.vertices.size());
-  detail::in_parts(sides.size(), detail::part_of(progress, 0.0, 0.5), [&](std::size_t from, std::size_t to) {
-    // copies, because the compiler must assume that writing a char changes anything that it cannot see
-    const HyperplaneFamily<N> heights = family;
-    const auto* const points = contour.vertices.data();
-    const double at = level;
-    unsigned char* const side = sides.data();
-    for (std::size_t v = from; v < to; ++v) {
-      const double height = heights.height(points[v]);
-      side[v] = height < at ? kBelow : height > at ? kAbove : kOn;
-    }
-  });
+  Buffer<unsigned char> sides(contour.vertices.size());
+  detail::for_each_block(sides.size(), kBlock, work.threads, detail::part_of(work.progress, 0.0, 0.5),
+                         [&](std::size_t, std::size_t from, std::size_t to) {
+                           // copies, because the compiler must assume that writing a char changes anything that it
+                           // cannot see
+                           const HyperplaneFamily<N> heights = family;
+                           const auto* const points = contour.vertices.data();
+                           const double at = level;
+                           unsigned char* const side = sides.data();
+                           for (std::size_t v = from; v < to; ++v) {
+                             const double height = heights.height(points[v]);
+                             side[v] = height < at ? kBelow : height > at ? kAbove : kOn;
+                           }
+                         });
+  // by block, then in a row
+  const std::size_t count = contour.simplices.size();
+  std::vector<std::vector<Index>> parts(detail::block_count(count, kBlock));
+  detail::for_each_block(count, kBlock, work.threads, detail::part_of(work.progress, 0.5, 1.0),
+                         [&](std::size_t block, std::size_t from, std::size_t to) {
+                           const auto* const simplices = contour.simplices.data();
+                           const unsigned char* const side = sides.data();
+                           std::array<Index, kBlock> found;
+                           std::size_t size = 0;
+                           for (std::size_t s = from; s < to; ++s) {
+                             unsigned met = 0;
+                             for (const Index v : simplices[s]) met |= side[v];
+                             found[size] = static_cast<Index>(s);
+                             size += met == kOn ? 1 : 0;
+                           }
+                           parts[block].assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size));
+                         });
   std::vector<Index> touching;
-  detail::in_parts(contour.simplices.size(), detail::part_of(progress, 0.5, 1.0),
-                   [&](std::size_t from, std::size_t to) {
-                     const auto* const simplices = contour.simplices.data();
-                     const unsigned char* const side = sides.data();
-                     for (std::size_t s = from; s < to; ++s) {
-                       unsigned met = 0;
-                       for (const Index v : simplices[s]) met |= side[v];
-                       if (met == kOn) touching.push_back(static_cast<Index>(s));
-                     }
-                   });
+  std::size_t all = 0;
+  for (const auto& part : parts) all += part.size();
+  touching.reserve(all);
+  for (const auto& part : parts) touching.insert(touching.end(), part.begin(), part.end());
   return touching;
 }
 
-/// By level, the simplices that touch it, ascending; levels ascend. Each simplex is read once.
-template <int N, class Real>
-std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
-                                                const std::vector<double>& levels) {
-  std::vector<double> heights(contour.vertices.size());
-  for (std::size_t v = 0; v < heights.size(); ++v) heights[v] = family.height(contour.vertices[v]);
-  std::vector<std::vector<Index>> touching(levels.size());
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
-    const auto& simplex = contour.simplices[s];
-    double least = heights[simplex[0]];
-    double most = least;
-    for (int j = 1; j < N; ++j) {
-      least = std::min(least, heights[simplex[j]]);
-      most = std::max(most, heights[simplex[j]]);
-    }
-    auto level = std::lower_bound(levels.begin(), levels.end(), least);
-    for (; level != levels.end() && *level <= most; ++level)
-      touching[static_cast<std::size_t>(level - levels.begin())].push_back(static_cast<Index>(s));
+/// Simplices by level, ascending.
+struct TouchingSimplices {
+  std::vector<std::size_t> first;  ///< by level, and the end
+  Buffer<Index> simplices;
+
+  [[nodiscard]] std::span<const Index> of(std::size_t level) const noexcept {
+    return std::span(simplices).subspan(first[level], first[level + 1] - first[level]);
   }
+};
+
+/// By level, the simplices that touch it; levels ascend. Each simplex is read once.
+template <int N, class Real>
+TouchingSimplices touching_levels(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
+                                  const std::vector<double>& levels, unsigned threads) {
+  // by vertex: the first level at or above it, and the end of the levels at or below it
+  struct Reach {
+    Index first, end;
+  };
+  Buffer<Reach> reach(contour.vertices.size());
+  detail::for_each_item(reach.size(), threads, {}, [&](std::size_t v) {
+    const double height = family.height(contour.vertices[v]);
+    const auto level = std::lower_bound(levels.begin(), levels.end(), height);
+    const auto first = static_cast<Index>(level - levels.begin());
+    reach[v] = {first, first + (level != levels.end() && *level == height ? 1u : 0u)};
+  });
+  // count by block and level, then by level and block, then list
+  const std::size_t count = contour.simplices.size();
+  const std::size_t size = std::max(kBlock, detail::block_count(count, 64));
+  const std::size_t blocks = detail::block_count(count, size);
+  std::vector<std::vector<std::size_t>> next(blocks, std::vector<std::size_t>(levels.size(), 0));
+  const auto for_touching = [&](const auto& visit) {
+    detail::for_each_block(count, size, threads, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
+      for (std::size_t s = from; s < to; ++s) {
+        const auto& simplex = contour.simplices[s];
+        Reach all = reach[simplex[0]];
+        for (int j = 1; j < N; ++j) {
+          all.first = std::min(all.first, reach[simplex[j]].first);
+          all.end = std::max(all.end, reach[simplex[j]].end);
+        }
+        for (Index level = all.first; level < all.end; ++level) visit(next[block][level], s);
+      }
+    });
+  };
+  for_touching([](std::size_t& places, std::size_t) { ++places; });
+  TouchingSimplices touching;
+  touching.first.push_back(0);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    std::size_t place = touching.first.back();
+    for (auto& of_block : next) {
+      const std::size_t places = of_block[level];
+      of_block[level] = place;
+      place += places;
+    }
+    touching.first.push_back(place);
+  }
+  touching.simplices.resize(touching.first.back());
+  for_touching([&](std::size_t& place, std::size_t s) { touching.simplices[place++] = static_cast<Index>(s); });
   return touching;
 }
 
@@ -74,8 +129,8 @@ template <int N>
 struct Parallels {
   Vector<N> normal;
   HyperplaneFamily<N> family;
-  std::vector<double> levels;                ///< ascending, each once
-  std::vector<std::vector<Index>> touching;  ///< by level, the simplices that touch it
+  std::vector<double> levels;  ///< ascending, each once
+  TouchingSimplices touching;
 };
 
 /// A hyperplane of a stack.
@@ -116,8 +171,8 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, R
   detail::require_sound(contour);
   const double level = family.template level<Real>(hyperplane.offset);
   const Progress finding = detail::part_of(work.progress, 0.0, 0.8);
-  Contour<N - 1, Real> cut =
-      detail::cut_simplices(contour, family, level, touching_simplices(contour, family, level, finding));
+  Contour<N - 1, Real> cut = detail::cut_simplices(
+      contour, family, level, touching_simplices(contour, family, level, {work.threads, finding}), work.threads);
   detail::tell(work.progress, 1.0, kCancelledSlice);
   return cut;
 }
@@ -133,12 +188,12 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   // one pass over the contour for each normal
   for (std::size_t i = 0; i < groups.size(); ++i) {
     detail::tell(work.progress, static_cast<double>(i) / steps, kCancelledSlice);
-    groups[i].touching = touching_levels(contour, groups[i].family, groups[i].levels);
+    groups[i].touching = touching_levels(contour, groups[i].family, groups[i].levels, work.threads);
   }
   const auto cut_of = [&](const StackedCut& cut) {
     const Parallels<N>& group = groups[cut.parallels];
     const auto place = std::lower_bound(group.levels.begin(), group.levels.end(), cut.level) - group.levels.begin();
-    return detail::cut_simplices(contour, group.family, cut.level, group.touching[static_cast<std::size_t>(place)]);
+    return detail::cut_simplices(contour, group.family, cut.level, group.touching.of(static_cast<std::size_t>(place)));
   };
   // the cuts: one per thread at a time, so that progress can be reported between them
   std::vector<Contour<N - 1, Real>> cuts(stack.size());

@@ -92,7 +92,7 @@ SimplexRows rows_of(const Contour<N, Real>& contour) noexcept {
 
 /// Throws InvalidArgument unless the labels fit the contour: one per vertex and simplex, each below the count, each
 /// used by a simplex, equal for a simplex and its vertices, and none for vertices in no simplex.
-void require_labels(const SimplexRows& contour, const ComponentLabels& labels, const Progress& progress = {}) {
+void require_labels(const SimplexRows& contour, const ComponentLabels& labels, const WorkOptions& work = {}) {
   detail::require_vertex_numbers(contour.numbers, contour.width, contour.vertices);
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
   const auto require_count = [&](std::size_t found, std::size_t expected, const char* what) {
@@ -105,30 +105,43 @@ void require_labels(const SimplexRows& contour, const ComponentLabels& labels, c
   if (labels.count > contour.size())
     fail(fmt::format("{} components of {} simplices; expected the labels of this contour", labels.count,
                      contour.size()));
-  // simplices and their vertices
-  std::vector<bool> is_in_simplex(contour.vertices, false);
-  std::vector<bool> has_simplex(labels.count, false);
-  const auto look_at = [&](std::size_t s) {
+  // simplices and their vertices; then the first fault
+  Buffer<std::uint8_t> is_in_simplex(contour.vertices), has_simplex(labels.count);
+  std::fill(is_in_simplex.begin(), is_in_simplex.end(), std::uint8_t{0});
+  std::fill(has_simplex.begin(), has_simplex.end(), std::uint8_t{0});
+  const auto mark = [](std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); };
+  const auto is_sound = [&](std::size_t s) {
+    const Index label = labels.simplices[s];
+    if (label >= labels.count) return false;
+    mark(has_simplex[label]);
+    bool is_equal = true;
+    for (const Index v : contour[s]) {
+      mark(is_in_simplex[v]);
+      is_equal = is_equal && labels.vertices[v] == label;
+    }
+    return is_equal;
+  };
+  std::atomic<std::size_t> first_fault = contour.size();
+  detail::for_each_part(contour.size(), work.threads, work.progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s)
+      if (!is_sound(s))
+        for (std::size_t known = first_fault; s < known && !first_fault.compare_exchange_weak(known, s);) continue;
+  });
+  if (const std::size_t s = first_fault; s < contour.size()) {
     const Index label = labels.simplices[s];
     if (label >= labels.count)
       fail(fmt::format("simplex {} has the label {}; expected less than {}, the number of components", s, label,
                        labels.count));
-    has_simplex[label] = true;
-    for (const Index v : contour[s]) {
-      is_in_simplex[v] = true;
+    for (const Index v : contour[s])
       if (labels.vertices[v] != label)
         fail(fmt::format("simplex {} has the label {}, and its vertex {} the label {}; expected the same", s, label, v,
                          labels.vertices[v]));
-    }
-  };
-  detail::in_parts(contour.size(), progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t s = from; s < to; ++s) look_at(s);
-  });
+  }
   // vertices in no simplex, components without simplices
   for (std::size_t v = 0; v < is_in_simplex.size(); ++v)
-    if (!is_in_simplex[v] && labels.vertices[v] != kNoComponent)
+    if (is_in_simplex[v] == 0 && labels.vertices[v] != kNoComponent)
       fail(fmt::format("vertex {} in no simplex has the label {}; expected none", v, labels.vertices[v]));
-  if (const auto empty = std::find(has_simplex.begin(), has_simplex.end(), false); empty != has_simplex.end())
+  if (const auto empty = std::find(has_simplex.begin(), has_simplex.end(), 0); empty != has_simplex.end())
     fail(fmt::format("component {} of {} has no simplex; expected the labels of this contour",
                      empty - has_simplex.begin(), labels.count));
 }
@@ -181,7 +194,8 @@ template <int N>
 std::vector<Component<N>> measure_components(const detail::SimplexView<N>& contour, GradientDirection direction,
                                              const ComponentLabels& labels, const WorkOptions& work,
                                              detail::FunctionRef<void()> check_coordinates) {
-  require_labels({contour.rows(), N, contour.vertex_count()}, labels, detail::part_of(work.progress, 0.0, 0.05));
+  require_labels({contour.rows(), N, contour.vertex_count()}, labels,
+                 {work.threads, detail::part_of(work.progress, 0.0, 0.05)});
   check_coordinates();
   // count faces by label
   const std::span<const Index> rows = contour.rows();
@@ -193,23 +207,21 @@ std::vector<Component<N>> measure_components(const detail::SimplexView<N>& conto
                                    detail::part_of(work.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });
   }
-  // sums over simplices by label
-  const detail::Groups groups =
-      detail::group_by(labels.simplices, labels.count, detail::part_of(work.progress, 0.8, 0.82));
-  const std::vector<detail::PieceSums<N>> sums =
-      detail::sum_groups(contour, groups, work.threads, detail::part_of(work.progress, 0.82, 1.0));
+  // sums by label
+  const std::vector<detail::PieceMeasures<N>> pieces = detail::measure_pieces<N>(
+      contour, labels.vertices, labels.simplices, labels.count, work.threads, detail::part_of(work.progress, 0.8, 1.0));
   std::vector<Component<N>> result(labels.count);
-  for (const Index label : labels.vertices)
-    if (label != kNoComponent) ++result[label].vertices;
   for (Index label = 0; label < labels.count; ++label) {
+    const detail::PieceMeasures<N>& piece = pieces[label];
     Component<N>& component = result[label];
     component.label = label;
-    component.simplices = groups.first[label + std::size_t{1}] - groups.first[label];
-    component.size = sums[label].size.value();
-    component.content = detail::content_of(sums[label], faces[label], direction);
-    component.centroid = sums[label].centroid();
-    component.lowest = sums[label].lowest;
-    component.highest = sums[label].highest;
+    component.vertices = piece.vertices;
+    component.simplices = piece.simplices;
+    component.size = piece.size;
+    component.content = detail::content_of(piece, faces[label], direction);
+    component.centroid = piece.centroid;
+    component.lowest = piece.lowest;
+    component.highest = piece.highest;
     component.euler = faces[label].euler;
     component.boundary_simplices = faces[label].boundary;
   }
@@ -257,7 +269,7 @@ requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> split_component
                                                                                   const WorkOptions& work) {
   using detail::part_of;
   const Progress& progress = work.progress;
-  require_labels(rows_of(contour), labels, part_of(progress, 0.0, 0.2));
+  require_labels(rows_of(contour), labels, {work.threads, part_of(progress, 0.0, 0.2)});
   detail::require_attributes(contour);
   const detail::Groups vertices = detail::group_by(labels.vertices, labels.count, part_of(progress, 0.2, 0.3));
   const detail::Groups simplices = detail::group_by(labels.simplices, labels.count, part_of(progress, 0.3, 0.5));
@@ -281,7 +293,7 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Cont
                                                                       const WorkOptions& work) {
   using detail::part_of;
   const Progress& progress = work.progress;
-  require_labels(rows_of(contour), labels, part_of(progress, 0.0, 0.2));
+  require_labels(rows_of(contour), labels, {work.threads, part_of(progress, 0.0, 0.2)});
   detail::require_attributes(contour);
   if (keep.size() != labels.count)
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} choices of components; expected {}, one for each component",

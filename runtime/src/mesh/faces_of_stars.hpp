@@ -9,10 +9,12 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "base/function_ref.hpp"
+#include "mesh/link_above.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/work.hpp"
@@ -41,13 +43,16 @@ class FacesOfStars {
   using Ridge = std::array<Index, N - 1>;
 
   /// `rows`: #S x N, row = simplex. `with_euler`: whether to count the Euler characteristic.
-  FacesOfStars(const Index* rows, bool with_euler) : rows_(rows), with_euler_(with_euler) {}
+  FacesOfStars(const Index* rows, std::size_t vertex_count, bool with_euler)
+      : rows_(rows), with_euler_(with_euler), usual_(rows, vertex_count, with_euler) {}
 
   /// Counts the faces with v as their smallest vertex; `star`: the simplices around v that repeat no vertex. Calls
   /// on_open(ridge) for every (N-2)-face whose orientations do not cancel.
   template <class OnOpen>
   FaceCounts visit(Index v, std::span<const Index> star, const OnOpen& on_open) {
     if (star.empty()) return {};
+    if constexpr (N == 3 || N == 4)
+      if (usual_.load(v, star)) return count_usual(v, on_open);
     sides_.clear();
     edges_.clear();
     triangles_.clear();
@@ -76,6 +81,27 @@ class FacesOfStars {
   };
 
   static constexpr std::int64_t sign(int dimension) { return dimension % 2 == 0 ? 1 : -1; }
+
+  /// In place of LinkAbove in other dimensions.
+  struct NoLink {
+    NoLink(const Index*, std::size_t, bool) {}
+  };
+
+  template <class OnOpen>
+  FaceCounts count_usual(Index v, const OnOpen& on_open) {
+    FaceCounts counts;
+    counts.open = counts.boundary = usual_.visit_open([&](const Rest& rest) {
+      Ridge ridge;
+      ridge[0] = v;
+      std::copy(rest.begin(), rest.end(), ridge.begin() + 1);
+      on_open(ridge);
+    });
+    if (!with_euler_) return counts;
+    const auto ridges = static_cast<std::int64_t>(usual_.ridges());
+    counts.euler = 1 + sign(N - 2) * ridges + sign(N - 1) * static_cast<std::int64_t>(usual_.simplices());
+    if constexpr (N == 4) counts.euler -= static_cast<std::int64_t>(usual_.edges());
+    return counts;
+  }
 
   template <class Key>
   static std::int64_t distinct(std::vector<Key>& keys) {
@@ -131,6 +157,7 @@ class FacesOfStars {
 
   const Index* rows_;
   bool with_euler_;
+  std::conditional_t<N == 3 || N == 4, LinkAbove<N == 3 ? 3 : 4>, NoLink> usual_;
   std::vector<Side> sides_;
   std::vector<Index> edges_;
   std::vector<std::array<Index, 2>> triangles_;

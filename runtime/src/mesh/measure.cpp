@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/slice_at.hpp"
+#include "base/sort_few.hpp"
 #include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 
@@ -23,26 +24,34 @@ using detail::CompensatedSum;
 using detail::kBlock;
 using detail::PointOf;
 
-/// The B-spline of degree d - 1 with the knots k_0 ≤ … ≤ k_d and integral 1, at t. At knots it is the limit from below
-/// (`from_above`: from above). Recursion by convex combinations of two splines with one knot less, so there is no
-/// cancellation.
-template <int Knots>
-double normalised_spline(std::array<double, Knots> knots, double t, bool from_above) noexcept {
-  std::array<double, Knots - 1> spline;  // two knots: 1 / distance between them
-  for (int i = 0; i + 1 < Knots; ++i) {
-    const bool inside = from_above ? knots[i] <= t && t < knots[i + 1] : knots[i] < t && t <= knots[i + 1];
-    spline[i] = inside ? 1.0 / (knots[i + 1] - knots[i]) : 0.0;
+/// The B-spline of degree N - 2 with the knots k_0 ≤ … ≤ k_{N-1} and integral 1, for many places. Recursion by convex
+/// combinations of two splines with one knot less, so there is no cancellation.
+template <int N>
+class Spline {
+ public:
+  explicit Spline(const std::array<double, N>& knots) noexcept : knots_(knots) {
+    for (int width = 1; width < N; ++width)
+      for (int i = 0; i + width < N; ++i) {
+        const double length = knots[i + width] - knots[i];
+        per_length_[width][i] = length > 0.0 ? 1.0 / length : 0.0;
+      }
   }
-  for (int width = 2; width < Knots; ++width)
-    for (int i = 0; i + width < Knots; ++i) {
-      const double length = knots[i + width] - knots[i];
-      if (!(length > 0.0)) continue;  // both are 0
-      const double below = (t - knots[i]) / length * spline[i];
-      const double above = (knots[i + width] - t) / length * spline[i + 1];
-      spline[i] = (below + above) * width / (width - 1);
-    }
-  return spline[0];
-}
+
+  /// At t from knot J to knot J + 1, which differ.
+  template <int J>
+  [[nodiscard]] double at(double t) const noexcept {
+    std::array<double, N> spline{};  // with one knot more in each round
+    spline[J] = per_length_[1][J];
+    for (int width = 2; width < N; ++width)
+      for (int i = std::max(0, J - width + 1); i <= std::min(J, N - 1 - width); ++i)
+        spline[i] = ((t - knots_[i]) * spline[i] + (knots_[i + width] - t) * spline[i + 1]) * per_length_[width][i];
+    return spline[0] * (N - 1);
+  }
+
+ private:
+  std::array<double, N> knots_;
+  std::array<std::array<double, N>, N> per_length_;  ///< by number of intervals, then by first knot
+};
 
 /// The requested values in ascending order, with lookup of those that cut a range from `low` to `high`.
 class CutValues {
@@ -57,7 +66,13 @@ class CutValues {
   [[nodiscard]] double operator[](std::size_t i) const noexcept { return at_[i]; }
   /// Index in the caller's list.
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return order_[i]; }
-  [[nodiscard]] bool from_above(std::size_t i) const noexcept { return at_[i] == first_; }
+  /// The number of values at most t; at the minimum of the contour, below t. The values that cut a simplex between two
+  /// of its vertices, as in `between`, are those from the number of the lower to that of the higher one.
+  [[nodiscard]] Index count_to(double t) const noexcept {
+    const auto end =
+        t == first_ ? std::lower_bound(at_.begin(), at_.end(), t) : std::upper_bound(at_.begin(), at_.end(), t);
+    return static_cast<Index>(end - at_.begin());
+  }
 
   /// The indices [from, to) of the values that cut a simplex from `low` to `high`: those in (low, high], as cuts are
   /// limits from below. A value at which one simplex ends and the next one begins cuts only the first of them. At the
@@ -65,10 +80,7 @@ class CutValues {
   /// too.
   [[nodiscard]] std::pair<std::size_t, std::size_t> between(double low, double high) const noexcept {
     if (!(low < high)) return {0, 0};
-    const auto begin =
-        low == first_ ? std::lower_bound(at_.begin(), at_.end(), low) : std::upper_bound(at_.begin(), at_.end(), low);
-    const auto end = std::upper_bound(begin, at_.end(), high);
-    return {static_cast<std::size_t>(begin - at_.begin()), static_cast<std::size_t>(end - at_.begin())};
+    return {count_to(low), count_to(high)};
   }
 
  private:
@@ -77,33 +89,49 @@ class CutValues {
   double first_;
 };
 
-/// Sums at one value.
-struct CutSums {
-  CompensatedSum size;
-  CompensatedSum content;  // N - 1 times the enclosed content
+/// Sums at one value: the size of the cut, and N - 1 times the content that it encloses, with their rounding errors
+/// apart (CompensatedSum). In pairs, so that the compiler adds to both at once.
+struct CutSum {
+  std::array<double, 2> sum{}, rest{};
+
+  void add(double size, double content) noexcept {
+    const std::array<double, 2> both = {size, content};
+    for (int k = 0; k < 2; ++k) detail::add_exactly(both[k], sum[k], rest[k]);
+  }
+  [[nodiscard]] double size() const noexcept { return sum[0] + rest[0]; }
+  [[nodiscard]] double content() const noexcept { return sum[1] + rest[1]; }
 };
 
 /// Adds the cuts of one simplex to the sums. Its cut at t lies in the plane with the normal w (the spatial part of the
-/// simplex's normal vector W), in which x . w = x_0 . w + (t_0 - t) W_t for any of its vertices (x_0, t_0).
+/// simplex's normal vector W), in which x . w = x_0 . w + (t_0 - t) W_t for any of its vertices (x_0, t_0). `counts`:
+/// by vertex, CutValues::count_to.
 template <int N>
-void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin, const CutValues& values,
-              std::span<CutSums> sums) noexcept {
+void add_cuts(const detail::SimplexView<N>& contour, std::size_t s, const PointOf<N>& origin, const CutValues& values,
+              const Buffer<Index>& counts, std::span<CutSum> sums) noexcept {
+  std::array<Index, N> cut;
+  for (int j = 0; j < N; ++j) cut[j] = counts[contour.simplices()[s][j]];
+  detail::sort_few(cut);
+  if (cut.front() == cut.back()) return;
+  const std::array<PointOf<N>, N> corners = contour.corners(s);
   std::array<double, N> knots;
   for (int j = 0; j < N; ++j) knots[j] = corners[j][N - 1];
-  std::sort(knots.begin(), knots.end());
-  const auto [from, to] = values.between(knots.front(), knots.back());
-  if (from == to) return;
+  detail::sort_few(knots);
+  const Spline<N> spline(knots);
   const PointOf<N> normal = detail::normal_vector_of<N>(corners);
   PointOf<N - 1> spatial;
   std::copy_n(normal.begin(), N - 1, spatial.begin());
   const double area = detail::length_of<N - 1>(spatial);
   double along = 0.0;
   for (int a = 0; a + 1 < N; ++a) along += spatial[a] * (corners[0][a] - origin[a]);
-  for (std::size_t i = from; i < to; ++i) {
-    const double spline = normalised_spline<N>(knots, values[i], values.from_above(i));
-    sums[i].size.add(area * spline);
-    sums[i].content.add((along + (corners[0][N - 1] - values[i]) * normal[N - 1]) * spline);
-  }
+  const auto add_between = [&]<int J>(std::integral_constant<int, J>) {
+    const double last = corners[0][N - 1], slope = normal[N - 1];
+    for (Index i = cut[J]; i < cut[J + 1]; ++i) {
+      const double at = values[i], share = spline.template at<J>(at);
+      sums[i].add(area * share, (along + (last - at) * slope) * share);
+    }
+  };
+  [&]<int... J>(std::integer_sequence<int, J...>) { (add_between(std::integral_constant<int, J>()), ...); }
+  (std::make_integer_sequence<int, N - 1>());
 }
 
 /// By value, whether the cut is open: an (N-2)-face whose orientations do not cancel is cut there.
@@ -111,8 +139,8 @@ template <int N>
 std::vector<bool> find_open_cuts(const detail::SimplexView<N>& contour, const CutValues& values,
                                  const WorkOptions& work) {
   std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertex_count(), kBlock));
-  const detail::Stars stars =
-      detail::make_stars<N>(contour.rows(), contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.0, 0.1));
+  const detail::Stars stars = detail::make_stars<N>(contour.rows(), contour.vertex_count(), work.threads,
+                                                    detail::part_of(work.progress, 0.0, 0.1));
   detail::count_faces<N>(contour.rows(), stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.6),
                          [&](std::size_t block, const auto& ridge) {
                            const auto time = [&](Index v) { return contour.coordinate(v, N - 1); };
@@ -159,9 +187,10 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
     result.content = 0.0;  // it has no boundary
     return result;
   }
-  // boundary faces
+  // boundary faces; label 0 for all simplices and their vertices, 1 for other vertices
   const std::span<const Index> rows = contour.rows();
   detail::FaceCounts faces;
+  Buffer<Index> of_vertices(contour.vertex_count());
   {
     const detail::Stars stars =
         detail::make_stars<N>(rows, contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.0, 0.1));
@@ -169,15 +198,19 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
                                    [](std::size_t, const auto&) { /* counted */ })
                 .front();
   }
+  Buffer<Index> of_simplices(contour.simplices().size());
+  std::fill(of_vertices.begin(), of_vertices.end(), Index{1});
+  std::fill(of_simplices.begin(), of_simplices.end(), Index{0});
+  for (const Index v : rows) of_vertices[v] = 0;
   // sums over simplices
-  const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices().size()),
-                                                       work.threads, detail::part_of(work.progress, 0.7, 1.0))
-                                        .front();
-  result.size = sums.size.value();
-  result.content = detail::content_of(sums, faces, direction);
-  result.centroid = sums.centroid();
-  result.lowest = sums.lowest;
-  result.highest = sums.highest;
+  const detail::PieceMeasures<N> all = detail::measure_pieces<N>(contour, of_vertices, of_simplices, 1, work.threads,
+                                                                 detail::part_of(work.progress, 0.7, 1.0))
+                                           .front();
+  result.size = all.size;
+  result.content = detail::content_of(all, faces, direction);
+  result.centroid = all.centroid;
+  result.lowest = all.lowest;
+  result.highest = all.highest;
   result.boundary_simplices = faces.boundary;
   result.open_simplices = faces.open;
   return result;
@@ -196,30 +229,34 @@ std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& cont
   PointOf<N> origin;  // near the contour, so that the terms of the contents are small
   for (int a = 0; a < N; ++a) origin[a] = low[a] + 0.5 * (high[a] - low[a]);
 
+  Buffer<Index> counts(contour.vertex_count());
+  detail::for_each_item(counts.size(), work.threads, {}, [&](std::size_t v) {
+    counts[v] = values.count_to(contour.coordinate(static_cast<Index>(v), N - 1));
+  });
   // The partition depends only on the input, so sums are reproducible. Each part has its own sums for all values.
   const std::size_t simplices = contour.simplices().size();
   const std::size_t parts =
       std::clamp<std::size_t>((std::size_t{1} << 20) / std::max<std::size_t>(1, values.size()), 1, 64);
   const std::size_t size = std::max(kBlock, detail::block_count(simplices, parts));
-  std::vector<std::vector<CutSums>> sums(detail::block_count(simplices, size));
+  std::vector<std::vector<CutSum>> sums(detail::block_count(simplices, size));
   detail::for_each_block(simplices, size, work.threads, detail::part_of(work.progress, 0.6, 1.0),
                          [&](std::size_t block, std::size_t from, std::size_t to) {
                            sums[block].resize(values.size());
                            for (std::size_t s = from; s < to; ++s)
-                             add_cuts<N>(contour.corners(s), origin, values, sums[block]);
+                             add_cuts<N>(contour, s, origin, values, counts, sums[block]);
                          });
   // add up the parts
   std::vector<CutMeasures> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    CutSums total;
+    CompensatedSum total_size, total_content;
     for (const auto& part : sums) {
-      total.size.add(part[i].size.value());
-      total.content.add(part[i].content.value());
+      total_size.add(part[i].size());
+      total_content.add(part[i].content());
     }
     CutMeasures& cut = result[values.place(i)];
     cut.at = at[values.place(i)];
-    cut.size = total.size.value();
-    const double content = total.content.value() / (N - 1);
+    cut.size = total_size.value();
+    const double content = total_content.value() / (N - 1);
     if (!open[i]) cut.content = direction == GradientDirection::descent ? content : -content;
   }
   return result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Parallel counts of faces and sums over simplices, compiled once for both types of coordinates.
+// Parallel counts of faces and sums over simplices and vertices, compiled once for both types of coordinates.
 #include "mesh/measure_pieces.hpp"
 
 #include <algorithm>
@@ -10,27 +10,124 @@
 
 namespace tegl::detail {
 
-template <int N>
-std::vector<PieceSums<N>> sum_groups(const SimplexView<N>& contour, const Groups& groups, unsigned threads,
-                                     const Progress& progress) {
-  const std::size_t count = groups.first.back();
-  const auto reference_of = [&](std::size_t g) { return contour.corners(groups.member(groups.first[g]))[0]; };
-  std::vector<std::vector<std::pair<std::size_t, PieceSums<N>>>> parts(block_count(count, kBlock));
-  for_each_block(count, kBlock, threads, progress, [&](std::size_t block, std::size_t from, std::size_t to) {
-    auto g = static_cast<std::size_t>(std::upper_bound(groups.first.begin(), groups.first.end(), from) -
-                                      groups.first.begin()) -
-             1;
-    for (std::size_t i = from; i < to; ++g) {
-      PieceSums<N> sums(reference_of(g));
-      const std::size_t end = std::min(to, groups.first[g + 1]);
-      for (; i < end; ++i) sums.add(contour.corners(groups.member(i)));
-      parts[block].emplace_back(g, sums);
+namespace {
+
+/// What each block found, by label, in the order in which the block met the labels. Use one per thread.
+template <class Found>
+class FoundByLabel {
+ public:
+  using Part = std::vector<std::pair<Index, Found>>;
+
+  explicit FoundByLabel(Index count) : places_(count, kNowhere) {}
+
+  /// The entry of a label in the part of a block; a new one is made by `make(label)`.
+  template <class Make>
+  Found& at(Part& part, Index label, const Make& make) {
+    if (!part.empty() && part[last_].first == label) return part[last_].second;
+    std::size_t& place = places_[label];
+    if (place == kNowhere) {
+      place = part.size();
+      part.emplace_back(label, make(label));
     }
-  });
-  std::vector<PieceSums<N>> result;
-  for (std::size_t g = 0; g + 1 < groups.first.size(); ++g) result.emplace_back(reference_of(g));
+    last_ = place;
+    return part[place].second;
+  }
+  /// Ends a block.
+  void finish(const Part& part) {
+    for (const auto& [label, found] : part) places_[label] = kNowhere;
+    last_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kNowhere = ~std::size_t{0};
+  std::vector<std::size_t> places_;  ///< by label: in the current part
+  std::size_t last_ = 0;
+};
+
+template <int N>
+struct Extent {
+  std::uint64_t vertices = 0;
+  PointOf<N> lowest, highest;
+
+  explicit Extent(const PointOf<N>& at) : lowest(at), highest(at) {}
+  void add(const PointOf<N>& low, const PointOf<N>& high, std::uint64_t count) {
+    vertices += count;
+    for (int a = 0; a < N; ++a) {
+      lowest[a] = std::min(lowest[a], low[a]);
+      highest[a] = std::max(highest[a], high[a]);
+    }
+  }
+};
+
+/// The first item with each label.
+std::vector<Index> first_items(std::span<const Index> labels, Index count) {
+  std::vector<Index> first(count, 0);
+  std::vector<bool> is_known(count, false);
+  for (std::size_t i = 0, missing = count; missing > 0 && i < labels.size(); ++i) {
+    if (labels[i] >= count || is_known[labels[i]]) continue;
+    is_known[labels[i]] = true;
+    first[labels[i]] = static_cast<Index>(i);
+    --missing;
+  }
+  return first;
+}
+
+/// Calls add(found, item) for each item with a label below `count`, in parallel by block. Then calls merge(found of a
+/// block, label) in order.
+template <class Found, class Make, class Add, class Merge>
+void for_labelled(std::span<const Index> labels, Index count, unsigned threads, const Progress& progress,
+                  const Make& make, const Add& add, const Merge& merge) {
+  std::vector<typename FoundByLabel<Found>::Part> parts(block_count(labels.size(), kBlock));
+  for_each_block(
+      labels.size(), kBlock, threads, progress, [&] { return FoundByLabel<Found>(count); },
+      [&](std::size_t block, std::size_t from, std::size_t to, FoundByLabel<Found>& found) {
+        for (std::size_t i = from; i < to; ++i)
+          if (labels[i] < count) add(found.at(parts[block], labels[i], make), static_cast<Index>(i));
+        found.finish(parts[block]);
+      });
   for (const auto& part : parts)
-    for (const auto& [g, sums] : part) result[g].add(sums);
+    for (const auto& [label, found] : part) merge(found, label);
+}
+
+}  // namespace
+
+template <int N>
+std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std::span<const Index> vertex_labels,
+                                             std::span<const Index> simplex_labels, Index count, unsigned threads,
+                                             const Progress& progress) {
+  // by label, a corner of its first simplex
+  std::vector<PointOf<N>> reference;
+  for (const Index s : first_items(simplex_labels, count))
+    reference.push_back(count == 0 ? PointOf<N>{} : contour.point(contour.simplices()[s][0]));
+  const auto reference_of = [&](Index label) { return reference[label]; };
+  // sums over simplices
+  std::vector<PieceSums<N>> sums(reference.begin(), reference.end());
+  for_labelled<PieceSums<N>>(
+      simplex_labels, count, threads, part_of(progress, 0.0, 0.9), reference_of,
+      [&](PieceSums<N>& sum, Index s) { sum.add(contour.corners(s)); },
+      [&](const PieceSums<N>& sum, Index label) { sums[label].add(sum); });
+  // boxes of vertices
+  std::vector<Extent<N>> extents(reference.begin(), reference.end());
+  for_labelled<Extent<N>>(
+      vertex_labels, count, threads, part_of(progress, 0.9, 1.0), reference_of,
+      [&](Extent<N>& extent, Index v) {
+        const PointOf<N> point = contour.point(v);
+        extent.add(point, point, 1);
+      },
+      [&](const Extent<N>& extent, Index label) {
+        extents[label].add(extent.lowest, extent.highest, extent.vertices);
+      });
+  std::vector<PieceMeasures<N>> result(count);
+  for (Index label = 0; label < count; ++label) {
+    const auto& [vertices, lowest, highest] = extents[label];
+    result[label] = {vertices,
+                     sums[label].count(),
+                     sums[label].size(),
+                     sums[label].content(),
+                     sums[label].centroid(lowest, highest),
+                     lowest,
+                     highest};
+  }
   return result;
 }
 
@@ -42,7 +139,7 @@ std::vector<FaceCounts> count_faces(
   const std::size_t vertices = stars.first.size() - 1;
   std::vector<std::vector<std::pair<Index, FaceCounts>>> parts(block_count(vertices, kBlock));
   for_each_block(
-      vertices, kBlock, threads, progress, [&] { return FacesOfStars<N>(rows.data(), with_euler); },
+      vertices, kBlock, threads, progress, [&] { return FacesOfStars<N>(rows.data(), vertices, with_euler); },
       [&](std::size_t block, std::size_t from, std::size_t to, FacesOfStars<N>& faces) {
         auto& part = parts[block];
         for (std::size_t v = from; v < to; ++v) {
@@ -72,9 +169,13 @@ template std::vector<FaceCounts> count_faces<4>(std::span<const Index>, const St
 template std::vector<FaceCounts> count_faces<5>(std::span<const Index>, const Stars&, std::span<const Index>,
                                                 std::size_t, bool, unsigned, const Progress&,
                                                 FunctionRef<void(std::size_t, const FacesOfStars<5>::Ridge&)>);
-template std::vector<PieceSums<2>> sum_groups<2>(const SimplexView<2>&, const Groups&, unsigned, const Progress&);
-template std::vector<PieceSums<3>> sum_groups<3>(const SimplexView<3>&, const Groups&, unsigned, const Progress&);
-template std::vector<PieceSums<4>> sum_groups<4>(const SimplexView<4>&, const Groups&, unsigned, const Progress&);
-template std::vector<PieceSums<5>> sum_groups<5>(const SimplexView<5>&, const Groups&, unsigned, const Progress&);
+template std::vector<PieceMeasures<2>> measure_pieces<2>(const SimplexView<2>&, std::span<const Index>,
+                                                         std::span<const Index>, Index, unsigned, const Progress&);
+template std::vector<PieceMeasures<3>> measure_pieces<3>(const SimplexView<3>&, std::span<const Index>,
+                                                         std::span<const Index>, Index, unsigned, const Progress&);
+template std::vector<PieceMeasures<4>> measure_pieces<4>(const SimplexView<4>&, std::span<const Index>,
+                                                         std::span<const Index>, Index, unsigned, const Progress&);
+template std::vector<PieceMeasures<5>> measure_pieces<5>(const SimplexView<5>&, std::span<const Index>,
+                                                         std::span<const Index>, Index, unsigned, const Progress&);
 
 }  // namespace tegl::detail

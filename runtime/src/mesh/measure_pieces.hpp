@@ -27,18 +27,12 @@ namespace tegl::detail {
 /// Items sorted by group: group g has members[first[g] … first[g + 1]), ascending.
 struct Groups {
   std::vector<std::size_t> first;
-  Buffer<Index> members;  ///< empty: all items in their own order
+  Buffer<Index> members;
 
-  [[nodiscard]] Index member(std::size_t i) const noexcept {
-    return members.empty() ? static_cast<Index>(i) : members[i];
-  }
   [[nodiscard]] std::span<const Index> of(std::size_t g) const noexcept {
     return std::span(members).subspan(first[g], first[g + 1] - first[g]);
   }
 };
-
-/// All items in one group.
-inline Groups one_group(std::size_t count) { return {{0, count}, {}}; }
 
 /// Groups the items by their labels 0 … count - 1. Items with other labels are in no group.
 inline Groups group_by(std::span<const Index> labels, Index count, const Progress& progress = {}) {
@@ -60,62 +54,95 @@ inline Groups group_by(std::span<const Index> labels, Index count, const Progres
 
 /// Sums over simplices. Coordinates are relative to a reference point near them, so that the terms are small.
 template <int N>
-struct PieceSums {
-  CompensatedSum size;
-  CompensatedSum content;  ///< N times the volume of the cone over the simplices with its apex at the reference point
-  std::array<CompensatedSum, N> moment;
-  PointOf<N> reference{};
-  PointOf<N> lowest{};
-  PointOf<N> highest{};
-
-  explicit PieceSums(const PointOf<N>& at) : reference(at), lowest(at), highest(at) {}
+class PieceSums {
+ public:
+  explicit PieceSums(const PointOf<N>& reference) : reference_(reference) {}
 
   void add(const std::array<PointOf<N>, N>& corners) noexcept {
     const PointOf<N> normal = normal_vector_of<N>(corners);
     const double measure = length_of<N>(normal);
-    size.add(measure);
+    few_.size += measure;
     double flux = 0.0;
     for (int a = 0; a < N; ++a) {
       double middle = 0.0;
-      for (const PointOf<N>& corner : corners) {
-        middle += corner[a] - reference[a];
-        lowest[a] = std::min(lowest[a], corner[a]);
-        highest[a] = std::max(highest[a], corner[a]);
-      }
-      moment[a].add(measure * (middle / N));
-      flux += normal[a] * (corners[0][a] - reference[a]);
+      for (const PointOf<N>& corner : corners) middle += corner[a] - reference_[a];
+      few_.moment[a] += measure * (middle / N);
+      flux += normal[a] * (corners[0][a] - reference_[a]);
     }
-    content.add(flux);
+    few_.content += flux;
+    ++count_;
+    if (++few_.count == kFew) settle();
   }
   /// Adds sums with the same reference point.
   void add(const PieceSums& other) noexcept {
-    size.add(other.size.value());
-    content.add(other.content.value());
-    for (int a = 0; a < N; ++a) {
-      moment[a].add(other.moment[a].value());
-      lowest[a] = std::min(lowest[a], other.lowest[a]);
-      highest[a] = std::max(highest[a], other.highest[a]);
-    }
+    settle();
+    count_ += other.count_;
+    size_.add(other.size());
+    content_.add(other.content());
+    for (int a = 0; a < N; ++a) moment_[a].add(other.moment_[a].value() + other.few_.moment[a]);
   }
-  [[nodiscard]] PointOf<N> centroid() const noexcept {
+
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  [[nodiscard]] double size() const noexcept { return size_.value() + few_.size; }
+  /// N times the volume of the cone over the simplices with its apex at the reference point.
+  [[nodiscard]] double content() const noexcept { return content_.value() + few_.content; }
+  /// The middle of the bounding box if the size is 0.
+  [[nodiscard]] PointOf<N> centroid(const PointOf<N>& lowest, const PointOf<N>& highest) const noexcept {
     PointOf<N> middle;
     for (int a = 0; a < N; ++a)
-      middle[a] = size.value() > 0 ? reference[a] + moment[a].value() / size.value()
-                                   : lowest[a] + 0.5 * (highest[a] - lowest[a]);
+      middle[a] = size() > 0 ? reference_[a] + (moment_[a].value() + few_.moment[a]) / size()
+                             : lowest[a] + 0.5 * (highest[a] - lowest[a]);
     return middle;
   }
+
+ private:
+  /// So many terms are added plainly: their rounding errors are of the size of those in the terms.
+  static constexpr int kFew = 8;
+  struct Few {
+    double size = 0.0, content = 0.0;
+    std::array<double, N> moment{};
+    int count = 0;
+  };
+
+  void settle() noexcept {
+    size_.add(few_.size);
+    content_.add(few_.content);
+    for (int a = 0; a < N; ++a) moment_[a].add(few_.moment[a]);
+    few_ = {};
+  }
+
+  PointOf<N> reference_;
+  std::uint64_t count_ = 0;
+  Few few_;
+  CompensatedSum size_;
+  CompensatedSum content_;
+  std::array<CompensatedSum, N> moment_;
 };
 
-/// The sums of each group of simplices. No group may be empty.
+/// Sums and bounding box of the simplices with one label.
 template <int N>
-std::vector<PieceSums<N>> sum_groups(const SimplexView<N>& contour, const Groups& groups, unsigned threads,
-                                     const Progress& progress);
+struct PieceMeasures {
+  std::uint64_t vertices = 0, simplices = 0;
+  double size = 0.0;
+  double content = 0.0;  ///< N times the enclosed content, if the simplices enclose any
+  PointOf<N> centroid{};
+  PointOf<N> lowest{};
+  PointOf<N> highest{};
+};
+
+/// Measures of the simplices with each label 0 … count - 1. Each label must have a simplex. Simplices and vertices with
+/// other labels are left out; a simplex has the label of its vertices. `vertex_labels`, `simplex_labels`: #V, #S.
+/// O(#S).
+template <int N>
+std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std::span<const Index> vertex_labels,
+                                             std::span<const Index> simplex_labels, Index count, unsigned threads,
+                                             const Progress& progress);
 
 /// The enclosed content from the sums of a contour; empty if the contour is open.
 template <int N>
-std::optional<double> content_of(const PieceSums<N>& sums, const FaceCounts& faces, GradientDirection direction) {
+std::optional<double> content_of(const PieceMeasures<N>& sums, const FaceCounts& faces, GradientDirection direction) {
   if (faces.open > 0) return std::nullopt;
-  const double content = sums.content.value() / N;
+  const double content = sums.content / N;
   return direction == GradientDirection::descent ? content : -content;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Links of vertices of triangles and tetrahedra, if they are small, oriented, and circles, arcs, spheres or discs: nearly
-// all links of a contour. Vertices of a link get numbers below 64, and sets of them are words of 64 bits; nothing is
-// sorted. Other links are left to the caller.
+// Links of vertices of triangles and tetrahedra, if they are small, oriented, and circles, arcs, spheres or discs:
+// nearly all links of a contour. Other links are left to the caller.
 //
 // Based on: H. Seifert and W. Threlfall, Lehrbuch der Topologie, 1934, § 38 (a connected surface without a border is a
 // sphere iff its Euler characteristic is 2; with a border it is a disc iff it is 1).
@@ -12,10 +11,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
-#include <vector>
 
+#include "mesh/link_numbers.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
@@ -27,18 +25,22 @@ struct FacesAbove {
   std::uint64_t boundary = 0;  ///< those in one simplex
 };
 
-/// D = 2: a link is a graph; D = 3: a surface. Use one object per thread; it takes 8 bytes per vertex.
+/// D = 2: a link is a graph; D = 3: a surface. Use one object per thread.
 template <int D>
 class OrientedLink {
   static_assert(D == 2 || D == 3);
 
  public:
   /// `rows`: #S x (D + 1), row = simplex.
-  OrientedLink(const Index* rows, std::size_t vertex_count) : rows_(rows), met_(vertex_count) {}
+  OrientedLink(const Index* rows, std::size_t vertex_count) : rows_(rows), numbers_(vertex_count) {
+    out_.fill(0);
+    in_.fill(0);
+    arrows_from_.fill(0);
+  }
 
-  /// Whether the link of v is a sphere or ball of D - 1 dimensions, has at most 64 vertices, and its orientations agree.
-  /// Then sets the faces. False if any of this does not hold; the link may still be a sphere or ball. `star`: the
-  /// simplices around v, which repeat no vertex.
+  /// Whether the link of v is a sphere or ball of D - 1 dimensions, has at most about 60 vertices, and its orientations
+  /// agree. Then sets the faces. False if any of this does not hold; the link may still be a sphere or ball. `star`:
+  /// the simplices around v, which repeat no vertex.
   [[nodiscard]] bool settle(Index v, std::span<const Index> star, FacesAbove& faces) {
     if (star.size() > 2 * kMost || !load(v, star)) return false;
     if constexpr (D == 2) {
@@ -51,103 +53,100 @@ class OrientedLink {
   }
 
  private:
-  static constexpr unsigned kMost = 64;
-  using Set = std::uint64_t;    ///< of numbers of the link's vertices
+  static constexpr unsigned kMost = LinkNumbers::kMost;
+  using Set = LinkNumbers::Set;
   using Small = std::uint16_t;  ///< a number below 64; bytes would be assumed to alias everything
 
-  /// The number of a vertex in the link in which it was met last.
-  struct Met {
-    Index link_of = std::numeric_limits<Index>::max();
-    Index number = 0;
-  };
-
-  static constexpr Set one(unsigned i) noexcept { return Set{1} << i; }
-
-  /// The number of a vertex in the link of v; kMost if there are too many.
-  unsigned number_of(Index v, Index vertex) {
-    Met& met = met_[vertex];
-    if (met.link_of != v) {
-      if (count_ == kMost) return kMost;
-      met = {v, count_};
-      out_[count_] = in_[count_] = 0;
-      arrows_from_[count_] = 0;
-      is_above_[count_] = vertex > v;
-      faces_.edges += vertex > v ? 1 : 0;
-      ++count_;
-    }
-    return met.number;
-  }
+  static constexpr Set one(unsigned i) noexcept { return LinkNumbers::one(i); }
 
   /// The link's simplices, oriented so that v followed by their vertices is the simplex of the complex. False if there
   /// are too many vertices, or two simplices induce the same orientation on a common face.
   bool load(Index v, std::span<const Index> star) {
-    count_ = 0;
-    paired_ = 0;
+    for (unsigned a = 0; a < numbers_.size(); ++a) {
+      out_[a] = in_[a] = 0;
+      arrows_from_[a] = 0;
+    }
     faces_ = {};
-    for (const Index s : star) {
-      const Index* const row = rows_ + std::size_t{s} * (D + 1);
-      std::array<unsigned, D> piece;
-      bool is_odd = false;  // v at an odd place: exchange two others
-      for (int i = 0, k = 0; i <= D; ++i) {
-        if (row[i] == v) {
-          is_odd = (i & 1) != 0;
-          continue;
-        }
-        piece[k] = number_of(v, row[i]);
-        if (piece[k++] == kMost) return false;
-      }
-      if (is_odd) std::swap(piece[D - 2], piece[D - 1]);
-      for (int i = 0; i < (D == 2 ? 1 : D); ++i) {
-        const unsigned from = piece[i], to = piece[(i + 1) % D];
-        if ((out_[from] & one(to)) != 0) return false;
-        out_[from] |= one(to);
-        in_[to] |= one(from);
-        ++arrows_from_[from];
-        if constexpr (D == 3) {
-          next_[from * kMost + to] = static_cast<Small>(piece[(i + 2) % D]);
-          add_side(from, to);
-        }
-      }
+    Loading state(*this, v);
+    for (std::size_t i = 0; i < star.size() && state.number.size() < kMost - D; ++i)
+      state.add(rows_ + std::size_t{star[i]} * (D + 1));
+    numbers_.keep(state.number);
+    if (state.repeated != 0 || state.number.size() >= kMost - D) return false;
+    paired_ = state.paired;
+    faces_ = state.faces;
+    for (unsigned a = 0; a < numbers_.size(); ++a) {
+      is_above_[a] = numbers_.vertex(a) > v;
+      faces_.edges += is_above_[a];
     }
     return true;
   }
 
-  /// D = 3: counts a side of a triangle, and its edge when it is met first.
-  void add_side(unsigned from, unsigned to) {
-    const unsigned is_second = static_cast<unsigned>(in_[from] >> to & 1);
-    const unsigned is_above = static_cast<unsigned>(is_above_[from] & is_above_[to]);
-    paired_ += is_second;
-    faces_.ridges += is_above & ~is_second;
-    faces_.boundary += is_above & ~is_second;
-    faces_.boundary -= is_above & is_second;
-  }
+  /// A link while it is loaded. A local variable, whose members the compiler keeps in registers.
+  struct Loading {
+    Index v;
+    LinkNumbers::Numbering number;
+    OrientedLink& link;
+    std::size_t paired = 0;
+    FacesAbove faces;
+    Set repeated = 0;  ///< not empty if two simplices have the same arrow
+
+    Loading(OrientedLink& of, Index centre) : v(centre), number(of.numbers_, centre), link(of) {}
+
+    void add(const Index* row) {
+      const OthersOfSimplex<D + 1> others(row, v);
+      std::array<unsigned, D> piece, is_above;
+      for (unsigned i = 0; i < D; ++i) {
+        piece[i] = number(others[i]);
+        is_above[i] = others[i] > v ? 1 : 0;
+      }
+      for (unsigned i = 0; i < (D == 2 ? 1 : D); ++i) {
+        const unsigned next = i + 1 == D ? 0 : i + 1;
+        const unsigned from = piece[i], to = piece[next];
+        if constexpr (D == 3) {
+          link.next_[from * kMost + to] = static_cast<Small>(piece[next + 1 == D ? 0 : next + 1]);
+          count_side(static_cast<unsigned>(link.in_[from] >> to & 1), is_above[i] & is_above[next]);
+        }
+        repeated |= link.out_[from] & one(to);
+        link.out_[from] |= one(to);
+        link.in_[to] |= one(from);
+        ++link.arrows_from_[from];
+      }
+    }
+    /// D = 3: counts a side of a triangle, and its edge when it is met first.
+    void count_side(unsigned is_second, unsigned above) {
+      paired += is_second;
+      faces.ridges += above & ~is_second;
+      faces.boundary += above & ~is_second;
+      faces.boundary -= above & is_second;
+    }
+  };
 
   /// D = 2: whether the arrows form one closed or open walk through all vertices.
   [[nodiscard]] bool is_one_walk(std::size_t arrows) {
     unsigned first = 0, starts = 0;
     faces_.ridges = faces_.edges;
-    for (unsigned a = 0; a < count_; ++a) {
+    for (unsigned a = 0; a < numbers_.size(); ++a) {
       if (arrows_from_[a] > 1 || (in_[a] & (in_[a] - 1)) != 0) return false;
       faces_.boundary += is_above_[a] && (out_[a] == 0 || in_[a] == 0) ? 1 : 0;
       if (in_[a] != 0) continue;
       first = a;
       ++starts;
     }
-    if (starts > 1 || count_ != arrows + starts) return false;
+    if (starts > 1 || numbers_.size() != arrows + starts) return false;
     unsigned met = 1;
     for (unsigned a = first; out_[a] != 0; ++met) {
       a = static_cast<unsigned>(std::countr_zero(out_[a]));
       if (a == first) break;
     }
-    return met == count_;
+    return met == numbers_.size();
   }
 
   /// D = 3: whether the triangles form a sphere or a disc.
   [[nodiscard]] bool is_sphere_or_disc(std::size_t triangles) const {
     const std::size_t edges = 3 * triangles - paired_;
     const bool is_closed = 2 * edges == 3 * triangles;
-    if (count_ + triangles != edges + (is_closed ? 2 : 1)) return false;
-    for (unsigned a = 0; a < count_; ++a)
+    if (numbers_.size() + triangles != edges + (is_closed ? 2 : 1)) return false;
+    for (unsigned a = 0; a < numbers_.size(); ++a)
       if (!has_one_fan(a)) return false;
     return is_connected();
   }
@@ -175,12 +174,11 @@ class OrientedLink {
       reached |= beside;
       open |= beside;
     }
-    return reached == ~Set{0} >> (kMost - count_);
+    return reached == ~Set{0} >> (kMost - numbers_.size());
   }
 
   const Index* rows_;
-  std::vector<Met> met_;  ///< by vertex
-  unsigned count_ = 0;    ///< vertices of the link
+  LinkNumbers numbers_;
   std::size_t paired_ = 0;  ///< D = 3: sides of triangles that are sides of others, too, divided by 2
   FacesAbove faces_;
   std::array<Small, kMost> is_above_;     ///< whether its number in the complex is greater than the centre's

@@ -29,6 +29,9 @@ std::array<PointOf<N>, N> corners_of(const Contour<N, Real>& contour, std::size_
 
 template <int N>
 double length_of(const PointOf<N>& v) noexcept {
+  double sum = 0.0;
+  for (const double x : v) sum += x * x;
+  if (sum > 1e-280 && sum < 1e280) return std::sqrt(sum);
   // Scaled as in hypot, so that squares neither overflow nor underflow.
   double largest = 0.0;
   for (const double x : v) largest = std::max(largest, std::abs(x));

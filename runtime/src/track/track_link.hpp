@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The neighbourhood of a vertex of a swept complex: its star, and its lower and upper link.
+// A complex swept through time, and the neighbourhood of each of its vertices: its star, and its lower and upper link.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/radix_sort.hpp"
+#include "base/sort_few.hpp"
 #include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
+#include "track/link_sides.hpp"
 #include "track/sweep_result.hpp"
 
 namespace tegl::detail {
@@ -58,113 +61,125 @@ class Faces {
   std::vector<Key> keys_;
 };
 
-/// A simplicial complex whose vertices are ordered by the last coordinate (time).
+/// A simplicial complex whose vertices are ordered by the last coordinate (time), then by number. Vertices have their
+/// *ranks*, their positions in that order, and each simplex lists its vertices by rank: those below a vertex come
+/// before it, those above it after it.
 template <int N>
 class SweptComplex {
  public:
   using Simplex = std::array<Index, N>;
 
-  SweptComplex(const SimplexView<N>& contour, unsigned threads, const Progress& progress)
-      : contour_(contour), stars_(make_stars<N>(contour.rows(), contour.vertex_count(), threads, part_of(progress, 0.0, 0.3))) {
-    rank_vertices(part_of(progress, 0.3, 0.5));
-    find_border(threads, part_of(progress, 0.5, 1.0));
+  SweptComplex(const SimplexView<N>& contour, unsigned threads, const Progress& progress) : contour_(contour) {
+    rank_vertices(threads, part_of(progress, 0.0, 0.2));
+    rank_simplices(threads, part_of(progress, 0.2, 0.3));
+    stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
+                           part_of(progress, 0.3, 0.5));
+    find_border(threads, part_of(progress, 0.5, 0.8));
+    find_passed(threads, part_of(progress, 0.8, 1.0));
   }
 
   [[nodiscard]] const SimplexView<N>& contour() const { return contour_; }
-  [[nodiscard]] const Simplex& simplex(Index s) const { return contour_.simplices()[s]; }
-  [[nodiscard]] double time(Index v) const { return contour_.coordinate(v, N - 1); }
-  /// Vertices by time, then number; `rank` is the position of a vertex in that order.
-  [[nodiscard]] std::span<const Index> order() const { return order_; }
-  [[nodiscard]] Index rank(Index v) const { return rank_[v]; }
+  /// Vertices by rank, ascending.
+  [[nodiscard]] const Simplex& simplex(Index s) const { return simplices_[s]; }
+  [[nodiscard]] std::size_t vertex_count() const { return times_.size(); }
+  [[nodiscard]] double time(Index v) const { return times_[v]; }
+  /// The vertex of the contour.
+  [[nodiscard]] Index vertex(Index rank) const { return order_[rank]; }
   /// Simplices around a vertex, ascending, without those that repeat a vertex.
   [[nodiscard]] std::span<const Index> star(Index v) const { return stars_.of(v); }
   /// Bit i: the facet without vertex i is in no other simplex (border).
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
+  /// The same for positions in the simplex of the contour.
+  [[nodiscard]] unsigned border_of_contour(Index s) const {
+    unsigned border = 0;
+    for (int i = 0; border_[s] != 0 && i < N; ++i) {
+      const Index rank = rank_[contour_.simplices()[s][i]];
+      const auto at = std::find(simplices_[s].begin(), simplices_[s].end(), rank) - simplices_[s].begin();
+      border |= ((border_[s] >> at) & 1u) << i;
+    }
+    return border;
+  }
+  /// Whether the level set passes the vertex without an event: the lower and the upper link are connected, not empty,
+  /// and for N = 4 the vertex is not in the border. May be false for other such vertices whose links are large.
+  [[nodiscard]] bool is_passed(Index v) const { return passed_[v] != 0; }
 
  private:
-  /// Merge sort in parts, so that progress can be reported in between.
-  void rank_vertices(const Progress& progress) {
-    constexpr std::size_t kPart = std::size_t{1} << 16;
-    const auto comes_first = [&](Index a, Index b) {
-      const double ta = time(a);
-      const double tb = time(b);
-      return ta != tb ? ta < tb : a < b;
-    };
+  struct Timed {
+    std::uint64_t key;  ///< as ordered as the time
+    Index vertex;
+  };
+  /// Radix sort by the bits of the times, which are finite.
+  void rank_vertices(unsigned threads, const Progress& progress) {
     const std::size_t count = contour_.vertex_count();
+    std::vector<Timed> timed(count);
+    for_each_item(count, threads, part_of(progress, 0.0, 0.2), [&](std::size_t v) {
+      const double time = contour_.coordinate(static_cast<Index>(v), N - 1) + 0.0;  // no negative zero
+      constexpr std::uint64_t kNegative = std::uint64_t{1} << 63;
+      const auto bits = std::bit_cast<std::uint64_t>(time);
+      timed[v] = {(bits & kNegative) != 0 ? ~bits : bits | kNegative, static_cast<Index>(v)};
+    });
+    sort_by_bits(
+        timed, 64, [](const Timed& vertex) { return vertex.key; }, threads);
+    tell(progress, 0.8);
     order_.resize(count);
     rank_.resize(count);
-    std::iota(order_.begin(), order_.end(), Index{0});
-    const auto at = [&](Buffer<Index>& of, std::size_t i) {
-      return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
-    };
-    // sort each part
-    in_parts(
-        count, part_of(progress, 0.0, 0.5),
-        [&](std::size_t from, std::size_t to) { std::sort(at(order_, from), at(order_, to), comes_first); }, kPart);
-    tell(progress, 0.5);
-    Buffer<Index>& merged = rank_;  // unused so far: scratch for merging
-    // merge parts in pairs
-    for (std::size_t size = kPart; size < count; size *= 2) {
-      in_parts(
-          count, {},
-          [&](std::size_t from, std::size_t to) {
-            std::merge(at(order_, from), at(order_, from + size), at(order_, from + size), at(order_, to),
-                       at(merged, from), comes_first);
-            tell(progress, 0.5);
-          },
-          2 * size);
-      order_.swap(merged);
-    }
-    for (std::size_t i = 0; i < count; ++i) rank_[order_[i]] = static_cast<Index>(i);
+    times_.resize(count);
+    for_each_item(count, threads, part_of(progress, 0.8, 1.0), [&](std::size_t i) {
+      order_[i] = timed[i].vertex;
+      rank_[timed[i].vertex] = static_cast<Index>(i);
+      times_[i] = contour_.coordinate(timed[i].vertex, N - 1);
+    });
   }
 
-  /// A facet of a simplex, without its lowest-numbered vertex, at which it is searched.
-  struct Facet {
-    std::array<Index, N - 2> others;
-    Index simplex;
-    int omitted;
-    bool operator<(const Facet& other) const { return others < other.others; }
-  };
+  void rank_simplices(unsigned threads, const Progress& progress) {
+    simplices_.resize(contour_.simplices().size());
+    for_each_item(simplices_.size(), threads, progress, [&](std::size_t s) {
+      Simplex ranks;
+      for (int i = 0; i < N; ++i) ranks[i] = rank_[contour_.simplices()[s][i]];
+      sort_few(ranks);
+      simplices_[s] = ranks;
+    });
+  }
 
   void find_border(unsigned threads, const Progress& progress) {
-    border_.assign(contour_.simplices().size(), 0);
+    border_.assign(simplices_.size(), 0);
+    in_border_.assign(contour_.vertex_count(), 0);
     for_each_block(
-        contour_.vertex_count(), kBlock, threads, progress, [] { return std::vector<Facet>(); },
-        [&](std::size_t, std::size_t from, std::size_t to, std::vector<Facet>& facets) {
-          for (std::size_t v = from; v < to; ++v) find_border_at(static_cast<Index>(v), facets);
+        contour_.vertex_count(), kBlock, threads, progress,
+        [&] { return SingleFaces<N>(simplices_, contour_.vertex_count()); },
+        [&](std::size_t, std::size_t from, std::size_t to, SingleFaces<N>& faces) {
+          for (std::size_t v = from; v < to; ++v)
+            faces.visit(static_cast<Index>(v), star(static_cast<Index>(v)), [&](Index s, int omitted) {
+              // Another thread may set another bit of the same simplex.
+              std::atomic_ref(border_[s]).fetch_or(static_cast<std::uint8_t>(1u << omitted), std::memory_order_relaxed);
+              for (int i = 0; i < N; ++i)
+                if (i != omitted) std::atomic_ref(in_border_[simplices_[s][i]]).store(1, std::memory_order_relaxed);
+            });
         });
   }
 
-  void find_border_at(Index v, std::vector<Facet>& facets) {
-    facets.clear();
-    for (const Index s : star(v))
-      for (int omitted = 0; omitted < N; ++omitted) {
-        const Simplex& all = simplex(s);
-        Facet facet{{}, s, omitted};
-        bool is_least = all[omitted] != v;
-        for (int i = 0, k = 0; i < N && is_least; ++i) {
-          if (i == omitted || all[i] == v) continue;
-          is_least = all[i] > v;
-          facet.others[k++] = all[i];
-        }
-        if (!is_least) continue;
-        std::sort(facet.others.begin(), facet.others.end());
-        facets.push_back(facet);
-      }
-    std::sort(facets.begin(), facets.end());
-    for (std::size_t i = 0, j = 0; i < facets.size(); i = j) {
-      while (j < facets.size() && facets[j].others == facets[i].others) ++j;
-      // Another thread may set another bit of the same simplex.
-      if (j - i == 1)
-        std::atomic_ref(border_[facets[i].simplex]).fetch_or(static_cast<std::uint8_t>(1u << facets[i].omitted));
-    }
+  void find_passed(unsigned threads, const Progress& progress) {
+    passed_.assign(contour_.vertex_count(), 0);
+    for_each_block(
+        contour_.vertex_count(), kBlock, threads, progress,
+        [&] { return LinkSides<N>(simplices_, contour_.vertex_count()); },
+        [&](std::size_t, std::size_t from, std::size_t to, LinkSides<N>& sides) {
+          for (std::size_t v = from; v < to; ++v) {
+            if (N == 4 && in_border_[v] != 0) continue;
+            passed_[v] = sides.are_connected(static_cast<Index>(v), star(static_cast<Index>(v))) ? 1 : 0;
+          }
+        });
   }
 
   SimplexView<N> contour_;
-  Stars stars_;
   Buffer<Index> order_;
   Buffer<Index> rank_;
+  Buffer<double> times_;       ///< by rank
+  Buffer<Simplex> simplices_;  ///< by ranks
+  Stars stars_;
   std::vector<std::uint8_t> border_;
+  std::vector<std::uint8_t> in_border_;  ///< by vertex: whether it is in the border
+  std::vector<std::uint8_t> passed_;
 };
 
 /// Star and link of one vertex at a time.
@@ -172,7 +187,7 @@ template <int N>
 class VertexStar {
  public:
   explicit VertexStar(const SweptComplex<N>& complex)
-      : complex_(complex), met_(complex.order().size(), kNone), number_(complex.order().size()) {}
+      : complex_(complex), met_(complex.vertex_count(), kNone), number_(complex.vertex_count()) {}
 
   void load(Index v) {
     v_ = v;
@@ -242,7 +257,7 @@ class VertexStar {
   }
 
  private:
-  [[nodiscard]] bool is_above(Index u) const { return complex_.rank(u) > complex_.rank(v_); }
+  [[nodiscard]] bool is_above(Index u) const { return u > v_; }
 
   /// Connects the vertices of a cell on each side.
   void join_sides(const std::array<Index, N>& simplex) {

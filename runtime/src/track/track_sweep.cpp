@@ -62,18 +62,18 @@ class Sweeper {
       times_.push_back(contour.is_single() ? static_cast<double>(rounded_at<float>(time)) : rounded_at<double>(time));
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
     if (times_.empty() || count == 0) return;
-    first_ = complex_.time(complex_.order().front());
+    first_ = complex_.time(0);
     plan_samples();
   }
 
   SweepResult run() {
-    const std::span<const Index> order = complex_.order();
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const double time = complex_.time(order[i]);
+    const std::size_t count = complex_.vertex_count();
+    for (Index v = 0; v < count; ++v) {
+      const double time = complex_.time(v);
       while (!starts_.empty() && next_time_ < times_.size() && is_due(times_[next_time_], time)) take_sample();
-      if (i == 0 || time != complex_.time(order[i - 1])) settle_starts();
-      fraction_ = static_cast<double>(i) / static_cast<double>(order.size());
-      visit(order[i]);
+      if (v == 0 || time != complex_.time(v - 1)) settle_starts();
+      fraction_ = static_cast<double>(v) / static_cast<double>(count);
+      visit(v);
     }
     settle_starts();
     fraction_ = 1.0;
@@ -100,16 +100,21 @@ class Sweeper {
   // ---- the sweep ----
 
   void visit(Index v) {
-    star_.load(v);
-    tell_all(1 + star_.cells().size());
-    if (star_.cells().empty()) return;
+    const std::span<const Index> cells = complex_.star(v);
+    tell_all(1 + cells.size());
+    if (cells.empty()) return;
     born_ = died_ = 0;
-    for (const Index s : star_.cells()) {
-      born_ += star_.part(s, false) == kNone ? 1 : 0;
-      died_ += star_.part(s, true) == kNone ? 1 : 0;
+    Index below = kNone;  // a cell just below the vertex
+    for (const Index s : cells) {
+      const auto& simplex = complex_.simplex(s);
+      born_ += simplex.front() == v ? 1 : 0;
+      died_ += simplex.back() == v ? 1 : 0;
+      below = simplex.front() == v ? below : s;
     }
+    if (complex_.is_passed(v)) return pass(cells, sets_.find(labels_[below]), 0);
+    star_.load(v);
     if (star_.parts_below() == 1 && star_.parts_above() == 1 && !(N == 4 && star_.at_border()))
-      pass(find_incoming().front(), 0);
+      pass(cells, find_incoming().front(), 0);
     else
       visit_special(v);
   }
@@ -130,7 +135,7 @@ class Sweeper {
   }
 
   /// Adds the new cells above the vertex to the set.
-  void pass(Index set, std::int64_t euler_change) {
+  void pass(std::span<const Index> cells, Index set, std::int64_t euler_change) {
     Component& component = components_[set];
     if (component.time != time_) {
       component.time = time_;
@@ -139,7 +144,7 @@ class Sweeper {
     }
     component.size = component.size + born_ - died_;
     component.euler += euler_change;
-    for (const Index s : star_.cells()) {
+    for (const Index s : cells) {
       if (labels_[s] != kNone) continue;
       labels_[s] = set;
       if (options_.label_simplices) result_.simplex_arcs[s] = component.arc;
@@ -152,15 +157,16 @@ class Sweeper {
     std::vector<Component> before;
     for (const Index set : incoming) before.push_back(components_[set]);
     const Index set = join(incoming);
-    pass(set, euler_change);
+    pass(star_.cells(), set, euler_change);
     const std::vector<Index> outgoing = star_.parts_above() == 0 ? std::vector<Index>{} : separate(v, set);
     if (before.size() == 1 && outgoing.size() == 1) {
       if (euler_change != 0)
-        result_.handles.push_back({v, complex_.time(v), before[0].arc, star_.at_border(), euler_change});
+        result_.handles.push_back(
+            {complex_.vertex(v), complex_.time(v), before[0].arc, star_.at_border(), euler_change});
       return;
     }
     const auto node = static_cast<Index>(result_.nodes.size());
-    result_.nodes.push_back({v, complex_.time(v), euler_change, star_.at_border(), star_.flatness()});
+    result_.nodes.push_back({complex_.vertex(v), complex_.time(v), euler_change, star_.at_border(), star_.flatness()});
     for (const Component& component : before) {
       SweepArc& arc = result_.arcs[component.arc];
       arc.to = node;
@@ -217,7 +223,7 @@ class Sweeper {
   void relabel_new_cells(Index v) {
     if (!options_.label_simplices) return;
     for (const Index s : star_.cells())
-      if (star_.part(s, true) != kNone && lowest_rank(s) == complex_.rank(v))
+      if (star_.part(s, true) != kNone && complex_.simplex(s).front() == v)
         result_.simplex_arcs[s] = components_[sets_.find(labels_[s])].arc;
   }
 
@@ -237,7 +243,7 @@ class Sweeper {
     if (star_.parts_above() <= 1) return parts;
     // search from all groups in turn until at most one is open
     const std::size_t count = start_fronts();
-    const Index level = complex_.rank(v);
+    const Index level = v;
     for (std::size_t open = count; open > 1;) {
       bool changed = false;
       for (std::size_t f = 0; f < count; ++f) {
@@ -286,9 +292,9 @@ class Sweeper {
     bool joined = false;
     const auto& simplex = complex_.simplex(s);
     for (const Index a : simplex) {
-      if (complex_.rank(a) > level) continue;
+      if (a > level) continue;
       for (const Index b : simplex)
-        if (complex_.rank(b) > level) joined = expand_over(a, b, front) || joined;
+        if (b > level) joined = expand_over(a, b, front) || joined;
     }
     return joined;
   }
@@ -359,14 +365,8 @@ class Sweeper {
   void add_cell_faces(Index s, Index level) {
     const auto& simplex = complex_.simplex(s);
     unsigned above = 0;
-    for (int i = 0; i < N; ++i) above |= complex_.rank(simplex[i]) > level ? 1u << i : 0u;
+    for (int i = 0; i < N; ++i) above |= simplex[i] > level ? 1u << i : 0u;
     faces_.add(simplex, N, [above](unsigned mask) { return (mask & above) != 0 && (mask & ~above) != 0; });
-  }
-
-  [[nodiscard]] Index lowest_rank(Index s) const {
-    Index lowest = kNone;
-    for (const Index v : complex_.simplex(s)) lowest = std::min(lowest, complex_.rank(v));
-    return lowest;
   }
 
   // ---- samples ----
@@ -397,12 +397,8 @@ class Sweeper {
   }
 
   [[nodiscard]] std::pair<double, double> span(Index s) const {
-    std::pair<double, double> result{complex_.time(complex_.simplex(s)[0]), complex_.time(complex_.simplex(s)[0])};
-    for (const Index v : complex_.simplex(s)) {
-      result.first = std::min(result.first, complex_.time(v));
-      result.second = std::max(result.second, complex_.time(v));
-    }
-    return result;
+    const auto& simplex = complex_.simplex(s);
+    return {complex_.time(simplex.front()), complex_.time(simplex.back())};
   }
 
   /// Takes a sample. All vertices before its time have been visited. A vertex at the time counts as above, as in
@@ -445,9 +441,9 @@ class Sweeper {
       return corner[N - 1] < time || (time == first_ && corner[N - 1] == time);
     };
     for (int i = 0; i < N; ++i) below |= is_below(corners[i]) ? 1u << i : 0u;
+    const unsigned border = complex_.border_of_contour(s);
     for (int i = 0; i < N; ++i)
-      if (((complex_.border(s) >> i) & 1u) != 0 && (below & ~(1u << i)) != 0 && (~below & kAll & ~(1u << i)) != 0)
-        sums.open = true;
+      if (((border >> i) & 1u) != 0 && (below & ~(1u << i)) != 0 && (~below & kAll & ~(1u << i)) != 0) sums.open = true;
     std::stable_partition(corners.begin(), corners.end(), is_below);
     CutCell<N>(corners, std::popcount(below), time).add_to(sums, normal);
   }

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Faces around vertices, as the library counts them with sets of 64 bits, against lists of all faces: on contours, and
+// on random complexes with faces in many simplices, contradicting orientations and stars that are too large for the
+// sets.
+#include "mesh/faces_of_stars.hpp"
+
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "base/radix_sort.hpp"
+#include "fields.hpp"
+#include "tegl/extract.hpp"
+#include "track/link_sides.hpp"
+
+namespace tegl {
+namespace {
+
+template <int N>
+using SimplexList = std::vector<std::array<Index, N>>;
+
+/// Random simplices with different vertices, a few of them repeated or reversed.
+template <int N>
+SimplexList<N> random_rows(std::size_t count, Index vertices, std::mt19937& random) {
+  SimplexList<N> rows;
+  std::vector<Index> all(vertices);
+  std::iota(all.begin(), all.end(), Index{0});
+  while (rows.size() < count) {
+    std::array<Index, N> row;
+    std::sample(all.begin(), all.end(), row.begin(), N, random);
+    std::shuffle(row.begin(), row.end(), random);
+    rows.push_back(row);
+    if (random() % 8 == 0) rows.push_back(row);
+    if (random() % 8 == 0) {
+      std::swap(row[0], row[1]);
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+template <int N>
+SimplexList<N> rows_of_contour() {
+  const auto image = test::noise<double, N>(6, 1);
+  const Contour<N, double> contour = extract<double>(image.view(), 0.5);
+  return {contour.simplices.begin(), contour.simplices.end()};
+}
+
+template <int N>
+std::span<const Index> flat(const SimplexList<N>& rows) {
+  return {rows.data()->data(), rows.size() * N};
+}
+
+template <int N>
+Index vertices_of(const SimplexList<N>& rows) {
+  Index most = 0;
+  for (const auto& row : rows) most = std::max(most, *std::max_element(row.begin(), row.end()));
+  return most + 1;
+}
+
+/// A face by its sorted vertices, with the number of its simplices and the sum of the orientations that they induce.
+template <int N>
+struct ListedFaces {
+  std::map<std::array<Index, N - 1>, std::pair<int, int>> ridges;
+  std::array<std::set<std::vector<Index>>, N + 1> by_size;
+};
+
+template <int N>
+int sort_signed(std::array<Index, N>& row) {
+  int sign = 1;
+  for (int i = 0; i < N; ++i)
+    for (int j = i + 1; j < N; ++j)
+      if (row[j] < row[i]) {
+        std::swap(row[i], row[j]);
+        sign = -sign;
+      }
+  return sign;
+}
+
+template <int N>
+ListedFaces<N> list_faces(const SimplexList<N>& rows) {
+  ListedFaces<N> faces;
+  std::multiset<std::array<Index, N>> simplices;
+  for (auto row : rows) {
+    const int sign = sort_signed<N>(row);
+    for (int omitted = 0; omitted < N; ++omitted) {
+      std::array<Index, N - 1> ridge;
+      for (int i = 0, k = 0; i < N; ++i)
+        if (i != omitted) ridge[k++] = row[i];
+      auto& [count, balance] = faces.ridges[ridge];
+      ++count;
+      balance += omitted % 2 == 0 ? sign : -sign;
+    }
+    for (unsigned mask = 1; mask < 1u << N; ++mask) {
+      std::vector<Index> face;
+      for (int i = 0; i < N; ++i)
+        if ((mask >> i & 1u) != 0) face.push_back(row[i]);
+      faces.by_size[face.size()].insert(face);
+    }
+  }
+  return faces;
+}
+
+template <int N>
+void expect_faces_as_listed(const SimplexList<N>& rows) {
+  const ListedFaces<N> faces = list_faces<N>(rows);
+  const std::size_t vertices = vertices_of<N>(rows);
+  std::int64_t euler = 0;
+  for (std::size_t size = 1; size < N; ++size)
+    euler += (size % 2 == 1 ? 1 : -1) * static_cast<std::int64_t>(faces.by_size[size].size());
+  euler += (N % 2 == 1 ? 1 : -1) * static_cast<std::int64_t>(rows.size());  // repeated simplices count
+  std::uint64_t boundary = 0;
+  std::set<std::array<Index, N - 1>> open;
+  for (const auto& [ridge, found] : faces.ridges) {
+    boundary += found.first == 1 ? 1 : 0;
+    if (found.second != 0) open.insert(ridge);
+  }
+  const detail::Stars stars = detail::make_stars<N>(flat<N>(rows), vertices, 1);
+  for (const bool with_euler : {false, true}) {
+    detail::FacesOfStars<N> counter(flat<N>(rows).data(), vertices, with_euler);
+    detail::FaceCounts counts;
+    std::set<std::array<Index, N - 1>> met;
+    for (Index v = 0; v < vertices; ++v)
+      counts += counter.visit(v, stars.of(v), [&](const auto& ridge) { EXPECT_TRUE(met.insert(ridge).second); });
+    EXPECT_EQ(counts.boundary, boundary);
+    EXPECT_EQ(counts.open, open.size());
+    EXPECT_EQ(met, open);
+    if (with_euler) {
+      EXPECT_EQ(counts.euler, euler);
+    }
+  }
+}
+
+/// Rows with ascending vertices, as the sweep lists them.
+template <int N>
+void expect_single_faces_as_listed(SimplexList<N> rows) {
+  for (auto& row : rows) std::sort(row.begin(), row.end());
+  const ListedFaces<N> faces = list_faces<N>(rows);
+  const std::size_t vertices = vertices_of<N>(rows);
+  const detail::Stars stars = detail::make_stars<N>(flat<N>(rows), vertices, 1);
+  detail::SingleFaces<N> finder(rows, vertices);
+  std::set<std::array<Index, N - 1>> met;
+  for (Index v = 0; v < vertices; ++v)
+    finder.visit(v, stars.of(v), [&](Index s, int omitted) {
+      std::array<Index, N - 1> ridge;
+      for (int i = 0, k = 0; i < N; ++i)
+        if (i != omitted) ridge[k++] = rows[s][i];
+      EXPECT_EQ(ridge[0], v);
+      EXPECT_TRUE(met.insert(ridge).second);
+    });
+  std::set<std::array<Index, N - 1>> single;
+  for (const auto& [ridge, found] : faces.ridges)
+    if (found.first == 1) single.insert(ridge);
+  EXPECT_EQ(met, single);
+}
+
+/// Whether the vertices on one side of v are connected by edges between them in common simplices.
+template <int N>
+bool is_side_connected(const SimplexList<N>& rows, std::span<const Index> star, Index v, bool above) {
+  std::set<Index> all, reached;
+  for (const Index s : star)
+    for (const Index u : rows[s])
+      if (u != v && (u > v) == above) all.insert(u);
+  if (all.empty()) return false;
+  reached.insert(*all.begin());
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const Index s : star) {
+      const auto is_met = [&](Index u) { return reached.count(u) != 0; };
+      if (std::none_of(rows[s].begin(), rows[s].end(), is_met)) continue;
+      for (const Index u : rows[s])
+        if (all.count(u) != 0) grows = reached.insert(u).second || grows;
+    }
+  }
+  return reached == all;
+}
+
+template <int N>
+void expect_sides_as_defined(SimplexList<N> rows) {
+  for (auto& row : rows) std::sort(row.begin(), row.end());
+  const std::size_t vertices = vertices_of<N>(rows);
+  const detail::Stars stars = detail::make_stars<N>(flat<N>(rows), vertices, 1);
+  detail::LinkSides<N> sides(rows, vertices);
+  std::size_t settled = 0;
+  for (Index v = 0; v < vertices; ++v) {
+    const bool is_connected =
+        is_side_connected<N>(rows, stars.of(v), v, true) && is_side_connected<N>(rows, stars.of(v), v, false);
+    std::set<Index> link;
+    for (const Index s : stars.of(v)) link.insert(rows[s].begin(), rows[s].end());
+    const bool found = sides.are_connected(v, stars.of(v));
+    if (link.size() <= 56) {
+      EXPECT_EQ(found, is_connected) << "vertex " << v;
+      ++settled;
+    } else {
+      EXPECT_TRUE(!found || is_connected) << "vertex " << v;
+    }
+  }
+  if (stars.members.size() < 20 * vertices) {
+    EXPECT_GT(settled, 0u);
+  }
+}
+
+template <class T>
+class FacesOfStarsTest : public testing::Test {};
+template <int N>
+using Dimension = std::integral_constant<int, N>;
+using Dimensions = testing::Types<Dimension<2>, Dimension<3>, Dimension<4>>;
+TYPED_TEST_SUITE(FacesOfStarsTest, Dimensions);
+
+TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnContours) {
+  constexpr int N = TypeParam::value;
+  const SimplexList<N> rows = rows_of_contour<N>();
+  ASSERT_GT(rows.size(), 10u);
+  expect_faces_as_listed<N>(rows);
+  expect_single_faces_as_listed<N>(rows);
+  expect_sides_as_defined<N>(rows);
+}
+
+TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnRandomComplexes) {
+  constexpr int N = TypeParam::value;
+  std::mt19937 random(1);
+  for (int run = 0; run < 200; ++run) {
+    const auto vertices = static_cast<Index>(N + random() % 12);
+    const SimplexList<N> rows = random_rows<N>(1 + random() % 40, vertices, random);
+    expect_faces_as_listed<N>(rows);
+    expect_single_faces_as_listed<N>(rows);
+    expect_sides_as_defined<N>(rows);
+    if (testing::Test::HasFailure()) FAIL() << "run " << run;
+  }
+}
+
+TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnLargeStars) {
+  constexpr int N = TypeParam::value;
+  std::mt19937 random(2);
+  // a vertex in every simplex, with up to 400 others around it
+  for (const Index vertices : {55u, 60u, 62u, 64u, 66u, 70u, 400u}) {
+    SimplexList<N> rows = random_rows<N>(5 * vertices, vertices, random);
+    const Index centre = static_cast<Index>(random() % vertices);
+    for (auto& row : rows)
+      if (std::find(row.begin(), row.end(), centre) == row.end()) row[random() % N] = centre;
+    expect_faces_as_listed<N>(rows);
+    expect_single_faces_as_listed<N>(rows);
+    expect_sides_as_defined<N>(rows);
+    if (testing::Test::HasFailure()) FAIL() << vertices << " vertices";
+  }
+}
+
+TEST(RadixSort, IsStableForAnyNumberOfThreads) {
+  struct Item {
+    std::uint64_t key;
+    std::size_t number;
+    bool operator==(const Item&) const = default;
+  };
+  std::mt19937_64 random(3);
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{1000}, std::size_t{300'000}})
+    for (const unsigned bits : {3u, 20u, 64u}) {
+      std::vector<Item> items;
+      for (std::size_t i = 0; i < count; ++i) items.push_back({bits == 64 ? random() : random() % (1u << bits), i});
+      std::vector<Item> expected = items;
+      std::stable_sort(expected.begin(), expected.end(), [](const Item& a, const Item& b) { return a.key < b.key; });
+      for (const unsigned threads : {1u, 2u, 3u, 0u}) {
+        std::vector<Item> sorted = items;
+        detail::sort_by_bits(
+            sorted, bits, [](const Item& item) { return item.key; }, threads);
+        EXPECT_TRUE(sorted == expected) << count << " items, " << bits << " bits, " << threads << " threads";
+      }
+    }
+}
+
+}  // namespace
+}  // namespace tegl
