@@ -112,13 +112,18 @@ void add_parts(Subject<T>& subject, std::vector<Operation>& list) {
                     subject.labels = label_components(subject.contour, subject.work_options());
                     return counted(subject.labels.count, "components");
                   }});
-  list.push_back({"`components`", [&] {
+  const auto label = [&] {  // for those that run alone
+    if (subject.labels.vertices.empty()) subject.labels = label_components(subject.contour, subject.work_options());
+  };
+  list.push_back({"`components`", [&, label] {
+                    label();
                     const auto found = components(subject.contour, subject.labels, subject.work_options());
                     std::uint64_t largest = 0;
                     for (const auto& component : found) largest = std::max(largest, component.simplices);
                     return fmt::format("the largest has {} tetrahedra", largest);
                   }});
-  list.push_back({"`split_components`", [&] {
+  list.push_back({"`split_components`", [&, label] {
+                    label();
                     return counted(split_components(subject.contour, subject.labels, subject.work_options()).size(),
                                    "contours");
                   }});
