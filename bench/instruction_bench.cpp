@@ -14,7 +14,14 @@
 #include "fields.hpp"
 #include "run.hpp"
 #include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/elements.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/project.hpp"
+#include "tegl/scrubber.hpp"
+#include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
+#include "tegl/track.hpp"
 #include "usage.hpp"
 
 /// The counted function: it has a C name so that valgrind finds it, and no tail call, which would leave it before the
@@ -28,6 +35,8 @@ namespace tegl::bench {
 namespace {
 
 using NamedCase = std::pair<std::string, std::function<void()>>;
+
+const WorkOptions kOneThread{1, {}};  ///< the division of work among several threads varies
 
 /// Keeps a result alive up to this point.
 template <class T>
@@ -83,23 +92,64 @@ void count_bytes() {
 void count_slice() {
   const auto image = make_field<4>("balls", 24);
   const auto contour = extract(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
-  measured([&] { use(slice(contour, Hyperplane<4>::across(3, 11.3))); });
+  measured([&] { use(slice(contour, Hyperplane<4>::across(3, 11.3), kOneThread)); });
 }
 
 void count_slice_image() {
   const auto image = make_field<4>("balls", 32);
-  const ExtractOptions options =
-      with_threads(ExtractOptions{}, 1);  // the division of work among several threads varies
+  const ExtractOptions options = with_threads(ExtractOptions{}, 1);
   measured([&] { use(slice_image(image.view(), 0.0, Hyperplane<4>::across(3, 14.3), options)); });
 }
 
 void count_check() {
   const auto image = make_field<3>("sphere", 40);
   const auto contour = extract(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
-  measured([&] { use(check(contour)); });
+  measured([&] { use(check(contour, kOneThread)); });
 }
 
-std::vector<NamedCase> all_cases() {
+/// An operation on a 4D contour. `work(contour)` returns its result.
+template <class Work>
+NamedCase operation_case(const std::string& name, std::size_t samples, const Work& work) {
+  return {name + " balls " + std::to_string(samples) + "^4", [=] {
+            const auto image = make_field<4>("balls", samples);
+            const auto contour = extract<double>(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
+            measured([&] { use(work(contour)); });
+          }};
+}
+
+/// Operations on contours, on one thread.
+std::vector<NamedCase> operation_cases() {
+  using Contour4 = Contour<4, double>;
+  const auto cuts = [] {
+    std::vector<Hyperplane<4>> all;
+    for (int i = 0; i < 10; ++i) all.push_back(Hyperplane<4>::across(3, 2.3 + i));
+    return all;
+  };
+  TrackOptions tracking;
+  tracking.work = kOneThread;
+  SimplifyOptions<4> half;
+  half.ratio = 0.5;
+  half.work = kOneThread;
+  return {
+      operation_case("check", 16, [](const Contour4& c) { return check(c, kOneThread); }),
+      operation_case("label_components", 16, [](const Contour4& c) { return label_components(c, kOneThread); }),
+      operation_case("components", 16,
+                     [](const Contour4& c) { return components(c, label_components(c, kOneThread), kOneThread); }),
+      operation_case("measure", 16, [](const Contour4& c) { return measure(c, kOneThread); }),
+      operation_case("measure_cuts", 16,
+                     [](const Contour4& c) { return measure_cuts(c, even_times(1.0, 14.0, 200), kOneThread); }),
+      operation_case("slice_stack", 16, [=](const Contour4& c) { return slice_stack(c, cuts(), kOneThread); }),
+      operation_case("scrubber", 16,
+                     [](const Contour4& c) { return Scrubber<4, double>(c, Hyperplane<4>{}, kOneThread).cut(7.3); }),
+      operation_case("track", 16, [=](const Contour4& c) { return track(c, tracking); }),
+      operation_case("project", 16, [](const Contour4& c) { return project(c, {}, kOneThread); }),
+      operation_case("outline", 16, [](const Contour4& c) { return outline(c, {}, kOneThread); }),
+      operation_case("elements", 16, [](const Contour4& c) { return elements(c, kOneThread); }),
+      operation_case("simplify", 8, [=](const Contour4& c) { return simplify(c, half); }),
+  };
+}
+
+std::vector<NamedCase> cases_of_extract() {
   ExtractOptions barycentric;
   barycentric.triangulation = Triangulation::barycentric;
   ExtractOptions closed;
@@ -142,6 +192,12 @@ std::vector<NamedCase> all_cases() {
       {"slice_image balls 32^4", count_slice_image},
       {"check sphere 40^3", count_check},
   };
+}
+
+std::vector<NamedCase> all_cases() {
+  std::vector<NamedCase> all = cases_of_extract();
+  for (NamedCase& operation : operation_cases()) all.push_back(std::move(operation));
+  return all;
 }
 
 /// The cases of bench/side_by_side with at most an eighth of its samples.
