@@ -40,6 +40,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -50,6 +51,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/index_map.hpp"
 #include "base/radix_sort.hpp"
+#include "base/workers.hpp"
 #include "cut/slice_piece.hpp"
 
 namespace tegl::detail {
@@ -145,10 +147,10 @@ class Cutter {
     }
     result.direction = contour_.direction;
     result.vertices.resize(keys_.size());
-    for (std::size_t i = 0; i < keys_.size(); ++i) result.vertices[i] = position(keys_[i]);
+    for_each_item(keys_.size(), threads_, {}, [&](std::size_t i) { result.vertices[i] = position(keys_[i]); });
     if (!contour_.normals.empty()) {
       result.normals.resize(keys_.size());
-      for (std::size_t i = 0; i < keys_.size(); ++i) result.normals[i] = normal(keys_[i]);
+      for_each_item(keys_.size(), threads_, {}, [&](std::size_t i) { result.normals[i] = normal(keys_[i]); });
     }
     for (const Attribute& attribute : contour_.vertex_attributes)
       result.vertex_attributes.push_back(interpolated(attribute));
@@ -173,27 +175,47 @@ class Cutter {
   void classify() {
     // One entry per on vertex of each simplex: twice the vertex, plus 1 if the simplex has a vertex below. Most entries
     // are duplicates from neighbouring simplices; a small cache of recent entries removes them.
-    std::vector<std::uint64_t> on;
     constexpr std::size_t kRecent = 1 << 12;
-    std::vector<std::uint64_t> recent(kRecent, ~std::uint64_t{0});
+    struct Found {
+      std::vector<std::uint64_t> on;
+      Index most = 0;
+    };
+    std::vector<Found> parts(block_count(touching_.size(), kBlock));
     sides_.resize(touching_.size());
-    for (std::size_t i = 0; i < touching_.size(); ++i) {
-      const auto& simplex = contour_.simplices[touching_[i]];
-      Sides sides;
-      for (int j = 0; j < N; ++j) {
-        const double here = height(simplex[j]);
-        sides.below = static_cast<std::uint8_t>(sides.below | static_cast<unsigned>(here < level_) << j);
-        sides.on = static_cast<std::uint8_t>(sides.on | static_cast<unsigned>(here == level_) << j);
-        most_ = std::max(most_, simplex[j]);
-      }
-      sides_[i] = sides;
-      for (unsigned left = sides.on; left != 0; left &= left - 1) {
-        const std::uint64_t entry =
-            2 * std::uint64_t{simplex[std::countr_zero(left)]} + static_cast<unsigned>(sides.below != 0);
-        if (std::exchange(recent[entry % kRecent], entry) != entry) on.push_back(entry);
-      }
+    for_each_block(
+        touching_.size(), kBlock, threads_, {}, [] { return std::vector<std::uint64_t>(kRecent, ~std::uint64_t{0}); },
+        [&](std::size_t block, std::size_t from, std::size_t to, std::vector<std::uint64_t>& recent) {
+          Found& found = parts[block];
+          std::fill(recent.begin(), recent.end(),
+                    ~std::uint64_t{0});  // the same entries whichever thread did the last block
+          for (std::size_t i = from; i < to; ++i) {
+            const auto& simplex = contour_.simplices[touching_[i]];
+            const Sides sides = sides_of(simplex);
+            sides_[i] = sides;
+            found.most = std::max(found.most, *std::max_element(simplex.begin(), simplex.end()));
+            for (unsigned left = sides.on; left != 0; left &= left - 1) {
+              const std::uint64_t entry =
+                  2 * std::uint64_t{simplex[std::countr_zero(left)]} + static_cast<unsigned>(sides.below != 0);
+              if (std::exchange(recent[entry % kRecent], entry) != entry) found.on.push_back(entry);
+            }
+          }
+        });
+    std::vector<std::uint64_t> on;
+    for (const Found& found : parts) {
+      on.insert(on.end(), found.on.begin(), found.on.end());
+      most_ = std::max(most_, found.most);
     }
     if (!on.empty()) list_on_vertices(std::move(on));
+  }
+
+  [[nodiscard]] Sides sides_of(const std::array<Index, N>& simplex) const {
+    Sides sides;
+    for (int j = 0; j < N; ++j) {
+      const double here = height(simplex[j]);
+      sides.below = static_cast<std::uint8_t>(sides.below | static_cast<unsigned>(here < level_) << j);
+      sides.on = static_cast<std::uint8_t>(sides.on | static_cast<unsigned>(here == level_) << j);
+    }
+    return sides;
   }
 
   void list_on_vertices(std::vector<std::uint64_t> entries) {
@@ -263,28 +285,37 @@ class Cutter {
   [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
     const auto is_merged = [&](Index v) { return !any_apart || !apart[on_(v)]; };
+    std::vector<std::vector<Piece>> parts(block_count(touching_.size(), kBlock));
+    for_each_block(touching_.size(), kBlock, threads_, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) {
+        const unsigned above = high(i);
+        if (above == 0 || above == kAll) continue;
+        const Piece piece = make_piece(touching_[i], above);
+        const Piece merged = sides_[i].on == 0 ? piece : merged_piece(piece, is_merged);
+        if (merged.count >= N - 1) parts[block].push_back(merged);
+      }
+    });
     std::vector<Piece> result;
-    for (std::size_t i = 0; i < touching_.size(); ++i) {
-      const unsigned above = high(i);
-      if (above == 0 || above == kAll) continue;
-      const Piece piece = make_piece(touching_[i], above);
-      if (sides_[i].on == 0) {
-        result.push_back(piece);
-        continue;
-      }
-      Piece merged;
-      merged.simplex = piece.simplex;
-      for (int k = 0; k < piece.count; ++k) {
-        const std::optional<Index> on = on_end(piece.points[k]);
-        const PointKey key = on && is_merged(*on) ? vertex_point(*on) : piece.points[k];
-        // Merged points are adjacent in the cycle, because they share the on vertex.
-        const bool repeats = merged.count > 0 && (merged.points[merged.count - 1] == key ||
-                                                  (k == piece.count - 1 && merged.points[0] == key));
-        if (!repeats) merged.points[merged.count++] = key;
-      }
-      if (merged.count >= N - 1) result.push_back(merged);
-    }
+    result.reserve(std::accumulate(parts.begin(), parts.end(), std::size_t{0},
+                                   [](std::size_t sum, const auto& part) { return sum + part.size(); }));
+    for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
     return result;
+  }
+
+  /// The piece with its points around on vertices merged, where `is_merged(vertex)`.
+  template <class IsMerged>
+  [[nodiscard]] Piece merged_piece(const Piece& piece, const IsMerged& is_merged) const {
+    Piece merged;
+    merged.simplex = piece.simplex;
+    for (int k = 0; k < piece.count; ++k) {
+      const std::optional<Index> on = on_end(piece.points[k]);
+      const PointKey key = on && is_merged(*on) ? vertex_point(*on) : piece.points[k];
+      // Merged points are adjacent in the cycle, because they share the on vertex.
+      const bool repeats = merged.count > 0 && (merged.points[merged.count - 1] == key ||
+                                                (k == piece.count - 1 && merged.points[0] == key));
+      if (!repeats) merged.points[merged.count++] = key;
+    }
+    return merged;
   }
 
   /// The end of a point's edge that is on. At most one end is on: two would be in the same group and on the same side.
@@ -308,7 +339,7 @@ class Cutter {
       const std::vector<PointKey> pinched = nonmanifold_points(pieces_, corners_);
       if (round == 0 && !pinched.empty()) {
         const std::vector<Piece> unmerged = cut_pieces(std::vector<bool>(on_.size(), true));
-        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, most_));
+        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, most_, threads_));
       }
       if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
     }
@@ -316,7 +347,7 @@ class Cutter {
 
   void set_pieces(std::vector<Piece> pieces) {
     pieces_ = std::move(pieces);
-    corners_ = corners_by_point(pieces_, most_);
+    corners_ = corners_by_point(pieces_, most_, threads_);
   }
 
   /// Marks the on vertices among the pinched points (with `all`, every on vertex) as apart, except those whose points
@@ -529,6 +560,7 @@ class Cutter {
     return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
   }
 
+  static constexpr std::size_t kBlock = std::size_t{1} << 13;  ///< simplices of a part of the work
   static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart, to bound the time
 
   const Contour<N, Real>& contour_;

@@ -51,12 +51,11 @@ struct Range {
 
 /// Sorts by node; within a node by the lower ends, ascending, or by the upper ends, descending (`by_upper`). Stable
 /// radix sorts: by one end, then by node.
-void sort_by_node(std::vector<Range>& ranges, bool by_upper) {
-  if (by_upper)
-    detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return ~range.most; });
-  else
-    detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return range.least; });
-  detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); });
+void sort_by_node(std::vector<Range>& ranges, bool by_upper, unsigned threads) {
+  detail::sort_by_bits(
+      ranges, kPlaceBits, [=](const Range& range) { return by_upper ? ~range.most : range.least; }, threads);
+  detail::sort_by_bits(
+      ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); }, threads);
 }
 
 /// Sorts numbers below `count`.
@@ -124,10 +123,11 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
       place_ranges(contour, work.threads, [&](Index v) { return place(family.height(contour.vertices[v])); });
   const auto gather = [&](std::vector<Entry>& entries, double fraction, bool by_upper) {
     detail::tell(work.progress, fraction, kCancelledScrubber);
-    sort_by_node(ranges, by_upper);
+    sort_by_node(ranges, by_upper, work.threads);
     entries.resize(ranges.size());
-    for (std::size_t i = 0; i < entries.size(); ++i)
+    detail::for_each_item(entries.size(), work.threads, {}, [&](std::size_t i) {
       entries[i] = {by_upper ? ranges[i].most : ranges[i].least, ranges[i].simplex};
+    });
   };
   gather(by_least_, 0.1, false);
   gather(by_most_, 0.5, true);

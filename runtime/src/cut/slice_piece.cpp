@@ -47,7 +47,7 @@ class Links {
 
 }  // namespace
 
-std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most) {
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most, unsigned threads) {
   std::vector<Corner> corners;
   std::size_t count = 0;
   for (const Piece& piece : pieces) count += static_cast<std::size_t>(piece.count);
@@ -55,8 +55,9 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most) 
   for (std::size_t p = 0; p < pieces.size(); ++p)
     for (int i = 0; i < pieces[p].count; ++i)
       corners.push_back({pieces[p].points[i], 4 * p + static_cast<std::size_t>(i)});
-  sort_by_bits(corners, static_cast<unsigned>(std::bit_width(most)),
-               [](const Corner& corner) { return lower_end(corner.key); });
+  sort_by_bits(
+      corners, static_cast<unsigned>(std::bit_width(most)), [](const Corner& corner) { return lower_end(corner.key); },
+      threads);
   // Few edges share a lower end, so a comparison sort is fast.
   for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
     bool sorted = true;

@@ -36,8 +36,9 @@ struct Corner {
   std::size_t at;  ///< 4 * piece + position of the point in it
 };
 
-/// All incidences sorted by key, then by piece. `most`: maximum vertex number. O(c) for c pieces.
-std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most);
+/// All incidences sorted by key, then by piece. `most`: maximum vertex number. Threads: 0 for all of the machine. O(c)
+/// for c pieces.
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most, unsigned threads);
 
 /// The keys, ascending, of the points at which the pieces do not form one fan (polygons) or one path (segments), or
 /// that have an edge in more than two polygons. `corners`: of these pieces. O(c) for c pieces if few meet at each
