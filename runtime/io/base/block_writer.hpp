@@ -13,31 +13,39 @@
 
 namespace tegl::io_detail {
 
-/// Collects the bytes of 65 536 rows, writes them, and reports progress. The file and `progress` must outlive this
+/// Collects the bytes of many rows, writes them, and reports progress. The file and `progress` must outlive this
 /// object.
 class BlockWriter {
  public:
   BlockWriter(OutputFile& file, const Progress& progress) : file_(file), progress_(progress) {}
 
-  /// Calls put(row) for all rows; reports progress from `first` to `last`. Throws Cancelled.
+  /// For rows of `row_bytes` bytes: calls fill(begin, end, to) for blocks of rows, to write the bytes of these rows to
+  /// `to`; reports progress from `first` to `last`. Throws Cancelled.
+  template <class Fill>
+  void write_blocks(std::size_t rows, std::size_t row_bytes, double first, double last, const Fill& fill) {
+    constexpr std::size_t kBytes = std::size_t{1} << 19;  // fits in the processor's cache
+    const std::size_t most = std::max<std::size_t>(1, kBytes / row_bytes);
+    block_.resize(std::min(most, rows) * row_bytes);
+    for (std::size_t begin = 0; begin < rows; begin += most) {
+      report(begin, rows, first, last);
+      const std::size_t end = std::min(begin + most, rows);
+      fill(begin, end, block_.data());
+      file_.write(block_.data(), (end - begin) * row_bytes);
+    }
+  }
+
+  /// For rows of text: calls put(row) for all rows; otherwise as write_blocks.
   template <class Put>
   void write_rows(std::size_t rows, double first, double last, const Put& put) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
     for (std::size_t begin = 0; begin < rows; begin += kBlock) {
-      tick(progress_, first + (last - first) * static_cast<double>(begin) / static_cast<double>(rows), file_.target());
+      report(begin, rows, first, last);
       block_.clear();
       for (std::size_t row = begin; row < std::min(begin + kBlock, rows); ++row) put(row);
       file_.write(block_.data(), block_.size());
     }
   }
 
-  /// Appends values in their memory representation.
-  template <class T>
-  void put(const T* values, std::size_t count) {
-    const auto* const bytes = reinterpret_cast<const char*>(values);
-    block_.insert(block_.end(), bytes, bytes + count * sizeof(T));
-  }
-  void put_byte(unsigned char byte) { block_.push_back(static_cast<char>(byte)); }
   void put_text(std::string_view text) { block_.insert(block_.end(), text.begin(), text.end()); }
   template <class... Args>
   void put_format(fmt::format_string<Args...> format, Args&&... args) {
@@ -45,6 +53,10 @@ class BlockWriter {
   }
 
  private:
+  void report(std::size_t row, std::size_t rows, double first, double last) const {
+    tick(progress_, first + (last - first) * static_cast<double>(row) / static_cast<double>(rows), file_.target());
+  }
+
   OutputFile& file_;
   const Progress& progress_;
   std::vector<char> block_;

@@ -3,9 +3,8 @@
 // Buffered output to a pending file.
 #pragma once
 
-#include <cstdio>
+#include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -19,6 +18,9 @@ namespace tegl::io_detail {
 class OutputFile {
  public:
   explicit OutputFile(const PendingPath& pending);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
@@ -31,12 +33,12 @@ class OutputFile {
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
+  void flush();
+  void write_through(const char* from, std::size_t bytes);
+
   std::filesystem::path target_;
   std::vector<char> buffer_;
-  std::unique_ptr<std::FILE, CloseFile> file_;  ///< after buffer_: closed before that is freed
+  int descriptor_ = -1;
 };
 
 }  // namespace tegl::io_detail

@@ -8,8 +8,11 @@
 #include "meshes/ply_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 #include "base/block_writer.hpp"
 #include "base/common.hpp"
@@ -53,6 +56,38 @@ std::vector<Properties> properties_of(std::span<const Attribute> attributes, Fil
   return result;
 }
 
+/// Bytes of a row's attributes.
+std::size_t bytes_of(const std::vector<Properties>& all) {
+  std::size_t bytes = 0;
+  for (const Properties& properties : all)
+    bytes += properties.names.size() * (properties.are_bytes ? 1 : sizeof(double));
+  return bytes;
+}
+
+/// A column of a block of rows: its place in the first row, and the distance between rows.
+struct Column {
+  char* to;
+  std::size_t stride;
+};
+
+/// Writes rows of up to three numbers as three numbers of type To; missing ones are 0.
+template <class To, class From>
+void put_points(std::span<const From> numbers, std::size_t width, Column column) {
+  const std::size_t rows = numbers.size() / width;
+  if constexpr (std::is_same_v<To, From>) {
+    if (width == 3 && column.stride == 3 * sizeof(To)) {
+      std::memcpy(column.to, numbers.data(), numbers.size_bytes());
+      return;
+    }
+  }
+  for (std::size_t r = 0; r < rows; ++r, column.to += column.stride) {
+    const From* const from = numbers.data() + r * width;
+    const std::array<To, 3> row = {static_cast<To>(from[0]), static_cast<To>(from[1]),
+                                   width > 2 ? static_cast<To>(from[2]) : To{0}};
+    std::memcpy(column.to, row.data(), sizeof row);
+  }
+}
+
 class PlyWriter {
  public:
   PlyWriter(const MeshView& mesh, OutputFile& file, const Progress& progress)
@@ -65,8 +100,18 @@ class PlyWriter {
 
   void run() {
     file_.write(header());
-    out_.write_rows(vertex_count(mesh_), 0.0, 0.5, [this](std::size_t v) { put_vertex(v); });
-    out_.write_rows(simplex_count(mesh_), 0.5, 1.0, [this](std::size_t s) { put_simplex(s); });
+    const std::size_t point = 3 * (mesh_.single_precision ? sizeof(float) : sizeof(double));
+    const std::size_t vertex = (mesh_.normals.empty() ? 1 : 2) * point + bytes_of(of_vertices_);
+    out_.write_blocks(vertex_count(mesh_), vertex, 0.0, 0.5, [&](std::size_t begin, std::size_t end, char* to) {
+      put_rows(mesh_.coordinates, begin, end, {to, vertex});
+      if (!mesh_.normals.empty()) put_rows(mesh_.normals, begin, end, {to + point, vertex});
+      put_attributes(of_vertices_, begin, end, {to + vertex - bytes_of(of_vertices_), vertex});
+    });
+    const std::size_t simplex = simplex_bytes() + bytes_of(of_simplices_);
+    out_.write_blocks(simplex_count(mesh_), simplex, 0.5, 1.0, [&](std::size_t begin, std::size_t end, char* to) {
+      put_simplices(begin, end, {to, simplex});
+      put_attributes(of_simplices_, begin, end, {to + simplex_bytes(), simplex});
+    });
   }
 
  private:
@@ -114,36 +159,49 @@ class PlyWriter {
     return text;
   }
 
-  void put_attributes(const std::vector<Properties>& all, std::size_t row) {
+  static void put_attributes(const std::vector<Properties>& all, std::size_t begin, std::size_t end, Column column) {
     for (const Properties& properties : all) {
-      const auto width = static_cast<std::size_t>(properties.attribute->width);
-      const double* const values = properties.attribute->values.data() + row * width;
-      if (!properties.are_bytes) {
-        out_.put(values, width);
-        continue;
+      const std::size_t width = properties.names.size();
+      char* to = column.to;
+      for (std::size_t row = begin; row < end; ++row, to += column.stride) {
+        const double* const values = properties.attribute->values.data() + row * width;
+        if (!properties.are_bytes) {
+          std::memcpy(to, values, width * sizeof(double));
+          continue;
+        }
+        for (std::size_t i = 0; i < width; ++i)
+          to[i] = static_cast<char>(static_cast<unsigned char>(std::lround(255.0 * values[i])));
       }
-      for (std::size_t i = 0; i < width; ++i) out_.put_byte(static_cast<unsigned char>(std::lround(255.0 * values[i])));
+      column.to += width * (properties.are_bytes ? 1 : sizeof(double));
     }
   }
 
-  void put_row(const std::array<double, 3>& row) {
-    if (!mesh_.single_precision) return out_.put(row.data(), 3);
-    const std::array<float, 3> single = {static_cast<float>(row[0]), static_cast<float>(row[1]),
-                                         static_cast<float>(row[2])};
-    out_.put(single.data(), 3);
+  void put_rows(const CoordinateView& rows, std::size_t begin, std::size_t end, Column column) const {
+    const auto width = static_cast<std::size_t>(mesh_.space_dim);
+    rows.visit([&](const auto& numbers) {
+      const auto part = numbers.subspan(begin * width, (end - begin) * width);
+      if (mesh_.single_precision)
+        put_points<float>(part, width, column);
+      else
+        put_points<double>(part, width, column);
+    });
   }
 
-  void put_vertex(std::size_t v) {
-    put_row(position(mesh_, v));
-    if (!mesh_.normals.empty()) put_row(normal(mesh_, v));
-    put_attributes(of_vertices_, v);
+  [[nodiscard]] std::size_t simplex_bytes() const {
+    const std::size_t ids = (static_cast<std::size_t>(mesh_.dim) + 1) * sizeof(Index);
+    return mesh_.dim == 2 ? 1 + ids : ids;
   }
 
-  void put_simplex(std::size_t s) {
-    const auto corners = static_cast<std::size_t>(mesh_.dim) + 1;
-    if (mesh_.dim == 2) out_.put_byte(3);
-    out_.put(mesh_.simplices.data() + s * corners, corners);
-    put_attributes(of_simplices_, s);
+  void put_simplices(std::size_t begin, std::size_t end, Column column) const {
+    const Index* const ids = mesh_.simplices.data();
+    for (std::size_t s = begin; s < end; ++s, column.to += column.stride) {
+      if (mesh_.dim == 2) {
+        *column.to = 3;
+        std::memcpy(column.to + 1, ids + 3 * s, 3 * sizeof(Index));
+      } else {
+        std::memcpy(column.to, ids + 2 * s, 2 * sizeof(Index));
+      }
+    }
   }
 
   const MeshView& mesh_;
