@@ -8,6 +8,7 @@
 #include <new>
 #include <string_view>
 
+#include "base/collected_values.hpp"
 #include "base/common.hpp"
 #include "base/inflate.hpp"
 #include "base/raw_image.hpp"
@@ -95,13 +96,30 @@ StoredImage open_stored(const fs::path& path, Format format, const ReadImageOpti
   }
 }
 
+/// Reads all samples, and converts them block by block.
+ValueArray read_converted(SampleReader& reader, std::uint64_t count, const StoredImage& stored,
+                          const Progress& progress) {
+  CollectedValues all(static_cast<std::size_t>(count));
+  for (std::uint64_t first = 0; first < count; first += CollectedValues::kBlock) {
+    const std::uint64_t size = std::min<std::uint64_t>(CollectedValues::kBlock, count - first);
+    const auto of_all = [&](double fraction) {
+      return progress((static_cast<double>(first) + fraction * static_cast<double>(size)) / static_cast<double>(count));
+    };
+    all.add(stored.convert(reader.read(first, size, progress ? Progress(of_all) : Progress())));
+  }
+  return all.take();
+}
+
 RawImage read_stored(StoredImage&& stored, Extent extent, const Progress& progress) {
   SampleReader reader(std::move(stored.samples));
   const std::vector<std::uint64_t>& sizes = reader.samples().sizes;
   const std::uint64_t count = extent == Extent::whole ? checked_bytes(sizes, 1, reader.samples().path) : 0;
   ValueArray values;
   try {
-    values = reader.read(0, count, progress);
+    if (stored.convert && count > 0)
+      values = read_converted(reader, count, stored, progress);
+    else
+      values = reader.read(0, count, progress);
   } catch (const std::bad_alloc&) {
     fail(ErrorCode::TooLarge, reader.samples().path, "{} values of type {} do not fit into memory", count,
          reader.samples().type);
@@ -113,7 +131,7 @@ RawImage read_stored(StoredImage&& stored, Extent extent, const Progress& progre
     values = with_axis_last(values, inner, sizes[*stored.list_axis], outer);
   }
   if (stored.is_reversed && extent == Extent::whole) values = with_axes_reversed(values, {sizes.begin(), sizes.end()});
-  if (stored.convert) values = stored.convert(std::move(values));
+  if (stored.convert && count == 0) values = stored.convert(std::move(values));
   return {std::move(stored.grid), std::move(values), std::move(stored.info)};
 }
 

@@ -14,6 +14,7 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -21,6 +22,7 @@
 
 #include <fmt/ranges.h>
 
+#include "base/collected_values.hpp"
 #include "base/common.hpp"
 #include "base/reading_process.hpp"
 #include "images/netcdf_file.hpp"
@@ -65,21 +67,47 @@ Packing read_packing(const NcFile& file, const NcVariable& variable) {
   return packing;
 }
 
+/// Unpacks values in simple loops, which the compiler vectorizes.
 template <class Real, class T>
-Real unpack_one(T stored, const Packing& packing) {
+void unpack_block(std::span<const T> stored, const Packing& packing, Real* to) {
+  constexpr Real kMissing = std::numeric_limits<Real>::quiet_NaN();
+  const std::size_t count = stored.size();
+  if (packing.scaled) {
+    for (std::size_t i = 0; i < count; ++i)
+      to[i] = static_cast<Real>(static_cast<double>(stored[i]) * packing.scale + packing.offset);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<Real>(stored[i]);
+  }
   // Attributes are compared in the variable's own type: as a float, a fill value of -1e34 is another number.
-  for (const double value : packing.missing)
-    if (stored == static_cast<T>(value)) return std::numeric_limits<Real>::quiet_NaN();
-  const auto value = static_cast<double>(stored);
-  if (value < packing.least || value > packing.greatest) return std::numeric_limits<Real>::quiet_NaN();
-  return packing.scaled ? static_cast<Real>(value * packing.scale + packing.offset) : static_cast<Real>(stored);
+  for (const double value : packing.missing) {
+    const T missing = static_cast<T>(value);
+    for (std::size_t i = 0; i < count; ++i) to[i] = stored[i] == missing ? kMissing : to[i];
+  }
+  if (!(packing.least > -std::numeric_limits<double>::infinity() ||
+        packing.greatest < std::numeric_limits<double>::infinity()))
+    return;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = static_cast<double>(stored[i]);
+    to[i] = value < packing.least || value > packing.greatest ? kMissing : to[i];
+  }
+}
+
+/// Unpacks values to `to`, which may be the same memory: in blocks that stay in the cache.
+template <class Real, class T>
+void unpack_all(std::span<const T> stored, const Packing& packing, Real* to) {
+  constexpr std::size_t kBlock = 2048;
+  std::array<T, kBlock> block;
+  for (std::size_t first = 0; first < stored.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, stored.size() - first);
+    std::copy_n(stored.data() + first, count, block.data());
+    unpack_block<Real, T>(std::span<const T>(block).first(count), packing, to + first);
+  }
 }
 
 template <class Real, class T>
-ValueVector<Real> unpack_all(const ValueVector<T>& stored, const Packing& packing) {
+ValueVector<Real> unpacked(const ValueVector<T>& stored, const Packing& packing) {
   ValueVector<Real> result(stored.size());
-  std::transform(stored.begin(), stored.end(), result.begin(),
-                 [&](T value) { return unpack_one<Real>(value, packing); });
+  unpack_all<Real, T>(stored, packing, result.data());
   return result;
 }
 
@@ -94,12 +122,12 @@ ValueArray unpack(ValueArray&& values, Packing packing) {
           return !(value >= kLowest && value <= kHighest) || (std::is_integral_v<T> && value >= 0x1p63);
         });
         if constexpr (std::is_floating_point_v<T>) {
-          for (T& value : stored) value = unpack_one<T>(value, packing);
+          unpack_all<T, T>(stored, packing, stored.data());
           return std::move(stored);
         } else {
           if (!packing.any_attribute) return std::move(stored);
-          if constexpr (sizeof(T) <= 2) return unpack_all<float>(stored, packing);
-          return unpack_all<double>(stored, packing);
+          if constexpr (sizeof(T) <= 2) return unpacked<float>(stored, packing);
+          return unpacked<double>(stored, packing);
         }
       },
       values);
@@ -410,6 +438,36 @@ NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::siz
   return slab;
 }
 
+/// Reads and unpacks the values of a slab, block by block unless they stay as they are stored.
+ValueArray unpacked_values(const NcFile& file, const NcVariable& variable, const NcSlab& slab, const Packing& packing,
+                           const Progress& progress) {
+  const bool is_real = variable.type == NC_FLOAT || variable.type == NC_DOUBLE;
+  // blocks of layers along the slowest dimension with more than one sample: they are contiguous in memory
+  std::size_t along = 0;
+  while (along + 1 < slab.count.size() && slab.count[along] == 1) ++along;
+  std::size_t layer = 1;
+  for (std::size_t d = along + 1; d < slab.count.size(); ++d) layer *= slab.count[d];
+  const std::size_t layers = slab.count.empty() ? 0 : slab.count[along];
+  if (layers * layer <= CollectedValues::kBlock || (!is_real && !packing.any_attribute))
+    return unpack(file.values(variable, slab, progress), packing);
+  file.require_stored(variable, slab);
+  const std::size_t chunk = file.block_length(variable, along);  // no chunk is read twice
+  const std::size_t step = std::max<std::size_t>(1, CollectedValues::kBlock / layer / chunk) * chunk;
+  CollectedValues all(layers * layer);
+  for (std::size_t first = 0; first < layers; first += step) {
+    const std::size_t count = std::min(step, layers - first);
+    const auto of_all = [&](double fraction) {
+      return progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
+                      static_cast<double>(layers));
+    };
+    NcSlab part = slab;
+    part.start[along] += first;
+    part.count[along] = count;
+    all.add(unpack(file.values(variable, part, progress ? Progress(of_all) : Progress()), packing));
+  }
+  return all.take();
+}
+
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
@@ -422,7 +480,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
-  image.values = unpack(file.values(found.variable, slab, options.work.progress), packing);
+  image.values = unpacked_values(file, found.variable, slab, packing, options.work.progress);
   if (extent == Extent::whole) image.values = in_order(std::move(image.values), grid, grid.grid.axes.back().size());
   image.grid = std::move(grid.grid);
   image.info = std::move(found.info);

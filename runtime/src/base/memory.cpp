@@ -34,6 +34,21 @@ struct ValuesHeader {
 };
 static_assert(sizeof(ValuesHeader) <= kValuesOffset);
 
+/// Asks for huge pages for a block from the heap that is certainly a mapping of its own: such pages are never returned
+/// to other users of the heap.
+void prefer_huge_pages(void* begin, std::size_t bytes) noexcept {
+#ifdef __linux__
+  constexpr std::size_t kOwnMapping = std::size_t{1} << 25;  // the largest threshold of glibc's allocator
+  if (bytes <= kOwnMapping) return;
+  const std::size_t before = (kHugePage - reinterpret_cast<std::uintptr_t>(begin) % kHugePage) % kHugePage;
+  // Whole pages only: the memory after them may never be used.
+  madvise(static_cast<unsigned char*>(begin) + before, (bytes - before) / kHugePage * kHugePage, MADV_HUGEPAGE);
+#else
+  static_cast<void>(begin);
+  static_cast<void>(bytes);
+#endif
+}
+
 void free_block(void* block, std::size_t bytes) noexcept {
   if (block_source != nullptr && block_source->release(block, bytes)) return;
 #ifdef __linux__
@@ -63,6 +78,7 @@ void* allocate_values(std::size_t bytes) {
     std::size_t space = bytes + 2 * kValuesOffset;
     begin = header.heap = ::operator new(space);
     begin = std::align(kValuesOffset, bytes + kValuesOffset, begin, space);
+    prefer_huge_pages(begin, bytes + kValuesOffset);
   }
   ::new (begin) ValuesHeader(header);
   return static_cast<unsigned char*>(begin) + kValuesOffset;

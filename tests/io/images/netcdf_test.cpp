@@ -3,6 +3,8 @@
 // netCDF: axes from coordinate variables, packing and missing values, the choice of a variable, and damaged files.
 #include "images/netcdf_files.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "images/layers_support.hpp"
@@ -161,6 +163,60 @@ TEST(NetCdf, ValidRangeAndDefaultFillAreMissing) {
   EXPECT_TRUE(std::isnan(doubles[0]) && std::isnan(doubles[5]) && doubles[1] == 1 && doubles[4] == 4);
   const auto unwritten = read_six(NC_FLOAT, {0, 1, 2, 3, 4, NC_FILL_FLOAT}, [](NcWriter&, int) {});
   EXPECT_TRUE(std::isnan(image_as<float, 2>(unwritten.image).values[5]));
+}
+
+/// A packed variable of 24 x 90 x 200 samples, with coordinates at two times; value i of a time is 0.5 * stored + 10,
+/// or missing if stored is -1 or above 30000.
+void write_packed(const fs::path& path, int format, const std::vector<double>& stored) {
+  NcWriter file(path, format);
+  const int t = file.dimension("t", 2);
+  const int z = file.dimension("z", 24);
+  const int y = file.dimension("y", 90);
+  const int x = file.dimension("x", 200);
+  const int v = file.variable("v", NC_SHORT, {t, z, y, x});
+  if ((format & NC_NETCDF4) != 0) {
+    const std::array<std::size_t, 4> chunks = {1, 7, 90, 200};
+    NcWriter::ok(nc_def_var_chunking(file.id(), v, NC_CHUNKED, chunks.data()));
+  }
+  file.number(v, "scale_factor", NC_DOUBLE, {0.5});
+  file.number(v, "add_offset", NC_DOUBLE, {10});
+  file.number(v, "_FillValue", NC_SHORT, {-1});
+  file.number(v, "valid_max", NC_SHORT, {30000});
+  file.end();
+  file.values(v, stored);
+}
+
+TEST(NetCdf, PackedValuesOfManyBlocksComeBackInOrder) {
+  TempDir dir;
+  constexpr std::size_t kCount = 24 * 90 * 200;
+  std::vector<double> stored(2 * kCount);
+  for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = static_cast<double>(i * 7919 % 65536) - 32768;
+  const auto expect_values = [&](const Values<float>& values, std::size_t first) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = stored[first + i];
+      const bool missing = value == -1 || value > 30000;
+      ASSERT_TRUE(missing ? std::isnan(values[i]) : values[i] == static_cast<float>(0.5 * value + 10)) << i;
+    }
+  };
+  for (const int format : {0, NC_NETCDF4}) {
+    SCOPED_TRACE(format);
+    write_packed(dir / "a.nc", format, stored);
+    std::vector<double> fractions;
+    ReadImageOptions options;
+    options.work.progress = [&](double fraction) {
+      fractions.push_back(fraction);
+      return true;
+    };
+    const auto whole = image_as<float, 4>(read_image(dir / "a.nc", options).image);
+    ASSERT_EQ(whole.values.size(), 2 * kCount);
+    expect_values(whole.values, 0);
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    EXPECT_GT(fractions.size(), 3U);
+    options.fixed = {{"t", 1}};
+    const auto second = image_as<float, 3>(read_image(dir / "a.nc", options).image);
+    ASSERT_EQ(second.values.size(), kCount);
+    expect_values(second.values, kCount);
+  }
 }
 
 TEST(NetCdf, SignedBytesThatMeanUnsigned) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // NIfTI: values, every value type, scaling, orientation computed by hand, time, and inconsistent files.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -121,6 +122,33 @@ TEST(Nifti, SlopeAndInterceptGiveFloats) {
   const auto [any, info] = read_image(dir / "a.nii");
   EXPECT_THAT((image_as<float, 3>(any).values), testing::ElementsAre(-3, -2.5, -2, -1.5, -1, -0.5, 0, 0.5));
   EXPECT_EQ(info.stored_type, ValueType::int16);
+}
+
+TEST(Nifti, ScaledValuesOfManyBlocksComeBackInOrder) {
+  TempDir dir;
+  constexpr std::size_t kCount = 128 * 100 * 60;
+  std::vector<std::int16_t> stored(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) stored[i] = static_cast<std::int16_t>(i * 7919 % 65536);
+  const std::string bytes = NiftiHeader({128, 100, 60}, kInt16, 16).scaling(-0.25F, 3).bytes() + bytes_of(stored);
+  write_file(dir / "a.nii", bytes);
+  write_file(dir / "a.nii.gz", compressed(bytes));
+  for (const char* const name : {"a.nii", "a.nii.gz"}) {
+    std::vector<double> told;
+    ReadImageOptions options;
+    options.work.progress = [&](double fraction) {
+      told.push_back(fraction);
+      return true;
+    };
+    const auto values = image_as<float, 3>(read_image(dir / name, options).image).values;
+    ASSERT_EQ(values.size(), kCount);
+    for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(values[i], 3 - 0.25F * static_cast<float>(stored[i])) << i;
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end())) << name;
+    EXPECT_GT(told.size(), 4U) << name;
+    options.work.progress = [](double fraction) { return fraction < 0.5; };
+    expect_error(ErrorCode::Cancelled, {name}, [&] { read_image(dir / name, options); });
+  }
+  write_file(dir / "b.nii.gz", compressed(bytes.substr(0, bytes.size() - 2)));
+  expect_error(ErrorCode::MalformedFile, {"b.nii.gz", "expected"}, [&] { read_image(dir / "b.nii.gz"); });
 }
 
 TEST(Nifti, MissingValuesStayMissing) {

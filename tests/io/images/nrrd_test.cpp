@@ -49,6 +49,26 @@ TEST(Nrrd, BigEndianAndWideTypes) {
   EXPECT_EQ(info.stored_type, ValueType::uint64);
 }
 
+TEST(Nrrd, BigEndianSamplesOfManyBlocksInEveryEncoding) {
+  TempDir dir;
+  constexpr std::size_t kCount = 400 * 900;  // of 4 bytes: several blocks
+  std::vector<std::int32_t> values(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) values[i] = static_cast<std::int32_t>(i * 2654435761U);
+  std::string raw;
+  for (const std::int32_t value : values)
+    for (int shift = 24; shift >= 0; shift -= 8) raw += static_cast<char>(value >> shift);
+  std::string hex;
+  for (const char byte : raw)
+    for (const int nibble : {byte >> 4 & 15, byte & 15}) hex += "0123456789abcdef"[nibble];
+  for (const auto& [encoding, data] :
+       {std::pair<std::string, std::string>{"raw", raw}, {"gzip", compressed(raw)}, {"hex", hex}}) {
+    write_file(
+        dir / "a.nrrd",
+        nrrd_header("type: int\ndimension: 2\nsizes: 400 900\nendian: big\nencoding: " + encoding + "\n\n" + data));
+    EXPECT_TRUE((image_as<std::int32_t, 2>(read_image(dir / "a.nrrd").image).values == values)) << encoding;
+  }
+}
+
 TEST(Nrrd, SpacingsMinimaLabelsAndUnits) {
   TempDir dir;
   write_file(dir / "a.nrrd", nrrd_header("# comment\n" + kSmall +

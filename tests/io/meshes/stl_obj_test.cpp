@@ -2,7 +2,9 @@
 //
 // STL and OBJ: written meshes are read back as far as the formats permit. meshio_reads_test.py checks the files with
 // other programs.
+#include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <sstream>
 
 #include "base/mesh_data.hpp"
@@ -97,6 +99,31 @@ TEST(Stl, HasEightyFourBytesAndFiftyForEachTriangle) {
     write_mesh(random_mesh(2, 3, triangles + 1, triangles, triangles), dir / "a.stl");
     EXPECT_EQ(fs::file_size(dir / "a.stl"), 84 + 50 * triangles);
   }
+}
+
+TEST(Stl, HasTheCornersOfEachTriangleInEveryBlock) {
+  TempDir dir;
+  const Mesh mesh = random_mesh(2, 3, 20000, 40000, 3);
+  write_mesh(mesh, dir / "a.stl");
+  const std::string bytes = read_file(dir / "a.stl");
+  const std::vector<float> corners = corners_of(mesh);
+  for (std::size_t i = 0; i < 40000; ++i) {
+    std::array<float, 9> found{};
+    std::memcpy(found.data(), &bytes[84 + 50 * i + 12], sizeof found);
+    ASSERT_TRUE(std::equal(found.begin(), found.end(), corners.begin() + static_cast<std::ptrdiff_t>(9 * i))) << i;
+  }
+}
+
+TEST(Stl, NamesTheVertexThatFloatCannotHold) {
+  TempDir dir;
+  Mesh mesh = random_mesh(2, 3, 4, 1, 1);
+  mesh.simplices = {0, 1, 2};
+  mesh.coordinates[9] = 1e300;  // of a vertex in no triangle
+  write_mesh(mesh, dir / "a.stl");
+  mesh.coordinates[4] = -1e39;
+  expect_error(ErrorCode::UnsupportedData, {"b.stl", "vertex 1", "-1e+39", "range of float"},
+               [&] { write_mesh(mesh, dir / "b.stl"); });
+  EXPECT_EQ(dir.files(), 1U);
 }
 
 TEST(Stl, HasBytesInOneOrderWhateverTheMachine) {
