@@ -5,6 +5,7 @@
 // of noise and of its negative enclose.
 //
 //     tile_intersections --dimension 3 --ambiguity mean --positions log-uniform --tiles 100000 --shapes
+//     tile_intersections --dimension 4 --ambiguity low --triangulation barycentric --searched --tiles 100000
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -12,12 +13,18 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
 #include <functional>
+#include <limits>
+#include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "arguments.hpp"
 #include "tegl/check.hpp"
@@ -47,6 +54,8 @@ struct Settings {
   bool lists = false;       ///< the tiles with intersections
   bool has_shapes = false;  ///< counts tiles of balls and others
   bool is_bias = false;
+  bool is_searched = false;               ///< only signatures whose table entry is searched, not proved
+  std::vector<std::uint64_t> signatures;  ///< the signatures to sample; if empty, all with a contour
 
   [[nodiscard]] ExtractOptions extraction() const {
     ExtractOptions options;
@@ -91,6 +100,56 @@ std::string text_of(std::uint64_t tile, const std::array<double, std::size_t{1} 
   return text + "\n";
 }
 
+/// Adds the signatures that the symmetries of the 4-cube map a signature to; returns their number.
+std::size_t add_class(std::uint64_t signature, std::set<std::uint64_t>& signatures) {
+  constexpr unsigned kAxes = 4, kCorners = 1u << kAxes;
+  std::set<std::uint64_t> found;
+  std::array<unsigned, kAxes> axes;
+  std::iota(axes.begin(), axes.end(), 0u);
+  do {
+    for (unsigned reflected = 0; reflected < kCorners; ++reflected) {
+      std::uint64_t image = 0;
+      for (unsigned v = 0; v < kCorners; ++v) {
+        unsigned corner = 0;
+        for (unsigned a = 0; a < kAxes; ++a) corner |= (v >> a & 1u) << axes[a];
+        image |= (signature >> v & 1u) << (corner ^ reflected);
+      }
+      found.insert(image);
+    }
+  } while (std::next_permutation(axes.begin(), axes.end()));
+  signatures.insert(found.begin(), found.end());
+  return found.size();
+}
+
+/// The signatures of 4D whose table entry is not proved to be embedded, but searched, by the manifest of the tables.
+std::vector<std::uint64_t> searched_signatures(const Settings& settings) {
+  const bool is_low = settings.ambiguity == Ambiguity::low;
+  if (settings.dimension != 4 || (!is_low && settings.ambiguity != Ambiguity::high))
+    throw Error(ErrorCode::InvalidArgument, "--searched; expected --dimension 4 and --ambiguity low or high");
+  constexpr const char* kManifest = TEGL_SOURCE_DIR "/generated/MANIFEST.json";
+  std::ifstream in(kManifest);
+  if (!in) throw Error(ErrorCode::FileNotFound, fmt::format("{}: cannot be read", kManifest));
+  const char* triangulation = settings.triangulation == Triangulation::compact ? "compact" : "barycentric";
+  std::set<std::uint64_t> found;
+  std::size_t expected = 0;
+  for (const nlohmann::json& tables : nlohmann::json::parse(in)) {
+    if (tables.value("dim", 0) != 4) continue;
+    for (const nlohmann::json& table : tables.at("certified")) {
+      if (table.at("alternative") != (is_low ? "low" : "high") || table.at("triangulation") != triangulation) continue;
+      expected += table.at("embedded_searched").get<std::size_t>();
+      if (!table.contains("search")) continue;
+      for (const nlohmann::json& entry : table.at("search").at("classes"))
+        if (add_class(entry.at("signature").get<std::uint64_t>(), found) != entry.at("entries").get<std::size_t>())
+          throw Error(ErrorCode::MalformedFile, fmt::format("{}: a class has another number of entries", kManifest));
+    }
+  }
+  if (found.size() != expected)
+    throw Error(ErrorCode::MalformedFile,
+                fmt::format("{}: {} entries in the classes; expected {}", kManifest, found.size(), expected));
+  if (found.empty()) throw Error(ErrorCode::InvalidArgument, "--searched: all entries of this table are proved");
+  return {found.begin(), found.end()};
+}
+
 /// Tests the tiles first ... end - 1 with random numbers that depend on the number of the part only.
 template <int N>
 Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t end, std::string& list) {
@@ -105,7 +164,9 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
   Counts counts;
   for (std::uint64_t tile = first; tile < end; ++tile) {
     // middle positions have no other freedom than the signature: all in turn
-    const std::uint64_t signature = 1 + (settings.positions == Positions::middle ? tile % kActive : bits() % kActive);
+    const std::uint64_t number = settings.positions == Positions::middle ? tile : bits();
+    const std::uint64_t signature =
+        settings.signatures.empty() ? 1 + number % kActive : settings.signatures[number % settings.signatures.size()];
     std::array<double, kCorners> values;
     for (std::size_t v = 0; v < kCorners; ++v)
       values[v] = (signature >> v & 1u) != 0 ? difference(settings, bits) : -difference(settings, bits);
@@ -194,6 +255,7 @@ constexpr const char* kUsage =
     "  --spread K                log-uniform: differences from the isovalue are exp(uniform(-K, K)); 3.45\n"
     "  --threads T               0: all of the machine\n"
     "  --seed S                  of the random numbers\n"
+    "  --searched                4D low or high: only signatures whose table entry is searched, not proved\n"
     "  --list                    lists the tiles with pairs or flat simplices, with their values\n"
     "  --shapes                  counts tiles whose components all are balls, and others, separately\n"
     "  --bias                    instead: what the contours of noise and of its negative enclose\n";
@@ -217,8 +279,11 @@ Settings parsed(int argc, char** argv) {
   Settings settings;
   for (int i = 1; i < argc; ++i) {
     const std::string_view option = argv[i];
-    if (option == "--list" || option == "--shapes" || option == "--bias") {
-      (option == "--list" ? settings.lists : option == "--shapes" ? settings.has_shapes : settings.is_bias) = true;
+    if (option == "--list" || option == "--shapes" || option == "--bias" || option == "--searched") {
+      (option == "--list"     ? settings.lists
+       : option == "--shapes" ? settings.has_shapes
+       : option == "--bias"   ? settings.is_bias
+                              : settings.is_searched) = true;
       continue;
     }
     if (i + 1 == argc)
@@ -253,13 +318,17 @@ Settings parsed(int argc, char** argv) {
 int main(int argc, char** argv) {
   if (tegl::bench::tells_usage(argc, argv, kUsage)) return 0;
   try {
-    const Settings settings = parsed(argc, argv);
+    Settings settings = parsed(argc, argv);
+    if (settings.is_searched) settings.signatures = searched_signatures(settings);
     if (settings.is_bias)
       settings.dimension == 3 ? print_bias<3>(settings) : print_bias<4>(settings);
     else
       settings.dimension == 3 ? count_tiles<3>(settings) : count_tiles<4>(settings);
   } catch (const tegl::Error& error) {
     fmt::print(stderr, "tile_intersections: {}\n", error.what());
+    return 2;
+  } catch (const nlohmann::json::exception& error) {
+    fmt::print(stderr, "tile_intersections: the manifest of the tables: {}\n", error.what());
     return 2;
   }
   return 0;
