@@ -3,6 +3,7 @@
 // Properties of find_intersections, on configurations made to intersect.
 #include "tegl/intersections.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -165,6 +166,29 @@ TEST(Intersections, TheFirstPairsAreListedAndAllAreCounted) {
   EXPECT_EQ(some.intersecting, all.intersecting);
   ASSERT_EQ(some.pairs.size(), 3u);
   EXPECT_EQ(some.pairs[2].second, all.pairs[2].second);
+}
+
+TEST(Intersections, TheDeepestPairsAreTheSameForAnyNumberOfThreads) {
+  const auto contour = moved_contour<3>(24, 0.2);
+  auto expected = find_intersections(contour).pairs;
+  constexpr std::size_t kMost = 20;
+  ASSERT_GT(expected.size(), 10 * kMost);
+  std::stable_sort(expected.begin(), expected.end(), [](const auto& p, const auto& q) { return p.depth > q.depth; });
+  IntersectionOptions<3> options;
+  options.most_listed = kMost;
+  options.deepest_first = true;
+  for (const unsigned threads : {1u, 2u, 3u, 5u}) {
+    options.work.threads = threads;
+    const auto found = find_intersections(contour, options);
+    EXPECT_EQ(found.pair_count, expected.size());
+    EXPECT_EQ(found.depth, expected[0].depth);
+    ASSERT_EQ(found.pairs.size(), kMost);
+    for (std::size_t i = 0; i < kMost; ++i) {
+      EXPECT_EQ(found.pairs[i].first, expected[i].first) << i;
+      EXPECT_EQ(found.pairs[i].second, expected[i].second) << i;
+      EXPECT_EQ(found.pairs[i].depth, expected[i].depth) << i;
+    }
+  }
 }
 
 TEST(Intersections, TilesAreCounted) {
