@@ -4,6 +4,7 @@
 // across the last axis.
 //
 //     image_intersections --slices 100 --epsilon 0.01 ocean_temperature.nc 20
+//     image_intersections --low --runs 3 --threads 1 --field metaballs 512
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "fields.hpp"
 #include "image_file.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/hyperplane.hpp"
@@ -28,9 +30,13 @@ namespace {
 
 struct Arguments {
   std::string file;
+  std::string field;         ///< instead of a file
+  std::size_t samples = 64;  ///< of the field, along each of three axes
   double isovalue = 0.0;
   double epsilon = 0.0;
   int slices = 0;
+  int runs = 1;
+  bool is_low = false;  ///< only compact, by low
   unsigned threads = 0;
 };
 
@@ -61,8 +67,8 @@ OfCuts intersections_of_cuts(const Contour<N, double>& contour, const Arguments&
   for (int k = 0; k < arguments.slices; ++k) {
     // 0.37: no cut contains a layer of samples, unless there are very many
     const double at = least + (k + 0.37) / arguments.slices * (most - least);
-    const auto found = find_intersections(slice(contour, Hyperplane<N>::across(N - 1, at)),
-                                          counting<N - 1>(arguments.threads));
+    const auto found =
+        find_intersections(slice(contour, Hyperplane<N>::across(N - 1, at)), counting<N - 1>(arguments.threads));
     result.pairs += found.pair_count;
     result.hit += found.pair_count > 0 ? 1 : 0;
   }
@@ -74,18 +80,19 @@ void measure(const std::string& name, const OwnedImage<Value, N>& image, const A
   constexpr std::pair<Ambiguity, const char*> kRules[] = {
       {Ambiguity::low, "low"}, {Ambiguity::mean, "mean"}, {Ambiguity::saddle, "saddle"}};
   constexpr std::pair<Triangulation, const char*> kTriangulations[] = {{Triangulation::compact, "compact"},
-                                                                      {Triangulation::barycentric, "barycentric"}};
+                                                                       {Triangulation::barycentric, "barycentric"}};
   for (const auto& [rule, rule_name] : kRules)
     for (const auto& [triangulation, triangulation_name] : kTriangulations) {
+      if (arguments.is_low && (rule != Ambiguity::low || triangulation != Triangulation::compact)) continue;
       ExtractOptions options;
       options.ambiguity = rule;
       options.triangulation = triangulation;
       options.epsilon = arguments.epsilon;
       options.work.threads = arguments.threads;
       const auto contour = extract<double>(image.view(), arguments.isovalue, options);
-      const double start = worked_seconds();
-      const auto found = find_intersections(contour, counting<N>(arguments.threads));
-      const double seconds = worked_seconds() - start;
+      Intersections<N> found;
+      const double seconds =
+          least_seconds([&] { found = find_intersections(contour, counting<N>(arguments.threads)); }, arguments.runs);
       OfCuts cuts;
       if constexpr (N > 2) cuts = intersections_of_cuts(contour, arguments);
       fmt::print("| {} | {} | {} | {} | {} | {:.3g} | {} | {:.2f} | {} | {} |\n", name, rule_name, triangulation_name,
@@ -95,10 +102,13 @@ void measure(const std::string& name, const OwnedImage<Value, N>& image, const A
 }
 
 constexpr const char* kUsage =
-    "image_intersections [--slices N] [--epsilon E] [--threads T] IMAGE ISOVALUE: pairs of simplices that intersect\n"
+    "image_intersections [options] IMAGE ISOVALUE: pairs of simplices that intersect\n"
     "  --slices N    also of N cuts across the last axis, of 3D and 4D contours\n"
     "  --epsilon E   of the extraction\n"
-    "  --threads T   0: all of the machine\n";
+    "  --threads T   0: all of the machine\n"
+    "  --low         only the compact contour by low, not all rules and triangulations\n"
+    "  --runs N      repeats the check; prints the minimum of its times\n"
+    "  --field NAME SAMPLES   instead of IMAGE ISOVALUE: a 3D field of the benchmarks, such as metaballs, at 0\n";
 
 Arguments parsed(int argc, char** argv) {
   constexpr double kMost = std::numeric_limits<double>::max();
@@ -111,13 +121,21 @@ Arguments parsed(int argc, char** argv) {
       arguments.slices = whole_number(argument, argv[++i], 0, 1'000'000);
     else if (argument == "--epsilon" && has_more)
       arguments.epsilon = real_number(argument, argv[++i], 0.0, 0.5);
-    else if (argument == "--threads" && has_more)
+    else if (argument == "--runs" && has_more)
+      arguments.runs = whole_number(argument, argv[++i], 1, 1000);
+    else if (argument == "--low")
+      arguments.is_low = true;
+    else if (argument == "--field" && i + 2 < argc) {
+      arguments.field = argv[++i];
+      arguments.samples = whole_number<std::size_t>(argument, argv[++i], 2, 4096);
+    } else if (argument == "--threads" && has_more)
       arguments.threads = whole_number(argument, argv[++i], 0u, 1024u);
     else if (argument.rfind("--", 0) == 0)
       throw Error(ErrorCode::InvalidArgument, fmt::format("'{}'; expected {}", argument, kUsage));
     else
       names.push_back(argument);
   }
+  if (names.empty() && !arguments.field.empty()) return arguments;
   if (names.size() != 2)
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} names; expected {}", names.size(), kUsage));
   arguments.file = names[0];
@@ -129,11 +147,15 @@ int run(int argc, char** argv) {
   if (tells_usage(argc, argv, kUsage)) return 0;
   const Arguments arguments = parsed(argc, argv);
   fmt::print(
-      "| image | rule | triangulation | simplices | pairs | depth | flat | processor seconds of the check | pairs in {} "
-      "cuts | cuts with pairs |\n|---|---|---|---|---|---|---|---|---|---|\n",
+      "| image | rule | triangulation | simplices | pairs | depth | flat | processor seconds of the check "
+      "| pairs in {} cuts | cuts with pairs |\n|---|---|---|---|---|---|---|---|---|---|\n",
       arguments.slices);
-  with_image_of_file(arguments.file,
-                     [&](const std::string& name, const auto& image) { measure(name, image, arguments); });
+  if (!arguments.field.empty())
+    measure(fmt::format("{} {}^3", arguments.field, arguments.samples),
+            make_field<3>(arguments.field, arguments.samples), arguments);
+  else
+    with_image_of_file(arguments.file,
+                       [&](const std::string& name, const auto& image) { measure(name, image, arguments); });
   return 0;
 }
 
