@@ -27,6 +27,7 @@
 #include <nlohmann/json.hpp>
 
 #include "arguments.hpp"
+#include "five_intersections.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
@@ -68,11 +69,12 @@ struct Settings {
 
 struct Counts {
   std::uint64_t tiles = 0, active = 0, simplices = 0, hit = 0, pairs = 0, with_flat = 0, flat = 0;
+  std::uint64_t exact = 0;                   ///< pairs of 5D that were decided by integers
   std::uint64_t others = 0, others_hit = 0;  ///< tiles with a component that is no ball
 
   void add(const Counts& other) {
     for (auto member : {&Counts::tiles, &Counts::active, &Counts::simplices, &Counts::hit, &Counts::pairs,
-                        &Counts::with_flat, &Counts::flat, &Counts::others, &Counts::others_hit})
+                        &Counts::with_flat, &Counts::flat, &Counts::exact, &Counts::others, &Counts::others_hit})
       this->*member += other.*member;
   }
 };
@@ -92,10 +94,9 @@ Grid<N> unit_grid(std::size_t samples) {
 }
 
 template <int N>
-std::string text_of(std::uint64_t tile, const std::array<double, std::size_t{1} << N>& values,
-                    const Intersections<N>& found) {
-  std::string text =
-      fmt::format("tile {}: {} pairs, {} flat, depth {:.3g}; values", tile, found.pair_count, found.flat, found.depth);
+std::string text_of(std::uint64_t tile, const std::array<double, std::size_t{1} << N>& values, std::uint64_t pairs,
+                    std::uint64_t flat, double depth) {
+  std::string text = fmt::format("tile {}: {} pairs, {} flat, depth {:.3g}; values", tile, pairs, flat, depth);
   for (const double value : values) text += fmt::format(" {:.17g}", value);
   return text + "\n";
 }
@@ -159,8 +160,6 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
   std::mt19937_64 bits(seeds);
   const ExtractOptions extraction = settings.extraction();
   const Grid<N> grid = unit_grid<N>(2);
-  IntersectionOptions<N> options;
-  options.work.threads = 1;
   Counts counts;
   for (std::uint64_t tile = first; tile < end; ++tile) {
     // middle positions have no other freedom than the signature: all in turn
@@ -171,22 +170,38 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
     for (std::size_t v = 0; v < kCorners; ++v)
       values[v] = (signature >> v & 1u) != 0 ? difference(settings, bits) : -difference(settings, bits);
     const auto contour = extract<double>(Image<double, N>(values.data(), grid), 0.0, extraction);
-    const Intersections<N> found = find_intersections(contour, options);
-    const bool is_hit = found.pair_count > 0;
+    std::uint64_t pairs = 0, flat = 0;
+    double depth = 0.0;
+    if constexpr (N == 5) {
+      const bench::FiveIntersections found = bench::FivePairs(contour).intersections();
+      pairs = found.pairs.size();
+      flat = found.flat;
+      counts.exact += found.exact;
+    } else {
+      IntersectionOptions<N> options;
+      options.work.threads = 1;
+      const Intersections<N> found = find_intersections(contour, options);
+      pairs = found.pair_count;
+      flat = found.flat;
+      depth = found.depth;
+    }
+    const bool is_hit = pairs > 0;
     ++counts.tiles;
     counts.active += contour.simplices.empty() ? 0 : 1;
     counts.simplices += contour.simplices.size();
     counts.hit += is_hit ? 1 : 0;
-    counts.pairs += found.pair_count;
-    counts.with_flat += found.flat > 0 ? 1 : 0;
-    counts.flat += found.flat;
-    if (settings.has_shapes) {
-      const MeshReport report = check(contour, options.work);
-      const bool is_other = report.euler != static_cast<std::int64_t>(report.components);
-      counts.others += is_other ? 1 : 0;
-      counts.others_hit += is_other && is_hit ? 1 : 0;
+    counts.pairs += pairs;
+    counts.with_flat += flat > 0 ? 1 : 0;
+    counts.flat += flat;
+    if constexpr (N < 5) {
+      if (settings.has_shapes) {
+        const MeshReport report = check(contour, extraction.work);
+        const bool is_other = report.euler != static_cast<std::int64_t>(report.components);
+        counts.others += is_other ? 1 : 0;
+        counts.others_hit += is_other && is_hit ? 1 : 0;
+      }
     }
-    if (settings.lists && (is_hit || found.flat > 0)) list += text_of<N>(tile, values, found);
+    if (settings.lists && (is_hit || flat > 0)) list += text_of<N>(tile, values, pairs, flat, depth);
   }
   return counts;
 }
@@ -219,6 +234,7 @@ void count_tiles(const Settings& settings) {
       "{:.1f} us of processor time per tile\n",
       all.tiles, all.active, all.simplices, all.hit, all.pairs, all.with_flat, all.flat,
       1e6 * seconds / static_cast<double>(std::max<std::uint64_t>(all.tiles, 1)));
+  if constexpr (N == 5) fmt::print("{} pairs decided by integers\n", all.exact);
   if (settings.has_shapes)
     fmt::print("of balls only: {} tiles, {} with intersections; others: {} tiles, {} with intersections\n",
                all.tiles - all.others, all.hit - all.others_hit, all.others, all.others_hit);
@@ -247,7 +263,7 @@ void print_bias(const Settings& settings) {
 
 constexpr const char* kUsage =
     "tile_intersections [options]: random images of one tile whose contours intersect themselves\n"
-    "  --dimension 3|4           dimension of the image\n"
+    "  --dimension 3|4|5         dimension of the image\n"
     "  --ambiguity NAME          low, high, mean, saddle, squares or decider\n"
     "  --triangulation NAME      compact or barycentric\n"
     "  --tiles N                 number of tiles; with middle positions, signatures in turn\n"
@@ -257,8 +273,8 @@ constexpr const char* kUsage =
     "  --seed S                  of the random numbers\n"
     "  --searched                4D low or high: only signatures whose table entry is searched, not proved\n"
     "  --list                    lists the tiles with pairs or flat simplices, with their values\n"
-    "  --shapes                  counts tiles whose components all are balls, and others, separately\n"
-    "  --bias                    instead: what the contours of noise and of its negative enclose\n";
+    "  --shapes                  3D, 4D: counts tiles whose components all are balls, and others, separately\n"
+    "  --bias                    3D, 4D, instead: what the contours of noise and of its negative enclose\n";
 
 /// The position of a name in a list.
 template <std::size_t kCount>
@@ -291,7 +307,7 @@ Settings parsed(int argc, char** argv) {
                   fmt::format("'{}'; expected an option and its value; see --help", option));
     const std::string_view value = argv[++i];
     if (option == "--dimension")
-      settings.dimension = bench::whole_number(option, value, 3, 4);
+      settings.dimension = bench::whole_number(option, value, 3, 5);
     else if (option == "--ambiguity")
       settings.ambiguity = static_cast<Ambiguity>(choice(option, value, kAmbiguities));
     else if (option == "--triangulation")
@@ -310,6 +326,8 @@ Settings parsed(int argc, char** argv) {
     else
       throw Error(ErrorCode::InvalidArgument, fmt::format("'{}'; expected an option; see --help", option));
   }
+  if (settings.dimension == 5 && (settings.has_shapes || settings.is_bias))
+    throw Error(ErrorCode::InvalidArgument, "--shapes, --bias; expected --dimension 3 or 4");
   return settings;
 }
 
@@ -323,7 +341,9 @@ int main(int argc, char** argv) {
     if (settings.is_bias)
       settings.dimension == 3 ? print_bias<3>(settings) : print_bias<4>(settings);
     else
-      settings.dimension == 3 ? count_tiles<3>(settings) : count_tiles<4>(settings);
+      settings.dimension == 3   ? count_tiles<3>(settings)
+      : settings.dimension == 4 ? count_tiles<4>(settings)
+                                : count_tiles<5>(settings);
   } catch (const tegl::Error& error) {
     fmt::print(stderr, "tile_intersections: {}\n", error.what());
     return 2;

@@ -23,20 +23,19 @@
 
 namespace tegl::detail {
 
-inline constexpr std::size_t kMeetingRows = 6;     ///< N + 2 for N = 4
 inline constexpr std::size_t kMeetingColumns = 8;  ///< all vertices of two tetrahedra
 
 /// `Number`: an integer type that can hold twice the bits of the minors, or double. `kWithDual`: keeps what `separator`
-/// needs.
-template <class Number, bool kWithDual>
+/// needs. `kMost`: the largest dimension.
+template <class Number, bool kWithDual, std::size_t kMost = 4>
 class MeetingTableau {
  public:
-  /// `dimension`: N. `common`: number of vertices in C. Columns are C, then A, then B.
+  /// `dimension`: N, at most kMost. `common`: number of vertices in C. Columns are C, then A, then B.
   MeetingTableau(std::size_t dimension, std::size_t common, std::size_t columns)
       : rows_(dimension + 2), common_(common), columns_(columns), result_(columns + (kWithDual ? rows_ : 0)) {}
 
   /// Sets the coefficients of a column: the coordinates of a vertex relative to any point, and whether it is in B.
-  void set_column(std::size_t column, const std::array<Number, 4>& point, bool in_b) {
+  void set_column(std::size_t column, const std::array<Number, kMost>& point, bool in_b) {
     const std::size_t dimension = rows_ - 2;
     for (std::size_t i = 0; i < dimension; ++i) at(i, column) = in_b ? Number(-point[i]) : point[i];
     at(dimension, column) = Number(in_b ? -1 : 1);
@@ -71,8 +70,8 @@ class MeetingTableau {
 
   /// After solve has returned false: the coefficients of the coordinates in a linear function that is smaller on A than
   /// on B, and constant on C.
-  [[nodiscard]] std::array<Number, 4> separator() requires kWithDual {
-    std::array<Number, 4> result{};
+  [[nodiscard]] std::array<Number, kMost> separator() requires kWithDual {
+    std::array<Number, kMost> result{};
     for (std::size_t i = 0; i + 2 < rows_; ++i) result[i] = artificial_sum(columns_ + i);
     return result;
   }
@@ -148,11 +147,12 @@ class MeetingTableau {
     basis_[row] = column;
   }
 
-  static constexpr std::size_t kMostColumns = kMeetingColumns + (kWithDual ? kMeetingRows : 0) + 1;
+  static constexpr std::size_t kMostRows = kMost + 2;
+  static constexpr std::size_t kMostColumns = 2 * kMost + (kWithDual ? kMostRows : 0) + 1;
   std::size_t rows_, common_, columns_;
   std::size_t result_;  ///< the column of the right-hand side
-  std::array<std::array<Number, kMostColumns>, kMeetingRows> table_{};
-  std::array<std::size_t, kMeetingRows> basis_{};  ///< columns_ + row: artificial
+  std::array<std::array<Number, kMostColumns>, kMostRows> table_{};
+  std::array<std::size_t, kMostRows> basis_{};  ///< columns_ + row: artificial
   Number denominator_ = Number(1);                 ///< of all entries
 };
 
