@@ -1,7 +1,8 @@
-# Joins the manifests of the tables of three dimensions and of the builders into one JSON array.
+# Joins the manifests of the tables of three dimensions, of the builders and of mesh cells into one JSON array.
 set(text "[\n")
 set(separator "")
-foreach(manifest manifest2 manifest3 manifest4 builder2_manifest builder3_manifest builder4_manifest builder5_manifest)
+foreach(manifest manifest2 manifest3 manifest4 builder2_manifest builder3_manifest builder4_manifest builder5_manifest
+        cells_manifest)
   file(READ ${TABLES}/${manifest}.json part)
   string(APPEND text "${separator}${part}")
   set(separator ",\n")

@@ -365,6 +365,23 @@ TEST(GenCli, OtherTilesAreCountedAndCertified) {
   }
 }
 
+TEST(GenCli, CellsAreCertifiedAndWrittenAsTheBuildHasThem) {
+  const Outcome printed = gen({"--cells"});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_THAT(printed.out, testing::ContainsRegex("wedge_prism +barycentric +4096 +48 +158 +158 +48"));
+  const Folder folder;
+  const Outcome written = gen({"--cells", "--out", folder.file("t")});
+  ASSERT_EQ(written.status, 0) << written.err;
+  const auto files = contents(folder.file("t")), built = contents(TEGL_TABLE_DIR);
+  ASSERT_EQ(files.size(), 2u);
+  for (const auto& [name, text] : files) EXPECT_EQ(text, built.at(name)) << name;
+}
+
+TEST(GenCli, CellsTakeNoDimension) {
+  expect_refused({"--dim", "3", "--cells"}, {"--dim does not go with --cells", "only --out, --keep"});
+  expect_refused({"--cells", "--keep"}, {"--keep does not go with --cells without --out"});
+}
+
 TEST(GenCli, RefusesTilesAndWhatTheyDoNotHave) {
   expect_refused({"--dim", "3", "--count", "--tile", "prism"}, {"--tile prism", "cube or simplex or octahedron"});
   expect_refused({"--dim", "5", "--count", "--tile", "simplex"}, {"--dim 5", "2 to 4"});

@@ -244,7 +244,7 @@ TEST(Manifest, IsWhatTheBuildGenerated) {
   if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   std::string joined;
   for (const char* const name : {"manifest2", "manifest3", "manifest4", "builder2_manifest", "builder3_manifest",
-                                 "builder4_manifest", "builder5_manifest"})
+                                 "builder4_manifest", "builder5_manifest", "cells_manifest"})
     joined += (joined.empty() ? "[\n" : ",\n") + text_of(std::string(TEGL_TABLE_DIR) + "/" + name + ".json");
   joined += "]\n";
   EXPECT_EQ(text_of(TEGL_SOURCE_DIR "/generated/MANIFEST.json"), joined)

@@ -140,6 +140,7 @@ constexpr unsigned kCertify = bit(Command::Certify);
 constexpr unsigned kOut = bit(Command::Out);
 constexpr unsigned kCases = bit(Command::Cases);
 constexpr unsigned kBuilder = bit(Command::Builder);
+constexpr unsigned kCells = bit(Command::Cells);
 constexpr unsigned kSymmetries = bit(Command::Symmetries);
 constexpr unsigned kSummary = bit(Command::Summary);
 
@@ -158,9 +159,11 @@ constexpr std::array kOptions{
     OptionSpec{"--symmetries", false, Command::Symmetries, 0, nullptr},
     OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
-    OptionSpec{"--out", true, Command::Out, kBuilder, [](Options& o, std::string_view given) { o.out = given; }},
+    OptionSpec{"--out", true, Command::Out, kBuilder | kCells,
+               [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--cases", true, Command::Cases, 0, [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--builder", false, Command::Builder, 0, nullptr},
+    OptionSpec{"--cells", false, Command::Cells, 0, nullptr},
     OptionSpec{"--leaf", true, std::nullopt, kBuilder, set_leaf},
     OptionSpec{"--dim", true, std::nullopt,
                kCount | kTransversal | kSymmetries | kClasses | kCertify | kOut | kCases | kBuilder | kSummary,
@@ -179,7 +182,7 @@ constexpr std::array kOptions{
     OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
     OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kSymmetries | kClasses | kCertify | kSummary,
                [](Options& o, std::string_view) { o.json = true; }},
-    OptionSpec{"--keep", false, std::nullopt, kOut | kBuilder,
+    OptionSpec{"--keep", false, std::nullopt, kOut | kBuilder | kCells,
                [](Options& o, std::string_view) { o.keeps_same = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
     OptionSpec{"--language", true, std::nullopt, kOut | kBuilder, set_languages},
@@ -232,10 +235,11 @@ std::vector<Given> split(std::span<const std::string_view> arguments) {
   return result;
 }
 
-/// Whether the option, also a command, only names the folder of another command: `--out` with `--builder`.
-bool is_folder_of_builder(const Given& option, const std::vector<Given>& given) {
-  return option.spec->command == Command::Out &&
-         std::any_of(given.begin(), given.end(), [](const Given& g) { return g.spec->command == Command::Builder; });
+/// Whether the option, also a command, only names the folder of another command: `--out` with `--builder`, `--cells`.
+bool is_folder_of_another(const Given& option, const std::vector<Given>& given) {
+  return option.spec->command == Command::Out && std::any_of(given.begin(), given.end(), [](const Given& g) {
+           return g.spec->command == Command::Builder || g.spec->command == Command::Cells;
+         });
 }
 
 /// The only option that is a command, or null if there is none but a dimension, which selects the summary. Refuses
@@ -243,7 +247,7 @@ bool is_folder_of_builder(const Given& option, const std::vector<Given>& given) 
 const OptionSpec* command_of(const std::vector<Given>& given) {
   const OptionSpec* command = nullptr;
   for (const Given& option : given) {
-    if (!option.spec->command || is_folder_of_builder(option, given)) {
+    if (!option.spec->command || is_folder_of_another(option, given)) {
       continue;
     }
     if (command != nullptr && command != option.spec) {
@@ -281,7 +285,7 @@ void check_summary_dim(const Options& options) {
 
 /// Checks --dim against the range of the command.
 void check_dim(const Options& options, std::string_view command) {
-  if (options.command == Command::Version) {
+  if (options.command == Command::Version || options.command == Command::Cells) {
     return;
   }
   if (options.command == Command::Summary) {
@@ -392,7 +396,7 @@ Options parse(std::span<const std::string_view> arguments) {
   }
   // values that depend on each other
   const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
-  if (!has_dim && options.command != Command::Version) {
+  if (!has_dim && options.command != Command::Version && options.command != Command::Cells) {
     refuse(fmt::format("{} without --dim: expected --dim N", name));
   }
   check_dim(options, name);
@@ -402,7 +406,7 @@ Options parse(std::span<const std::string_view> arguments) {
       std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--triangulation"; });
   if (options.command == Command::Builder && has_triangulation && options.triangulation == TriangulationChoice::All)
     refuse("--triangulation all does not go with --builder: expected barycentric or compact");
-  if (options.keeps_same && options.out.empty()) refuse("--keep does not go with --builder without --out");
+  if (options.keeps_same && options.out.empty()) refuse(fmt::format("--keep does not go with {} without --out", name));
   check_tile(options);
   return options;
 }
@@ -415,6 +419,7 @@ std::string help_text() {
   return R"(gen: counts, proves and writes the tables for contours of n-dimensional images.
 
 usage: gen --dim N COMMAND [OPTIONS]
+       gen --cells [--out DIR]
        gen --dim N [--tile T] [--json]
 
 Without a command, gen makes and certifies all tables of dimension N (2 ... 4), writes nothing, and prints a summary:
@@ -437,6 +442,9 @@ commands (one of)
   --cases DIR      writes the catalogue of cases (N = 2 ... 4) into DIR: a Markdown page and its pictures
   --builder        certifies, then prints source code that builds the contour of one tile by recursion over its
                    faces, each ambiguity resolved by its caller (N = 2 ... 5); with --out DIR, writes it into DIR
+  --cells          (without --dim) makes and certifies the tables of mesh cells: simplices, quadrilateral, wedge, pyramid,
+                   hexahedron, and the prisms of 3D cells over time; prints classes and figures; with --out DIR,
+                   writes the tables into DIR
   --help, -h       this text
   --version        version of the program and of the tables' layout
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `gen --classes`, `--out`, `--cases` and `--builder`.
+// `gen --classes`, `--out`, `--cases`, `--builder` and `--cells`.
 #include "program/commands.hpp"
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "builders/emit_builder.hpp"
+#include "cells/cell_tables.hpp"
 #include "cubes/cube_certificate.hpp"
 #include "filling/facets.hpp"
 #include "pictures/cases.hpp"
@@ -202,6 +203,22 @@ int run_builder(const Options& options) {
   }
   std::vector<TimedFile> files;
   for (const EmittedFile& file : emitted) files.push_back({file, 0.0});
+  write_files(options.out, options.keeps_same, files);
+  for (const TimedFile& timed : files) fmt::print("wrote {}: {} bytes\n", timed.file.name, timed.file.text.size());
+  return 0;
+}
+
+int run_cells(const Options& options) {
+  const std::vector<CellTables> tables = make_all_cell_tables();
+  fmt::print("{:<18} {:<12} {:>10} {:>6} {:>7} {:>9} {:>13} {:>9} {:>7}\n", "cell", "", "signatures", "order",
+             "classes", "certified", "non-spherical", "simplices", "at most");
+  for (const CellTables& t : tables)
+    fmt::print("{:<18} {:<12} {:>10} {:>6} {:>7} {:>9} {:>13} {:>9} {:>7}\n", t.name,
+               triangulation_name(t.triangulation), t.list_of.size(), t.group_order, t.classes, t.certified, t.others,
+               t.total_simplices, t.max_simplices);
+  if (options.out.empty()) return 0;
+  std::vector<TimedFile> files;
+  for (EmittedFile& file : emit_cells(tables)) files.push_back({std::move(file), 0.0});
   write_files(options.out, options.keeps_same, files);
   for (const TimedFile& timed : files) fmt::print("wrote {}: {} bytes\n", timed.file.name, timed.file.text.size());
   return 0;

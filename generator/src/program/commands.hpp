@@ -48,4 +48,8 @@ int run_cases(const Options& options);
 /// not have, CertificateFailed (nothing is written), WriteFailed.
 int run_builder(const Options& options);
 
+/// `--cells`: makes and certifies the tables of mesh cells, prints their figures, and with `out` writes them and their
+/// manifest into the folder `out`. Errors: CountMismatch, CertificateFailed (nothing is written), WriteFailed.
+int run_cells(const Options& options);
+
 }  // namespace tegl::gen

@@ -46,6 +46,8 @@ int dispatch(const Options& options) {
       return tegl::gen::run_cases(options);
     case Command::Builder:
       return tegl::gen::run_builder(options);
+    case Command::Cells:
+      return tegl::gen::run_cells(options);
   }
   throw Error(ErrorCode::Internal, fmt::format("command {} is not dispatched", static_cast<int>(options.command)));
 }

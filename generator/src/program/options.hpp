@@ -29,6 +29,7 @@ enum class Command {
   Out,          ///< --out DIR, dim 2 ... 4
   Cases,        ///< --cases DIR, dim 2 ... 4
   Builder,      ///< --builder, dim 2 ... 5
+  Cells,        ///< --cells, without dim
 };
 
 /// How emitted tables are stored.
@@ -43,22 +44,22 @@ enum class TriangulationChoice { Barycentric, Compact, All };
 
 /// A checked command line. Defaults equal those of the command line.
 struct Options {
-  Command command = Command::Help;                               ///< the command
-  int dim = 0;                                                   ///< --dim; 0 for --help and --version
-  TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal, --symmetries
-  GroupKind group = GroupKind::Full;                             ///< --group; with four commands
-  bool inversion = false;                                        ///< --inversion; --count, --symmetries, table_by_class
-  bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3
-  bool all_resolutions = false;                                  ///< --all; --certify only
-  std::uint64_t sample = 0;                                      ///< --sample; --certify only, not with --all; 0: none
-  std::uint64_t seed = 1;                                        ///< --seed; with --sample
-  unsigned threads = 0;                                          ///< --threads; with --all or --sample; 0: all
-  bool keeps_same = false;                                       ///< --keep; with --out
-  bool list = false;                                             ///< --list; --transversal only
-  bool json = false;                                             ///< --json; not for --out and --cases, not with --list
-  Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
-  std::string out;                                               ///< DIR of --out and --cases; of --builder, or empty
-  LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
+  Command command = Command::Help;             ///< the command
+  int dim = 0;                                 ///< --dim; 0 for --help and --version
+  TileKind tile = TileKind::cube;              ///< --tile; not for --transversal, --symmetries
+  GroupKind group = GroupKind::Full;           ///< --group; with four commands
+  bool inversion = false;                      ///< --inversion; --count, --symmetries, table_by_class
+  bool table_by_class = false;                 ///< --table-by-class; --certify, dim 2 and 3
+  bool all_resolutions = false;                ///< --all; --certify only
+  std::uint64_t sample = 0;                    ///< --sample; --certify only, not with --all; 0: none
+  std::uint64_t seed = 1;                      ///< --seed; with --sample
+  unsigned threads = 0;                        ///< --threads; with --all or --sample; 0: all
+  bool keeps_same = false;                     ///< --keep; with --out
+  bool list = false;                           ///< --list; --transversal only
+  bool json = false;                           ///< --json; not for --out and --cases, not with --list
+  Alternative alternative = Alternative::low;  ///< --alternative; --classes only
+  std::string out;                             ///< DIR of --out and --cases; of --builder, --cells, or empty
+  LayoutChoice layout = LayoutChoice::Auto;    ///< --layout; --out only
   TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out; --builder: All is compact
   std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out, --builder
   Leaf leaf = Leaf::table;                                       ///< --leaf; --builder only

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pyramids and prisms over polytopes.
+#include "cells/cell.hpp"
+
+#include <bit>
+#include <utility>
+
+namespace tegl::gen {
+
+namespace {
+
+using Corner = std::array<double, 4>;
+
+/// A polytope by its corners and the corner sets of its faces of codimension one.
+struct Polytope {
+  int dim = 0;
+  std::vector<Corner> corners{Corner{}};
+  std::vector<Signature> faces;
+
+  [[nodiscard]] Signature all() const { return ~Signature{0} >> (64 - corners.size()); }
+};
+
+Polytope pyramid(const Polytope& base) {
+  Polytope result{base.dim + 1, base.corners, {base.all()}};
+  const Signature apex = Signature{1} << base.corners.size();
+  for (const Signature face : base.faces) result.faces.push_back(face | apex);
+  if (base.dim == 0) result.faces.push_back(apex);  // the boundary of a segment: two points
+  Corner tip{};
+  tip[static_cast<std::size_t>(base.dim)] = 1;
+  result.corners.push_back(tip);
+  return result;
+}
+
+Polytope prism(const Polytope& base) {
+  const auto count = base.corners.size();
+  Polytope result{base.dim + 1, base.corners, {base.all(), base.all() << count}};
+  for (const Signature face : base.faces) result.faces.push_back(face | face << count);
+  for (Corner corner : base.corners) {
+    corner[static_cast<std::size_t>(base.dim)] = 1;
+    result.corners.push_back(corner);
+  }
+  return result;
+}
+
+Cell cell_of(std::string name, const Polytope& polytope) {
+  Cell cell{std::move(name), {}, tile::FaceLattice(polytope.dim, polytope.faces)};
+  cell.tile.dim = polytope.dim;
+  cell.tile.corners = polytope.corners;
+  for (const tile::Face& face : cell.lattice.faces()) {  // edges are in ascending order in the lattice
+    if (face.dim != 1) continue;
+    const auto a = std::countr_zero(face.corners), b = 63 - std::countl_zero(face.corners);
+    cell.tile.edges.push_back({static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)});
+    cell.tile.edge_names.push_back(std::to_string(a) + "-" + std::to_string(b));
+  }
+  for (const Signature face : polytope.faces) {
+    SubTile sub{nullptr, {}, {}, 0};
+    for (std::uint8_t v = 0; v < polytope.corners.size(); ++v)
+      if ((face >> v & 1u) != 0) sub.corner.push_back(v);
+    cell.tile.faces.push_back(std::move(sub));
+  }
+  return cell;
+}
+
+}  // namespace
+
+std::vector<Cell> mesh_cells() {
+  const Polytope segment = pyramid(Polytope{}), triangle = pyramid(segment), square = prism(segment);
+  const Polytope tetrahedron = pyramid(triangle), wedge = prism(triangle), square_pyramid = pyramid(square),
+                 hexahedron = prism(square);
+  const std::pair<const char*, Polytope> shapes[tables::kCellShapes] = {{"triangle", triangle},
+                                                                        {"quadrilateral", square},
+                                                                        {"tetrahedron", tetrahedron},
+                                                                        {"wedge", wedge},
+                                                                        {"pyramid", square_pyramid},
+                                                                        {"hexahedron", hexahedron},
+                                                                        {"simplex4", pyramid(tetrahedron)},
+                                                                        {"tetrahedron_prism", prism(tetrahedron)},
+                                                                        {"wedge_prism", prism(wedge)},
+                                                                        {"pyramid_prism", prism(square_pyramid)},
+                                                                        {"hexahedron_prism", prism(hexahedron)}};
+  std::vector<Cell> cells;
+  for (const auto& [name, polytope] : shapes) cells.push_back(cell_of(name, polytope));
+  return cells;
+}
+
+bool is_cube(const Cell& cell) { return cell.tile.corner_count() == 1u << cell.tile.dim; }
+
+}  // namespace tegl::gen

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The shapes of mesh cells. None is typed by hand: each is a pyramid or a prism over a smaller one, down to a point.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/lattice.hpp"
+#include "tegl/cell_contract.hpp"
+#include "tegl/tile/face_lattice.hpp"
+
+namespace tegl::gen {
+
+/// A cell of 2, 3 or 4 dimensions, with faces of any shapes.
+struct Cell {
+  std::string name;           ///< as in tables::CellShape
+  Tile tile;                  ///< corners, edges (pairs a < b, ascending) and the corners of faces; no tiles of faces
+  tile::FaceLattice lattice;  ///< all faces
+};
+
+/// All cells in the order of tables::CellShape.
+[[nodiscard]] std::vector<Cell> mesh_cells();
+
+/// Whether the cell is a cube, in the numbering of the table contract except for edges.
+[[nodiscard]] bool is_cube(const Cell& cell);
+
+}  // namespace tegl::gen

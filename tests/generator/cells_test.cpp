@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tables of mesh cells: classes, certificates, and the emitted tables against contours that are built one by one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/determinant.hpp"
+#include "cells/cell_contours.hpp"
+#include "cells/cell_tables.hpp"
+#include "tegl/generated/cells.hpp"
+
+namespace tegl::gen {
+namespace {
+
+using tables::CellShape;
+using tables::CellTable;
+
+/// A simplex of a list by the masks of its vertices: an edge point is the mask of its edge.
+using Named = std::vector<std::uint64_t>;
+
+/// Maps local vertices and masks of a list to those of a signature.
+struct Element {
+  const CellTable& table;
+  const std::uint8_t* permutation;  ///< or null
+  bool reverses;
+
+  Element(const CellTable& of, std::uint32_t signature)
+      : table(of),
+        permutation(of.element_of == nullptr ? nullptr
+                                             : of.permutations + of.element_of[signature] * of.permutation_stride),
+        reverses(of.element_of != nullptr && of.reverses[of.element_of[signature]] != 0) {}
+
+  [[nodiscard]] std::uint64_t mask(std::uint64_t of) const {
+    if (permutation == nullptr) return of;
+    std::uint64_t result = 0;
+    for (std::uint32_t v = 0; v < table.corner_count; ++v) result |= (of >> v & 1u) << permutation[v];
+    for (std::uint32_t e = 0; e < table.edge_count; ++e)
+      result |= (of >> (table.corner_count + e) & 1u) << (table.corner_count + permutation[table.corner_count + e]);
+    return result;
+  }
+};
+
+/// The simplices of a signature in a table, oriented.
+std::vector<Named> simplices_of(const CellTable& table, std::uint32_t signature) {
+  const Element element(table, signature);
+  const tables::CellList& list = table.lists[table.list_of[signature]];
+  std::vector<Named> result;
+  for (std::uint32_t i = 0; i < list.simplex_count; ++i) {
+    Named simplex;
+    for (std::uint32_t k = 0; k < table.dim; ++k) {
+      const std::uint8_t v = table.simplices[(list.first_simplex + i) * table.dim + k];
+      simplex.push_back(element.mask(v < table.edge_count ? std::uint64_t{1} << (table.corner_count + v)
+                                                          : table.masks[list.first_mask + v - table.edge_count]));
+    }
+    if (element.reverses) std::swap(simplex[table.dim - 1], simplex[table.dim - 2]);
+    result.push_back(simplex);
+  }
+  return result;
+}
+
+std::vector<Named> simplices_of(const Cell& cell, const CellContour& contour) {
+  std::vector<Named> result;
+  for (const LocalSimplex& s : contour.simplices) {
+    Named simplex;
+    for (int k = 0; k < cell.tile.dim; ++k)
+      simplex.push_back(s[k] < cell.tile.edge_count() ? std::uint64_t{1} << (cell.tile.corner_count() + s[k])
+                                                      : contour.masks[s[k] - cell.tile.edge_count()]);
+    result.push_back(simplex);
+  }
+  return result;
+}
+
+/// The oriented boundary: faces by sorted vertices, with their sums of signs.
+std::map<Named, int> boundary_of(const std::vector<Named>& simplices) {
+  std::map<Named, int> sum;
+  for (const Named& simplex : simplices)
+    for (std::size_t drop = 0; drop < simplex.size(); ++drop) {
+      Named face;
+      for (std::size_t i = 0; i < simplex.size(); ++i)
+        if (i != drop) face.push_back(simplex[i]);
+      int sign = drop % 2 == 0 ? 1 : -1;
+      for (std::size_t i = 0; i < face.size(); ++i)
+        for (std::size_t j = i + 1; j < face.size(); ++j)
+          if (face[j] < face[i]) sign = -sign;
+      std::sort(face.begin(), face.end());
+      sum[face] += sign;
+    }
+  std::erase_if(sum, [](const auto& entry) { return entry.second == 0; });
+  return sum;
+}
+
+TEST(Cells, HaveTheClassesAndFiguresOfTheirShapes) {
+  struct Expected {
+    const char* name;
+    std::uint64_t corners, edges, order, classes, others;
+  };
+  // orders of the symmetry groups and signatures with tori are known from their geometry
+  const Expected expected[tables::kCellShapes] = {{"triangle", 3, 3, 6, 4, 0},
+                                                  {"quadrilateral", 4, 4, 8, 6, 0},
+                                                  {"tetrahedron", 4, 6, 24, 5, 0},
+                                                  {"wedge", 6, 9, 12, 13, 0},
+                                                  {"pyramid", 5, 8, 8, 12, 0},
+                                                  {"hexahedron", 8, 12, 48, 22, 0},
+                                                  {"simplex4", 5, 10, 120, 6, 0},
+                                                  {"tetrahedron_prism", 8, 16, 48, 22, 0},
+                                                  {"wedge_prism", 12, 24, 48, 158, 48},
+                                                  {"pyramid_prism", 10, 21, 16, 123, 12},
+                                                  {"hexahedron_prism", 16, 32, 384, 402, 1860}};
+  const std::vector<Cell> cells = mesh_cells();
+  ASSERT_EQ(std::size_t{tables::kCellShapes}, cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CellTables table = make_cell_tables(cells[i], Triangulation::barycentric);
+    EXPECT_EQ(expected[i].name, table.name);
+    EXPECT_EQ(expected[i].corners, cells[i].tile.corner_count()) << table.name;
+    EXPECT_EQ(expected[i].edges, cells[i].tile.edge_count()) << table.name;
+    EXPECT_EQ(expected[i].order, table.group_order) << table.name;
+    EXPECT_EQ(expected[i].classes, table.classes) << table.name;
+    EXPECT_EQ(expected[i].others, table.others) << table.name;
+  }
+}
+
+TEST(Cells, EmittedTablesHaveTheContourOfEverySignature) {
+  const std::vector<Cell> cells = mesh_cells();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
+      const Cell& cell = cells[i];
+      const CellTable& table = tables::cell_table(static_cast<CellShape>(i), t);
+      ASSERT_EQ(cell.tile.corner_count(), table.corner_count);
+      CellContours contours(cell, cell.tile.dim == 4 ? Triangulation::barycentric : t);
+      const Signature step = cell.tile.corner_count() > 12 ? 29 : 1;  // 29: prime to the numbers of signatures
+      for (Signature s = 0; s <= cell.tile.full(); s += step) {
+        contours.build(s);
+        const auto built = simplices_of(cell, contours.local());
+        const auto emitted = simplices_of(table, static_cast<std::uint32_t>(s));
+        ASSERT_EQ(built.size(), emitted.size()) << cell.name << " " << s;
+        // side fillings may choose other diagonals inside; the boundary is that of the faces
+        ASSERT_EQ(boundary_of(built), boundary_of(emitted)) << cell.name << " " << s;
+      }
+    }
+}
+
+TEST(Cells, EveryCrossedEdgeHasAPointAndNoOther) {
+  for (unsigned shape = 0; shape < tables::kCellShapes; ++shape) {
+    const CellTable& table = tables::cell_table(static_cast<CellShape>(shape), Triangulation::barycentric);
+    for (std::uint32_t s = 0; s < 1u << table.corner_count; ++s) {
+      std::uint64_t crossed = 0, used = 0;
+      for (std::uint32_t e = 0; e < table.edge_count; ++e)
+        if (((s >> table.edges[2 * e] ^ s >> table.edges[2 * e + 1]) & 1u) != 0)
+          crossed |= std::uint64_t{1} << (table.corner_count + e);
+      for (const Named& simplex : simplices_of(table, s))
+        for (const std::uint64_t mask : simplex)
+          if ((mask & (mask - 1)) == 0) used |= mask;  // added vertices have two or more points
+      ASSERT_EQ(crossed, used & ~((std::uint64_t{1} << table.corner_count) - 1)) << shape << " " << s;
+    }
+  }
+}
+
+TEST(Cells, ASingleHighCornerIsOnThePositiveSide) {
+  for (unsigned shape = 0; shape < tables::kCellShapes; ++shape)
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
+      const CellTable& table = tables::cell_table(static_cast<CellShape>(shape), t);
+      const std::uint32_t n = table.dim, full = (1u << table.corner_count) - 1;
+      const auto place = [&](std::uint64_t mask, std::uint32_t i) {  // the mean of edges' midpoints
+        double sum = 0, count = 0;
+        for (std::uint32_t e = 0; e < table.edge_count; ++e) {
+          if ((mask >> (table.corner_count + e) & 1u) == 0) continue;
+          sum += (table.corners[table.edges[2 * e] * n + i] + table.corners[table.edges[2 * e + 1] * n + i]) / 2.0;
+          ++count;
+        }
+        return sum / count;
+      };
+      for (std::uint32_t v = 0; v < table.corner_count; ++v)
+        for (const bool high : {true, false})
+          for (const Named& simplex : simplices_of(table, high ? 1u << v : full & ~(1u << v))) {
+            std::array<std::array<double, 4>, 4> m{};
+            for (std::uint32_t i = 0; i < n; ++i) {
+              const double origin = place(simplex[0], i);
+              for (std::uint32_t r = 1; r < n; ++r) m[r - 1][i] = place(simplex[r], i) - origin;
+              m[n - 1][i] = table.corners[v * n + i] - origin;
+            }
+            ASSERT_EQ(high, determinant(m, static_cast<int>(n)) > 0) << shape << " " << v;
+          }
+    }
+}
+
+/// A chord drawn in a face by one cell could be drawn by its neighbour too; the certificate must refuse it.
+TEST(Cells, CompactPolygonsHaveNoChordInAFace) {
+  for (const CellShape shape : {CellShape::tetrahedron, CellShape::wedge, CellShape::pyramid, CellShape::hexahedron}) {
+    const CellTable& table = tables::cell_table(shape, Triangulation::compact);
+    const Cell cell = mesh_cells()[static_cast<std::size_t>(shape)];
+    for (std::uint32_t s = 0; s < 1u << table.corner_count; ++s) {
+      const auto simplices = simplices_of(table, s);
+      std::map<Named, int> uses;
+      for (const Named& triangle : simplices)
+        for (std::size_t k = 0; k < 3; ++k) {
+          Named side{triangle[k], triangle[(k + 1) % 3]};
+          std::sort(side.begin(), side.end());
+          ++uses[side];
+        }
+      for (const auto& [side, count] : uses) {
+        Signature corners = 0;
+        for (const std::uint64_t mask : side)
+          for (std::uint32_t e = 0; e < table.edge_count; ++e)
+            if (mask == std::uint64_t{1} << (table.corner_count + e))
+              corners |= Signature{1} << table.edges[2 * e] | Signature{1} << table.edges[2 * e + 1];
+        const bool in_face = std::any_of(cell.tile.faces.begin(), cell.tile.faces.end(),
+                                         [&](const SubTile& face) { return (corners & ~face.corners()) == 0; });
+        ASSERT_EQ(in_face ? 1 : 2, count) << cell.name << " " << s;
+      }
+    }
+  }
+}
+
+TEST(Cells, CompactFourCellsAreRefused) {
+  const std::vector<Cell> cells = mesh_cells();
+  EXPECT_THROW(CellContours(cells[static_cast<std::size_t>(CellShape::simplex4)], Triangulation::compact),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tegl::gen
