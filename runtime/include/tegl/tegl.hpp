@@ -7,6 +7,7 @@
 #include "tegl/active_tiles.hpp"
 #include "tegl/ambiguity.hpp"
 #include "tegl/check.hpp"
+#include "tegl/complex.hpp"
 #include "tegl/components.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/deviation.hpp"

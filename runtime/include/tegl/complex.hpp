@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Complexes of cells (meshes with a value at each point), and their contours. Cells may be mixed: triangles and
+// quadrilaterals; tetrahedra, wedges, pyramids and hexahedra; 4-simplices and the prisms that 3D cells are over an
+// interval of time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "tegl/contour.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/image.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl {
+
+/// The types of cells. Up to 3D the values are the numbers of VTK (and of .vtu files), and corners have VTK's order. A
+/// 4D prism has the corners of its 3D cell at the earlier time, then the same at the later time. Corners may have
+/// either orientation.
+enum class CellType : std::uint8_t {
+  triangle = 5,             ///< 3 corners
+  pixel = 8,                ///< 4 corners, coordinate 0 fastest
+  quadrilateral = 9,        ///< 4 corners, around the border
+  tetrahedron = 10,         ///< 4 corners
+  voxel = 11,               ///< 8 corners, coordinate 0 fastest
+  hexahedron = 12,          ///< 8 corners: the bottom quadrilateral around its border, then the top one
+  wedge = 13,               ///< 6 corners: two triangles
+  pyramid = 14,             ///< 5 corners: the base around its border, then the apex
+  simplex4 = 100,           ///< 4D: 5 corners
+  tetrahedron_prism = 110,  ///< 4D: 8 corners
+  voxel_prism = 111,        ///< 4D: 16 corners
+  hexahedron_prism = 112,   ///< 4D: 16 corners
+  wedge_prism = 113,        ///< 4D: 12 corners
+  pyramid_prism = 114,      ///< 4D: 10 corners
+};
+
+/// The name of a type, such as "tetrahedron"; "unknown" for another number.
+[[nodiscard]] std::string_view name_of(CellType type) noexcept;
+/// Number of corners of a type. Errors: InvalidArgument for another number.
+[[nodiscard]] std::size_t corner_count(CellType type);
+/// Dimension of a type: 2, 3 or 4. Errors: InvalidArgument for another number.
+[[nodiscard]] int dimension(CellType type);
+
+namespace detail {
+struct CellGroups;
+struct ComplexEdges;
+struct ComplexAccess;
+}  // namespace detail
+
+/// A complex of cells in N = 2, 3 or 4 dimensions with one value at each point. Owns its data; copies share the cells
+/// and the edges, which do not change.
+///
+/// Cells must meet as the faces of a mesh do: the intersection of two cells is empty or a whole face of both (a corner,
+/// an edge, a polygon, in 4D also a 3D cell). This is not checked. Where it holds, the contour is closed away from the
+/// border of the complex and from missing values, whatever types meet.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+class Complex {
+ public:
+  using Point = std::array<double, N>;  ///< N coordinates
+
+  /// Cells of one type. `points`: #P x N; `corners`: #C x (corners of the type), row = cell, numbers of points. Values
+  /// are missing until set_values is called. Errors: InvalidArgument (a type of another dimension; `corners` of a wrong
+  /// size; a number that is not below #P; a corner that a cell repeats; a coordinate that is not finite), TooLarge
+  /// (2^32 points or more). Messages name the cell, counted from 0.
+  Complex(std::vector<Point> points, CellType type, std::span<const Index> corners);
+  /// Cells of several types. `types`: one per cell; `corners`: the corners of all cells, one cell after the other.
+  /// Errors: as above.
+  Complex(std::vector<Point> points, std::span<const CellType> types, std::span<const Index> corners);
+
+  [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }   ///< #P x N
+  [[nodiscard]] const std::vector<double>& values() const noexcept { return values_; }  ///< #P, NaN: missing
+  [[nodiscard]] std::size_t cell_count() const noexcept;                                ///< number of cells
+
+  /// Sets the value of every point; NaN means missing: cells with a missing corner have no contour. Any of the seven
+  /// value types of images; kept as double. Errors: InvalidArgument for another number of values.
+  template <Value T>
+  void set_values(std::span<const T> values) {
+    check_count(values.size(), "values");
+    values_.assign(values.begin(), values.end());
+  }
+  /// The same for a vector of doubles, which is moved.
+  void set_values(std::vector<double> values) {
+    check_count(values.size(), "values");
+    values_ = std::move(values);
+  }
+  /// Moves the points; cells and edges stay. Errors: InvalidArgument for another number of points and for a coordinate
+  /// that is not finite.
+  void set_points(std::vector<Point> points);
+
+  /// Finds and keeps the edges of all cells, sorted, and the numbers of each cell's edges. Later extractions then
+  /// number vertices by counting bits and do not sort: worth it for several isovalues, or for values at several times.
+  /// The contours do not change. O(C) time, 4 bytes for each edge of each cell and 8 per edge of the complex. Errors:
+  /// TooLarge (2^32 edges or more), Cancelled.
+  void find_edges(const WorkOptions& work = {});
+  /// Number of edges of the complex, or 0 before find_edges.
+  [[nodiscard]] std::size_t edge_count() const noexcept;
+
+ private:
+  friend struct detail::ComplexAccess;
+  void check_count(std::size_t count, const char* what) const;
+
+  std::vector<Point> points_;
+  std::vector<double> values_;
+  std::shared_ptr<const detail::CellGroups> cells_;
+  std::shared_ptr<const detail::ComplexEdges> edges_;
+  bool is_layered_ = false;  ///< made by in_time
+};
+
+/// The complex that a complex sweeps over time, for its contour in space and time: every cell x every interval between
+/// two times is a prism. Point p at time k is point k * #P + p, with its time as the last coordinate. `times`: T
+/// ascending values; `values`: T x #P, row = time, NaN: missing; `points`: T x #P, row = time, if the points move, or
+/// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (both barycentric); at
+/// every other time, too, it is closed away from the border. N = 2 or 3. Errors: InvalidArgument (fewer than 2 times;
+/// times not finite or not ascending; a wrong number of values or points; a coordinate that is not finite), TooLarge.
+/// O(T (P + C)) time and memory.
+template <int N>
+requires DimensionBetween<N, 2, 3>
+[[nodiscard]] Complex<N + 1> in_time(const Complex<N>& complex, std::span<const double> times,
+                                     std::span<const double> values,
+                                     std::span<const std::array<double, N>> points = {});
+
+/// As `extract` of a complex, with counts and times. `tiles` are cells.
+template <Coordinate Real = float, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Extraction<N, Real> extract_with_stats(const Complex<N>& complex, double isovalue,
+                                                     const ExtractOptions& options = {});
+
+/// Extracts the contour {value = isovalue} of a complex. It separates points with values >= isovalue (high) from the
+/// others. Vertices are on edges, ordered by the edges' ends, then, in the barycentric triangulation, in cells. Along
+/// an edge values are linear, from the end with the smaller number.
+///
+/// The contour is an oriented manifold if the union of the cells is a manifold (with or without border). It has a
+/// boundary only at the border of the complex and at missing values. It is the contour of an image if the cells are
+/// those of its grid (2D and 3D compact: the same simplices; also 3D barycentric, with barycentres at the mean of a
+/// polygon's points). A cell's orientation is the sign of the best affine map from its reference corners; cells that
+/// are folded or flat may have the wrong one, and then the contour's orientation has conflicts there.
+///
+/// Options: triangulation (4D: always barycentric), ambiguity low or high (neighbouring cells of any types agree, as
+/// the choice depends on the common face alone), direction, epsilon, work. The result does not depend on the number of
+/// threads. Errors: InvalidIsovalue; InvalidArgument (epsilon, another ambiguity, close, normals: these are for
+/// images); TooLarge (2^32 vertices or more); Cancelled. O(C + S log S) time for S simplices, without the logarithm
+/// after find_edges. Memory beside the contour: 2 bits per point and about 12 bytes for each edge of each active cell.
+/// Thread-safe for several extractions from one complex.
+template <Coordinate Real = float, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, Real> extract(const Complex<N>& complex, double isovalue, const ExtractOptions& options = {}) {
+  return extract_with_stats<Real>(complex, isovalue, options).contour;
+}
+
+/// Counts the vertices and simplices that `extract` would make, exactly. Time and errors: those of `extract`, which
+/// writes the contour besides.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] ContourSize count(const Complex<N>& complex, double isovalue, const ExtractOptions& options = {});
+
+}  // namespace tegl

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The active cells of a complex.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "complex/cell_groups.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl::detail {
+
+/// Bits of the points of a complex.
+struct PointBits {
+  std::vector<std::uint64_t> high;     ///< bit p: value >= isovalue
+  std::vector<std::uint64_t> missing;  ///< bit p: NaN; empty if no value is missing
+
+  [[nodiscard]] static unsigned at(const std::vector<std::uint64_t>& bits, Index p) noexcept {
+    return static_cast<unsigned>(bits[p >> 6] >> (p & 63u)) & 1u;
+  }
+  [[nodiscard]] bool is_high(Index p) const noexcept { return at(high, p) != 0; }
+  [[nodiscard]] bool is_missing(Index p) const noexcept { return !missing.empty() && at(missing, p) != 0; }
+};
+
+/// A cell with both high and low corners and no missing one.
+struct ActiveCell {
+  Index cell;               ///< in its group
+  std::uint16_t signature;  ///< bit v: corner v is high
+};
+
+/// The active cells among consecutive cells of one group, and the sizes of their contours.
+struct ActiveBlock {
+  std::size_t group = 0;
+  std::vector<ActiveCell> cells;
+  std::vector<Index> missing;   ///< cells with missing corners
+  std::uint64_t crossings = 0;  ///< crossed edges, counted in each cell
+  std::uint64_t simplices = 0;
+  std::uint64_t shared = 0;  ///< vertices in common 3-faces, counted in each cell
+  std::uint64_t own = 0;     ///< vertices of the cells' own
+};
+
+/// Which contours cells have.
+struct CellTables {
+  std::vector<const tables::CellTable*> of_group;
+  bool high_connected = false;
+};
+
+/// Compares all values with the isovalue.
+[[nodiscard]] PointBits classify_points(std::span<const double> values, double isovalue, const WorkOptions& work);
+
+/// The active cells in blocks that do not depend on the number of threads. Errors: Cancelled.
+[[nodiscard]] std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTables& tables,
+                                                         const PointBits& bits, const WorkOptions& work);
+
+}  // namespace tegl::detail

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Checks cells and sorts them by type.
+#include "complex/cell_groups.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "tegl/error.hpp"
+#include "tegl/generated/cells.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+using tables::CellShape;
+
+constexpr CellKind kKinds[] = {
+    {CellType::triangle, "triangle", CellShape::triangle, false},
+    {CellType::pixel, "pixel", CellShape::quadrilateral, false},
+    {CellType::quadrilateral, "quadrilateral", CellShape::quadrilateral, true},
+    {CellType::tetrahedron, "tetrahedron", CellShape::tetrahedron, false},
+    {CellType::voxel, "voxel", CellShape::hexahedron, false},
+    {CellType::hexahedron, "hexahedron", CellShape::hexahedron, true},
+    {CellType::wedge, "wedge", CellShape::wedge, false},
+    {CellType::pyramid, "pyramid", CellShape::pyramid, true},
+    {CellType::simplex4, "simplex4", CellShape::simplex4, false},
+    {CellType::tetrahedron_prism, "tetrahedron_prism", CellShape::tetrahedron_prism, false},
+    {CellType::voxel_prism, "voxel_prism", CellShape::hexahedron_prism, false},
+    {CellType::hexahedron_prism, "hexahedron_prism", CellShape::hexahedron_prism, true},
+    {CellType::wedge_prism, "wedge_prism", CellShape::wedge_prism, false},
+    {CellType::pyramid_prism, "pyramid_prism", CellShape::pyramid_prism, true},
+};
+
+const CellKind& kind_of(CellType type) {
+  const CellKind* const kind = find_kind(type);
+  if (kind == nullptr)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("cell type {}; expected 5, 8 to 14, 100, or 110 to 114", static_cast<int>(type)));
+  return *kind;
+}
+
+const CellKind& kind_in(int dim, CellType type, std::size_t cell) {
+  const CellKind* const kind = find_kind(type);
+  if (kind != nullptr && static_cast<int>(table_of(kind->shape).dim) == dim) return *kind;
+  std::string expected;
+  for (const CellKind& k : kKinds)
+    if (static_cast<int>(table_of(k.shape).dim) == dim)
+      expected += fmt::format("{}{} ({})", expected.empty() ? "" : ", ", static_cast<int>(k.type), k.name);
+  throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: type {} ({}); expected a {}D cell: {}", cell,
+                                                      static_cast<int>(type), name_of(type), dim, expected));
+}
+
+/// Appends a cell's corners in the order of the table, checked.
+void add_cell(const CellKind& kind, std::size_t cell, std::size_t points, const Index* corners, CellGroup& group) {
+  const std::size_t count = group.corner_count, first = group.corners.size();
+  group.corners.resize(first + count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (corners[i] >= points)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: corner {} is point {}; expected a number below {}",
+                                                          cell, i, corners[i], points));
+    for (std::size_t j = 0; j < i; ++j)
+      if (corners[j] == corners[i])
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("cell {}: corners {} and {} are both point {}; expected different points", cell, j, i,
+                                corners[i]));
+    group.corners[first + table_corner(kind, i)] = corners[i];
+  }
+}
+
+CellGroup empty_group(CellShape shape) { return {shape, table_of(shape).corner_count, {}}; }
+
+}  // namespace
+
+const CellKind* find_kind(CellType type) noexcept {
+  const auto* const found =
+      std::find_if(std::begin(kKinds), std::end(kKinds), [type](const CellKind& kind) { return kind.type == type; });
+  return found == std::end(kKinds) ? nullptr : found;
+}
+
+const tables::CellTable& table_of(CellShape shape) noexcept {
+  return tables::cell_table(shape, Triangulation::barycentric);
+}
+
+std::size_t table_corner(const CellKind& kind, std::size_t i) noexcept {
+  if (!kind.is_ring) return i;
+  // a pyramid's layers have 5 corners, those of other cells 4
+  const std::size_t layer =
+      kind.shape == CellShape::pyramid || kind.shape == CellShape::pyramid_prism ? std::size_t{5} : std::size_t{4};
+  const std::size_t in_layer = i % layer;
+  return in_layer == 2 ? i + 1 : in_layer == 3 ? i - 1 : i;
+}
+
+CellShape prism_of(CellShape shape) noexcept {
+  switch (shape) {
+    case CellShape::triangle:
+      return CellShape::wedge;
+    case CellShape::quadrilateral:
+      return CellShape::hexahedron;
+    case CellShape::tetrahedron:
+      return CellShape::tetrahedron_prism;
+    case CellShape::wedge:
+      return CellShape::wedge_prism;
+    case CellShape::pyramid:
+      return CellShape::pyramid_prism;
+    default:
+      return CellShape::hexahedron_prism;
+  }
+}
+
+CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<const Index> corners) {
+  const CellKind& kind = kind_in(dim, type, 0);
+  CellGroups cells;
+  CellGroup group = empty_group(kind.shape);
+  if (corners.size() % group.corner_count != 0)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} corners; expected a multiple of {} for cells of type {}",
+                                                        corners.size(), group.corner_count, kind.name));
+  cells.cell_count = corners.size() / group.corner_count;
+  group.corners.reserve(corners.size());
+  for (std::size_t c = 0; c < cells.cell_count; ++c)
+    add_cell(kind, c, points, corners.data() + c * group.corner_count, group);
+  if (cells.cell_count > 0) cells.groups.push_back(std::move(group));
+  return cells;
+}
+
+CellGroups group_cells(int dim, std::size_t points, std::span<const CellType> types, std::span<const Index> corners) {
+  std::vector<CellGroup> groups;
+  for (unsigned s = 0; s < tables::kCellShapes; ++s) groups.push_back(empty_group(static_cast<CellShape>(s)));
+  std::size_t at = 0;
+  for (std::size_t c = 0; c < types.size(); ++c) {
+    const CellKind& kind = kind_in(dim, types[c], c);
+    CellGroup& group = groups[static_cast<std::size_t>(kind.shape)];
+    if (corners.size() - at < group.corner_count)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: {} corners are left; a {} has {}", c,
+                                                          corners.size() - at, kind.name, group.corner_count));
+    add_cell(kind, c, points, corners.data() + at, group);
+    at += group.corner_count;
+  }
+  if (at != corners.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} corners; expected {} for these {} cells", corners.size(), at, types.size()));
+  std::erase_if(groups, [](const CellGroup& group) { return group.corners.empty(); });
+  return {std::move(groups), types.size()};
+}
+
+}  // namespace tegl::detail
+
+namespace tegl {
+
+std::string_view name_of(CellType type) noexcept {
+  const detail::CellKind* const kind = detail::find_kind(type);
+  return kind == nullptr ? "unknown" : kind->name;
+}
+
+std::size_t corner_count(CellType type) { return detail::table_of(detail::kind_of(type).shape).corner_count; }
+
+int dimension(CellType type) { return static_cast<int>(detail::table_of(detail::kind_of(type).shape).dim); }
+
+}  // namespace tegl

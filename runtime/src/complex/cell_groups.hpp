@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The cells of a complex by type, with corners in the order of the generated tables.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tegl/cell_contract.hpp"
+#include "tegl/complex.hpp"
+
+namespace tegl::detail {
+
+/// What a type of cells is in the tables.
+struct CellKind {
+  CellType type;
+  const char* name;
+  tables::CellShape shape;
+  bool is_ring;  ///< corners 2 and 3 (and 6 and 7) of the base are exchanged in the order around a border
+};
+
+/// The kind of a type, or null for another number.
+[[nodiscard]] const CellKind* find_kind(CellType type) noexcept;
+/// The table of a shape. All shapes have the same corners and edges in both triangulations.
+[[nodiscard]] const tables::CellTable& table_of(tables::CellShape shape) noexcept;
+/// The position in the table's order of corner i of a cell.
+[[nodiscard]] std::size_t table_corner(const CellKind& kind, std::size_t i) noexcept;
+/// The shape of a cell x an interval.
+[[nodiscard]] tables::CellShape prism_of(tables::CellShape shape) noexcept;
+
+/// All cells of one shape, in the order of the input.
+struct CellGroup {
+  tables::CellShape shape;
+  std::size_t corner_count;    ///< of a cell
+  std::vector<Index> corners;  ///< #cells x corner_count
+
+  [[nodiscard]] std::size_t size() const noexcept { return corners.size() / corner_count; }
+  [[nodiscard]] const Index* cell(std::size_t i) const noexcept { return corners.data() + i * corner_count; }
+};
+
+/// The cells of a complex. Groups are ordered by shape and not empty.
+struct CellGroups {
+  std::vector<CellGroup> groups;
+  std::size_t cell_count = 0;
+};
+
+/// Checks and groups cells. Errors: as the constructors of Complex.
+[[nodiscard]] CellGroups group_cells(int dim, std::size_t points, std::span<const CellType> types,
+                                     std::span<const Index> corners);
+/// The same for cells of one type.
+[[nodiscard]] CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<const Index> corners);
+
+/// Access to the private data of complexes.
+struct ComplexAccess {
+  template <int N>
+  static const CellGroups& cells(const Complex<N>& complex) noexcept {
+    return *complex.cells_;
+  }
+  template <int N>
+  static const ComplexEdges* edges(const Complex<N>& complex) noexcept {
+    return complex.edges_.get();
+  }
+  template <int N>
+  static bool is_layered(const Complex<N>& complex) noexcept {
+    return complex.is_layered_;
+  }
+  /// A complex of cells that need no check.
+  template <int N>
+  static Complex<N> layered(std::vector<std::array<double, N>> points, CellGroups cells);
+};
+
+}  // namespace tegl::detail

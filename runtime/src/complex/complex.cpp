@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The class of complexes: construction, values, points, edges.
+#include "tegl/complex.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "complex/complex_edges.hpp"
+#include "tegl/error.hpp"
+
+namespace tegl {
+
+namespace detail {
+namespace {
+
+template <int N>
+void check_points(const std::vector<std::array<double, N>>& points) {
+  if (points.size() > std::numeric_limits<Index>::max())
+    throw Error(ErrorCode::TooLarge,
+                fmt::format("{} points; expected at most {}", points.size(), std::numeric_limits<Index>::max()));
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (const double x : points[p])
+      if (!std::isfinite(x))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("point {}: ({}); expected finite coordinates", p, fmt::join(points[p], ", ")));
+}
+
+std::vector<double> missing_values(std::size_t count) {
+  return std::vector<double>(count, std::numeric_limits<double>::quiet_NaN());
+}
+
+}  // namespace
+
+template <int N>
+Complex<N> ComplexAccess::layered(std::vector<std::array<double, N>> points, CellGroups cells) {
+  Complex<N> complex(std::move(points), std::span<const CellType>(), {});
+  complex.cells_ = std::make_shared<const CellGroups>(std::move(cells));
+  complex.is_layered_ = true;
+  return complex;
+}
+template Complex<3> ComplexAccess::layered<3>(std::vector<std::array<double, 3>>, CellGroups);
+template Complex<4> ComplexAccess::layered<4>(std::vector<std::array<double, 4>>, CellGroups);
+
+}  // namespace detail
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points, CellType type,
+                                                       std::span<const Index> corners)
+    : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
+  detail::check_points<N>(points_);
+  cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), type, corners));
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points, std::span<const CellType> types,
+                                                       std::span<const Index> corners)
+    : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
+  detail::check_points<N>(points_);
+  cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), types, corners));
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> std::size_t Complex<N>::cell_count()
+const noexcept { return cells_->cell_count; }
+
+template <int N>
+requires DimensionBetween<N, 2, 4>
+void Complex<N>::check_count(std::size_t count, const char* what) const {
+  if (count != points_.size())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} {}; expected one for each of the {} points of the complex",
+                                                        count, what, points_.size()));
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4>
+void Complex<N>::set_points(std::vector<Point> points) {
+  check_count(points.size(), "points");
+  detail::check_points<N>(points);
+  points_ = std::move(points);
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4>
+void Complex<N>::find_edges(const WorkOptions& work) {
+  if (edges_ == nullptr)
+    edges_ = std::make_shared<const detail::ComplexEdges>(detail::find_complex_edges(points_.size(), *cells_, work));
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> std::size_t Complex<N>::edge_count()
+const noexcept { return edges_ == nullptr ? 0 : edges_->ends.size(); }
+
+template class Complex<2>;
+template class Complex<3>;
+template class Complex<4>;
+
+}  // namespace tegl

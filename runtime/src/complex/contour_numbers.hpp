@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Everything about a contour of a complex except positions: active cells, and the numbers of vertices and simplices.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "complex/cell_contour.hpp"
+#include "complex/shared_points.hpp"
+#include "tegl/extract.hpp"
+
+namespace tegl::detail {
+
+/// Checks the options of an extraction from a complex. Errors: InvalidIsovalue, InvalidArgument.
+void check_complex_options(double isovalue, const ExtractOptions& options);
+
+/// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells.
+class ContourNumbers {
+ public:
+  /// The arguments must outlive this object. Reports progress from 0 to 1. Errors: TooLarge, Cancelled.
+  ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values, double isovalue,
+                 const ExtractOptions& options, const Progress& progress, ExtractStats& stats);
+
+  [[nodiscard]] ContourSize size() const noexcept { return {vertex_count_, first_simplex_.back()}; }
+  [[nodiscard]] const std::vector<ActiveBlock>& blocks() const noexcept { return blocks_; }
+  [[nodiscard]] const std::vector<EdgeEnds>& edge_ends() const noexcept { return crossings_.ends(); }
+  [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
+  [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept { return *tables_.of_group[group]; }
+  [[nodiscard]] bool is_high_connected() const noexcept { return tables_.high_connected; }
+
+  /// The vertices of an active cell: by edge, then by added vertex.
+  using CellVertices = std::array<Index, 256>;
+  /// Calls visit(cell, first simplex, contour, vertices) for the active cells of a block.
+  template <class Visit>
+  void for_each_cell(std::size_t block, const Visit& visit) const;
+
+  /// The numbers of vertices on edges of cells with missing corners, ascending: the contour may touch itself there.
+  [[nodiscard]] std::vector<Index> vertices_at_missing(const CellGroups& cells) const;
+
+ private:
+  CellTables tables_;
+  PointBits bits_;
+  std::vector<ActiveBlock> blocks_;
+  CrossingNumbers crossings_;
+  SharedPoints shared_;
+  std::vector<std::uint64_t> first_crossing_, first_shared_, first_own_, first_simplex_;  ///< by block
+  std::uint64_t own_base_ = 0;
+  std::uint64_t vertex_count_ = 0;
+};
+
+template <class Visit>
+void ContourNumbers::for_each_cell(std::size_t block, const Visit& visit) const {
+  const ActiveBlock& of = blocks_[block];
+  const tables::CellTable& table = this->table(of.group);
+  std::uint64_t crossing = first_crossing_[block], shared = first_shared_[block], own = first_own_[block],
+                simplex = first_simplex_[block];
+  CellVertices vertices{};
+  for (const ActiveCell& cell : of.cells) {
+    const std::uint32_t crossed = crossed_edges(table, cell.signature);
+    const CellContour contour(table, cell.signature, tables_.high_connected);
+    const tables::CellList& list = contour.list();
+    crossings_.of_cell(of, cell, crossed, crossing, vertices.data());
+    Index* added = vertices.data() + table.edge_count;
+    for (unsigned j = 0; j < list.shared_vertices; ++j)
+      *added++ = static_cast<Index>(edge_ends().size() + shared_.numbers[shared++]);
+    for (unsigned j = list.shared_vertices; j < list.added(); ++j) *added++ = static_cast<Index>(own_base_ + own++);
+    visit(cell, simplex, contour, vertices);
+    crossing += static_cast<std::uint64_t>(std::popcount(crossed));
+    simplex += list.simplex_count;
+  }
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Writes contours of complexes: positions of vertices, and simplices with their orientation.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "base/progress.hpp"
+#include "base/stopwatch.hpp"
+#include "base/workers.hpp"
+#include "complex/contour_numbers.hpp"
+#include "kernel/split_nonmanifold.hpp"
+#include "tegl/complex.hpp"
+
+namespace tegl {
+
+namespace detail {
+namespace {
+
+/// Where the isovalue is on an edge: 0 at the first end, 1 at the second. Infinite values are treated as limits: the
+/// vertex is at the finite end, or at the middle between two infinities.
+double alpha_of(double from, double to, double isovalue, double epsilon) noexcept {
+  double alpha = (isovalue - from) / (to - from);
+  if (std::isinf(from) || std::isinf(to)) alpha = !std::isinf(from) ? 0.0 : !std::isinf(to) ? 1.0 : 0.5;
+  return std::clamp(alpha, epsilon, 1.0 - epsilon);
+}
+
+/// Coordinates between two layers of the last axis, as far from both as their type distinguishes; both layers if there
+/// are none between.
+template <class Real>
+std::pair<Real, Real> inside_of(double low_layer, double high_layer) noexcept {
+  const auto [low, high] = std::minmax({static_cast<Real>(low_layer), static_cast<Real>(high_layer)});
+  const Real least = (high - low) * (std::numeric_limits<Real>::epsilon() / 2);
+  const Real from = std::max(std::nextafter(low, high), low + least);
+  const Real to = std::min(std::nextafter(high, low), high - least);
+  return from > to ? std::pair{low, high} : std::pair{from, to};
+}
+
+template <int N, class Real>
+class ComplexWriter {
+ public:
+  ComplexWriter(const Complex<N>& complex, const ContourNumbers& numbers, double isovalue,
+                const ExtractOptions& options, Contour<N, Real>& contour)
+      : complex_(complex),
+        cells_(ComplexAccess::cells(complex)),
+        numbers_(numbers),
+        isovalue_(isovalue),
+        epsilon_(options.epsilon),
+        is_layered_(ComplexAccess::is_layered(complex)),
+        descends_(options.direction == GradientDirection::descent),
+        contour_(contour) {}
+
+  void write_edge_points(const WorkOptions& work) {
+    const auto& ends = numbers_.edge_ends();
+    for_each_item(ends.size(), work.threads, work.progress, [&](std::size_t i) { write_edge_point(ends[i], i); });
+  }
+
+  void write_polygon_centres(const WorkOptions& work) {
+    const auto& polygons = numbers_.polygons();
+    const std::size_t first = numbers_.edge_ends().size();
+    for_each_item(polygons.size(), work.threads, work.progress, [&](std::size_t i) {
+      Mean mean(*this);
+      for (const Index v : polygons[i])
+        if (v != kNoPoint) mean.add_vertex(v);
+      contour_.vertices[first + i] = mean.place();
+    });
+  }
+
+  void write_cells(const WorkOptions& work) {
+    for_each_block(
+        numbers_.blocks().size(), 1, work.threads, work.progress, [&](std::size_t b, std::size_t, std::size_t) {
+          numbers_.for_each_cell(b, [&](const ActiveCell& cell, std::uint64_t first, const CellContour& contour,
+                                        const ContourNumbers::CellVertices& vertices) {
+            const std::size_t group = numbers_.blocks()[b].group;
+            const Index* const corners = cells_.groups[group].cell(cell.cell);
+            write_simplices(numbers_.table(group), corners, first, contour, vertices);
+            write_own_points(numbers_.table(group), corners, contour, vertices);
+          });
+        });
+  }
+
+ private:
+  using Point = std::array<double, N>;
+  using Vertex = std::array<Real, N>;
+
+  /// The mean of points, within their bounds; between two layers, off both.
+  class Mean {
+   public:
+    explicit Mean(const ComplexWriter& writer) : writer_(writer) {
+      lowest_.fill(std::numeric_limits<double>::infinity());
+      highest_.fill(-std::numeric_limits<double>::infinity());
+    }
+    /// Adds a vertex on an edge.
+    void add_vertex(Index v) noexcept {
+      Point point;
+      for (std::size_t i = 0; i < N; ++i) point[i] = double{writer_.contour_.vertices[v][i]};
+      add(point);
+      for (const Index end : writer_.numbers_.edge_ends()[v]) add_layer(writer_.complex_.points()[end][N - 1]);
+    }
+    /// Adds a corner of a cell.
+    void add_corner(Index p) noexcept {
+      add(writer_.complex_.points()[p]);
+      add_layer(writer_.complex_.points()[p][N - 1]);
+    }
+    [[nodiscard]] Point mean() const noexcept {
+      Point mean;
+      for (std::size_t i = 0; i < N; ++i) mean[i] = std::clamp(sum_[i] / count_, lowest_[i], highest_[i]);
+      return mean;
+    }
+    [[nodiscard]] Vertex place() const noexcept {
+      Vertex vertex;
+      const Point mean = this->mean();
+      for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(mean[i]);
+      if (writer_.is_layered_ && low_layer_ != high_layer_) {
+        const auto [low, high] = inside_of<Real>(low_layer_, high_layer_);
+        vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
+      }
+      return vertex;
+    }
+
+   private:
+    void add(const Point& point) noexcept {
+      for (std::size_t i = 0; i < N; ++i) {
+        sum_[i] += point[i];
+        lowest_[i] = std::min(lowest_[i], point[i]);
+        highest_[i] = std::max(highest_[i], point[i]);
+      }
+      ++count_;
+    }
+    void add_layer(double layer) noexcept {
+      low_layer_ = std::min(low_layer_, layer);
+      high_layer_ = std::max(high_layer_, layer);
+    }
+
+    const ComplexWriter& writer_;
+    Point sum_{}, lowest_, highest_;
+    double count_ = 0;
+    double low_layer_ = std::numeric_limits<double>::infinity();
+    double high_layer_ = -std::numeric_limits<double>::infinity();
+  };
+
+  void write_edge_point(const EdgeEnds& ends, std::size_t number) const noexcept {
+    const Point &from = complex_.points()[ends[0]], &to = complex_.points()[ends[1]];
+    const double alpha = alpha_of(complex_.values()[ends[0]], complex_.values()[ends[1]], isovalue_, epsilon_);
+    Vertex& vertex = contour_.vertices[number];
+    for (std::size_t i = 0; i < N; ++i) {
+      const double x = from[i] + alpha * (to[i] - from[i]);
+      vertex[i] =
+          static_cast<Real>(alpha >= 1.0 ? to[i] : std::clamp(x, std::min(from[i], to[i]), std::max(from[i], to[i])));
+    }
+    if (is_layered_ && from[N - 1] != to[N - 1]) {
+      const auto [low, high] = inside_of<Real>(from[N - 1], to[N - 1]);
+      vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
+    }
+  }
+
+  /// Whether a cell is oriented against the reference corners: the sign of the best affine map between the two. For
+  /// flat cells false.
+  [[nodiscard]] bool is_inverted(const tables::CellTable& table, const Index* corners) const noexcept {
+    Point centre{};  // of the reference corners
+    for (std::uint32_t v = 0; v < table.corner_count; ++v)
+      for (std::size_t i = 0; i < N; ++i)
+        centre[i] += table.corners[v * N + i] / static_cast<double>(table.corner_count);
+    Eigen::Matrix<double, N, N> map = Eigen::Matrix<double, N, N>::Zero();
+    const Point& origin = complex_.points()[corners[0]];
+    for (std::uint32_t v = 0; v < table.corner_count; ++v)
+      for (std::size_t i = 0; i < N; ++i)
+        for (std::size_t k = 0; k < N; ++k)
+          map(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
+              (table.corners[v * N + i] - centre[i]) * (complex_.points()[corners[v]][k] - origin[k]);
+    return map.determinant() < 0;
+  }
+
+  void write_simplices(const tables::CellTable& table, const Index* corners, std::uint64_t first,
+                       const CellContour& contour, const ContourNumbers::CellVertices& vertices) const noexcept {
+    // the tables face high
+    const bool flip = (contour.reverses() != is_inverted(table, corners)) != descends_;
+    for (unsigned i = 0; i < contour.list().simplex_count; ++i) {
+      auto& simplex = contour_.simplices[first + i];
+      for (unsigned k = 0; k < N; ++k) simplex[k] = vertices[contour.vertex(i, k)];
+      if (flip) std::swap(simplex[N - 1], simplex[N - 2]);
+    }
+  }
+
+  void write_own_points(const tables::CellTable& table, const Index* corners, const CellContour& contour,
+                        const ContourNumbers::CellVertices& vertices) const noexcept {
+    const tables::CellList& list = contour.list();
+    for (unsigned j = list.shared_vertices; j < list.added(); ++j) {
+      const std::uint64_t mask = contour.mask(j);
+      std::array<Index, 32> points;  // ascending, so that the sum does not depend on the cell's numbering
+      std::size_t count = 0;
+      for (std::uint64_t edges = mask >> table.corner_count; edges != 0; edges &= edges - 1)
+        points[count++] = vertices[static_cast<std::size_t>(std::countr_zero(edges))];
+      std::sort(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
+      Mean mean(*this);
+      for (std::size_t i = 0; i < count; ++i) mean.add_vertex(points[i]);
+      for (std::uint32_t v = 0; v < table.corner_count; ++v)
+        if ((mask >> v & 1u) != 0) mean.add_corner(corners[v]);
+      const bool is_side = j >= unsigned{list.shared_vertices} + list.cone_vertices;
+      contour_.vertices[vertices[table.edge_count + j]] = is_side ? inwards(table, corners, mean) : mean.place();
+    }
+  }
+
+  /// The midpoint of a point and the cell's centre.
+  [[nodiscard]] Vertex inwards(const tables::CellTable& table, const Index* corners, const Mean& point) const noexcept {
+    Mean centre(*this);
+    for (std::uint32_t v = 0; v < table.corner_count; ++v) centre.add_corner(corners[v]);
+    const Point a = point.mean(), b = centre.mean();
+    Vertex vertex;
+    for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>((a[i] + b[i]) / 2);
+    if (is_layered_) {
+      const auto [low, high] = inside_of<Real>(complex_.points()[corners[0]][N - 1],
+                                               complex_.points()[corners[table.corner_count - 1]][N - 1]);
+      vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
+    }
+    return vertex;
+  }
+
+  const Complex<N>& complex_;
+  const CellGroups& cells_;
+  const ContourNumbers& numbers_;
+  double isovalue_, epsilon_;
+  bool is_layered_, descends_;
+  Contour<N, Real>& contour_;
+};
+
+}  // namespace
+}  // namespace detail
+
+template <Coordinate Real, int N>
+requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex, double isovalue,
+                                                                          const ExtractOptions& options) {
+  detail::check_complex_options(isovalue, options);
+  Extraction<N, Real> result;
+  Contour<N, Real>& contour = result.contour;
+  const Progress& progress = options.work.progress;
+  // number
+  detail::Stopwatch watch;
+  const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
+  const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
+                                       options, detail::part_of(progress, 0.0, 0.6), result.stats);
+  watch.add_to(result.stats.find_seconds);
+  result.stats.find_seconds -= result.stats.classify_seconds;
+  // write
+  contour.direction = options.direction;
+  contour.vertices.resize(numbers.size().vertices);
+  contour.simplices.resize(numbers.size().simplices);
+  detail::ComplexWriter<N, Real> writer(complex, numbers, isovalue, options, contour);
+  writer.write_edge_points({options.work.threads, detail::part_of(progress, 0.6, 0.7)});
+  writer.write_polygon_centres({options.work.threads, detail::part_of(progress, 0.7, 0.75)});
+  writer.write_cells({options.work.threads, detail::part_of(progress, 0.75, 1.0)});
+  if (const auto touching = numbers.vertices_at_missing(cells); !touching.empty())
+    detail::split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
+  watch.add_to(result.stats.generate_seconds);
+  return result;
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, double isovalue,
+                                                     const ExtractOptions& options) {
+  detail::check_complex_options(isovalue, options);
+  ExtractStats stats;
+  const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
+  const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
+                                       options, options.work.progress, stats);
+  // vertices where the contour touches itself at missing values are doubled
+  if (!numbers.vertices_at_missing(cells).empty()) {
+    ExtractOptions quiet = options;
+    quiet.work.progress = {};
+    const auto contour = extract<float>(complex, isovalue, quiet);
+    return {contour.vertices.size(), contour.simplices.size()};
+  }
+  return numbers.size();
+}
+
+#define TEGL_INSTANTIATE_COMPLEX(N)                                                                               \
+  template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, double, const ExtractOptions&);   \
+  template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, double, const ExtractOptions&); \
+  template ContourSize count<N>(const Complex<N>&, double, const ExtractOptions&);
+TEGL_INSTANTIATE_COMPLEX(2)
+TEGL_INSTANTIATE_COMPLEX(3)
+TEGL_INSTANTIATE_COMPLEX(4)
+#undef TEGL_INSTANTIATE_COMPLEX
+
+}  // namespace tegl

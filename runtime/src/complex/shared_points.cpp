@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sorts the shared barycentres by the vertices of their polygons.
+#include "complex/shared_points.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/progress.hpp"
+#include "base/radix_sort.hpp"
+#include "base/workers.hpp"
+#include "complex/cell_contour.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+struct SharedUse {
+  PolygonKey key;
+  std::uint64_t place;
+};
+
+/// The key of a polygon by its edges in a cell.
+PolygonKey key_of(std::uint64_t edges, const Index* numbers) noexcept {
+  PolygonKey key;
+  key.fill(kNoPoint);
+  std::size_t count = 0;
+  for (; edges != 0; edges &= edges - 1) key[count++] = numbers[std::countr_zero(edges)];
+  std::sort(key.begin(), key.end());  // kNoPoint is the largest
+  return key;
+}
+
+}  // namespace
+
+SharedPoints number_shared_points(const CellTables& tables, const std::vector<ActiveBlock>& blocks,
+                                  const CrossingNumbers& crossings, const WorkOptions& work) {
+  SharedPoints points;
+  const auto first = sums_before(blocks, &ActiveBlock::shared),
+             first_crossing = sums_before(blocks, &ActiveBlock::crossings);
+  if (first.back() == 0) return points;
+  // list
+  std::vector<SharedUse> uses(first.back());
+  for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5),
+                 [&](std::size_t b, std::size_t, std::size_t) {
+                   const tables::CellTable& table = *tables.of_group[blocks[b].group];
+                   std::uint64_t place = first[b], crossing = first_crossing[b];
+                   std::array<Index, 32> numbers{};
+                   for (const ActiveCell& cell : blocks[b].cells) {
+                     const std::uint32_t crossed = crossed_edges(table, cell.signature);
+                     const CellContour contour(table, cell.signature, tables.high_connected);
+                     if (contour.list().shared_vertices > 0)
+                       crossings.of_cell(blocks[b], cell, crossed, crossing, numbers.data());
+                     for (unsigned j = 0; j < contour.list().shared_vertices; ++j, ++place)
+                       uses[place] = {key_of(contour.mask(j) >> table.corner_count, numbers.data()), place};
+                     crossing += static_cast<std::uint64_t>(std::popcount(crossed));
+                   }
+                 });
+  // sort by the first vertex, then among equal ones by the others
+  const auto bits = static_cast<unsigned>(std::bit_width(crossings.ends().size()));
+  sort_by_bits(uses, bits, [](const SharedUse& use) { return std::uint64_t{use.key[0]}; });
+  tell(work.progress, 0.8);
+  for (auto at = uses.begin(); at != uses.end();) {
+    const auto end = std::find_if(at, uses.end(), [&](const SharedUse& use) { return use.key[0] != at->key[0]; });
+    std::sort(at, end, [](const SharedUse& a, const SharedUse& b) { return a.key < b.key; });
+    at = end;
+  }
+  // number
+  points.numbers.resize(uses.size());
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (i == 0 || uses[i].key != uses[i - 1].key) points.keys.push_back(uses[i].key);
+    points.numbers[uses[i].place] = static_cast<Index>(points.keys.size() - 1);
+  }
+  tell(work.progress, 1.0);
+  return points;
+}
+
+}  // namespace tegl::detail

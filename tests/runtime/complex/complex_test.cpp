@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of complexes: topology on meshes of every type, accuracy, equality with grids, errors.
+#include "tegl/complex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare.hpp"
+#include "errors.hpp"
+#include "invariants.hpp"
+#include "meshes.hpp"
+#include "tegl/measure.hpp"
+
+namespace tegl {
+namespace {
+
+using namespace test;
+
+constexpr Triangulation kTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
+
+ExtractOptions options_of(Triangulation triangulation, Ambiguity ambiguity = Ambiguity::low, unsigned threads = 0) {
+  ExtractOptions options;
+  options.triangulation = triangulation;
+  options.ambiguity = ambiguity;
+  options.work.threads = threads;
+  return options;
+}
+
+/// Meshes of every type and of mixed types, with moved points.
+std::vector<std::pair<std::string, MeshData<3>>> meshes(std::size_t samples, double jitter = 0.15) {
+  const MeshData<3> points = grid_points<3>({samples, samples, samples}, jitter);
+  return {{"hexahedra", cube_mesh(points, true)},
+          {"six tetrahedra", kuhn_mesh(points)},
+          {"five tetrahedra", five_tetrahedra_mesh(points)},
+          {"wedges", wedge_mesh(points)},
+          {"pyramids", pyramid_mesh(points)},
+          {"mixed", mixed_mesh(points, 5)}};
+}
+
+double ball(const std::array<double, 3>& x) { return 0.7 - std::hypot(x[0], x[1], x[2]); }
+double ring(const std::array<double, 3>& x) {
+  return 0.22 - std::hypot(std::hypot(x[0] + 0.011, x[1] - 0.013) - 0.55, x[2] + 0.017);
+}
+
+TEST(Complex, NoiseOnEveryMeshHasAClosedOrientedManifold) {
+  for (const auto& [name, mesh] : meshes(21)) {
+    Complex<3> complex = mesh.complex();
+    complex.set_values(closed_noise(mesh, 11));
+    for (const Triangulation t : kTriangulations)
+      for (const Ambiguity a : {Ambiguity::low, Ambiguity::high}) {
+        SCOPED_TRACE(name);
+        const auto contour = extract(complex, 0.5, options_of(t, a));
+        EXPECT_GT(contour.simplices.size(), 10000u);
+        EXPECT_EQ(0u, expect_closed_manifold(contour).degenerate_simplices);
+        EXPECT_GT(measure(contour).content.value(), 0.0);  // descends: high samples are inside
+      }
+  }
+}
+
+TEST(Complex, AMixedMeshOfAHundredThousandCellsHasAClosedOrientedManifold) {
+  const MeshData<3> mesh = mixed_mesh(grid_points<3>({32, 32, 32}, 0.15), 3);
+  Complex<3> complex = mesh.complex();
+  EXPECT_GT(complex.cell_count(), 100000u);
+  for (const CellType type : {CellType::tetrahedron, CellType::pyramid, CellType::wedge, CellType::hexahedron})
+    EXPECT_GT(std::count(mesh.types.begin(), mesh.types.end(), type), 5000) << name_of(type);
+  complex.set_values(closed_noise(mesh, 2));
+  for (const Triangulation t : kTriangulations) expect_closed_manifold(extract(complex, 0.4, options_of(t)));
+}
+
+TEST(Complex, SpheresAndToriHaveTheirEulerCharacteristic) {
+  for (const auto& [name, mesh] : meshes(24)) {
+    SCOPED_TRACE(name);
+    Complex<3> complex = mesh.complex();
+    for (const Triangulation t : kTriangulations) {
+      complex.set_values(values_of(mesh, ball));
+      const MeshReport sphere = expect_closed_manifold(extract(complex, 0.0, options_of(t)));
+      EXPECT_EQ(1u, sphere.components);
+      EXPECT_EQ(2, sphere.euler);
+      complex.set_values(values_of(mesh, ring));
+      const MeshReport torus = expect_closed_manifold(extract(complex, 0.0, options_of(t)));
+      EXPECT_EQ(1u, torus.components);
+      EXPECT_EQ(0, torus.euler);
+    }
+  }
+}
+
+TEST(Complex, AreaAndVolumeConvergeWithOrderTwo) {
+  const double volume = 4.0 / 3.0 * std::numbers::pi * 0.343, area = 4.0 * std::numbers::pi * 0.49;
+  const auto errors = [&](std::size_t samples) {
+    std::vector<std::pair<double, double>> result;
+    for (const auto& [name, mesh] : meshes(samples, 0.0)) {
+      Complex<3> complex = mesh.complex();
+      complex.set_values(values_of(mesh, ball));
+      const Measures<3> measures = measure(extract<double>(complex, 0.0));
+      result.emplace_back(std::abs(measures.content.value() - volume), std::abs(measures.size - area));
+    }
+    return result;
+  };
+  const auto coarse = errors(12), fine = errors(34);  // steps 2/11 and 2/33
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    EXPECT_NEAR(2.0, std::log(coarse[i].first / fine[i].first) / std::log(3.0), 0.35) << i;
+    EXPECT_NEAR(2.0, std::log(coarse[i].second / fine[i].second) / std::log(3.0), 0.35) << i;
+  }
+}
+
+/// The image with the values of a grid's points.
+template <int N>
+OwnedImage<double, N> image_of(const MeshData<N>& mesh, const std::vector<double>& values) {
+  Grid<N> grid;
+  for (int a = 0; a < N; ++a) {
+    const double step = 2.0 / static_cast<double>(mesh.sizes[a] - 1);
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < mesh.sizes[a]; ++i) coordinates.push_back(-1.0 + step * static_cast<double>(i));
+    grid.axes[a] = Axis::rectilinear(coordinates);
+  }
+  return {grid, Values<double>(values)};
+}
+
+template <int N>
+void expect_contour_of_grid(const std::array<std::size_t, N>& sizes) {
+  for (const bool around : {false, true}) {
+    const MeshData<N> mesh = cube_mesh(grid_points<N>(sizes), around);
+    Complex<N> complex = mesh.complex();
+    std::vector<double> values = closed_noise(mesh, 23);
+    for (double& value : values) value = std::round(16 * value) / 16;  // some points have the isovalue
+    complex.set_values(values);
+    const OwnedImage<double, N> image = image_of(mesh, values);
+    for (const Ambiguity a : {Ambiguity::low, Ambiguity::high})
+      for (const GradientDirection d : {GradientDirection::descent, GradientDirection::ascent}) {
+        ExtractOptions options = options_of(Triangulation::compact, a);
+        options.direction = d;
+        options.epsilon = a == Ambiguity::high ? 0.1 : 0.0;
+        EXPECT_TRUE(same_surface(extract(image.view(), 0.5, options), extract(complex, 0.5, options)));
+      }
+    const auto barycentric = options_of(Triangulation::barycentric);
+    EXPECT_EQ(count(image.view(), 0.5, barycentric), count(complex, 0.5, barycentric));
+  }
+}
+
+TEST(Complex, AGridsOwnCellsHaveTheGridsContour) {
+  expect_contour_of_grid<2>({40, 31});
+  expect_contour_of_grid<3>({17, 12, 14});
+}
+
+TEST(Complex, ResultsAreTheSameBytesWithAnyThreadsAndWithKnownEdges) {
+  for (const auto& [name, mesh] : meshes(30)) {
+    SCOPED_TRACE(name);
+    Complex<3> complex = mesh.complex();
+    complex.set_values(closed_noise(mesh, 4));
+    for (const Triangulation t : kTriangulations) {
+      const auto one = extract(complex, 0.5, options_of(t, Ambiguity::low, 1));
+      Complex<3> known = complex;
+      known.find_edges({3, {}});
+      EXPECT_GT(known.edge_count(), 0u);
+      EXPECT_EQ(0u, complex.edge_count());
+      for (const unsigned threads : {1u, 2u, 3u})
+        for (const Complex<3>* of : {&complex, &known}) {
+          const auto other = extract(*of, 0.5, options_of(t, Ambiguity::low, threads));
+          EXPECT_TRUE(one.vertices == other.vertices);
+          EXPECT_TRUE(one.simplices == other.simplices);
+        }
+      EXPECT_EQ((ContourSize{one.vertices.size(), one.simplices.size()}), count(complex, 0.5, options_of(t)));
+    }
+  }
+}
+
+TEST(Complex, EdgesAreThoseOfAllCellsOnce) {
+  for (const auto& [name, mesh] : meshes(8)) {
+    Complex<3> complex = mesh.complex();
+    complex.find_edges();
+    std::vector<std::pair<Index, Index>> edges;
+    std::size_t at = 0;
+    for (const CellType type : mesh.types) {
+      const Index* const c = mesh.corners.data() + at;
+      const auto add = [&](std::initializer_list<std::pair<int, int>> pairs) {
+        for (const auto& [i, j] : pairs) edges.emplace_back(std::minmax(c[i], c[j]));
+      };
+      if (type == CellType::tetrahedron) add({{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}});
+      if (type == CellType::pyramid) add({{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}});
+      if (type == CellType::wedge) add({{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}});
+      if (type == CellType::hexahedron)
+        add({{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}});
+      at += corner_count(type);
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    EXPECT_EQ(edges.size(), complex.edge_count()) << name;
+  }
+}
+
+TEST(Complex, TheOrderOfCornersDoesNotChangeTheSurface) {
+  MeshData<3> mesh = kuhn_mesh(grid_points<3>({12, 12, 12}, 0.15));
+  Complex<3> complex = mesh.complex();
+  complex.set_values(closed_noise(mesh, 8));
+  const auto contour = extract(complex, 0.5);
+  std::mt19937_64 random(3);
+  for (std::size_t c = 0; c < mesh.types.size(); ++c)
+    std::shuffle(mesh.corners.begin() + 4 * c, mesh.corners.begin() + 4 * (c + 1), random);
+  Complex<3> shuffled = mesh.complex();
+  shuffled.set_values(complex.values());
+  const auto other = extract(shuffled, 0.5);
+  expect_closed_manifold(other);
+  EXPECT_TRUE(contour.vertices == other.vertices);
+  EXPECT_EQ(contour.simplices.size(), other.simplices.size());
+  EXPECT_NEAR(measure(contour).content.value(), measure(other).content.value(),
+              0.02 * measure(contour).content.value());
+}
+
+TEST(Complex, MissingValuesLeaveAManifoldWithBoundary) {
+  for (const auto& [name, mesh] : meshes(16)) {
+    SCOPED_TRACE(name);
+    Complex<3> complex = mesh.complex();
+    std::vector<double> values = closed_noise(mesh, 31);
+    std::mt19937_64 random(9);
+    for (double& value : values)
+      if (random() % 12 == 0) value = std::numeric_limits<double>::quiet_NaN();
+    complex.set_values(values);
+    for (const Triangulation t : kTriangulations) {
+      const auto contour = extract(complex, 0.5, options_of(t));
+      EXPECT_GT(expect_oriented_manifold(contour).boundary_simplices, 100u);
+      EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(complex, 0.5, options_of(t)));
+    }
+    complex.set_values(std::vector<double>(values.size(), std::numeric_limits<double>::quiet_NaN()));
+    EXPECT_TRUE(extract(complex, 0.5).vertices.empty());
+  }
+}
+
+TEST(Complex, InTwoDimensionsTrianglesAndQuadrilateralsMix) {
+  MeshData<2> mesh = grid_points<2>({60, 60}, 0.2);
+  std::mt19937_64 random(1);
+  for_each_grid_cell<2>(mesh.sizes, [&](const std::array<std::size_t, 2>& index) {
+    const auto c = [&](unsigned v) { return mesh.corner(index, v); };
+    if (random() % 2 == 0) {
+      mesh.add(CellType::quadrilateral, {c(0), c(1), c(3), c(2)});
+    } else {
+      mesh.add(CellType::triangle, {c(0), c(1), c(3)});
+      mesh.add(CellType::triangle, {c(2), c(0), c(3)});
+    }
+  });
+  Complex<2> complex = mesh.complex();
+  complex.set_values(closed_noise(mesh, 6));
+  for (const Ambiguity a : {Ambiguity::low, Ambiguity::high}) {
+    const auto contour = extract(complex, 0.5, options_of(Triangulation::compact, a));
+    EXPECT_GT(contour.simplices.size(), 3000u);
+    expect_closed_manifold(contour);
+  }
+  complex.set_values(values_of(mesh, [](const auto& x) { return 0.7 - std::hypot(x[0], x[1]); }));
+  const Measures<2> measures = measure(extract<double>(complex, 0.0));
+  EXPECT_NEAR(2 * std::numbers::pi * 0.7, measures.size, 0.005);
+  EXPECT_NEAR(std::numbers::pi * 0.49, measures.content.value(), 0.005);
+}
+
+TEST(Complex, InFourDimensionsSimplicesAndPrismsHaveClosedContours) {
+  const MeshData<4> points = grid_points<4>({7, 7, 7, 7}, 0.1);
+  for (const MeshData<4>& mesh : {kuhn_mesh(points), cube_mesh(points), cube_mesh(points, true)}) {
+    Complex<4> complex = mesh.complex();
+    complex.set_values(closed_noise(mesh, 3));
+    for (const Ambiguity a : {Ambiguity::low, Ambiguity::high}) {
+      const auto contour = extract<double>(complex, 0.5, options_of(Triangulation::barycentric, a));
+      EXPECT_GT(contour.simplices.size(), 20000u);
+      expect_closed_manifold(contour);
+    }
+  }
+}
+
+TEST(Complex, InFourDimensionsVolumesConvergeWithOrderTwo) {
+  const double volume = std::numbers::pi * std::numbers::pi / 2 * std::pow(0.8, 4);
+  for (const bool simplices : {false, true}) {
+    std::array<double, 2> errors{};
+    for (const std::size_t refined : {0u, 1u}) {
+      const std::size_t samples = refined == 0 ? 7 : 13;
+      const MeshData<4> points = grid_points<4>({samples, samples, samples, samples});
+      const MeshData<4> mesh = simplices ? kuhn_mesh(points) : cube_mesh(points);
+      Complex<4> complex = mesh.complex();
+      complex.set_values(
+          values_of(mesh, [](const auto& x) { return 0.8 - std::hypot(std::hypot(x[0], x[1]), x[2], x[3]); }));
+      const auto ball = extract<double>(complex, 0.0);
+      EXPECT_EQ(0, expect_closed_manifold(ball).euler);
+      errors[refined] = volume - measure(ball).content.value();
+    }
+    EXPECT_NEAR(2.0, std::log2(errors[0] / errors[1]), 0.3);
+  }
+}
+
+TEST(Complex, AllValueTypesGiveTheSameContour) {
+  const MeshData<3> mesh = kuhn_mesh(grid_points<3>({6, 6, 6}));
+  std::mt19937_64 random(1);
+  std::vector<std::uint8_t> bytes(mesh.points.size());
+  for (auto& b : bytes) b = static_cast<std::uint8_t>(random() % 100);
+  Complex<3> complex = mesh.complex();
+  complex.set_values<std::uint8_t>(bytes);
+  const auto first = extract(complex, 49.5);
+  EXPECT_FALSE(first.simplices.empty());
+  const auto expect_same = [&]<class T>(T) {
+    const std::vector<T> values(bytes.begin(), bytes.end());
+    complex.set_values<T>(values);
+    EXPECT_TRUE(first.vertices == extract(complex, 49.5).vertices);
+  };
+  expect_same(std::int8_t{}), expect_same(std::uint16_t{}), expect_same(std::int16_t{}), expect_same(std::int32_t{});
+  expect_same(float{}), expect_same(double{});
+}
+
+TEST(Complex, MovedPointsMoveTheContourAndKeepItsSimplices) {
+  const MeshData<3> mesh = mixed_mesh(grid_points<3>({10, 10, 10}), 2);
+  Complex<3> complex = mesh.complex();
+  complex.set_values(values_of(mesh, ball));
+  const auto before = extract<double>(complex, 0.0);
+  auto points = mesh.points;
+  for (auto& point : points) point[0] += 3.0;
+  complex.set_points(points);
+  const auto after = extract<double>(complex, 0.0);
+  EXPECT_TRUE(before.simplices == after.simplices);
+  ASSERT_EQ(before.vertices.size(), after.vertices.size());
+  for (std::size_t v = 0; v < after.vertices.size(); ++v)
+    EXPECT_NEAR(before.vertices[v][0] + 3.0, after.vertices[v][0], 1e-12);
+}
+
+TEST(Complex, InfiniteValuesPutVerticesAtTheFiniteEnd) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::array<double, 2>> points = {{0, 0}, {1, 0}, {0, 1}};
+  const Index corners[] = {0, 1, 2};
+  Complex<2> complex(points, CellType::triangle, corners);
+  complex.set_values({kInfinity, 0.0, -kInfinity});
+  const auto contour = extract<double>(complex, 0.5);
+  ASSERT_EQ(2u, contour.vertices.size());
+  EXPECT_EQ((std::array<double, 2>{1, 0}), contour.vertices[0]);
+  EXPECT_EQ((std::array<double, 2>{0, 0.5}), contour.vertices[1]);
+}
+
+TEST(Complex, ProgressRisesToOneAndCancels) {
+  const MeshData<3> mesh = kuhn_mesh(grid_points<3>({30, 30, 30}));
+  Complex<3> complex = mesh.complex();
+  complex.set_values(values_of(mesh, ball));
+  std::vector<double> heard;
+  ExtractOptions options;
+  options.work.progress = [&](double fraction) {
+    heard.push_back(fraction);
+    return true;
+  };
+  const auto with = extract(complex, 0.0, options);
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+  EXPECT_EQ(1.0, heard.back());
+  EXPECT_GT(heard.size(), 10u);
+  EXPECT_TRUE(with.vertices == extract(complex, 0.0).vertices);
+  for (const double at : {0.0, 0.3, 0.7, 0.9}) {
+    options.work.progress = [at](double fraction) { return fraction < at; };
+    expect_error(ErrorCode::Cancelled, "cancelled", [&] { (void)extract(complex, 0.0, options); });
+    expect_error(ErrorCode::Cancelled, "cancelled", [&] { complex.find_edges(options.work); });
+    EXPECT_EQ(0u, complex.edge_count());
+  }
+}
+
+TEST(Complex, StatisticsCountCells) {
+  const MeshData<3> mesh = kuhn_mesh(grid_points<3>({9, 9, 9}));
+  Complex<3> complex = mesh.complex();
+  complex.set_values(values_of(mesh, ball));
+  const auto stats = extract_with_stats(complex, 0.0).stats;
+  EXPECT_EQ(6u * 512u, stats.tiles);
+  std::uint64_t active = 0;
+  for (std::size_t c = 0; c < mesh.types.size(); ++c) {
+    int high = 0;
+    for (int v = 0; v < 4; ++v) high += complex.values()[mesh.corners[4 * c + v]] >= 0.0 ? 1 : 0;
+    active += high % 4 != 0 ? 1 : 0;
+  }
+  EXPECT_EQ(active, stats.active_tiles);
+}
+
+TEST(Complex, BadCellsAreErrorsThatNameThem) {
+  const std::vector<std::array<double, 3>> points(5, {0, 0, 0});
+  const auto make = [&](CellType type, std::vector<Index> corners) {
+    return [=] { (void)Complex<3>(points, type, corners); };
+  };
+  const auto refuse = [](const std::string& part, const auto& work) {
+    expect_error(ErrorCode::InvalidArgument, part, work);
+  };
+  refuse("cell 1: corner 2 is point 5; expected a number below 5",
+         make(CellType::tetrahedron, {0, 1, 2, 3, 0, 1, 5, 2}));
+  refuse("cell 0: corners 1 and 3 are both point 1", make(CellType::tetrahedron, {0, 1, 2, 1}));
+  refuse("7 corners; expected a multiple of 4", make(CellType::tetrahedron, {0, 1, 2, 3, 0, 1, 2}));
+  refuse("type 5 (triangle); expected a 3D cell: 10 (tetrahedron)", make(CellType::triangle, {0, 1, 2}));
+  refuse("type 7 (unknown)", make(static_cast<CellType>(7), {0, 1, 2}));
+  const std::vector<CellType> types = {CellType::tetrahedron, CellType::pyramid};
+  const auto mixed = [&](std::vector<Index> corners) { return [=] { (void)Complex<3>(points, types, corners); }; };
+  refuse("cell 1: 4 corners are left; a pyramid has 5", mixed({0, 1, 2, 3, 0, 1, 2, 3}));
+  refuse("10 corners; expected 9 for these 2 cells", mixed({0, 1, 2, 3, 0, 1, 2, 3, 4, 0}));
+  auto broken = points;
+  broken[3][1] = std::numeric_limits<double>::infinity();
+  refuse("point 3: (0, inf, 0); expected finite coordinates", [&] { (void)Complex<3>(broken, types, {}); });
+  refuse("cell type 7", [] { (void)corner_count(static_cast<CellType>(7)); });
+}
+
+TEST(Complex, BadValuesAndOptionsAreErrors) {
+  const std::vector<std::array<double, 3>> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Index corners[] = {0, 1, 2, 3};
+  Complex<3> complex(points, CellType::tetrahedron, corners);
+  EXPECT_TRUE(extract(complex, 0.0).vertices.empty()) << "values are missing at first";
+  const auto refuse = [&](ErrorCode code, const std::string& part, double isovalue, auto change) {
+    ExtractOptions options;
+    change(options);
+    expect_error(code, part, [&] { (void)extract(complex, isovalue, options); });
+    expect_error(code, part, [&] { (void)count(complex, isovalue, options); });
+  };
+  expect_error(ErrorCode::InvalidArgument, "3 values; expected one for each of the 4 points", [&] {
+    complex.set_values({1.0, 2.0, 3.0});
+  });
+  expect_error(ErrorCode::InvalidArgument, "0 points; expected one for each of the 4 points",
+               [&] { complex.set_points({}); });
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  refuse(ErrorCode::InvalidIsovalue, "nan", nan, [](ExtractOptions&) {});
+  refuse(ErrorCode::InvalidArgument, "epsilon 0.5", 0.0, [](ExtractOptions& o) { o.epsilon = 0.5; });
+  refuse(ErrorCode::InvalidArgument, "low or high", 0.0, [](ExtractOptions& o) { o.ambiguity = Ambiguity::mean; });
+  refuse(ErrorCode::InvalidArgument, "close", 0.0, [](ExtractOptions& o) { o.close = true; });
+  refuse(ErrorCode::InvalidArgument, "normals", 0.0, [](ExtractOptions& o) { o.normals = Normals::differences; });
+}
+
+TEST(Complex, AnEmptyComplexHasAnEmptyContour) {
+  const Complex<3> complex({}, CellType::tetrahedron, {});
+  EXPECT_EQ(0u, complex.cell_count());
+  EXPECT_TRUE(extract(complex, 0.0).vertices.empty());
+  Complex<3> with_edges = complex;
+  with_edges.find_edges();
+  EXPECT_TRUE(extract(with_edges, 0.0).simplices.empty());
+}
+
+}  // namespace
+}  // namespace tegl
