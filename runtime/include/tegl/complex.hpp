@@ -52,6 +52,7 @@ namespace detail {
 struct CellGroups;
 struct ComplexEdges;
 struct ComplexAccess;
+using CellSigns = std::vector<std::vector<std::uint64_t>>;
 }  // namespace detail
 
 /// A complex of cells in N = 2, 3 or 4 dimensions with one value at each point. Owns its data; copies share the cells
@@ -111,7 +112,8 @@ class Complex {
   std::vector<double> values_;
   std::shared_ptr<const detail::CellGroups> cells_;
   std::shared_ptr<const detail::ComplexEdges> edges_;
-  bool is_layered_ = false;  ///< made by in_time
+  std::shared_ptr<const detail::CellSigns> signs_;  ///< orientations of the cells
+  bool is_layered_ = false;                         ///< made by in_time
 };
 
 /// The complex that a complex sweeps over time, for its contour in space and time: every cell x every interval between

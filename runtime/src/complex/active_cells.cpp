@@ -5,64 +5,61 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "base/workers.hpp"
-#include "complex/cell_contour.hpp"
+#include "complex/cell_signatures.hpp"
 
 namespace tegl::detail {
 
 namespace {
 
-constexpr std::size_t kBlockCells = std::size_t{1} << 14;
+/// Working memory of a thread.
+struct Scratch {
+  std::vector<std::uint16_t> signatures, missing;
+};
 
-/// The signatures of cells, compiled for each number of corners so that the loop over corners unrolls.
-template <std::size_t kCorners>
-void scan(const CellGroup& group, std::size_t from, std::size_t to, const PointBits& bits, ActiveBlock& block) {
-  constexpr unsigned kFull = (1u << kCorners) - 1;
-  for (std::size_t c = from; c < to; ++c) {
-    const Index* const corners = group.corners.data() + c * kCorners;
-    unsigned signature = 0;
-    for (std::size_t v = 0; v < kCorners; ++v) signature |= PointBits::at(bits.high, corners[v]) << v;
-    if (!bits.missing.empty()) {
-      unsigned missing = 0;
-      for (std::size_t v = 0; v < kCorners; ++v) missing |= PointBits::at(bits.missing, corners[v]);
-      if (missing != 0) {
-        block.missing.push_back(static_cast<Index>(c));
-        continue;
-      }
+/// Lists the active cells among cells from ... to - 1.
+void scan(const CellGroup& group, std::size_t from, std::size_t to, const PointBits& bits, Scratch& scratch,
+          ActiveBlock& block) {
+  const std::size_t count = to - from;
+  const auto full = static_cast<std::uint16_t>((1u << group.corner_count) - 1);
+  scratch.signatures.resize(count);
+  gather_signatures(group, from, to, bits.high.data(), scratch.signatures.data());
+  if (!bits.missing.empty()) {
+    scratch.missing.resize(count);
+    gather_signatures(group, from, to, bits.missing.data(), scratch.missing.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (scratch.missing[i] == 0) continue;
+      block.missing.push_back(static_cast<Index>(from + i));
+      scratch.signatures[i] = 0;
     }
-    if (signature == 0 || signature == kFull) continue;
-    block.cells.push_back({static_cast<Index>(c), static_cast<std::uint16_t>(signature)});
+  }
+  // four at a time, as most cells are not active
+  const std::uint64_t all_full = full * std::uint64_t{0x0001000100010001};
+  for (std::size_t i = 0; i < count; i += 4) {
+    std::uint64_t four = 0;
+    std::memcpy(&four, scratch.signatures.data() + i, 2 * std::min<std::size_t>(4, count - i));
+    if (four == 0 || four == all_full) continue;
+    for (std::size_t j = i; j < std::min(count, i + 4); ++j)
+      if (const std::uint16_t signature = scratch.signatures[j]; signature != 0 && signature != full)
+        block.cells.push_back({static_cast<Index>(from + j), signature});
   }
 }
 
-void scan(const CellGroup& group, std::size_t from, std::size_t to, const PointBits& bits, ActiveBlock& block) {
-  switch (group.corner_count) {
-    case 3:
-      return scan<3>(group, from, to, bits, block);
-    case 4:
-      return scan<4>(group, from, to, bits, block);
-    case 5:
-      return scan<5>(group, from, to, bits, block);
-    case 6:
-      return scan<6>(group, from, to, bits, block);
-    case 8:
-      return scan<8>(group, from, to, bits, block);
-    case 10:
-      return scan<10>(group, from, to, bits, block);
-    case 12:
-      return scan<12>(group, from, to, bits, block);
-    default:
-      return scan<16>(group, from, to, bits, block);
-  }
+/// The same, passing over blocks whose points are all high or all low. `from` is the first cell of a block.
+void scan_blocks(const CellBlocks& blocks, const CellGroup& group, std::size_t from, std::size_t to,
+                 const PointBits& bits, Scratch& scratch, ActiveBlock& block) {
+  constexpr std::size_t kCells = CellBlocks::kCells;
+  for (std::size_t first = from; first < to; first += kCells)
+    if (!blocks.is_uniform(first / kCells, bits.high.data()))
+      scan(group, first, std::min(to, first + kCells), bits, scratch, block);
 }
 
-void add_sizes(const tables::CellTable& table, bool high_connected, ActiveBlock& block) {
+void add_sizes(const CellCases& cases, ActiveBlock& block) {
   for (const ActiveCell& cell : block.cells) {
-    const tables::CellList& list = CellContour(table, cell.signature, high_connected).list();
-    block.crossings += static_cast<std::uint64_t>(std::popcount(crossed_edges(table, cell.signature)));
+    const tables::CellList& list = cases[cell.signature].list();
     block.simplices += list.simplex_count;
     block.shared += list.shared_vertices;
     block.own += list.added() - list.shared_vertices;
@@ -73,17 +70,17 @@ void add_sizes(const tables::CellTable& table, bool high_connected, ActiveBlock&
 
 PointBits classify_points(std::span<const double> values, double isovalue, const WorkOptions& work) {
   PointBits bits;
-  const std::size_t words = block_count(values.size(), 64);
+  const std::size_t words = block_count(values.size(), 32);
   bits.high.resize(words);
-  std::vector<std::uint64_t> missing(words);
+  std::vector<std::uint32_t> missing(words);
   std::atomic<bool> any_missing = false;
   for_each_part(words, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t w = from; w < to; ++w) {
-      std::uint64_t high = 0, none = 0;
-      const std::size_t end = std::min(values.size(), (w + 1) * 64);
-      for (std::size_t p = w * 64; p < end; ++p) {
-        high |= std::uint64_t{values[p] >= isovalue} << (p & 63u);
-        none |= std::uint64_t{std::isnan(values[p])} << (p & 63u);
+      std::uint32_t high = 0, none = 0;
+      const std::size_t end = std::min(values.size(), (w + 1) * 32);
+      for (std::size_t p = w * 32; p < end; ++p) {
+        high |= std::uint32_t{values[p] >= isovalue} << (p & 31u);
+        none |= std::uint32_t{std::isnan(values[p])} << (p & 31u);
       }
       bits.high[w] = high;
       missing[w] = none;
@@ -95,21 +92,20 @@ PointBits classify_points(std::span<const double> values, double isovalue, const
 }
 
 std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTables& tables, const PointBits& bits,
-                                           const WorkOptions& work) {
-  struct Range {
-    std::size_t group, from, to;
-  };
-  std::vector<Range> ranges;
-  for (std::size_t g = 0; g < cells.groups.size(); ++g)
-    for (std::size_t from = 0; from < cells.groups[g].size(); from += kBlockCells)
-      ranges.push_back({g, from, std::min(cells.groups[g].size(), from + kBlockCells)});
+                                           const ComplexEdges* edges, const WorkOptions& work) {
+  const std::vector<CellRange> ranges = ranges_of(cells);
   std::vector<ActiveBlock> blocks(ranges.size());
-  for_each_block(ranges.size(), 1, work.threads, work.progress, [&](std::size_t b, std::size_t, std::size_t) {
-    const auto& [group, from, to] = ranges[b];
-    blocks[b].group = group;
-    scan(cells.groups[group], from, to, bits, blocks[b]);
-    add_sizes(*tables.of_group[group], tables.high_connected, blocks[b]);
-  });
+  for_each_block(
+      ranges.size(), 1, work.threads, work.progress, [] { return Scratch(); },
+      [&](std::size_t b, std::size_t, std::size_t, Scratch& scratch) {
+        const auto& [group, from, to] = ranges[b];
+        blocks[b].group = group;
+        if (edges == nullptr || !bits.missing.empty())
+          scan(cells.groups[group], from, to, bits, scratch, blocks[b]);
+        else
+          scan_blocks(edges->blocks[group], cells.groups[group], from, to, bits, scratch, blocks[b]);
+        add_sizes(tables.of_group[group], blocks[b]);
+      });
   return blocks;
 }
 

@@ -8,21 +8,22 @@
 #include <span>
 #include <vector>
 
-#include "complex/cell_groups.hpp"
+#include "complex/cell_contour.hpp"
+#include "complex/complex_edges.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
 
-/// Bits of the points of a complex.
+/// Bits of the points of a complex: bit p % 32 of word p / 32.
 struct PointBits {
-  std::vector<std::uint64_t> high;     ///< bit p: value >= isovalue
-  std::vector<std::uint64_t> missing;  ///< bit p: NaN; empty if no value is missing
+  std::vector<std::uint32_t> high;     ///< value >= isovalue
+  std::vector<std::uint32_t> missing;  ///< NaN; empty if no value is missing
 
-  [[nodiscard]] static unsigned at(const std::vector<std::uint64_t>& bits, Index p) noexcept {
-    return static_cast<unsigned>(bits[p >> 6] >> (p & 63u)) & 1u;
+  [[nodiscard]] static bool at(const std::vector<std::uint32_t>& bits, Index p) noexcept {
+    return (bits[p >> 5] >> (p & 31u) & 1u) != 0;
   }
-  [[nodiscard]] bool is_high(Index p) const noexcept { return at(high, p) != 0; }
-  [[nodiscard]] bool is_missing(Index p) const noexcept { return !missing.empty() && at(missing, p) != 0; }
+  [[nodiscard]] bool is_high(Index p) const noexcept { return at(high, p); }
+  [[nodiscard]] bool is_missing(Index p) const noexcept { return !missing.empty() && at(missing, p); }
 };
 
 /// A cell with both high and low corners and no missing one.
@@ -35,8 +36,7 @@ struct ActiveCell {
 struct ActiveBlock {
   std::size_t group = 0;
   std::vector<ActiveCell> cells;
-  std::vector<Index> missing;   ///< cells with missing corners
-  std::uint64_t crossings = 0;  ///< crossed edges, counted in each cell
+  std::vector<Index> missing;  ///< cells with missing corners
   std::uint64_t simplices = 0;
   std::uint64_t shared = 0;  ///< vertices in common 3-faces, counted in each cell
   std::uint64_t own = 0;     ///< vertices of the cells' own
@@ -44,15 +44,16 @@ struct ActiveBlock {
 
 /// Which contours cells have.
 struct CellTables {
-  std::vector<const tables::CellTable*> of_group;
-  bool high_connected = false;
+  std::vector<CellCases> of_group;
 };
 
 /// Compares all values with the isovalue.
 [[nodiscard]] PointBits classify_points(std::span<const double> values, double isovalue, const WorkOptions& work);
 
-/// The active cells in blocks that do not depend on the number of threads. Errors: Cancelled.
+/// The active cells in blocks that do not depend on the number of threads. `edges`: null if not known; otherwise blocks
+/// of cells without active ones are passed over. Errors: Cancelled.
 [[nodiscard]] std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTables& tables,
-                                                         const PointBits& bits, const WorkOptions& work);
+                                                         const PointBits& bits, const ComplexEdges* edges,
+                                                         const WorkOptions& work);
 
 }  // namespace tegl::detail

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "complex/cell_groups.hpp"
 #include "tegl/ambiguity.hpp"
@@ -15,7 +16,7 @@ namespace tegl::detail {
 class CellContour {
  public:
   CellContour(const tables::CellTable& table, unsigned signature, bool high_connected) noexcept
-      : table_(table), reverses_(high_connected) {
+      : table_(&table), reverses_(high_connected) {
     const unsigned s = high_connected ? ~signature & ((1u << table.corner_count) - 1) : signature;
     list_ = table.lists + table.list_of[s];
     if (table.element_of == nullptr) return;
@@ -29,24 +30,24 @@ class CellContour {
   [[nodiscard]] bool reverses() const noexcept { return reverses_; }
   /// Vertex k of simplex i: an edge of the cell, or edge_count + number of an added vertex.
   [[nodiscard]] unsigned vertex(unsigned i, unsigned k) const noexcept {
-    const unsigned v = table_.simplices[(list_->first_simplex + i) * table_.dim + k];
-    return permutation_ == nullptr || v >= table_.edge_count ? v : permutation_[table_.corner_count + v];
+    const unsigned v = table_->simplices[(list_->first_simplex + i) * table_->dim + k];
+    return permutation_ == nullptr || v >= table_->edge_count ? v : permutation_[table_->corner_count + v];
   }
   /// The corners (bit v) and edges (bit corner_count + e) of an added vertex.
   [[nodiscard]] std::uint64_t mask(unsigned added) const noexcept {
-    std::uint64_t mask = table_.masks[list_->first_mask + added];
+    std::uint64_t mask = table_->masks[list_->first_mask + added];
     if (permutation_ == nullptr) return mask;
     std::uint64_t result = 0;
     for (; mask != 0; mask &= mask - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(mask));
-      const unsigned shift = bit < table_.corner_count ? 0 : table_.corner_count;
+      const unsigned shift = bit < table_->corner_count ? 0 : table_->corner_count;
       result |= std::uint64_t{1} << (permutation_[bit] + shift);
     }
     return result;
   }
 
  private:
-  const tables::CellTable& table_;
+  const tables::CellTable* table_;
   const tables::CellList* list_;
   const std::uint8_t* permutation_ = nullptr;
   bool reverses_;
@@ -59,5 +60,30 @@ class CellContour {
     result |= ((signature >> table.edges[2 * e] ^ signature >> table.edges[2 * e + 1]) & 1u) << e;
   return result;
 }
+
+/// The contours of a shape by signature.
+class CellCases {
+ public:
+  /// `table` must outlive this object.
+  CellCases(const tables::CellTable& table, bool high_connected) : table_(&table), high_connected_(high_connected) {
+    if (table.corner_count > 8) return;  // many signatures: each is looked up when it occurs
+    for (unsigned s = 0; s < 1u << table.corner_count; ++s) crossed_.push_back(crossed_edges(table, s));
+  }
+  [[nodiscard]] const tables::CellTable& table() const noexcept { return *table_; }
+  [[nodiscard]] CellContour operator[](unsigned signature) const noexcept {
+    return {*table_, signature, high_connected_};
+  }
+  /// Calls visit(edge) for the crossed edges, ascending.
+  template <class Visit>
+  void for_each_crossed(unsigned signature, const Visit& visit) const {
+    std::uint32_t edges = crossed_.empty() ? crossed_edges(*table_, signature) : crossed_[signature];
+    for (; edges != 0; edges &= edges - 1) visit(static_cast<unsigned>(std::countr_zero(edges)));
+  }
+
+ private:
+  const tables::CellTable* table_;
+  bool high_connected_;
+  std::vector<std::uint32_t> crossed_;
+};
 
 }  // namespace tegl::detail

@@ -110,6 +110,15 @@ CellShape prism_of(CellShape shape) noexcept {
   }
 }
 
+std::vector<CellRange> ranges_of(const CellGroups& cells) {
+  constexpr std::size_t kCells = std::size_t{1} << 14;
+  std::vector<CellRange> ranges;
+  for (std::size_t g = 0; g < cells.groups.size(); ++g)
+    for (std::size_t from = 0; from < cells.groups[g].size(); from += kCells)
+      ranges.push_back({g, from, std::min(cells.groups[g].size(), from + kCells)});
+  return ranges;
+}
+
 CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<const Index> corners) {
   const CellKind& kind = kind_in(dim, type, 0);
   CellGroups cells;

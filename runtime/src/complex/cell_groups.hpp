@@ -3,6 +3,7 @@
 // The cells of a complex by type, with corners in the order of the generated tables.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -46,6 +47,18 @@ struct CellGroups {
   std::size_t cell_count = 0;
 };
 
+/// Consecutive cells of a group.
+struct CellRange {
+  std::size_t group, from, to;
+};
+/// All cells in ranges of a fixed size, the units of parallel work: they do not depend on the number of threads.
+[[nodiscard]] std::vector<CellRange> ranges_of(const CellGroups& cells);
+
+/// Whether each cell is oriented against the reference corners: the sign of the best affine map between the two; false
+/// for flat cells. By group: bit c % 64 of word c / 64.
+template <int N>
+[[nodiscard]] CellSigns find_cell_signs(const CellGroups& cells, const std::vector<std::array<double, N>>& points);
+
 /// Checks and groups cells. Errors: as the constructors of Complex.
 [[nodiscard]] CellGroups group_cells(int dim, std::size_t points, std::span<const CellType> types,
                                      std::span<const Index> corners);
@@ -61,6 +74,10 @@ struct ComplexAccess {
   template <int N>
   static const ComplexEdges* edges(const Complex<N>& complex) noexcept {
     return complex.edges_.get();
+  }
+  template <int N>
+  static const CellSigns& signs(const Complex<N>& complex) noexcept {
+    return *complex.signs_;
   }
   template <int N>
   static bool is_layered(const Complex<N>& complex) noexcept {

@@ -40,6 +40,7 @@ template <int N>
 Complex<N> ComplexAccess::layered(std::vector<std::array<double, N>> points, CellGroups cells) {
   Complex<N> complex(std::move(points), std::span<const CellType>(), {});
   complex.cells_ = std::make_shared<const CellGroups>(std::move(cells));
+  complex.signs_ = std::make_shared<const CellSigns>(find_cell_signs<N>(*complex.cells_, complex.points_));
   complex.is_layered_ = true;
   return complex;
 }
@@ -54,6 +55,7 @@ requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points
     : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
   detail::check_points<N>(points_);
   cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), type, corners));
+  signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }
 
 template <int N>
@@ -62,6 +64,7 @@ requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points
     : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
   detail::check_points<N>(points_);
   cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), types, corners));
+  signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }
 
 template <int N>
@@ -82,6 +85,7 @@ void Complex<N>::set_points(std::vector<Point> points) {
   check_count(points.size(), "points");
   detail::check_points<N>(points);
   points_ = std::move(points);
+  signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }
 
 template <int N>

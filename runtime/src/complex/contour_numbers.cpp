@@ -18,8 +18,8 @@ namespace {
 CellTables tables_of(const CellGroups& cells, const ExtractOptions& options) {
   CellTables tables;
   for (const CellGroup& group : cells.groups)
-    tables.of_group.push_back(&tables::cell_table(group.shape, options.triangulation));
-  tables.high_connected = options.ambiguity == Ambiguity::high;
+    tables.of_group.emplace_back(tables::cell_table(group.shape, options.triangulation),
+                                 options.ambiguity == Ambiguity::high);
   return tables;
 }
 
@@ -50,10 +50,9 @@ ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edge
         watch.add_to(stats.classify_seconds);
         return bits;
       }()),
-      blocks_(find_active_cells(cells, tables_, bits_, work_of(options, part_of(progress, 0.2, 0.5)))),
+      blocks_(find_active_cells(cells, tables_, bits_, edges, work_of(options, part_of(progress, 0.2, 0.5)))),
       crossings_(cells, tables_, blocks_, edges, values.size(), work_of(options, part_of(progress, 0.5, 0.8))),
       shared_(number_shared_points(tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
-      first_crossing_(sums_before(blocks_, &ActiveBlock::crossings)),
       first_shared_(sums_before(blocks_, &ActiveBlock::shared)),
       first_own_(sums_before(blocks_, &ActiveBlock::own)),
       first_simplex_(sums_before(blocks_, &ActiveBlock::simplices)),

@@ -4,12 +4,10 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "complex/cell_contour.hpp"
 #include "complex/shared_points.hpp"
 #include "tegl/extract.hpp"
 
@@ -29,8 +27,9 @@ class ContourNumbers {
   [[nodiscard]] const std::vector<ActiveBlock>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] const std::vector<EdgeEnds>& edge_ends() const noexcept { return crossings_.ends(); }
   [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
-  [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept { return *tables_.of_group[group]; }
-  [[nodiscard]] bool is_high_connected() const noexcept { return tables_.high_connected; }
+  [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept {
+    return tables_.of_group[group].table();
+  }
 
   /// The vertices of an active cell: by edge, then by added vertex.
   using CellVertices = std::array<Index, 256>;
@@ -47,7 +46,7 @@ class ContourNumbers {
   std::vector<ActiveBlock> blocks_;
   CrossingNumbers crossings_;
   SharedPoints shared_;
-  std::vector<std::uint64_t> first_crossing_, first_shared_, first_own_, first_simplex_;  ///< by block
+  std::vector<std::uint64_t> first_shared_, first_own_, first_simplex_;  ///< by block
   std::uint64_t own_base_ = 0;
   std::uint64_t vertex_count_ = 0;
 };
@@ -55,21 +54,18 @@ class ContourNumbers {
 template <class Visit>
 void ContourNumbers::for_each_cell(std::size_t block, const Visit& visit) const {
   const ActiveBlock& of = blocks_[block];
-  const tables::CellTable& table = this->table(of.group);
-  std::uint64_t crossing = first_crossing_[block], shared = first_shared_[block], own = first_own_[block],
-                simplex = first_simplex_[block];
+  const CellCases& cases = tables_.of_group[of.group];
+  std::uint64_t shared = first_shared_[block], own = first_own_[block], simplex = first_simplex_[block];
   CellVertices vertices{};
   for (const ActiveCell& cell : of.cells) {
-    const std::uint32_t crossed = crossed_edges(table, cell.signature);
-    const CellContour contour(table, cell.signature, tables_.high_connected);
+    const CellContour contour = cases[cell.signature];
     const tables::CellList& list = contour.list();
-    crossings_.of_cell(of, cell, crossed, crossing, vertices.data());
-    Index* added = vertices.data() + table.edge_count;
+    crossings_.of_cell(of, cell, vertices.data());
+    Index* added = vertices.data() + cases.table().edge_count;
     for (unsigned j = 0; j < list.shared_vertices; ++j)
       *added++ = static_cast<Index>(edge_ends().size() + shared_.numbers[shared++]);
     for (unsigned j = list.shared_vertices; j < list.added(); ++j) *added++ = static_cast<Index>(own_base_ + own++);
     visit(cell, simplex, contour, vertices);
-    crossing += static_cast<std::uint64_t>(std::popcount(crossed));
     simplex += list.simplex_count;
   }
 }

@@ -23,24 +23,28 @@ class CrossingNumbers {
                   const ComplexEdges* edges, std::size_t points, const WorkOptions& work);
 
   /// The crossed edges, by number.
-  [[nodiscard]] const std::vector<EdgeEnds>& ends() const noexcept { return ends_; }
+  [[nodiscard]] const std::vector<EdgeEnds>& ends() const noexcept {
+    return edges_ == nullptr ? sorted_.ends() : ends_;
+  }
 
-  /// The numbers of the points on the crossed edges of a cell, by edge. `first`: number of crossings in the cells of
-  /// all blocks before this one.
-  void of_cell(const ActiveBlock& block, const ActiveCell& cell, std::uint32_t crossed, std::uint64_t first,
-               Index* numbers) const noexcept;
+  /// The numbers of the points on the crossed edges of a cell, by edge.
+  void of_cell(const ActiveBlock& block, const ActiveCell& cell, Index* numbers) const noexcept;
 
  private:
-  void sort_crossings(const CellGroups& cells, const CellTables& tables, const std::vector<ActiveBlock>& blocks,
-                      std::size_t points, const WorkOptions& work);
-  void count_bits(const CellTables& tables, const std::vector<ActiveBlock>& blocks, const WorkOptions& work);
+  /// 64 edges: which are crossed, and how many before them are. Together, so that a look-up meets one cache line.
+  struct EdgeWord {
+    std::uint64_t crossed = 0;
+    std::uint64_t before = 0;
+  };
 
+  void count_bits(const std::vector<ActiveBlock>& blocks, const WorkOptions& work);
+
+  const CellGroups& cells_;
   const CellTables& tables_;
   const ComplexEdges* edges_;
-  std::vector<EdgeEnds> ends_;
-  std::vector<Index> numbers_;         ///< edges not known: by crossing, counted in each cell
-  std::vector<std::uint64_t> bits_;    ///< edges known: crossed edges
-  std::vector<std::uint64_t> before_;  ///< edges known: number of crossed edges before each word
+  SortedEdges sorted_;           ///< edges not known: the crossed ones
+  std::vector<EdgeEnds> ends_;   ///< edges known: the crossed ones
+  std::vector<EdgeWord> words_;  ///< edges known: which are crossed
 };
 
 /// Throws TooLarge if there are more vertices than Index can number.

@@ -8,8 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/LU>
-
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
@@ -48,6 +46,7 @@ class ComplexWriter {
                 const ExtractOptions& options, Contour<N, Real>& contour)
       : complex_(complex),
         cells_(ComplexAccess::cells(complex)),
+        signs_(ComplexAccess::signs(complex)),
         numbers_(numbers),
         isovalue_(isovalue),
         epsilon_(options.epsilon),
@@ -77,8 +76,9 @@ class ComplexWriter {
           numbers_.for_each_cell(b, [&](const ActiveCell& cell, std::uint64_t first, const CellContour& contour,
                                         const ContourNumbers::CellVertices& vertices) {
             const std::size_t group = numbers_.blocks()[b].group;
+            const bool is_inverted = (signs_[group][cell.cell >> 6] >> (cell.cell & 63u) & 1u) != 0;
+            write_simplices(is_inverted, first, contour, vertices);
             const Index* const corners = cells_.groups[group].cell(cell.cell);
-            write_simplices(numbers_.table(group), corners, first, contour, vertices);
             write_own_points(numbers_.table(group), corners, contour, vertices);
           });
         });
@@ -159,27 +159,10 @@ class ComplexWriter {
     }
   }
 
-  /// Whether a cell is oriented against the reference corners: the sign of the best affine map between the two. For
-  /// flat cells false.
-  [[nodiscard]] bool is_inverted(const tables::CellTable& table, const Index* corners) const noexcept {
-    Point centre{};  // of the reference corners
-    for (std::uint32_t v = 0; v < table.corner_count; ++v)
-      for (std::size_t i = 0; i < N; ++i)
-        centre[i] += table.corners[v * N + i] / static_cast<double>(table.corner_count);
-    Eigen::Matrix<double, N, N> map = Eigen::Matrix<double, N, N>::Zero();
-    const Point& origin = complex_.points()[corners[0]];
-    for (std::uint32_t v = 0; v < table.corner_count; ++v)
-      for (std::size_t i = 0; i < N; ++i)
-        for (std::size_t k = 0; k < N; ++k)
-          map(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) +=
-              (table.corners[v * N + i] - centre[i]) * (complex_.points()[corners[v]][k] - origin[k]);
-    return map.determinant() < 0;
-  }
-
-  void write_simplices(const tables::CellTable& table, const Index* corners, std::uint64_t first,
-                       const CellContour& contour, const ContourNumbers::CellVertices& vertices) const noexcept {
+  void write_simplices(bool is_inverted, std::uint64_t first, const CellContour& contour,
+                       const ContourNumbers::CellVertices& vertices) const noexcept {
     // the tables face high
-    const bool flip = (contour.reverses() != is_inverted(table, corners)) != descends_;
+    const bool flip = (contour.reverses() != is_inverted) != descends_;
     for (unsigned i = 0; i < contour.list().simplex_count; ++i) {
       auto& simplex = contour_.simplices[first + i];
       for (unsigned k = 0; k < N; ++k) simplex[k] = vertices[contour.vertex(i, k)];
@@ -223,6 +206,7 @@ class ComplexWriter {
 
   const Complex<N>& complex_;
   const CellGroups& cells_;
+  const CellSigns& signs_;
   const ContourNumbers& numbers_;
   double isovalue_, epsilon_;
   bool is_layered_, descends_;

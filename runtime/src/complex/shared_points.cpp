@@ -9,7 +9,6 @@
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
-#include "complex/cell_contour.hpp"
 
 namespace tegl::detail {
 
@@ -35,24 +34,20 @@ PolygonKey key_of(std::uint64_t edges, const Index* numbers) noexcept {
 SharedPoints number_shared_points(const CellTables& tables, const std::vector<ActiveBlock>& blocks,
                                   const CrossingNumbers& crossings, const WorkOptions& work) {
   SharedPoints points;
-  const auto first = sums_before(blocks, &ActiveBlock::shared),
-             first_crossing = sums_before(blocks, &ActiveBlock::crossings);
+  const auto first = sums_before(blocks, &ActiveBlock::shared);
   if (first.back() == 0) return points;
   // list
   std::vector<SharedUse> uses(first.back());
   for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5),
                  [&](std::size_t b, std::size_t, std::size_t) {
-                   const tables::CellTable& table = *tables.of_group[blocks[b].group];
-                   std::uint64_t place = first[b], crossing = first_crossing[b];
+                   const CellCases& cases = tables.of_group[blocks[b].group];
+                   std::uint64_t place = first[b];
                    std::array<Index, 32> numbers{};
                    for (const ActiveCell& cell : blocks[b].cells) {
-                     const std::uint32_t crossed = crossed_edges(table, cell.signature);
-                     const CellContour contour(table, cell.signature, tables.high_connected);
-                     if (contour.list().shared_vertices > 0)
-                       crossings.of_cell(blocks[b], cell, crossed, crossing, numbers.data());
+                     const CellContour contour = cases[cell.signature];
+                     if (contour.list().shared_vertices > 0) crossings.of_cell(blocks[b], cell, numbers.data());
                      for (unsigned j = 0; j < contour.list().shared_vertices; ++j, ++place)
-                       uses[place] = {key_of(contour.mask(j) >> table.corner_count, numbers.data()), place};
-                     crossing += static_cast<std::uint64_t>(std::popcount(crossed));
+                       uses[place] = {key_of(contour.mask(j) >> cases.table().corner_count, numbers.data()), place};
                    }
                  });
   // sort by the first vertex, then among equal ones by the others
