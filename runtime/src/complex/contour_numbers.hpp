@@ -56,11 +56,12 @@ void ContourNumbers::for_each_cell(std::size_t block, const Visit& visit) const 
   const ActiveBlock& of = blocks_[block];
   const CellCases& cases = tables_.of_group[of.group];
   std::uint64_t shared = first_shared_[block], own = first_own_[block], simplex = first_simplex_[block];
+  std::size_t crossing = 0;
   CellVertices vertices{};
   for (const ActiveCell& cell : of.cells) {
     const CellContour contour = cases[cell.signature];
     const tables::CellList& list = contour.list();
-    crossings_.of_cell(of, cell, vertices.data());
+    crossings_.of_cell(block, cell, crossing, vertices.data());
     Index* added = vertices.data() + cases.table().edge_count;
     for (unsigned j = 0; j < list.shared_vertices; ++j)
       *added++ = static_cast<Index>(edge_ends().size() + shared_.numbers[shared++]);

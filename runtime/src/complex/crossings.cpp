@@ -39,9 +39,9 @@ std::vector<std::uint64_t> sums_before(const std::vector<ActiveBlock>& blocks, s
 CrossingNumbers::CrossingNumbers(const CellGroups& cells, const CellTables& tables,
                                  const std::vector<ActiveBlock>& blocks, const ComplexEdges* edges, std::size_t points,
                                  const WorkOptions& work)
-    : cells_(cells), tables_(tables), edges_(edges) {
+    : cells_(cells), tables_(tables), blocks_(blocks), edges_(edges) {
   if (edges != nullptr) {
-    count_bits(blocks, work);
+    count_bits(work);
     return;
   }
   sorted_ = SortedEdges(
@@ -60,17 +60,21 @@ CrossingNumbers::CrossingNumbers(const CellGroups& cells, const CellTables& tabl
   require_numbers(sorted_.ends().size());
 }
 
-void CrossingNumbers::count_bits(const std::vector<ActiveBlock>& blocks, const WorkOptions& work) {
+void CrossingNumbers::count_bits(const WorkOptions& work) {
   // set the bits of crossed edges
+  of_blocks_.resize(blocks_.size());
   words_.assign(block_count(edges_->ends.size(), 64), {});
   const bool is_one = work.threads == 1;
-  for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.7),
+  for_each_block(blocks_.size(), 1, work.threads, part_of(work.progress, 0.0, 0.7),
                  [&](std::size_t b, std::size_t, std::size_t) {
-                   const CellCases& cases = tables_.of_group[blocks[b].group];
-                   const Index* const of_cells = edges_->of_cells[blocks[b].group].data();
-                   for (const ActiveCell& cell : blocks[b].cells)
+                   const CellCases& cases = tables_.of_group[blocks_[b].group];
+                   const Index* const of_cells = edges_->of_cells[blocks_[b].group].data();
+                   std::vector<Index>& crossed = of_blocks_[b];
+                   crossed.reserve(4 * blocks_[b].cells.size());
+                   for (const ActiveCell& cell : blocks_[b].cells)
                      cases.for_each_crossed(cell.signature, [&](unsigned e) {
                        const Index edge = of_cells[std::size_t{cell.cell} * cases.table().edge_count + e];
+                       crossed.push_back(edge);
                        const std::uint64_t bit = std::uint64_t{1} << (edge & 63u);
                        if (is_one) {
                          words_[edge >> 6].crossed |= bit;
@@ -99,22 +103,24 @@ void CrossingNumbers::count_bits(const std::vector<ActiveBlock>& blocks, const W
   });
 }
 
-void CrossingNumbers::of_cell(const ActiveBlock& block, const ActiveCell& cell, Index* numbers) const noexcept {
-  const CellCases& cases = tables_.of_group[block.group];
+void CrossingNumbers::of_cell(std::size_t b, const ActiveCell& cell, std::size_t& crossing,
+                              Index* numbers) const noexcept {
+  const CellCases& cases = tables_.of_group[blocks_[b].group];
   if (edges_ == nullptr) {
-    const Index* const corners = cells_.groups[block.group].cell(cell.cell);
+    const Index* const corners = cells_.groups[blocks_[b].group].cell(cell.cell);
     const std::uint8_t* const ends = cases.table().edges;
     cases.for_each_crossed(cell.signature, [&](unsigned e) {
       numbers[e] = static_cast<Index>(sorted_.number(corners[ends[2 * e]], corners[ends[2 * e + 1]]));
     });
     return;
   }
-  const Index* const edges = edges_->of_cells[block.group].data() + std::size_t{cell.cell} * cases.table().edge_count;
+  const Index* edges = of_blocks_[b].data() + crossing;
   cases.for_each_crossed(cell.signature, [&](unsigned e) {
-    const Index edge = edges[e];
+    const Index edge = *edges++;
     const EdgeWord& word = words_[edge >> 6];
     numbers[e] = static_cast<Index>(word.before + bit_count(word.crossed & ((std::uint64_t{1} << (edge & 63u)) - 1)));
   });
+  crossing = static_cast<std::size_t>(edges - of_blocks_[b].data());
 }
 
 }  // namespace tegl::detail

@@ -27,8 +27,9 @@ class CrossingNumbers {
     return edges_ == nullptr ? sorted_.ends() : ends_;
   }
 
-  /// The numbers of the points on the crossed edges of a cell, by edge.
-  void of_cell(const ActiveBlock& block, const ActiveCell& cell, Index* numbers) const noexcept;
+  /// The numbers of the points on the crossed edges of a cell of block `b`, by edge. `crossing`: number of crossings in
+  /// the block's cells before, 0 for the first; increased by those of this cell.
+  void of_cell(std::size_t b, const ActiveCell& cell, std::size_t& crossing, Index* numbers) const noexcept;
 
  private:
   /// 64 edges: which are crossed, and how many before them are. Together, so that a look-up meets one cache line.
@@ -37,13 +38,16 @@ class CrossingNumbers {
     std::uint64_t before = 0;
   };
 
-  void count_bits(const std::vector<ActiveBlock>& blocks, const WorkOptions& work);
+  void count_bits(const WorkOptions& work);
 
   const CellGroups& cells_;
   const CellTables& tables_;
+  const std::vector<ActiveBlock>& blocks_;
   const ComplexEdges* edges_;
-  SortedEdges sorted_;           ///< edges not known: the crossed ones
-  std::vector<EdgeEnds> ends_;   ///< edges known: the crossed ones
+  SortedEdges sorted_;          ///< edges not known: the crossed ones
+  std::vector<EdgeEnds> ends_;  ///< edges known: the crossed ones
+  /// edges known: the crossed ones of each block's cells, so that the numbers of all edges are read once only
+  std::vector<std::vector<Index>> of_blocks_;
   std::vector<EdgeWord> words_;  ///< edges known: which are crossed
 };
 

@@ -42,10 +42,11 @@ SharedPoints number_shared_points(const CellTables& tables, const std::vector<Ac
                  [&](std::size_t b, std::size_t, std::size_t) {
                    const CellCases& cases = tables.of_group[blocks[b].group];
                    std::uint64_t place = first[b];
+                   std::size_t crossing = 0;
                    std::array<Index, 32> numbers{};
                    for (const ActiveCell& cell : blocks[b].cells) {
                      const CellContour contour = cases[cell.signature];
-                     if (contour.list().shared_vertices > 0) crossings.of_cell(blocks[b], cell, numbers.data());
+                     crossings.of_cell(b, cell, crossing, numbers.data());
                      for (unsigned j = 0; j < contour.list().shared_vertices; ++j, ++place)
                        uses[place] = {key_of(contour.mask(j) >> cases.table().corner_count, numbers.data()), place};
                    }
