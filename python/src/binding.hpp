@@ -192,5 +192,6 @@ void bind_track(py::module_& m);
 void bind_index(py::module_& m);
 void bind_files(py::module_& m);
 void bind_marching_cubes(py::module_& m);
+void bind_mesh(py::module_& m);
 
 }  // namespace tegl::python

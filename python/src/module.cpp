@@ -148,4 +148,5 @@ PYBIND11_MODULE(_tegl, m) {
   bind_index(m);
   bind_files(m);
   bind_marching_cubes(m);
+  bind_mesh(m);
 }

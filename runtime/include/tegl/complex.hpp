@@ -87,6 +87,11 @@ class Complex {
     check_count(values.size(), "values");
     values_.assign(values.begin(), values.end());
   }
+  /// The same for a vector.
+  template <Value T>
+  void set_values(const std::vector<T>& values) {
+    set_values(std::span<const T>(values));
+  }
   /// The same for a vector of doubles, which is moved.
   void set_values(std::vector<double> values) {
     check_count(values.size(), "values");
@@ -98,8 +103,8 @@ class Complex {
 
   /// Finds and keeps the edges of all cells, sorted, and the numbers of each cell's edges. Later extractions then
   /// number vertices by counting bits and do not sort: worth it for several isovalues, or for values at several times.
-  /// The contours do not change. O(C) time, 4 bytes for each edge of each cell and 8 per edge of the complex. Errors:
-  /// TooLarge (2^32 edges or more), Cancelled.
+  /// The contours do not change. O(C) time, 4 bytes for each edge of each cell, 8 per edge of the complex, and a few
+  /// for each 64 cells. Errors: TooLarge (2^32 edges or more), Cancelled.
   void find_edges(const WorkOptions& work = {});
   /// Number of edges of the complex, or 0 before find_edges.
   [[nodiscard]] std::size_t edge_count() const noexcept;
@@ -119,10 +124,10 @@ class Complex {
 /// The complex that a complex sweeps over time, for its contour in space and time: every cell x every interval between
 /// two times is a prism. Point p at time k is point k * #P + p, with its time as the last coordinate. `times`: T
 /// ascending values; `values`: T x #P, row = time, NaN: missing; `points`: T x #P, row = time, if the points move, or
-/// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (both barycentric); at
-/// every other time, too, it is closed away from the border. N = 2 or 3. Errors: InvalidArgument (fewer than 2 times;
-/// times not finite or not ascending; a wrong number of values or points; a coordinate that is not finite), TooLarge.
-/// O(T (P + C)) time and memory.
+/// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (both barycentric), if
+/// no value is missing; at every other time, too, it is closed away from the border. N = 2 or 3. Errors:
+/// InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of values or points; a
+/// coordinate that is not finite), TooLarge. O(T (P + C)) time and memory.
 template <int N>
 requires DimensionBetween<N, 2, 3>
 [[nodiscard]] Complex<N + 1> in_time(const Complex<N>& complex, std::span<const double> times,
@@ -148,9 +153,9 @@ requires DimensionBetween<N, 2, 4>
 /// Options: triangulation (4D: always barycentric), ambiguity low or high (neighbouring cells of any types agree, as
 /// the choice depends on the common face alone), direction, epsilon, work. The result does not depend on the number of
 /// threads. Errors: InvalidIsovalue; InvalidArgument (epsilon, another ambiguity, close, normals: these are for
-/// images); TooLarge (2^32 vertices or more); Cancelled. O(C + S log S) time for S simplices, without the logarithm
-/// after find_edges. Memory beside the contour: 2 bits per point and about 12 bytes for each edge of each active cell.
-/// Thread-safe for several extractions from one complex.
+/// images); TooLarge (2^32 vertices or more); Cancelled. O(C + P + S) time for S simplices and P points. Memory beside
+/// the contour: 2 bits per point, 6 bytes per active cell and, before find_edges, 16 bytes per point and 4 bytes for
+/// each crossed edge of each active cell. Thread-safe for several extractions from one complex.
 template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract(const Complex<N>& complex, double isovalue, const ExtractOptions& options = {}) {

@@ -301,7 +301,7 @@ TEST(Complex, AllValueTypesGiveTheSameContour) {
   EXPECT_FALSE(first.simplices.empty());
   const auto expect_same = [&]<class T>(T) {
     const std::vector<T> values(bytes.begin(), bytes.end());
-    complex.set_values<T>(values);
+    complex.set_values(values);
     EXPECT_TRUE(first.vertices == extract(complex, 49.5).vertices);
   };
   expect_same(std::int8_t{}), expect_same(std::uint16_t{}), expect_same(std::int16_t{}), expect_same(std::int32_t{});

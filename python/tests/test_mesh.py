@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contours of meshes."""
+
+import itertools
+
+import numpy as np
+import pytest
+import tegl
+
+
+def grid(n, ndim=3):
+    """Points of a grid in [-1, 1], axis 0 fastest, and its cells in the order of pixels and voxels."""
+    axes = np.meshgrid(*[np.linspace(-1, 1, n)] * ndim, indexing="ij")
+    points = np.stack([axis.ravel() for axis in axes[::-1]], axis=1)
+    base = np.arange(n**ndim).reshape([n] * ndim)[(slice(0, -1),) * ndim].ravel()
+    steps = [sum(n**a for a in range(ndim) if v >> a & 1) for v in range(2**ndim)]
+    return points, base[:, None] + np.array(steps)
+
+
+def tetrahedra(n):
+    points, cubes = grid(n)
+    paths = [[0, 1 << a, 1 << a | 1 << b, 7] for a, b, _ in itertools.permutations(range(3))]
+    return points, np.concatenate([cubes[:, path] for path in paths])
+
+
+def ball(points):
+    return 0.7 - np.linalg.norm(points, axis=-1)
+
+
+def test_a_tetrahedral_mesh_has_a_sphere():
+    points, cells = tetrahedra(21)
+    contour = tegl.contour_mesh(points, cells, ball(points), 0.0)
+    report = contour.check()
+    assert report.is_closed and report.euler == 2 and report.components == 1
+    assert contour.vertices.dtype == np.float32 and contour.isovalue == 0.0
+    assert contour.measure().content == pytest.approx(4 / 3 * np.pi * 0.343, rel=0.02)
+    assert np.abs(ball(contour.vertices)).max() < 0.01
+
+
+def test_voxels_have_the_contour_of_the_array():
+    points, cells = grid(12)
+    values = np.random.default_rng(1).random(12**3)
+    mesh = tegl.contour_mesh(points, {"voxel": cells}, values, 0.5, dtype=np.float64)
+    array = tegl.contour(values.reshape(12, 12, 12), 0.5, origin=-1.0, spacing=2 / 11, dtype=np.float64)
+    assert len(mesh.simplices) == len(array.simplices) and len(mesh.vertices) == len(array.vertices)
+    ours, theirs = mesh.vertices, array.vertices[:, ::-1]
+    order = [np.lexsort(np.round(v, 9).T) for v in (ours, theirs)]
+    assert np.allclose(ours[order[0]], theirs[order[1]])
+
+
+def test_types_may_be_mixed_and_named_as_in_meshio():
+    points, cells = grid(9)
+    around = cells[:, [0, 1, 3, 2, 4, 5, 7, 6]]
+    half = len(cells) // 2  # the lower layers hexahedra, the upper ones wedges: quadrilaterals do not meet triangles
+    upper = cells[half:]
+    wedges = np.concatenate([upper[:, [0, 4, 1, 2, 6, 3]], upper[:, [1, 4, 5, 3, 6, 7]]])
+    values = ball(points)
+    expected = tegl.contour_mesh(points, around, values, 0.0).check()
+    for blocks in ([("hexahedron", around[:half]), ("wedge", wedges)], {"hexahedron": around[:half], "wedge": wedges}):
+        report = tegl.contour_mesh(points, blocks, values, 0.0).check()
+        assert report.is_closed and report.euler == expected.euler == 2
+    types = [type("CellBlock", (), {"type": name, "data": data}) for name, data in blocks.items()]
+    assert tegl.contour_mesh(points, types, values, 0.0).check().is_closed
+
+
+def test_two_dimensional_meshes():
+    points, cells = grid(30, 2)
+    values = 0.7 - np.linalg.norm(points, axis=1)
+    for blocks in (cells[:, [0, 1, 3, 2]], np.concatenate([cells[:, [0, 1, 3]], cells[:, [0, 2, 3]]])):
+        contour = tegl.contour_mesh(points, blocks, values, 0.0)
+        assert contour.check().is_closed
+        assert contour.measure().size == pytest.approx(2 * np.pi * 0.7, rel=0.01)
+
+
+def test_values_at_several_times_are_cut_at_any_time():
+    points, cells = tetrahedra(13)
+    times = [0.0, 0.5, 2.0]
+    values = np.stack([ball(points) - 0.1 * t for t in times])
+    contour = tegl.contour_mesh(points, cells, values, 0.0, times=times)
+    assert contour.vertices.shape[1] == 4
+    for t in (0.0, 0.2, 0.5, 1.7):
+        cut = contour.slice(t)
+        assert cut.check().is_closed
+        assert cut.measure().content == pytest.approx(4 / 3 * np.pi * (0.7 - 0.1 * t)**3, rel=0.06)
+    step = tegl.contour_mesh(points, cells, values[1], 0.0, triangulation="barycentric")
+    assert len(contour.slice(0.5).simplices) == len(step.simplices)
+
+
+def test_points_may_move():
+    points, cells = tetrahedra(11)
+    times = [0.0, 1.0]
+    moving = np.stack([points + [2 * t, 0, 0] for t in times])
+    contour = tegl.contour_mesh(moving, cells, np.stack([ball(points)] * 2), 0.0, times=times)
+    assert contour.slice(0.5).measure().centroid[0] == pytest.approx(1.0, abs=0.02)
+
+
+def test_missing_values_leave_a_boundary():
+    points, cells = tetrahedra(11)
+    values = ball(points)
+    values[points[:, 0] > 0.3] = np.nan
+    report = tegl.contour_mesh(points, cells, values, 0.0).check()
+    assert report.boundary_simplices > 0 and report.is_manifold
+
+
+def test_options_and_progress_are_those_of_contour():
+    points, cells = tetrahedra(11)
+    values = ball(points)
+    down = tegl.contour_mesh(points, cells, values, 0.0)
+    up = tegl.contour_mesh(points, cells, values, 0.0, direction="ascent", threads=1)
+    assert down.measure().content == pytest.approx(-up.measure().content)
+    heard = []
+    tegl.contour_mesh(points, cells, values, 0.0, progress=heard.append)
+    assert heard == sorted(heard) and heard[-1] == 1.0
+    with pytest.raises(tegl.Cancelled):
+        tegl.contour_mesh(points, cells, values, 0.0, progress=lambda _: False)
+
+
+@pytest.mark.parametrize("change, error, text", [
+    (dict(cells=[[0, 1, 2, 99999]]), ValueError, "cell 0: corner 3 is point 99999; expected a number below 27"),
+    (dict(cells=[[0, 1, 2, -1]]), ValueError, "from -1 to 2"),
+    (dict(cells=[[0, 1, 2]]), ValueError, "cells have 3 corners; expected in 3 dimensions: 4 (tetra)"),
+    (dict(cells=[[0.0, 1, 2, 3]]), TypeError, "float64; expected integers"),
+    (dict(cells={"tetra10": [[0, 1, 2, 3]]}), ValueError, "'tetra10'; expected one of 'triangle'"),
+    (dict(cells={"wedge": [[0, 1, 2, 3]]}), ValueError, "'wedge' have 4 corners; expected 6"),
+    (dict(cells={"triangle": [[0, 1, 2]]}), ValueError, "cell 0: type 5 (triangle); expected a 3D cell"),
+    (dict(points=np.zeros((27, 5))), ValueError, "5 coordinates; expected 2 to 4"),
+    (dict(points=np.full((27, 3), np.nan)), ValueError, "point 0"),
+    (dict(values=np.zeros(26)), ValueError, "values have the shape (26,); expected (27,)"),
+    (dict(times=[0.0, 1.0]), ValueError, "values have the shape (27,); expected (2, 27)"),
+    (dict(times=[1.0, 0.0], values=np.zeros((2, 27))), ValueError, "expected ascending times"),
+    (dict(level=7.0), ValueError, "level is 7.0; expected a level above"),
+    (dict(ambiguity="mean"), ValueError, "low or high"),
+    (dict(dtype="int32"), ValueError, "expected float32 or float64"),
+])
+def test_bad_arguments_are_errors_that_name_them(change, error, text):
+    points, cells = tetrahedra(3)
+    arguments = dict(points=points, cells=cells, values=ball(points), level=0.0) | change
+    with pytest.raises(error) as raised:
+        tegl.contour_mesh(**arguments)
+    assert text in str(raised.value)
