@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stars as linked lists of corners, the link condition, and edge contraction.
+// Stars as parts of one array, the link condition, and edge contraction.
 #include "simplify/collapsible_complex.hpp"
 
 #include <algorithm>
@@ -13,8 +13,6 @@
 
 namespace tegl::detail {
 namespace {
-
-constexpr std::size_t kSimplicesPerReport = std::size_t{1} << 14;  ///< simplices between two progress reports
 
 constexpr std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -36,8 +34,7 @@ CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, st
     : simplices_(simplices.begin(), simplices.end()),
       border_faces_(simplices.size(), 0),
       border_vertex_(vertex_count, false),
-      first_(vertex_count, kNone),
-      next_(simplices.size() * N, kNone),
+      star_of_(vertex_count),
       alive_(simplices.size()),
       in_u_(vertex_count + 1, 0),
       in_v_(vertex_count + 1, 0),
@@ -45,65 +42,98 @@ CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, st
   if (simplices.size() > kNone / N)
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
-  for (std::size_t s = simplices_.size(); s-- > 0;) {
-    if (s % kSimplicesPerReport == 0)
-      tell(progress, 0.3 * (1.0 - static_cast<double>(s) / static_cast<double>(simplices_.size())));
-    for (int i = 0; i < N; ++i) {
-      const Index v = simplices_[s][i];
-      if (v >= vertex_count)
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("simplex {} has the vertex {}; expected one of {}", s, v, vertex_count));
-      if (std::count(simplices_[s].begin(), simplices_[s].end(), v) != 1)
-        throw Error(ErrorCode::UnsupportedData,
-                    fmt::format("simplex {} has the vertex {} twice; expected different vertices", s, v));
-      next_[s * N + i] = first_[v];
-      first_[v] = static_cast<Index>(s * N + i);
-    }
-  }
+  fill_stars(vertex_count, part_of(progress, 0.0, 0.3));
   find_border(part_of(progress, 0.3, 1.0));
 }
 
 template <int N>
-void CollapsibleComplex<N>::find_border(const Progress& progress) {
-  for (Index s = 0; s < simplices_.size(); ++s) {
-    if (s % kSimplicesPerReport == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
-    for (int omitted = 0; omitted < N; ++omitted) {
-      // Every simplex with this face is in the star of each of its vertices; any one of them will do.
-      const Index at = simplices_[s][omitted == 0 ? 1 : 0];
-      int others = 0;
-      for (Index c = first_[at]; c != kNone; c = next_[c]) {
-        const Simplex& other = simplices_[c / N];
-        if (c / N == s) continue;
-        bool shares = true;
-        for (int i = 0; i < N && shares; ++i) shares = i == omitted || contains(other, simplices_[s][i]);
-        others += shares;
+void CollapsibleComplex<N>::fill_stars(std::size_t vertex_count, const Progress& progress) {
+  in_parts(simplices_.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s)
+      for (int i = 0; i < N; ++i) {
+        const Index v = simplices_[s][i];
+        if (v >= vertex_count)
+          throw Error(ErrorCode::InvalidArgument,
+                      fmt::format("simplex {} has the vertex {}; expected one of {}", s, v, vertex_count));
+        if (std::count(simplices_[s].begin(), simplices_[s].end(), v) != 1)
+          throw Error(ErrorCode::UnsupportedData,
+                      fmt::format("simplex {} has the vertex {} twice; expected different vertices", s, v));
+        ++star_of_[v].capacity;
       }
-      if (others > 1)
-        throw Error(
-            ErrorCode::UnsupportedData,
-            fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold", s, others + 1));
-      if (others == 1) continue;
-      border_faces_[s] |= static_cast<std::uint8_t>(1u << omitted);
-      for (int i = 0; i < N; ++i)
-        if (i != omitted) border_vertex_[simplices_[s][i]] = true;
-    }
+  });
+  std::size_t first = 0;
+  for (Star& star : star_of_) {
+    star.first = first;
+    first += star.capacity;
   }
+  stars_.reserve(2 * first);  // contractions append larger stars
+  stars_.resize(first);
+  for (Index s = 0; s < simplices_.size(); ++s)
+    for (const Index v : simplices_[s]) stars_[star_of_[v].first + star_of_[v].size++] = s;
+}
+
+/// Each face belongs to its lowest vertex, so all simplices with the face are in that vertex's star.
+template <int N>
+void CollapsibleComplex<N>::find_border(const Progress& progress) {
+  struct FaceOfSimplex {
+    std::uint64_t others;  ///< the other vertices of the face
+    Index simplex;
+    int omitted;
+  };
+  std::vector<FaceOfSimplex> faces;
+  const auto gather = [&](Index v) {
+    faces.clear();
+    for (const Index s : clean_star(v))
+      for (int omitted = 0; omitted < N; ++omitted) {
+        if (simplices_[s][omitted] == v) continue;
+        std::uint64_t low = 0, high = 0;
+        bool is_lowest = true;
+        for (int i = 0; i < N; ++i) {
+          const Index a = simplices_[s][i];
+          if (i == omitted || a == v) continue;
+          is_lowest = is_lowest && a > v;
+          low = high == 0 ? a : std::min<std::uint64_t>(high, a);
+          high = std::max<std::uint64_t>(high, a);
+        }
+        if (is_lowest) faces.push_back({low << 32 | high, s, omitted});
+      }
+    std::sort(faces.begin(), faces.end(), [](const FaceOfSimplex& a, const FaceOfSimplex& b) {
+      return a.others != b.others ? a.others < b.others : a.simplex < b.simplex;
+    });
+  };
+  const auto mark_border = [&](const FaceOfSimplex& face) {
+    border_faces_[face.simplex] |= static_cast<std::uint8_t>(1u << face.omitted);
+    for (int i = 0; i < N; ++i)
+      if (i != face.omitted) border_vertex_[simplices_[face.simplex][i]] = true;
+  };
+  in_parts(star_of_.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      gather(static_cast<Index>(v));
+      for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
+        while (j < faces.size() && faces[j].others == faces[i].others) ++j;
+        if (j - i > 2)
+          throw Error(ErrorCode::UnsupportedData,
+                      fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold",
+                                  faces[i].simplex, j - i));
+        if (j - i == 1) mark_border(faces[i]);
+      }
+    }
+  });
+}
+
+template <int N>
+std::span<const Index> CollapsibleComplex<N>::clean_star(Index v) {
+  Star& star = star_of_[v];
+  Index* const first = stars_.data() + star.first;
+  star.size = static_cast<Index>(
+      std::remove_if(first, first + star.size, [&](Index s) { return !is_alive(s); }) - first);
+  return {first, star.size};
 }
 
 template <int N>
 void CollapsibleComplex<N>::star(Index v, std::vector<Index>& result) {
-  result.clear();
-  // Removed simplices are unlinked during the traversal.
-  Index* link = &first_[v];
-  while (*link != kNone) {
-    const Index s = *link / N;
-    if (is_alive(s)) {
-      result.push_back(s);
-      link = &next_[*link];
-    } else {
-      *link = next_[*link];
-    }
-  }
+  const std::span<const Index> simplices = clean_star(v);
+  result.assign(simplices.begin(), simplices.end());
 }
 
 template <int N>
@@ -111,34 +141,46 @@ void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
   result.clear();
   ++round_;
   in_u_[v] = round_;
-  for (Index c = first_[v]; c != kNone; c = next_[c]) {
-    if (!is_alive(c / N)) continue;
-    for (const Index a : simplices_[c / N])
+  for (const Index s : clean_star(v))
+    for (const Index a : simplices_[s])
       if (in_u_[a] != round_) {
         in_u_[a] = round_;
         result.push_back(a);
       }
+}
+
+/// The star of u after v was merged into it, in the part of either vertex if it is large enough.
+template <int N>
+void CollapsibleComplex<N>::set_star(Index u, Index v, const Edge& edge) {
+  const auto size = static_cast<Index>(edge.only_u.size() + edge.only_v.size());
+  Star& star = star_of_[u];
+  if (star.capacity < size && star_of_[v].capacity > star.capacity) std::swap(star, star_of_[v]);
+  if (star.capacity < size) {
+    star.first = stars_.size();
+    star.capacity = size;
+    stars_.resize(stars_.size() + size);
   }
+  star.size = size;
+  const auto first = stars_.begin() + static_cast<std::ptrdiff_t>(star.first);
+  std::copy(edge.only_v.begin(), edge.only_v.end(), std::copy(edge.only_u.begin(), edge.only_u.end(), first));
+  star_of_[v].size = 0;
 }
 
 template <int N>
 void CollapsibleComplex<N>::load(Index u, Index v, Edge& edge) {
   edge.u = u;
   edge.v = v;
-  star(u, edge.only_u);
-  star(v, edge.only_v);
+  edge.only_u.clear();
+  edge.only_v.clear();
   edge.both.clear();
-  std::erase_if(edge.only_v, [&](Index s) { return contains(simplices_[s], u); });
-  std::erase_if(edge.only_u, [&](Index s) {
-    const bool shared = contains(simplices_[s], v);
-    if (shared) edge.both.push_back(s);
-    return shared;
-  });
+  for (const Index s : clean_star(u)) (contains(simplices_[s], v) ? edge.both : edge.only_u).push_back(s);
+  for (const Index s : clean_star(v))
+    if (!contains(simplices_[s], u)) edge.only_v.push_back(s);
 }
 
 template <int N>
 void CollapsibleComplex<N>::gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces) {
-  const auto cone = static_cast<Index>(first_.size());
+  const auto cone = static_cast<Index>(star_of_.size());
   for (const Index s : star) {
     const Simplex& simplex = simplices_[s];
     Face face{};
@@ -160,7 +202,7 @@ void CollapsibleComplex<N>::gather_link(std::span<const Index> star, Index v, st
 template <int N>
 void CollapsibleComplex<N>::gather_edge_link(const Edge& edge) {
   link_edge_.clear();
-  const auto cone = static_cast<Index>(first_.size());
+  const auto cone = static_cast<Index>(star_of_.size());
   for (const Index s : edge.both) {
     const Simplex& simplex = simplices_[s];
     const int i = position(simplex, edge.u), j = position(simplex, edge.v);
@@ -283,14 +325,9 @@ void CollapsibleComplex<N>::contract(const Edge& edge) {
   for (const Index s : edge.both) simplices_[s].fill(kNone);
   alive_ -= edge.both.size();
   // attach the other simplices of v to u
-  for (const Index s : edge.only_v) {
-    const auto i = static_cast<std::size_t>(position(simplices_[s], edge.v));
-    simplices_[s][i] = edge.u;
-    const auto corner = static_cast<Index>(s * std::size_t{N} + i);
-    next_[corner] = first_[edge.u];
-    first_[edge.u] = corner;
-  }
-  first_[edge.v] = kNone;
+  for (const Index s : edge.only_v)
+    simplices_[s][static_cast<std::size_t>(position(simplices_[s], edge.v))] = edge.u;
+  set_star(edge.u, edge.v, edge);
   if (border_vertex_[edge.v]) border_vertex_[edge.u] = true;
 }
 

@@ -63,6 +63,7 @@ class CollapsibleComplex {
   /// Vertices of a face of a link, ascending; shorter faces fill only the first ones.
   using Face = std::array<Index, N - 1>;
 
+  void fill_stars(std::size_t vertex_count, const Progress& progress);
   void find_border(const Progress& progress);
   /// Appends the link of `v` in the given simplices of its star, with the cone over the border.
   void gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces);
@@ -77,8 +78,18 @@ class CollapsibleComplex {
   std::vector<Simplex> simplices_;
   std::vector<std::uint8_t> border_faces_;
   std::vector<bool> border_vertex_;
-  std::vector<Index> first_;  ///< by vertex: its first corner, N * simplex + position
-  std::vector<Index> next_;   ///< by corner: the next corner of the same vertex
+  /// A part of stars_. The first `size` of `capacity` entries are used.
+  struct Star {
+    std::size_t first = 0;
+    Index size = 0;
+    Index capacity = 0;
+  };
+  /// The simplices of the star, without those removed since.
+  [[nodiscard]] std::span<const Index> clean_star(Index v);
+  void set_star(Index u, Index v, const Edge& edge);
+
+  std::vector<Star> star_of_;  ///< by vertex
+  std::vector<Index> stars_;   ///< simplices, vertex by vertex
   std::size_t alive_ = 0;
 
   // Scratch. A mark is the round in which it was set.

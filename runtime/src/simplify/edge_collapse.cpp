@@ -245,65 +245,82 @@ bool EdgeCollapse<N>::within_tolerance(Index u, Index v, const CollapseTarget<N>
 }
 
 template <int N>
-double EdgeCollapse<N>::worst_shape(const Edge& edge) const {
-  double worst = std::numeric_limits<double>::infinity();
-  for (const auto* part : {&edge.only_u, &edge.only_v, &edge.both})
-    for (const Index s : *part) {
-      const CornersN<N> at = corners(s);
-      worst = std::min(worst, shape_of_simplex<N>(at, norm(normal_of<N>(at))));
-    }
-  return worst;
+void EdgeCollapse<N>::load(Index u, Index v) {
+  if (loaded_ && edge_.u == u && edge_.v == v) return;
+  complex_.load(u, v, edge_);
+  loaded_ = true;
+  contractible_.reset();
+  around_.clear();
+  worst_shape_.reset();
 }
 
 template <int N>
-PointN<N> EdgeCollapse<N>::normal_around(const Edge& edge) const {
-  PointN<N> sum{};
-  for (const auto* part : {&edge.only_u, &edge.only_v, &edge.both})
-    for (const Index s : *part) {
-      const PointN<N> normal = normal_of<N>(corners(s));
-      for (int a = 0; a < N; ++a) sum[a] += normal[a];
+void EdgeCollapse<N>::measure_around() {
+  if (!around_.empty()) return;
+  const auto add = [&](std::span<const Index> simplices, Index moving) {
+    for (const Index s : simplices) {
+      Around& one = around_.emplace_back();
+      one.corners = corners(s);
+      one.normal = normal_of<N>(one.corners);
+      one.length = norm(one.normal);
+      one.shape = shape_of_simplex<N>(one.corners, one.length);
+      const auto& simplex = complex_.simplex(s);
+      one.moving = static_cast<int>(std::find(simplex.begin(), simplex.end(), moving) - simplex.begin());
     }
+  };
+  add(edge_.only_u, edge_.u);
+  add(edge_.only_v, edge_.v);
+  add(edge_.both, edge_.u);
+}
+
+template <int N>
+double EdgeCollapse<N>::worst_shape() {
+  if (!worst_shape_) {
+    worst_shape_ = std::numeric_limits<double>::infinity();
+    for (const Around& one : around_) worst_shape_ = std::min(*worst_shape_, one.shape);
+  }
+  return *worst_shape_;
+}
+
+template <int N>
+PointN<N> EdgeCollapse<N>::normal_around() const {
+  PointN<N> sum{};
+  for (const Around& one : around_)
+    for (int a = 0; a < N; ++a) sum[a] += one.normal[a];
   return sum;
 }
 
-/// Whether simplex s is neither flipped nor degraded when its vertex `moving` moves to `place`. `worst` caches
-/// worst_shape(edge).
+/// Whether a simplex is neither flipped nor degraded when its vertex moves to `place`.
 template <int N>
-bool EdgeCollapse<N>::keeps_shape(Index s, Index moving, const PointN<N>& place, const Edge& edge,
-                                  std::optional<double>& worst) const {
-  const CornersN<N> before = corners(s);
-  CornersN<N> after = before;
-  for (int i = 0; i < N; ++i)
-    if (complex_.simplex(s)[i] == moving) after[i] = place;
-  const PointN<N> old_normal = normal_of<N>(before), new_normal = normal_of<N>(after);
-  const double old_length = norm(old_normal), new_length = norm(new_normal);
-  const double old_shape = shape_of_simplex<N>(before, old_length);
-  const double new_shape = shape_of_simplex<N>(after, new_length);
+bool EdgeCollapse<N>::keeps_shape(const Around& before, const PointN<N>& place) {
+  CornersN<N> after = before.corners;
+  after[before.moving] = place;
+  const PointN<N> normal = normal_of<N>(after);
+  const double length = norm(normal);
+  const double shape = shape_of_simplex<N>(after, length);
   // a flat simplex may stay flat if it gets no flatter
-  const bool was_flat = old_shape <= kFlatShape;
-  if (new_shape <= kFlatShape) return was_flat && new_shape >= old_shape;
+  const bool was_flat = before.shape <= kFlatShape;
+  if (shape <= kFlatShape) return was_flat && shape >= before.shape;
   // orientation: against the mean normal if it was flat, else against its own
   if (was_flat) {
-    if (!(dot(new_normal, normal_around(edge)) > 0.0)) return false;
-  } else if (!(dot(new_normal, old_normal) > kLeastCosine * old_length * new_length)) {
+    if (!(dot(normal, normal_around()) > 0.0)) return false;
+  } else if (!(dot(normal, before.normal) > kLeastCosine * before.length * length)) {
     return false;
   }
   // shape: good, or no worse than the worst one around the edge
-  if (new_shape >= kGoodShape<N>) return true;
-  if (!worst) worst = worst_shape(edge);
-  return new_shape >= *worst;
+  return shape >= kGoodShape<N> || shape >= worst_shape();
 }
 
 template <int N>
-bool EdgeCollapse<N>::keeps_shapes(const Edge& edge, const PointN<N>& place) const {
-  std::optional<double> worst;
-  if (place != scaled_[edge.u])
-    for (const Index s : edge.only_u)
-      if (!keeps_shape(s, edge.u, place, edge, worst)) return false;
-  if (place != scaled_[edge.v])
-    for (const Index s : edge.only_v)
-      if (!keeps_shape(s, edge.v, place, edge, worst)) return false;
-  return true;
+bool EdgeCollapse<N>::keeps_shapes(const PointN<N>& place) {
+  measure_around();
+  const std::size_t of_u = edge_.only_u.size(), of_both = of_u + edge_.only_v.size();
+  const auto keep = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (!keeps_shape(around_[i], place)) return false;
+    return true;
+  };
+  return (place == scaled_[edge_.u] || keep(0, of_u)) && (place == scaled_[edge_.v] || keep(of_u, of_both));
 }
 
 template <int N>
@@ -325,8 +342,9 @@ typename MovingSimplices<N>::Contraction EdgeCollapse<N>::contraction(const Poin
 /// Whether everything except the tolerance allows the contraction of edge_; the slowest test last.
 template <int N>
 bool EdgeCollapse<N>::is_possible(const CollapseTarget<N>& target) {
-  return !edge_.both.empty() && keeps_shapes(edge_, to_scaled(target.at)) && complex_.is_contractible(edge_) &&
-         (!embedded_ || embedded_->stay_apart(contraction(target.at)));
+  if (edge_.both.empty() || contractible_ == false || !keeps_shapes(to_scaled(target.at))) return false;
+  if (!contractible_) contractible_ = complex_.is_contractible(edge_);
+  return *contractible_ && (!embedded_ || embedded_->stay_apart(contraction(target.at)));
 }
 
 template <int N>
@@ -335,8 +353,9 @@ bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& ta
     note_limit(u, v, target);
     return false;
   }
-  complex_.load(u, v, edge_);
+  load(u, v);
   if (!is_possible(target)) return false;
+  loaded_ = false;
   if (embedded_) embedded_->contract(contraction(target.at));
   complex_.contract(edge_);
   points_[u] = target.at;
@@ -354,7 +373,7 @@ bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& ta
 template <int N>
 void EdgeCollapse<N>::note_limit(Index u, Index v, const CollapseTarget<N>& target) {
   if (limited_) return;
-  complex_.load(u, v, edge_);
+  load(u, v);
   limited_ = is_possible(target);
 }
 

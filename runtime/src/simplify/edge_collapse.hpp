@@ -93,14 +93,24 @@ class EdgeCollapse {
  private:
   void add_quadrics(const Progress& progress);
   void add_border_quadrics(Index s, const CornersN<N>& corners, double weight);
+  /// Loads the edge, unless it is loaded already and nothing was contracted since.
+  void load(Index u, Index v);
   [[nodiscard]] bool is_possible(const CollapseTarget<N>& target);
   [[nodiscard]] typename MovingSimplices<N>::Contraction contraction(const PointN<N>& at) const;
   [[nodiscard]] bool within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const;
-  [[nodiscard]] bool keeps_shapes(const Edge& edge, const PointN<N>& scaled_place) const;
-  [[nodiscard]] bool keeps_shape(Index s, Index moving, const PointN<N>& place, const Edge& edge,
-                                 std::optional<double>& worst) const;
-  [[nodiscard]] double worst_shape(const Edge& edge) const;
-  [[nodiscard]] PointN<N> normal_around(const Edge& edge) const;
+  /// A simplex around the loaded edge, before the contraction.
+  struct Around {
+    CornersN<N> corners;
+    PointN<N> normal;
+    double length;  ///< of the normal
+    double shape;
+    int moving;  ///< position of the end of the edge
+  };
+  [[nodiscard]] bool keeps_shapes(const PointN<N>& place);
+  [[nodiscard]] bool keeps_shape(const Around& before, const PointN<N>& place);
+  void measure_around();
+  [[nodiscard]] double worst_shape();
+  [[nodiscard]] PointN<N> normal_around() const;
   [[nodiscard]] PointN<N> to_scaled(const PointN<N>& point) const;
   [[nodiscard]] PointN<N> from_scaled(const PointN<N>& point) const;
   [[nodiscard]] PointN<N> rounded(PointN<N> point) const;
@@ -122,7 +132,12 @@ class EdgeCollapse {
   bool single_precision_;
   bool limited_ = false;
   std::unique_ptr<MovingSimplices<N>> embedded_;  ///< in the contour's coordinates; null if intersections are allowed
+  // The loaded edge.
   Edge edge_;
+  bool loaded_ = false;
+  std::optional<bool> contractible_;  ///< whether the topology allows the contraction, once known
+  std::vector<Around> around_;        ///< only_u, only_v, both; empty until it is used
+  std::optional<double> worst_shape_;
 };
 
 extern template class EdgeCollapse<2>;

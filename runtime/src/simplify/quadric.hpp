@@ -14,9 +14,26 @@
 
 namespace tegl::detail {
 
-/// The solution x of a x = b for a symmetric positive definite matrix, by Cholesky decomposition.
+/// The solution x of a x = b for a symmetric positive definite matrix, whose lower triangle is given by rows: by the
+/// decomposition into L D L^T. Not finite for other matrices.
 template <int N>
-PointN<N> solve_positive(const std::array<double, N * N>& a, const PointN<N>& b);
+PointN<N> solve_positive(std::array<double, N*(N + 1) / 2> a, PointN<N> b) {
+  const auto at = [](int i, int j) { return i * (i + 1) / 2 + j; };
+  PointN<N> inverse;  // of D
+  for (int j = 0; j < N; ++j) {
+    inverse[j] = 1.0 / a[at(j, j)];
+    for (int i = j + 1; i < N; ++i) {
+      const double factor = a[at(i, j)] * inverse[j];
+      for (int k = j + 1; k <= i; ++k) a[at(i, k)] -= factor * a[at(k, j)];
+      b[i] -= factor * b[j];
+    }
+  }
+  for (int j = N - 1; j >= 0; --j) {
+    for (int i = j + 1; i < N; ++i) b[j] -= a[at(i, j)] * b[i];
+    b[j] *= inverse[j];
+  }
+  return b;
+}
 
 /// x -> sum of w (n.x - d)^2 over hyperplanes with unit normal n, offset d and weight w.
 template <int N>
@@ -59,19 +76,15 @@ class Quadric {
   /// Minimizes the function plus a small multiple of the squared distance from `near`. The second term makes the
   /// minimum unique where the surface is flat.
   [[nodiscard]] PointN<N> least_near(const PointN<N>& near) const {
-    std::array<double, N * N> a;
-    PointN<N> b;
     double trace = 0.0;
-    int k = 0;
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j <= i; ++j) a[i * N + j] = a[j * N + i] = matrix_[k++];
-      trace += a[i * N + i];
-    }
+    for (int i = 0; i < N; ++i) trace += matrix_[i * (i + 3) / 2];
     const double pull = kPull * trace;
     if (!(pull > 0.0)) return near;
+    std::array<double, N*(N + 1) / 2> a = matrix_;
+    PointN<N> b;
     for (int i = 0; i < N; ++i) {
       b[i] = vector_[i] + pull * near[i];
-      a[i * N + i] += pull;
+      a[i * (i + 3) / 2] += pull;
     }
     return solve_positive<N>(a, b);
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Priority queues of contraction candidates. Candidates near a contraction get a new key. Edges have no number to be
-// found by in their queue, so they are inserted again with a new stamp; entries with an old stamp are skipped.
+// found by in their queue, so they are inserted again with a new stamp; entries with an old stamp are skipped. Edges
+// with similar keys are taken in the order of their vertices (edge_buckets.hpp).
 //
 // Based on: M. Liversage, thesis, 1994, sections 8.3.8 to 8.3.14 (facets by curvature, vertices); G. Turk, Re-tiling
 // polygonal surfaces, 1992 (curvature); W. Schroeder, J. Zarge and W. Lorensen, Decimation of triangle meshes, 1992
@@ -12,13 +13,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <queue>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/keyed_queue.hpp"
+#include "simplify/edge_buckets.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -65,16 +65,6 @@ class ProgressReporter {
 
 // ---- edges by quadrics ----
 
-struct EdgeCandidate {
-  double key;
-  Index a;
-  Index b;
-  std::uint64_t stamp;
-  bool operator<(const EdgeCandidate& other) const {  // min-heap
-    return std::tie(other.key, other.a, other.b, other.stamp) < std::tie(key, a, b, stamp);
-  }
-};
-
 template <int N>
 class QuadricOrder {
  public:
@@ -90,12 +80,14 @@ class QuadricOrder {
     }
   }
   void empty() {
-    while (reporter_.continues(collapse_.complex().alive()) && !queue_.empty()) {
-      const EdgeCandidate next = queue_.top();
-      queue_.pop();
-      if (next.stamp != stamp(next.a, next.b) || !contract(next.a, next.b)) continue;
-      collapse_.complex().neighbours(next.a, around_);
-      for (const Index a : around_) push(std::min(next.a, a), std::max(next.a, a));
+    const auto is_current = [&](const EdgeBuckets::Entry& entry) { return entry.stamp == stamp(entry.a, entry.b); };
+    while (reporter_.continues(collapse_.complex().alive())) {
+      const EdgeBuckets::Entry* next = queue_.next(is_current);
+      if (next == nullptr) return;
+      const auto [u, v, version] = *next;
+      if (!contract(u, v)) continue;
+      collapse_.complex().neighbours(u, around_);
+      for (const Index a : around_) push(std::min(u, a), std::max(u, a));
     }
   }
 
@@ -113,20 +105,18 @@ class QuadricOrder {
         if (collapse_.try_contract(a, b, end)) return true;
     return false;
   }
-  [[nodiscard]] std::uint64_t stamp(Index a, Index b) const {
-    return std::uint64_t{collapse_.version(a)} + collapse_.version(b);
-  }
+  [[nodiscard]] std::uint32_t stamp(Index a, Index b) const { return collapse_.version(a) + collapse_.version(b); }
   void push(Index a, Index b) {
     const auto target = collapse_.best_target(a, b);
     if (!target) return;
     const PointN<N> edge = minus(collapse_.scaled()[a], collapse_.scaled()[b]);
     const double weight = collapse_.quadric(a).weight() + collapse_.quadric(b).weight();
-    queue_.push({target->cost + kLengthShare * weight * dot(edge, edge), a, b, stamp(a, b)});
+    queue_.push(target->cost + kLengthShare * weight * dot(edge, edge), {a, b, stamp(a, b)});
   }
 
   EdgeCollapse<N>& collapse_;
   ProgressReporter reporter_;
-  std::priority_queue<EdgeCandidate> queue_;
+  EdgeBuckets queue_;
   std::vector<Index> around_;
 };
 

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A priority queue of edges by buckets of similar keys. Within a bucket, edges come in the order of their vertices:
+// neighbouring edges follow each other, so the memory around them is in the cache. A push costs no comparison.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+class EdgeBuckets {
+ public:
+  struct Entry {
+    Index a;
+    Index b;
+    std::uint32_t stamp;
+    bool operator<(const Entry& other) const { return std::tie(a, b, stamp) < std::tie(other.a, other.b, other.stamp); }
+  };
+
+  /// `key`: 0 or more.
+  void push(double key, const Entry& entry) {
+    const std::size_t number = std::bit_cast<std::uint64_t>(key) >> kShift;
+    (number > current_ ? buckets_[number] : again_).push_back(entry);
+  }
+
+  /// The next entry; null if there is none. `is_current(entry)`: false for entries to skip. The pointer is valid until
+  /// the next call.
+  template <class IsCurrent>
+  const Entry* next(const IsCurrent& is_current) {
+    for (;;) {
+      while (position_ < entries_.size()) {
+        const Entry& entry = entries_[position_++];
+        if (is_current(entry)) return &entry;
+      }
+      if (!refill(is_current)) return nullptr;
+    }
+  }
+
+ private:
+  /// Keys of a bucket differ by at most a quarter: the sign, the exponent and two bits of the fraction.
+  static constexpr int kShift = 50;
+  static constexpr std::size_t kBuckets = std::size_t{1} << (63 - kShift);
+
+  /// Loads the entries pushed to the current bucket since it was loaded, or else the next bucket.
+  template <class IsCurrent>
+  bool refill(const IsCurrent& is_current) {
+    entries_.clear();
+    position_ = 0;
+    if (!again_.empty()) {
+      entries_.swap(again_);
+    } else {
+      while (current_ < kBuckets && buckets_[current_].empty()) ++current_;
+      if (current_ == kBuckets) {
+        current_ = 0;
+        return false;
+      }
+      entries_.swap(buckets_[current_]);
+      buckets_[current_] = {};
+    }
+    std::erase_if(entries_, [&](const Entry& entry) { return !is_current(entry); });
+    std::sort(entries_.begin(), entries_.end());
+    return true;
+  }
+
+  std::vector<std::vector<Entry>> buckets_ = std::vector<std::vector<Entry>>(kBuckets);
+  std::size_t current_ = 0;
+  std::vector<Entry> entries_;  ///< of the current bucket, sorted
+  std::size_t position_ = 0;
+  std::vector<Entry> again_;  ///< pushed to the current bucket or an earlier one
+};
+
+}  // namespace tegl::detail
