@@ -153,7 +153,7 @@ class MeetingTableau {
   std::size_t result_;  ///< the column of the right-hand side
   std::array<std::array<Number, kMostColumns>, kMostRows> table_{};
   std::array<std::size_t, kMostRows> basis_{};  ///< columns_ + row: artificial
-  Number denominator_ = Number(1);                 ///< of all entries
+  Number denominator_ = Number(1);              ///< of all entries
 };
 
 }  // namespace tegl::detail
