@@ -104,7 +104,8 @@ class Complex {
   /// Finds and keeps the edges of all cells, sorted, and the numbers of each cell's edges. Later extractions then
   /// number vertices by counting bits and do not sort: worth it for several isovalues, or for values at several times.
   /// The contours do not change. O(C) time, 4 bytes for each edge of each cell, 8 per edge of the complex, and a few
-  /// for each 64 cells. Errors: TooLarge (2^32 edges or more), Cancelled.
+  /// for each 64 cells; until it returns, 8 more for each edge of each cell. Errors: TooLarge (2^32 edges or more),
+  /// Cancelled.
   void find_edges(const WorkOptions& work = {});
   /// Number of edges of the complex, or 0 before find_edges.
   [[nodiscard]] std::size_t edge_count() const noexcept;
@@ -154,8 +155,9 @@ requires DimensionBetween<N, 2, 4>
 /// the choice depends on the common face alone), direction, epsilon, work. The result does not depend on the number of
 /// threads. Errors: InvalidIsovalue; InvalidArgument (epsilon, another ambiguity, close, normals: these are for
 /// images); TooLarge (2^32 vertices or more); Cancelled. O(C + P + S) time for S simplices and P points. Memory beside
-/// the contour: 2 bits per point, 6 bytes per active cell and, before find_edges, 16 bytes per point and 4 bytes for
-/// each crossed edge of each active cell. Thread-safe for several extractions from one complex.
+/// the contour: 2 bits per point, 8 bytes per active cell and, before find_edges, 8 bytes per point and 12 for each
+/// crossed edge of each active cell.
+/// Thread-safe for several extractions from one complex.
 template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract(const Complex<N>& complex, double isovalue, const ExtractOptions& options = {}) {

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Edges of cells, sorted and without duplicates, by buckets of their smaller ends.
+// Edges of cells, sorted and without duplicates: by ranges of their smaller ends, then by smaller ends.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -49,6 +51,17 @@ class SortedEdges {
   static constexpr std::uint64_t kFew =
       32;  ///< up to this many edges at a point, comparing one after the other is fast
 
+  /// At most 2^kRangeBits + 1 ranges of points.
+  static constexpr unsigned kRangeBits = 8;
+  struct RangeScratch {
+    std::vector<std::uint64_t> bucket;
+    std::vector<Index> others;
+  };
+
+  /// Sorts edges whose smaller ends are `from` and the points after it, and drops duplicates. `ends` receives for each
+  /// point the number of edges up to its last one. Returns their number.
+  static std::uint64_t sort_range(std::span<EdgeEnds> edges, std::size_t from, std::span<std::uint64_t> ends,
+                                  RangeScratch& scratch);
   /// Sorts larger ends and drops duplicates; returns how many are left.
   static std::uint64_t make_unique(Index* begin, Index* end);
 
@@ -58,40 +71,81 @@ class SortedEdges {
 
 template <class Visit>
 SortedEdges::SortedEdges(std::size_t points, std::size_t parts, const Visit& visit, const WorkOptions& work) {
-  const bool is_one = work.threads == 1;
-  const auto next = [is_one](std::uint64_t& count) {
-    return is_one ? count++ : std::atomic_ref<std::uint64_t>(count).fetch_add(1, std::memory_order_relaxed);
-  };
-  // count the edges of each smaller end, exclusive scan
-  std::vector<std::uint64_t> bucket(points + 1, 0);
-  for_each_block(parts, 1, work.threads, part_of(work.progress, 0.0, 0.3),
+  // Edges go to ranges of smaller ends first: then no two threads write to one place, and a range fits the cache.
+  const auto bits = static_cast<unsigned>(std::bit_width(points));
+  const unsigned shift = bits > kRangeBits ? bits - kRangeBits : 0;
+  const std::size_t ranges = (points >> shift) + 1;
+  // count by part and range, exclusive scan with all parts of a range together
+  std::vector<std::uint64_t> next(parts * ranges, 0);
+  for_each_block(parts, 1, work.threads, part_of(work.progress, 0.0, 0.25),
                  [&](std::size_t part, std::size_t, std::size_t) {
-                   visit(part, [&](Index p, Index q) { next(bucket[std::min(p, q)]); });
+                   std::uint64_t* const counts = next.data() + part * ranges;
+                   visit(part, [&](Index p, Index q) { ++counts[std::min(p, q) >> shift]; });
                  });
+  std::vector<std::uint64_t> begin(ranges + 1, 0);
+  std::uint64_t sum = 0;
+  for (std::size_t r = 0; r < ranges; ++r) {
+    begin[r] = sum;
+    for (std::size_t part = 0; part < parts; ++part) {
+      const std::uint64_t count = next[part * ranges + r];
+      next[part * ranges + r] = sum;
+      sum += count;
+    }
+  }
+  begin[ranges] = sum;
+  // write
+  std::vector<EdgeEnds> all(sum);
+  for_each_block(parts, 1, work.threads, part_of(work.progress, 0.25, 0.5),
+                 [&](std::size_t part, std::size_t, std::size_t) {
+                   std::uint64_t* const place = next.data() + part * ranges;
+                   visit(part, [&](Index p, Index q) {
+                     all[place[std::min(p, q) >> shift]++] = {std::min(p, q), std::max(p, q)};
+                   });
+                 });
+  // sort each range, and keep its edges at its beginning
+  first_.assign(points + 1, 0);
+  std::vector<std::uint64_t> kept(ranges + 1, 0);
+  for_each_block(
+      ranges, 1, work.threads, part_of(work.progress, 0.5, 0.9), [] { return RangeScratch(); },
+      [&](std::size_t r, std::size_t, std::size_t, RangeScratch& scratch) {
+        const std::size_t from = r << shift, to = std::min(points, (r + 1) << shift);
+        const std::span<EdgeEnds> edges(all.data() + begin[r], all.data() + begin[r + 1]);
+        kept[r + 1] = from < to ? sort_range(edges, from, {first_.data() + from + 1, to - from}, scratch) : 0;
+      });
+  for (std::size_t r = 0; r < ranges; ++r) kept[r + 1] += kept[r];
+  // copy
+  ends_.resize(kept.back());
+  for_each_block(ranges, 1, work.threads, part_of(work.progress, 0.9, 1.0),
+                 [&](std::size_t r, std::size_t, std::size_t) {
+                   std::copy_n(all.data() + begin[r], kept[r + 1] - kept[r], ends_.data() + kept[r]);
+                   for (std::size_t p = r << shift; p < std::min(points, (r + 1) << shift); ++p)
+                     first_[p + 1] += kept[r];
+                 });
+}
+
+inline std::uint64_t SortedEdges::sort_range(std::span<EdgeEnds> edges, std::size_t from, std::span<std::uint64_t> ends,
+                                             RangeScratch& scratch) {
+  // larger ends by smaller end: count, exclusive scan, write; afterwards bucket[p] is the end of point p
+  std::vector<std::uint64_t>& bucket = scratch.bucket;
+  bucket.assign(ends.size(), 0);
+  for (const EdgeEnds& edge : edges) ++bucket[edge[0] - from];
   std::uint64_t sum = 0;
   for (std::uint64_t& start : bucket) {
     const std::uint64_t count = start;
     start = sum;
     sum += count;
   }
-  // write the larger ends; afterwards bucket[p] is the end of point p
-  std::vector<Index> others(sum);
-  for_each_block(parts, 1, work.threads, part_of(work.progress, 0.3, 0.7),
-                 [&](std::size_t part, std::size_t, std::size_t) {
-                   visit(part, [&](Index p, Index q) { others[next(bucket[std::min(p, q)])] = std::max(p, q); });
-                 });
-  const auto start_of = [&](std::size_t p) { return p == 0 ? 0 : bucket[p - 1]; };
-  // sort each bucket, exclusive scan, write
-  first_.assign(points + 1, 0);
-  for_each_item(points, work.threads, part_of(work.progress, 0.7, 0.9), [&](std::size_t p) {
-    first_[p + 1] = make_unique(others.data() + start_of(p), others.data() + bucket[p]);
-  });
-  for (std::size_t p = 0; p < points; ++p) first_[p + 1] += first_[p];
-  ends_.resize(first_.back());
-  for_each_item(points, work.threads, part_of(work.progress, 0.9, 1.0), [&](std::size_t p) {
-    const Index* const other = others.data() + start_of(p);
-    for (std::uint64_t i = first_[p]; i < first_[p + 1]; ++i) ends_[i] = {static_cast<Index>(p), other[i - first_[p]]};
-  });
+  scratch.others.resize(edges.size());
+  for (const EdgeEnds& edge : edges) scratch.others[bucket[edge[0] - from]++] = edge[1];
+  // drop duplicates
+  std::uint64_t kept = 0;
+  for (std::size_t p = 0; p < ends.size(); ++p) {
+    Index* const others = scratch.others.data() + (p == 0 ? 0 : bucket[p - 1]);
+    const std::uint64_t count = make_unique(others, scratch.others.data() + bucket[p]);
+    for (std::uint64_t i = 0; i < count; ++i) edges[kept++] = {static_cast<Index>(from + p), others[i]};
+    ends[p] = kept;
+  }
+  return kept;
 }
 
 inline std::uint64_t SortedEdges::make_unique(Index* begin, Index* end) {
