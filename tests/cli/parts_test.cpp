@@ -379,6 +379,15 @@ TEST(ViewLimit, LetsALargeComponentInWithoutTheOthers) {
   EXPECT_THAT(error.what(), HasSubstr("5 triangles; expected at most 4: --limit 5 shows it"));
 }
 
+TEST(ProgressBar, EstimatesTheTimeLeft) {
+  EXPECT_EQ(time_left(1.0, 0.5), "");
+  EXPECT_EQ(time_left(60.0, 0.001), "");
+  EXPECT_EQ(time_left(60.0, 1.0), "");
+  EXPECT_EQ(time_left(10.0, 0.25), "30 s left");
+  EXPECT_EQ(time_left(60.0, 0.25), "3 min left");
+  EXPECT_EQ(time_left(3600.0, 0.3), "2 h 20 min left");
+}
+
 TEST(Interrupt, StopsProgressAtTheNextCall) {
   const Console console(stderr);
   const InterruptHandler handler;

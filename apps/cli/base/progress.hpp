@@ -14,8 +14,12 @@
 
 namespace tegl::cli {
 
-/// A progress bar on a terminal, one stage after the other. Draws nothing on other streams, nor on terminals without
-/// cursor movement. In narrow windows it is a number, or nothing.
+/// The remaining time of work that has taken `seconds` for `fraction` of it and continues at the same rate, as in
+/// "3 min left". Empty if that is too short to tell.
+[[nodiscard]] std::string time_left(double seconds, double fraction);
+
+/// A progress bar on a terminal, with the estimated remaining time of long stages; one stage after the other. Draws
+/// nothing on other streams, nor on terminals without cursor movement. In narrow windows it is a number, or nothing.
 class ProgressBar {
  public:
   ProgressBar(const Console& console, bool wanted) : console_(&console), draw_(wanted && console.moves_its_cursor()) {}
@@ -39,6 +43,7 @@ class ProgressBar {
   bool draw_;
   bool visible_ = false;
   std::string name_;
+  std::chrono::steady_clock::time_point start_{};  ///< of the stage
   std::chrono::steady_clock::time_point last_{};
   std::mutex mutex_;
 };

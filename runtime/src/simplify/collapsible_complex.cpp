@@ -125,8 +125,8 @@ template <int N>
 std::span<const Index> CollapsibleComplex<N>::clean_star(Index v) {
   Star& star = star_of_[v];
   Index* const first = stars_.data() + star.first;
-  star.size = static_cast<Index>(
-      std::remove_if(first, first + star.size, [&](Index s) { return !is_alive(s); }) - first);
+  star.size =
+      static_cast<Index>(std::remove_if(first, first + star.size, [&](Index s) { return !is_alive(s); }) - first);
   return {first, star.size};
 }
 
@@ -325,8 +325,7 @@ void CollapsibleComplex<N>::contract(const Edge& edge) {
   for (const Index s : edge.both) simplices_[s].fill(kNone);
   alive_ -= edge.both.size();
   // attach the other simplices of v to u
-  for (const Index s : edge.only_v)
-    simplices_[s][static_cast<std::size_t>(position(simplices_[s], edge.v))] = edge.u;
+  for (const Index s : edge.only_v) simplices_[s][static_cast<std::size_t>(position(simplices_[s], edge.v))] = edge.u;
   set_star(edge.u, edge.v, edge);
   if (border_vertex_[edge.v]) border_vertex_[edge.u] = true;
 }

@@ -45,8 +45,8 @@ class EdgeBuckets {
   }
 
  private:
-  /// Keys of a bucket differ by at most a quarter: the sign, the exponent and two bits of the fraction.
-  static constexpr int kShift = 50;
+  /// Keys of a bucket differ by at most a sixteenth: the sign, the exponent and four bits of the fraction.
+  static constexpr int kShift = 48;
   static constexpr std::size_t kBuckets = std::size_t{1} << (63 - kShift);
 
   /// Loads the entries pushed to the current bucket since it was loaded, or else the next bucket.

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The queue of edges by buckets: against a sorted list, on random keys.
+#include "simplify/edge_buckets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace tegl::detail {
+namespace {
+
+using Entry = EdgeBuckets::Entry;
+
+TEST(EdgeBuckets, GivesKeysInOrderUpToASixteenth) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> exponent(-30.0, 30.0);
+    EdgeBuckets queue;
+    std::vector<double> keys;
+    for (Index i = 0; i < 1000; ++i) {
+      keys.push_back(i % 10 == 0 ? 0.0 : std::exp(exponent(random)));
+      queue.push(keys[i], {i, i + 1, 0});
+    }
+    const auto all = [](const Entry&) { return true; };
+    std::set<Index> found;
+    double largest = 0.0;
+    while (const Entry* entry = queue.next(all)) {
+      EXPECT_TRUE(found.insert(entry->a).second);
+      EXPECT_GE((1.0 + 1.0 / 16.0) * keys[entry->a], largest);
+      largest = std::max(largest, keys[entry->a]);
+    }
+    EXPECT_EQ(found.size(), keys.size());
+  }
+}
+
+TEST(EdgeBuckets, OrdersSimilarKeysByVertex) {
+  EdgeBuckets queue;
+  for (const Index a : {7u, 3u, 5u}) queue.push(1.0 + 0.005 * a, {a, 9, 0});
+  const auto all = [](const Entry&) { return true; };
+  for (const Index a : {3u, 5u, 7u}) EXPECT_EQ(queue.next(all)->a, a);
+  EXPECT_EQ(queue.next(all), nullptr);
+}
+
+TEST(EdgeBuckets, GivesSmallerKeysPushedLaterNext) {
+  EdgeBuckets queue;
+  const auto all = [](const Entry&) { return true; };
+  queue.push(4.0, {1, 2, 0});
+  queue.push(64.0, {3, 4, 0});
+  EXPECT_EQ(queue.next(all)->a, 1u);
+  queue.push(1.0, {5, 6, 0});
+  EXPECT_EQ(queue.next(all)->a, 5u);
+  EXPECT_EQ(queue.next(all)->a, 3u);
+  EXPECT_EQ(queue.next(all), nullptr);
+  // again from the start
+  queue.push(2.0, {7, 8, 0});
+  EXPECT_EQ(queue.next(all)->a, 7u);
+}
+
+TEST(EdgeBuckets, SkipsOutdatedEntries) {
+  EdgeBuckets queue;
+  for (Index a = 0; a < 10; ++a) queue.push(1.0, {a, a + 1, a % 2});
+  const auto is_current = [](const Entry& entry) { return entry.stamp == 1; };
+  for (const Index a : {1u, 3u, 5u, 7u, 9u}) EXPECT_EQ(queue.next(is_current)->a, a);
+  EXPECT_EQ(queue.next(is_current), nullptr);
+}
+
+}  // namespace
+}  // namespace tegl::detail
