@@ -37,7 +37,8 @@ struct Measures {
 /// divergence theorem. Sums are compensated, in an order that does not depend on the number of threads. For a smooth
 /// surface {f = 0} the errors of size and content decrease with the square of the grid step (docs/measures.md). Errors:
 /// InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S log s) time for s
-/// simplices around a vertex, 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
+/// simplices around a vertex; memory of 4 N + 4 bytes per simplex and 12 per vertex, for N = 3 and 4 also 8 per vertex
+/// and thread. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work = {});
@@ -62,7 +63,7 @@ struct CutMeasures {
 /// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0.
 ///
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range); Cancelled. O(#S
-/// log s + h) time for h pairs of a simplex and its cut; memory as `measure`, plus up to 64 MiB, or 64 bytes for each
+/// log s + h) time for h pairs of a simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each
 /// value. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>

@@ -39,7 +39,7 @@ struct ProjectedContour {
 /// tetrahedron, and 1 if it leaves it or is tangent: along t, -1 means arriving and 1 leaving. Attributes of the
 /// contour with these names are replaced. Throws InvalidArgument if the direction is 0 or not finite, the distance is
 /// negative or not finite, a coordinate is not finite, a vertex number is out of range, or attributes or normals are of
-/// another number; Cancelled. O(#V + #S). One thread.
+/// another number; Cancelled. O(#V + #S). The result does not depend on the number of threads.
 template <Coordinate Real>
 [[nodiscard]] ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {},
                                              const WorkOptions& work = {});
@@ -56,7 +56,8 @@ template <Coordinate Real>
 /// edge-on, have no outline, and count as far side.
 ///
 /// Vertices get the contour's attributes and the height, as in `project`; triangles get the attributes of their
-/// tetrahedron. Errors: those of `project`; Cancelled. O(#V + #S) time and memory. One thread.
+/// tetrahedron. Errors: those of `project`; Cancelled. O(#V + #S) time and memory. The result
+/// does not depend on the number of threads.
 template <Coordinate Real>
 [[nodiscard]] Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection = {},
                                        const WorkOptions& work = {});

@@ -57,7 +57,8 @@ namespace tegl {
 /// Quadrilaterals are split by the shorter diagonal. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
 /// attributes or normals of another number), Cancelled. If the hyperplane is beyond the contour, the cut is empty.
-/// O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. One thread. Thread-safe.
+/// O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. The result does not depend on
+/// the number of threads. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4>
 [[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -51,9 +52,10 @@ void OutputFile::flush() {
 
 void OutputFile::write_through(const char* from, std::size_t bytes) {
   while (bytes > 0) {
-    const ssize_t count = ::write(descriptor_, from, bytes);
+    constexpr std::size_t kMost = std::size_t{1} << 30;  // some systems refuse more at a time
+    const ssize_t count = ::write(descriptor_, from, std::min(bytes, kMost));
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) write_failed(target_, "written");
+    if (count <= 0) write_failed(target_, "written");
     from += count;
     bytes -= static_cast<std::size_t>(count);
   }

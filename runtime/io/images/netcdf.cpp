@@ -451,6 +451,7 @@ ValueArray unpacked_values(const NcFile& file, const NcVariable& variable, const
   if (layers * layer <= CollectedValues::kBlock || (!is_real && !packing.any_attribute))
     return unpack(file.values(variable, slab, progress), packing);
   file.require_stored(variable, slab);
+  expect_memory(kBytesPerValue * layers * layer);                // of all blocks: they are collected in one array
   const std::size_t chunk = file.block_length(variable, along);  // no chunk is read twice
   const std::size_t step = std::max<std::size_t>(1, CollectedValues::kBlock / layer / chunk) * chunk;
   CollectedValues all(layers * layer);

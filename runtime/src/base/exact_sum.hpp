@@ -17,12 +17,14 @@ inline void add_exactly(double x, double& sum, double& rest) noexcept {
   rest += (before - (sum - added)) + (x - added);
 }
 
+/// The sum including the rounding errors. These are ignored if they are not finite, as after infinite numbers.
+inline double with_rest(double sum, double rest) noexcept { return std::isfinite(rest) ? sum + rest : sum; }
+
 /// Adds numbers and, separately, their rounding errors.
 class CompensatedSum {
  public:
   void add(double x) noexcept { add_exactly(x, sum_, rest_); }
-  /// The sum including the rounding errors. These are ignored if they are not finite, as after infinite numbers.
-  [[nodiscard]] double value() const noexcept { return std::isfinite(rest_) ? sum_ + rest_ : sum_; }
+  [[nodiscard]] double value() const noexcept { return with_rest(sum_, rest_); }
 
  private:
   double sum_ = 0.0;

@@ -90,6 +90,13 @@ SimplexRows rows_of(const Contour<N, Real>& contour) noexcept {
   return {detail::SimplexView<N>(contour).rows(), N, contour.vertices.size()};
 }
 
+/// Sets a flag that other threads may set, too. Most are set already: then nothing is written, which would take the
+/// cache line from the others.
+void mark_shared(std::uint8_t& flag) noexcept {
+  const std::atomic_ref<std::uint8_t> shared(flag);
+  if (shared.load(std::memory_order_relaxed) == 0) shared.store(1, std::memory_order_relaxed);
+}
+
 /// Throws InvalidArgument unless the labels fit the contour: one per vertex and simplex, each below the count, each
 /// used by a simplex, equal for a simplex and its vertices, and none for vertices in no simplex.
 void require_labels(const SimplexRows& contour, const ComponentLabels& labels, const WorkOptions& work = {}) {
@@ -113,10 +120,10 @@ void require_labels(const SimplexRows& contour, const ComponentLabels& labels, c
   const auto is_sound = [&](std::size_t s) {
     const Index label = labels.simplices[s];
     if (label >= labels.count) return false;
-    mark(has_simplex[label]);
+    mark_shared(has_simplex[label]);
     bool is_equal = true;
     for (const Index v : contour[s]) {
-      mark(is_in_simplex[v]);
+      mark_shared(is_in_simplex[v]);
       is_equal = is_equal && labels.vertices[v] == label;
     }
     return is_equal;
@@ -175,7 +182,7 @@ ComponentLabels label_rows(const SimplexRows& contour, const WorkOptions& work) 
                            for (std::size_t s = from; s < to; ++s)
                              for (const Index v : contour[s]) {
                                sets.join(contour[s][0], v);
-                               std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
+                               mark_shared(used[v]);
                              }
                          });
   // number the sets, then label the simplices

@@ -6,6 +6,7 @@
 // their limits, 1966. The volume of the cuts of a simplex is a B-spline whose knots are the positions of the vertices.
 #include "tegl/measure.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -98,8 +99,8 @@ struct CutSum {
     const std::array<double, 2> both = {size, content};
     for (int k = 0; k < 2; ++k) detail::add_exactly(both[k], sum[k], rest[k]);
   }
-  [[nodiscard]] double size() const noexcept { return sum[0] + rest[0]; }
-  [[nodiscard]] double content() const noexcept { return sum[1] + rest[1]; }
+  [[nodiscard]] double size() const noexcept { return detail::with_rest(sum[0], rest[0]); }
+  [[nodiscard]] double content() const noexcept { return detail::with_rest(sum[1], rest[1]); }
 };
 
 /// Adds the cuts of one simplex to the sums. Its cut at t lies in the plane with the normal w (the spatial part of the

@@ -12,7 +12,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// What each block found, by label, in the order in which the block met the labels. Use one per thread.
+/// The results of one block by label, in the order in which the block meets the labels. Use one per thread.
 template <class Found>
 class FoundByLabel {
  public:
@@ -98,7 +98,7 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
   // by label, a corner of its first simplex
   std::vector<PointOf<N>> reference;
   for (const Index s : first_items(simplex_labels, count))
-    reference.push_back(count == 0 ? PointOf<N>{} : contour.point(contour.simplices()[s][0]));
+    reference.push_back(contour.point(contour.simplices()[s][0]));
   const auto reference_of = [&](Index label) { return reference[label]; };
   // sums over simplices
   std::vector<PieceSums<N>> sums(reference.begin(), reference.end());

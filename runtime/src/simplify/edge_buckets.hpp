@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A priority queue of edges by buckets of similar keys. Within a bucket, edges come in the order of their vertices:
+// Edges in buckets of similar keys, smallest keys first. Within a bucket, edges come in the order of their vertices:
 // neighbouring edges follow each other, so the memory around them is in the cache. A push costs no comparison.
 #pragma once
 
@@ -25,9 +25,9 @@ class EdgeBuckets {
     bool operator<(const Entry& other) const { return std::tie(a, b, stamp) < std::tie(other.a, other.b, other.stamp); }
   };
 
-  /// `key`: 0 or more.
+  /// `key`: 0 or more; other keys, and NaN, come last.
   void push(double key, const Entry& entry) {
-    const std::size_t number = std::bit_cast<std::uint64_t>(key) >> kShift;
+    const std::size_t number = key >= 0.0 ? (std::bit_cast<std::uint64_t>(key) & kUnsigned) >> kShift : kBuckets - 1;
     (number > current_ ? buckets_[number] : again_).push_back(entry);
   }
 
@@ -48,6 +48,7 @@ class EdgeBuckets {
   /// Keys of a bucket differ by at most a sixteenth: the sign, the exponent and four bits of the fraction.
   static constexpr int kShift = 48;
   static constexpr std::size_t kBuckets = std::size_t{1} << (63 - kShift);
+  static constexpr std::uint64_t kUnsigned = ~std::uint64_t{0} >> 1;  ///< without the sign, which -0.0 has
 
   /// Loads the entries pushed to the current bucket since it was loaded, or else the next bucket.
   template <class IsCurrent>
