@@ -250,49 +250,53 @@ void EdgeCollapse<N>::load(Index u, Index v) {
   complex_.load(u, v, edge_);
   loaded_ = true;
   contractible_.reset();
-  around_.clear();
   worst_shape_.reset();
+  around_.resize(edge_.only_u.size() + edge_.only_v.size() + edge_.both.size());
+  auto next = around_.begin();
+  for (const auto* part : {&edge_.only_u, &edge_.only_v, &edge_.both})
+    for (const Index s : *part) {
+      next->simplex = s;
+      next++->is_measured = false;
+    }
 }
 
+/// Measured only when they are used: many contractions fail at the first simplex.
 template <int N>
-void EdgeCollapse<N>::measure_around() {
-  if (!around_.empty()) return;
-  const auto add = [&](std::span<const Index> simplices, Index moving) {
-    for (const Index s : simplices) {
-      Around& one = around_.emplace_back();
-      one.corners = corners(s);
-      one.normal = normal_of<N>(one.corners);
-      one.length = norm(one.normal);
-      one.shape = shape_of_simplex<N>(one.corners, one.length);
-      const auto& simplex = complex_.simplex(s);
-      one.moving = static_cast<int>(std::find(simplex.begin(), simplex.end(), moving) - simplex.begin());
-    }
-  };
-  add(edge_.only_u, edge_.u);
-  add(edge_.only_v, edge_.v);
-  add(edge_.both, edge_.u);
+auto EdgeCollapse<N>::around(std::size_t number) -> const Around& {
+  Around& one = around_[number];
+  if (one.is_measured) return one;
+  one.is_measured = true;
+  one.corners = corners(one.simplex);
+  one.normal = normal_of<N>(one.corners);
+  one.length = norm(one.normal);
+  one.shape = shape_of_simplex<N>(one.corners, one.length);
+  const Index end = number < edge_.only_u.size() ? edge_.u : edge_.v;
+  const auto& simplex = complex_.simplex(one.simplex);
+  one.moving = static_cast<int>(std::find(simplex.begin(), simplex.end(), end) - simplex.begin());
+  return one;
 }
 
 template <int N>
 double EdgeCollapse<N>::worst_shape() {
   if (!worst_shape_) {
     worst_shape_ = std::numeric_limits<double>::infinity();
-    for (const Around& one : around_) worst_shape_ = std::min(*worst_shape_, one.shape);
+    for (std::size_t i = 0; i < around_.size(); ++i) worst_shape_ = std::min(*worst_shape_, around(i).shape);
   }
   return *worst_shape_;
 }
 
 template <int N>
-PointN<N> EdgeCollapse<N>::normal_around() const {
+PointN<N> EdgeCollapse<N>::normal_around() {
   PointN<N> sum{};
-  for (const Around& one : around_)
-    for (int a = 0; a < N; ++a) sum[a] += one.normal[a];
+  for (std::size_t i = 0; i < around_.size(); ++i)
+    for (int a = 0; a < N; ++a) sum[a] += around(i).normal[a];
   return sum;
 }
 
 /// Whether a simplex is neither flipped nor degraded when its vertex moves to `place`.
 template <int N>
-bool EdgeCollapse<N>::keeps_shape(const Around& before, const PointN<N>& place) {
+bool EdgeCollapse<N>::keeps_shape(std::size_t number, const PointN<N>& place) {
+  const Around& before = around(number);
   CornersN<N> after = before.corners;
   after[before.moving] = place;
   const PointN<N> normal = normal_of<N>(after);
@@ -313,11 +317,10 @@ bool EdgeCollapse<N>::keeps_shape(const Around& before, const PointN<N>& place) 
 
 template <int N>
 bool EdgeCollapse<N>::keeps_shapes(const PointN<N>& place) {
-  measure_around();
   const std::size_t of_u = edge_.only_u.size(), of_both = of_u + edge_.only_v.size();
   const auto keep = [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i)
-      if (!keeps_shape(around_[i], place)) return false;
+      if (!keeps_shape(i, place)) return false;
     return true;
   };
   return (place == scaled_[edge_.u] || keep(0, of_u)) && (place == scaled_[edge_.v] || keep(of_u, of_both));

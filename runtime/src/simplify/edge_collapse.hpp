@@ -100,6 +100,8 @@ class EdgeCollapse {
   [[nodiscard]] bool within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const;
   /// A simplex around the loaded edge, before the contraction.
   struct Around {
+    Index simplex;
+    bool is_measured;  ///< whether the other members are set
     CornersN<N> corners;
     PointN<N> normal;
     double length;  ///< of the normal
@@ -107,10 +109,10 @@ class EdgeCollapse {
     int moving;  ///< position of the end of the edge
   };
   [[nodiscard]] bool keeps_shapes(const PointN<N>& place);
-  [[nodiscard]] bool keeps_shape(const Around& before, const PointN<N>& place);
-  void measure_around();
+  [[nodiscard]] bool keeps_shape(std::size_t number, const PointN<N>& place);
+  const Around& around(std::size_t number);
   [[nodiscard]] double worst_shape();
-  [[nodiscard]] PointN<N> normal_around() const;
+  [[nodiscard]] PointN<N> normal_around();
   [[nodiscard]] PointN<N> to_scaled(const PointN<N>& point) const;
   [[nodiscard]] PointN<N> from_scaled(const PointN<N>& point) const;
   [[nodiscard]] PointN<N> rounded(PointN<N> point) const;
@@ -136,7 +138,7 @@ class EdgeCollapse {
   Edge edge_;
   bool loaded_ = false;
   std::optional<bool> contractible_;  ///< whether the topology allows the contraction, once known
-  std::vector<Around> around_;        ///< only_u, only_v, both; empty until it is used
+  std::vector<Around> around_;        ///< only_u, only_v, both; measured when they are used
   std::optional<double> worst_shape_;
 };
 
