@@ -116,7 +116,6 @@ void require_labels(const SimplexRows& contour, const ComponentLabels& labels, c
   Buffer<std::uint8_t> is_in_simplex(contour.vertices), has_simplex(labels.count);
   std::fill(is_in_simplex.begin(), is_in_simplex.end(), std::uint8_t{0});
   std::fill(has_simplex.begin(), has_simplex.end(), std::uint8_t{0});
-  const auto mark = [](std::uint8_t& flag) { std::atomic_ref<std::uint8_t>(flag).store(1, std::memory_order_relaxed); };
   const auto is_sound = [&](std::size_t s) {
     const Index label = labels.simplices[s];
     if (label >= labels.count) return false;
