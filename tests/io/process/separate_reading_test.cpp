@@ -147,6 +147,26 @@ TEST(SeparateReading, ImagesAndLayersAreTheSame) {
   }
 }
 
+TEST(SeparateReading, ValuesOfAFileThatIsMuchSmallerHaveMemory) {
+  TempDir dir;
+  const std::size_t count = std::size_t{72} * 512 * 512;  // 75 MB; the file has less than 1
+  {
+    NcWriter file(dir / "a.nc", NC_NETCDF4);
+    const std::vector<int> dimensions = {file.dimension("z", 72), file.dimension("y", 512), file.dimension("x", 512)};
+    const int variable = file.variable("v", NC_FLOAT, dimensions);
+    const std::array<std::size_t, 3> chunk = {8, 512, 512};
+    NcWriter::ok(nc_def_var_chunking(file.id(), variable, NC_CHUNKED, chunk.data()));
+    NcWriter::ok(nc_def_var_deflate(file.id(), variable, 1, 1, 1));
+    file.end();
+    file.values(variable, std::vector<double>(count, 2.5));
+  }
+  ASSERT_LT(fs::file_size(dir / "a.nc"), 1'000'000u);
+  const auto image = image_as<float, 3>(read_image(dir / "a.nc", kSeparate).image);
+  ASSERT_EQ(image.values.size(), count);
+  EXPECT_EQ(image.values.front(), 2.5F);
+  EXPECT_EQ(image.values.back(), 2.5F);
+}
+
 TEST(SeparateReading, ManyVariablesHaveMemoryForTheirTables) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers take memory of their own";

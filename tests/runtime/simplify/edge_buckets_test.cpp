@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <limits>
 #include <random>
 #include <set>
+#include <vector>
 
 namespace tegl::detail {
 namespace {
@@ -57,6 +60,17 @@ TEST(EdgeBuckets, GivesSmallerKeysPushedLaterNext) {
   // again from the start
   queue.push(2.0, {7, 8, 0});
   EXPECT_EQ(queue.next(all)->a, 7u);
+}
+
+TEST(EdgeBuckets, GivesKeysThatAreNoNumbersLast) {
+  EdgeBuckets queue;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::array<double, 7> keys = {nan, 3.0, -nan, std::numeric_limits<double>::infinity(), 0.0, -0.0, -1.0};
+  for (Index a = 0; a < keys.size(); ++a) queue.push(keys[a], {a, a + 1, 0});
+  std::vector<Index> order;
+  while (const Entry* const entry = queue.next([](const Entry&) { return true; })) order.push_back(entry->a);
+  ASSERT_EQ(order.size(), keys.size());
+  EXPECT_EQ(std::vector<Index>(order.begin(), order.begin() + 4), (std::vector<Index>{4, 5, 1, 3}));
 }
 
 TEST(EdgeBuckets, SkipsOutdatedEntries) {
