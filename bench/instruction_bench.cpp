@@ -129,6 +129,7 @@ std::vector<NamedCase> operation_cases() {
   tracking.work = kOneThread;
   SimplifyOptions<4> half;
   half.ratio = 0.5;
+  half.measure = false;
   half.work = kOneThread;
   return {
       operation_case("check", 16, [](const Contour4& c) { return check(c, kOneThread); }),
