@@ -37,29 +37,56 @@ def contour_mesh(points, cells, values, level: float, *, times=None, triangulati
         pairs of a name and such an array, with the names "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron",
         "pixel" and "voxel". The order of corners is VTK's. Cells must meet in whole faces.
     values
-        #P values; with `times` #T x #P. NaN is a missing value: cells there have no contour.
+        #P values; with `times` #T x #P. NaN and masked values are missing: cells there have no contour.
     times
         Ascending times of the rows of `values`, for N = 2 and 3: the result is the contour in space and time, with the time
         as the last coordinate; `slice`, `track` and `measure` cut it at any time.
     triangulation, ambiguity, direction, epsilon, dtype, allow_empty, threads, progress
         As for `tegl.contour`. Ambiguity: "low" or "high". 4D contours are barycentric.
 
-    The columns of the vertices are those of `points`, then the time. Errors: ValueError, with the library's message.
+    The columns of the vertices are those of `points`, then the time. Errors: ValueError, with the library's message;
+    TypeError for an argument of a wrong type; Cancelled if `progress` returns False.
     """
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
                                          epsilon=epsilon, threads=threads)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    _require_unmasked("points", points)
+    _require_unmasked("times", times)
     numbers = np.atleast_1d(_arguments.real("times", [] if times is None else times)).astype(np.float64)
     if times is not None and (numbers.ndim != 1 or not numbers.size):
         raise ValueError(f"times have the shape {numbers.shape}; expected one number or more")
     points = _arguments.real("points", points).astype(np.float64, order="C", copy=False)
-    values = _arguments.real("values", values).astype(np.float64, order="C", copy=False)
+    values = _with_missing(values)
     _check_shapes(points, values, len(numbers))
     types, corners = _cells_of(cells, points.shape[-1])
     core = _tegl.extract_mesh(points, types, corners, values, numbers, level, _is_double(dtype), options, progress)
     if not allow_empty and not len(core.simplices):
         _require_level(values, level)
     return Contour._of(core, False)
+
+
+def _mask_of(array) -> np.ndarray | None:
+    """Where a masked array, or a list of them, is masked; None if there is no mask."""
+    if isinstance(array, (list, tuple)) and any(isinstance(part, np.ma.MaskedArray) for part in array):
+        array = np.ma.array(array)
+    return np.ma.getmaskarray(array) if np.ma.getmask(array) is not np.ma.nomask else None
+
+
+def _with_missing(values) -> np.ndarray:
+    """Values with NaN for the masked ones."""
+    array = _arguments.real("values", values).astype(np.float64, order="C", copy=False)
+    mask = _mask_of(values)
+    if mask is None:
+        return array
+    array = array.copy(order="C")
+    array[mask] = np.nan
+    return array
+
+
+def _require_unmasked(name: str, array) -> None:
+    mask = _mask_of(array)
+    if mask is not None and mask.any():
+        raise ValueError(f"{name} have {np.count_nonzero(mask)} masked numbers; expected none: only values may be masked")
 
 
 def _check_shapes(points: np.ndarray, values: np.ndarray, times: int) -> None:
@@ -110,6 +137,7 @@ def _is_pair(block) -> bool:
 
 
 def _numbers_of(name: str, block) -> np.ndarray:
+    _require_unmasked(name, block)
     array = np.asarray(block)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{name} are of type {array.dtype}; expected integers")

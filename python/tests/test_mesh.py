@@ -102,6 +102,26 @@ def test_missing_values_leave_a_boundary():
     assert report.boundary_simplices > 0 and report.is_manifold
 
 
+def test_masked_values_are_missing():
+    points, cells = tetrahedra(11)
+    values = ball(points)
+    mask = points[:, 0] > 0.3
+    expected = tegl.contour_mesh(points, cells, np.where(mask, np.nan, values), 0.0)
+    filled = np.where(mask, 1e20, values)
+    for masked in (np.ma.masked_array(filled, mask), np.ma.masked_array(filled, mask, fill_value=7.0)):
+        contour = tegl.contour_mesh(points, cells, masked, 0.0)
+        assert np.array_equal(contour.vertices, expected.vertices)
+        assert np.array_equal(contour.simplices, expected.simplices)
+    assert np.count_nonzero(filled == 1e20) == mask.sum()  # the argument is as before
+    whole = tegl.contour_mesh(points, cells, values, 0.0)
+    assert np.array_equal(tegl.contour_mesh(points, cells, np.ma.masked_array(values), 0.0).vertices, whole.vertices)
+    integers = np.ma.masked_array(np.round(100 * values).astype(np.int32), mask)
+    assert tegl.contour_mesh(points, cells, integers, 0.5).check().boundary_simplices > 0
+    moving = tegl.contour_mesh(points, cells, [np.ma.masked_array(filled, mask)] * 2, 0.0, times=[0.0, 1.0])
+    assert np.array_equal(moving.vertices, tegl.contour_mesh(
+        points, cells, [np.where(mask, np.nan, values)] * 2, 0.0, times=[0.0, 1.0]).vertices)
+
+
 def test_options_and_progress_are_those_of_contour():
     points, cells = tetrahedra(11)
     values = ball(points)
@@ -127,6 +147,11 @@ def test_options_and_progress_are_those_of_contour():
     (dict(cells={"triangle": [[0, 1, 2]]}), ValueError, "cell 0: type 5 (triangle); expected a 3D cell"),
     (dict(points=np.zeros((27, 5))), ValueError, "5 coordinates; expected 2 to 4"),
     (dict(points=np.full((27, 3), np.nan)), ValueError, "point 0"),
+    (dict(points=np.full((27, 3), 1e39)), ValueError, "point 0: coordinate 0 is 1e+39; expected"),
+    (dict(points=np.ma.masked_less(grid(3)[0], -0.5)), ValueError, "points have 27 masked numbers; expected none"),
+    (dict(cells=np.ma.masked_equal([[0, 1, 2, 3]], 3)), ValueError, "cells have 1 masked numbers; expected none"),
+    (dict(values=np.zeros((2, 27)), times=np.ma.masked_array([0.0, 1.0], [False, True])), ValueError,
+     "times have 1 masked numbers; expected none"),
     (dict(values=np.zeros(26)), ValueError, "values have the shape (26,); expected (27,)"),
     (dict(times=[0.0, 1.0]), ValueError, "values have the shape (27,); expected (2, 27)"),
     (dict(times=[1.0, 0.0], values=np.zeros((2, 27))), ValueError, "expected ascending times"),
