@@ -59,8 +59,10 @@ using CellSigns = std::vector<std::vector<std::uint64_t>>;
 /// and the edges, which do not change.
 ///
 /// Cells must meet as the faces of a mesh do: the intersection of two cells is empty or a whole face of both (a corner,
-/// an edge, a polygon, in 4D also a 3D cell). This is not checked. Where it holds, the contour is closed away from the
-/// border of the complex and from missing values, whatever types meet.
+/// an edge, a polygon, in 4D also a 3D cell). This is not checked. The contour of such a complex is closed away from
+/// the border and from missing values, for any mixture of types.
+///
+/// The constructors, set_points and in_time compute the cells' orientations on all threads of the machine.
 template <int N>
 requires DimensionBetween<N, 2, 4>
 class Complex {
@@ -69,11 +71,12 @@ class Complex {
 
   /// Cells of one type. `points`: #P x N; `corners`: #C x (corners of the type), row = cell, numbers of points. Values
   /// are missing until set_values is called. Errors: InvalidArgument (a type of another dimension; `corners` of a wrong
-  /// size; a number that is not below #P; a corner that a cell repeats; a coordinate that is not finite), TooLarge
-  /// (2^32 points or more). Messages name the cell, counted from 0.
+  /// size; a number that is not below #P; a corner that a cell repeats; a coordinate that is not finite, or above
+  /// 2^1018 = 2.8e306 in absolute value), TooLarge (2^32 points or more, 2^32 cells or more). Messages name the cell,
+  /// counted from 0.
   Complex(std::vector<Point> points, CellType type, std::span<const Index> corners);
   /// Cells of several types. `types`: one per cell; `corners`: the corners of all cells, one cell after the other.
-  /// Errors: as above.
+  /// The errors are those of the other constructor.
   Complex(std::vector<Point> points, std::span<const CellType> types, std::span<const Index> corners);
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }   ///< #P x N
@@ -87,25 +90,27 @@ class Complex {
     check_count(values.size(), "values");
     values_.assign(values.begin(), values.end());
   }
-  /// The same for a vector.
+  /// Sets the values from a vector.
   template <Value T>
   void set_values(const std::vector<T>& values) {
     set_values(std::span<const T>(values));
   }
-  /// The same for a vector of doubles, which is moved.
+  /// Sets the values from a vector of doubles, which is moved.
   void set_values(std::vector<double> values) {
     check_count(values.size(), "values");
     values_ = std::move(values);
   }
-  /// Moves the points; cells and edges stay. Errors: InvalidArgument for another number of points and for a coordinate
-  /// that is not finite.
+  /// Moves the points; cells and edges stay. A complex made by in_time loses its layers if a last coordinate changes:
+  /// vertices may then be at a time of the layers as well. Errors: InvalidArgument for another number of points and for
+  /// a coordinate that is not finite or above 2^1018 in absolute value.
   void set_points(std::vector<Point> points);
 
   /// Finds and keeps the edges of all cells, sorted, and the numbers of each cell's edges. Later extractions then
   /// number vertices by counting bits and do not sort: worth it for several isovalues, or for values at several times.
-  /// The contours do not change. O(C) time, 4 bytes for each edge of each cell, 8 per edge of the complex, and a few
-  /// for each 64 cells; until it returns, 8 more for each edge of each cell. Errors: TooLarge (2^32 edges or more),
-  /// Cancelled.
+  /// The contours do not change. O(C) time. Memory: 4 bytes for each edge of each cell and 8 per edge of the complex;
+  /// for each 64 cells 8 bytes, and 8 for each of the words of 32 consecutive points that have their corners: a few
+  /// words if neighbouring points have near numbers, but up to 64 bytes per hexahedron if the numbers are shuffled.
+  /// Until it returns, 8 more for each edge of each cell. Errors: TooLarge (2^32 edges or more), Cancelled.
   void find_edges(const WorkOptions& work = {});
   /// Number of edges of the complex, or 0 before find_edges.
   [[nodiscard]] std::size_t edge_count() const noexcept;
@@ -119,7 +124,8 @@ class Complex {
   std::shared_ptr<const detail::CellGroups> cells_;
   std::shared_ptr<const detail::ComplexEdges> edges_;
   std::shared_ptr<const detail::CellSigns> signs_;  ///< orientations of the cells
-  bool is_layered_ = false;                         ///< made by in_time
+  double largest_coordinate_ = 0;                   ///< absolute value
+  bool is_layered_ = false;                         ///< made by in_time, and the last coordinates are its times
 };
 
 /// The complex that a complex sweeps over time, for its contour in space and time: every cell x every interval between
@@ -128,7 +134,8 @@ class Complex {
 /// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (both barycentric), if
 /// no value is missing; at every other time, too, it is closed away from the border. N = 2 or 3. Errors:
 /// InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of values or points; a
-/// coordinate that is not finite), TooLarge. O(T (P + C)) time and memory.
+/// coordinate that is not finite, or above 2^1018 in absolute value), TooLarge (2^32 points or prisms or more).
+/// O(T (P + C)) time and memory.
 template <int N>
 requires DimensionBetween<N, 2, 3>
 [[nodiscard]] Complex<N + 1> in_time(const Complex<N>& complex, std::span<const double> times,
@@ -154,9 +161,13 @@ requires DimensionBetween<N, 2, 4>
 /// Options: triangulation (4D: always barycentric), ambiguity low or high (neighbouring cells of any types agree, as
 /// the choice depends on the common face alone), direction, epsilon, work. The result does not depend on the number of
 /// threads. Errors: InvalidIsovalue; InvalidArgument (epsilon, another ambiguity, close, normals: these are for
-/// images); TooLarge (2^32 vertices or more); Cancelled. O(C + P + S) time for S simplices and P points. Memory beside
-/// the contour: 2 bits per point, 8 bytes per active cell and, before find_edges, 8 bytes per point and 12 for each
-/// crossed edge of each active cell.
+/// images; a point beyond the range of Real, which is named); TooLarge (2^32 vertices or more); Cancelled.
+/// O(C + P + S) time for S simplices and P points. Memory beside the contour:
+/// - 2 bits per point, 8 to 16 bytes per active cell, 4 to 8 per cell with a missing corner, 8 per crossed edge;
+/// - before find_edges: 8 bytes per point, and while the edges are sorted 8 for each crossed edge of each active cell;
+/// - after find_edges: 4 to 8 bytes for each crossed edge of each active cell, and 16 for each 64 edges of the complex;
+/// - 4D: 32 to 64 bytes per barycentre in a common 3D face and 4 for each cell that has it; while they are sorted, 80
+///   more for each cell that has it.
 /// Thread-safe for several extractions from one complex.
 template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 2, 4>

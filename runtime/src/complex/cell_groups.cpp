@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -70,6 +71,11 @@ void add_cell(const CellKind& kind, std::size_t cell, std::size_t points, const 
   }
 }
 
+void require_cells(std::size_t cells) {
+  constexpr std::size_t kMost = std::numeric_limits<Index>::max();
+  if (cells > kMost) throw Error(ErrorCode::TooLarge, fmt::format("{} cells; expected at most {}", cells, kMost));
+}
+
 CellGroup empty_group(CellShape shape) { return {shape, table_of(shape).corner_count, {}}; }
 
 }  // namespace
@@ -127,6 +133,7 @@ CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<con
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} corners; expected a multiple of {} for cells of type {}",
                                                         corners.size(), group.corner_count, kind.name));
   cells.cell_count = corners.size() / group.corner_count;
+  require_cells(cells.cell_count);
   group.corners.reserve(corners.size());
   for (std::size_t c = 0; c < cells.cell_count; ++c)
     add_cell(kind, c, points, corners.data() + c * group.corner_count, group);
@@ -135,6 +142,7 @@ CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<con
 }
 
 CellGroups group_cells(int dim, std::size_t points, std::span<const CellType> types, std::span<const Index> corners) {
+  require_cells(types.size());
   std::vector<CellGroup> groups;
   for (unsigned s = 0; s < tables::kCellShapes; ++s) groups.push_back(empty_group(static_cast<CellShape>(s)));
   std::size_t at = 0;

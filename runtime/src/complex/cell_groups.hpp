@@ -14,7 +14,7 @@
 
 namespace tegl::detail {
 
-/// What a type of cells is in the tables.
+/// A type of cells and its shape in the tables.
 struct CellKind {
   CellType type;
   const char* name;
@@ -82,6 +82,11 @@ struct ComplexAccess {
   template <int N>
   static bool is_layered(const Complex<N>& complex) noexcept {
     return complex.is_layered_;
+  }
+  /// The largest absolute value of a coordinate.
+  template <int N>
+  static double largest_coordinate(const Complex<N>& complex) noexcept {
+    return complex.largest_coordinate_;
   }
   /// A complex of cells that need no check.
   template <int N>

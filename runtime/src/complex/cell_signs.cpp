@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Orientations of cells.
+#include <cmath>
+
 #include <Eigen/LU>
 
 #include "base/workers.hpp"
@@ -32,6 +34,13 @@ bool is_inverted(const std::vector<std::array<double, N>>& reference, const Inde
   for (std::size_t v = 0; v < reference.size(); ++v)
     for (int i = 0; i < N; ++i)
       for (int k = 0; k < N; ++k) map(i, k) += reference[v][i] * (points[corners[v]][k] - origin[k]);
+  // very large and very small cells: the determinant's sign without overflow or underflow
+  for (int k = 0; k < N; ++k) {
+    const double largest = map.col(k).cwiseAbs().maxCoeff();
+    if (largest == 0 || (largest > 0x1p-200 && largest < 0x1p200)) continue;
+    const int exponent = std::ilogb(largest);
+    for (int i = 0; i < N; ++i) map(i, k) = std::scalbn(map(i, k), -exponent);
+  }
   return map.determinant() < 0;
 }
 

@@ -3,6 +3,7 @@
 // The class of complexes: construction, values, points, edges.
 #include "tegl/complex.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -18,16 +19,28 @@ namespace tegl {
 namespace detail {
 namespace {
 
+/// Beyond this, sums of a cell's points could overflow.
+constexpr double kLargestCoordinate = 0x1p1018;
+
+/// Checks points and returns the largest absolute value of a coordinate.
 template <int N>
-void check_points(const std::vector<std::array<double, N>>& points) {
+double check_points(const std::vector<std::array<double, N>>& points) {
   if (points.size() > std::numeric_limits<Index>::max())
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} points; expected at most {}", points.size(), std::numeric_limits<Index>::max()));
+  double largest = 0;
   for (std::size_t p = 0; p < points.size(); ++p)
-    for (const double x : points[p])
+    for (const double x : points[p]) {
       if (!std::isfinite(x))
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("point {}: ({}); expected finite coordinates", p, fmt::join(points[p], ", ")));
+      if (std::abs(x) > kLargestCoordinate)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("point {}: ({}); expected coordinates from -{} to {}", p, fmt::join(points[p], ", "),
+                                kLargestCoordinate, kLargestCoordinate));
+      largest = std::max(largest, std::abs(x));
+    }
+  return largest;
 }
 
 std::vector<double> missing_values(std::size_t count) {
@@ -53,7 +66,7 @@ template <int N>
 requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points, CellType type,
                                                        std::span<const Index> corners)
     : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
-  detail::check_points<N>(points_);
+  largest_coordinate_ = detail::check_points<N>(points_);
   cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), type, corners));
   signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }
@@ -62,7 +75,7 @@ template <int N>
 requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points, std::span<const CellType> types,
                                                        std::span<const Index> corners)
     : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
-  detail::check_points<N>(points_);
+  largest_coordinate_ = detail::check_points<N>(points_);
   cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), types, corners));
   signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }
@@ -83,7 +96,10 @@ template <int N>
 requires DimensionBetween<N, 2, 4>
 void Complex<N>::set_points(std::vector<Point> points) {
   check_count(points.size(), "points");
-  detail::check_points<N>(points);
+  const double largest = detail::check_points<N>(points);
+  is_layered_ = is_layered_ && std::equal(points.begin(), points.end(), points_.begin(),
+                                          [](const Point& a, const Point& b) { return a[N - 1] == b[N - 1]; });
+  largest_coordinate_ = largest;
   points_ = std::move(points);
   signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }

@@ -22,6 +22,9 @@ class ContourNumbers {
   /// The arguments must outlive this object. Reports progress from 0 to 1. Errors: TooLarge, Cancelled.
   ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values, double isovalue,
                  const ExtractOptions& options, const Progress& progress, ExtractStats& stats);
+  // crossings_ refers to other members
+  ContourNumbers(const ContourNumbers&) = delete;
+  ContourNumbers& operator=(const ContourNumbers&) = delete;
 
   [[nodiscard]] ContourSize size() const noexcept { return {vertex_count_, first_simplex_.back()}; }
   [[nodiscard]] const std::vector<ActiveBlock>& blocks() const noexcept { return blocks_; }

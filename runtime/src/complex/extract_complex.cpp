@@ -8,12 +8,15 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
 #include "complex/contour_numbers.hpp"
 #include "kernel/split_nonmanifold.hpp"
 #include "tegl/complex.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl {
 
@@ -24,6 +27,7 @@ namespace {
 /// vertex is at the finite end, or at the middle between two infinities.
 double alpha_of(double from, double to, double isovalue, double epsilon) noexcept {
   double alpha = (isovalue - from) / (to - from);
+  if (std::isinf(to - from)) alpha = (isovalue / 2 - from / 2) / (to / 2 - from / 2);
   if (std::isinf(from) || std::isinf(to)) alpha = !std::isinf(from) ? 0.0 : !std::isinf(to) ? 1.0 : 0.5;
   return std::clamp(alpha, epsilon, 1.0 - epsilon);
 }
@@ -37,6 +41,19 @@ std::pair<Real, Real> inside_of(double low_layer, double high_layer) noexcept {
   const Real from = std::max(std::nextafter(low, high), low + least);
   const Real to = std::min(std::nextafter(high, low), high - least);
   return from > to ? std::pair{low, high} : std::pair{from, to};
+}
+
+/// Vertices are between points: if these are in the range of Real, vertices are, too.
+template <class Real, int N>
+void check_range(const Complex<N>& complex) {
+  constexpr Real kMost = std::numeric_limits<Real>::max();
+  if (ComplexAccess::largest_coordinate(complex) <= double{kMost}) return;
+  for (std::size_t p = 0; p < complex.points().size(); ++p)
+    for (std::size_t i = 0; i < N; ++i)
+      if (const double x = complex.points()[p][i]; std::abs(x) > double{kMost})
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("point {}: coordinate {} is {}; expected {} to {}, the range of {} vertices", p, i, x,
+                                -kMost, kMost, sizeof(Real) == 4 ? "float" : "double"));
 }
 
 template <int N, class Real>
@@ -220,6 +237,7 @@ template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex, double isovalue,
                                                                           const ExtractOptions& options) {
   detail::check_complex_options(isovalue, options);
+  detail::check_range<Real>(complex);
   Extraction<N, Real> result;
   Contour<N, Real>& contour = result.contour;
   const Progress& progress = options.work.progress;
@@ -249,16 +267,21 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
                                                      const ExtractOptions& options) {
   detail::check_complex_options(isovalue, options);
   ExtractStats stats;
+  const Progress& progress = options.work.progress;
+  const auto is_missing = [](double value) { return std::isnan(value); };
+  const bool may_extract =
+      progress != nullptr && std::any_of(complex.values().begin(), complex.values().end(), is_missing);
   const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
   const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
-                                       options, options.work.progress, stats);
+                                       options, detail::part_of(progress, 0.0, may_extract ? 0.5 : 1.0), stats);
   // vertices where the contour touches itself at missing values are doubled
   if (!numbers.vertices_at_missing(cells).empty()) {
-    ExtractOptions quiet = options;
-    quiet.work.progress = {};
-    const auto contour = extract<float>(complex, isovalue, quiet);
+    ExtractOptions second_half = options;
+    second_half.work.progress = detail::part_of(progress, 0.5, 1.0);
+    const auto contour = extract<double>(complex, isovalue, second_half);
     return {contour.vertices.size(), contour.simplices.size()};
   }
+  if (may_extract) detail::tell(progress, 1.0);
   return numbers.size();
 }
 

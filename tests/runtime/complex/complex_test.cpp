@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "compare.hpp"
+#include "complex/cell_groups.hpp"
+#include "complex/complex_edges.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
 #include "meshes.hpp"
@@ -176,12 +178,12 @@ TEST(Complex, EdgesAreThoseOfAllCellsOnce) {
   for (const auto& [name, mesh] : meshes(8)) {
     Complex<3> complex = mesh.complex();
     complex.find_edges();
-    std::vector<std::pair<Index, Index>> edges;
+    std::vector<std::array<Index, 2>> edges;
     std::size_t at = 0;
     for (const CellType type : mesh.types) {
       const Index* const c = mesh.corners.data() + at;
       const auto add = [&](std::initializer_list<std::pair<int, int>> pairs) {
-        for (const auto& [i, j] : pairs) edges.emplace_back(std::minmax(c[i], c[j]));
+        for (const auto& [i, j] : pairs) edges.push_back({std::min(c[i], c[j]), std::max(c[i], c[j])});
       };
       if (type == CellType::tetrahedron) add({{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}});
       if (type == CellType::pyramid) add({{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}});
@@ -193,6 +195,7 @@ TEST(Complex, EdgesAreThoseOfAllCellsOnce) {
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     EXPECT_EQ(edges.size(), complex.edge_count()) << name;
+    EXPECT_TRUE(edges == detail::ComplexAccess::edges(complex)->ends) << name;
   }
 }
 
@@ -335,6 +338,73 @@ TEST(Complex, InfiniteValuesPutVerticesAtTheFiniteEnd) {
   EXPECT_EQ((std::array<double, 2>{0, 0.5}), contour.vertices[1]);
 }
 
+TEST(Complex, ValuesWhoseDifferenceOverflowsAreInterpolated) {
+  const std::vector<std::array<double, 2>> points = {{0, 0}, {1, 0}, {0, 1}};
+  const Index corners[] = {0, 1, 2};
+  Complex<2> complex(points, CellType::triangle, corners);
+  complex.set_values({-1.7e308, 1.7e308, -0.85e308});
+  const auto contour = extract<double>(complex, 0.0);
+  ASSERT_EQ(2u, contour.vertices.size());
+  EXPECT_EQ((std::array<double, 2>{0.5, 0}), contour.vertices[0]);
+  EXPECT_NEAR(2.0 / 3.0, contour.vertices[1][1], 1e-12);
+}
+
+TEST(Complex, VeryLargeAndVerySmallMeshesHaveTheSameSimplices) {
+  const MeshData<3> mesh = mixed_mesh(grid_points<3>({9, 9, 9}, 0.15), 5);
+  Complex<3> complex = mesh.complex();
+  complex.set_values(closed_noise(mesh, 12));
+  const auto contour = extract<double>(complex, 0.5);
+  for (const double scale : {0x1p-400, 0x1p400, 0x1p1016}) {
+    std::vector<std::array<double, 3>> points = mesh.points;
+    for (auto& point : points)
+      for (double& x : point) x *= scale;
+    complex.set_points(points);
+    const auto scaled = extract<double>(complex, 0.5);
+    EXPECT_TRUE(contour.simplices == scaled.simplices);
+    ASSERT_EQ(contour.vertices.size(), scaled.vertices.size());
+    for (std::size_t v = 0; v < contour.vertices.size(); ++v)
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(scale * contour.vertices[v][i], scaled.vertices[v][i]);
+  }
+}
+
+TEST(Complex, PointsBeyondTheRangeOfFloatNeedDouble) {
+  const std::vector<std::array<double, 2>> points = {{0, 0}, {4e38, 0}, {0, 1}};
+  const Index corners[] = {0, 1, 2};
+  Complex<2> complex(points, CellType::triangle, corners);
+  complex.set_values({1.0, 0.0, 0.0});
+  expect_error(ErrorCode::InvalidArgument,
+               "point 1: coordinate 0 is 4e+38; expected -3.4028235e+38 to 3.4028235e+38, the range of float vertices",
+               [&] { (void)extract<float>(complex, 0.5); });
+  EXPECT_EQ((std::array<double, 2>{2e38, 0}), extract<double>(complex, 0.5).vertices.at(0));
+  EXPECT_EQ((ContourSize{2, 1}), count(complex, 0.5));
+}
+
+TEST(Complex, CountingReportsAllOfItsWorkAndCancels) {
+  const MeshData<3> mesh = kuhn_mesh(grid_points<3>({20, 20, 20}));
+  for (const bool has_missing : {false, true}) {
+    Complex<3> complex = mesh.complex();
+    std::vector<double> values = closed_noise(mesh, 3);
+    std::mt19937_64 random(9);
+    for (double& value : values)
+      if (has_missing && random() % 12 == 0) value = std::numeric_limits<double>::quiet_NaN();
+    complex.set_values(values);
+    std::vector<double> heard;
+    ExtractOptions options;
+    options.work.progress = [&](double fraction) {
+      heard.push_back(fraction);
+      return true;
+    };
+    EXPECT_EQ(count(complex, 0.5), count(complex, 0.5, options));
+    EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+    EXPECT_EQ(1.0, heard.back());
+    EXPECT_GT(std::count_if(heard.begin(), heard.end(), [](double f) { return f > 0.5 && f < 1.0; }), 3);
+    for (const double at : {0.0, 0.3, 0.55, 0.9}) {
+      options.work.progress = [at](double fraction) { return fraction < at; };
+      expect_error(ErrorCode::Cancelled, "cancelled", [&] { (void)count(complex, 0.5, options); });
+    }
+  }
+}
+
 TEST(Complex, ProgressRisesToOneAndCancels) {
   const MeshData<3> mesh = kuhn_mesh(grid_points<3>({30, 30, 30}));
   Complex<3> complex = mesh.complex();
@@ -394,7 +464,23 @@ TEST(Complex, BadCellsAreErrorsThatNameThem) {
   auto broken = points;
   broken[3][1] = std::numeric_limits<double>::infinity();
   refuse("point 3: (0, inf, 0); expected finite coordinates", [&] { (void)Complex<3>(broken, types, {}); });
+  broken[3][1] = -1e308;
+  refuse("point 3: (0, -1e+308, 0); expected coordinates from -2.80889", [&] { (void)Complex<3>(broken, types, {}); });
   refuse("cell type 7", [] { (void)corner_count(static_cast<CellType>(7)); });
+}
+
+TEST(Complex, MoreCellsThanCanBeNumberedAreErrors) {
+  // numbers of cells are checked before any cell is read
+  constexpr std::size_t kTooMany = std::size_t{1} << 32;
+  const Index corner = 0;
+  const CellType type = CellType::triangle;
+  const std::string part = "4294967296 cells; expected at most 4294967295";
+  expect_error(ErrorCode::TooLarge, part, [&] {
+    (void)detail::group_cells(2, 3, CellType::triangle, std::span<const Index>(&corner, 3 * kTooMany));
+  });
+  expect_error(ErrorCode::TooLarge, part, [&] {
+    (void)detail::group_cells(2, 3, std::span<const CellType>(&type, kTooMany), std::span<const Index>(&corner, 1));
+  });
 }
 
 TEST(Complex, BadValuesAndOptionsAreErrors) {

@@ -147,6 +147,42 @@ TEST(InTime, PointsMayMove) {
   }
 }
 
+TEST(InTime, MovedPointsKeepLayersOnlyIfTheirTimesStay) {
+  const auto mesh = kuhn_mesh(grid_points<2>({12, 12}, 0.2));
+  const Complex<2> complex = mesh.complex();
+  const std::size_t count = mesh.points.size();
+  const std::vector<double> values = noise_over_time(mesh, 0.2);
+  std::vector<Index> corners;
+  for (std::size_t k = 0; k + 1 < kTimes.size(); ++k)
+    for (std::size_t at = 0; at < mesh.corners.size(); at += 3)
+      for (const std::size_t layer : {k, k + 1})
+        for (std::size_t v = 0; v < 3; ++v) corners.push_back(static_cast<Index>(layer * count + mesh.corners[at + v]));
+  Complex<3> swept = in_time(complex, kTimes, values);
+  const auto of_wedges = [&] {
+    Complex<3> wedges(swept.points(), CellType::wedge, corners);
+    wedges.set_values(values);
+    return extract<double>(wedges, 0.5, barycentric());
+  };
+  const auto contour = extract<double>(swept, 0.5, barycentric());
+  EXPECT_TRUE(contour.simplices == of_wedges().simplices);
+  EXPECT_FALSE(contour.vertices == of_wedges().vertices) << "vertices of layers are off the times";
+  // the same times
+  auto points = swept.points();
+  std::vector<std::array<double, 2>> moved;
+  for (auto& point : points) {
+    point[0] += 3.0 * point[2];
+    moved.push_back({point[0], point[1]});
+  }
+  swept.set_points(points);
+  EXPECT_TRUE(extract<double>(in_time<2>(complex, kTimes, values, moved), 0.5, barycentric()).vertices ==
+              extract<double>(swept, 0.5, barycentric()).vertices);
+  EXPECT_FALSE(of_wedges().vertices == extract<double>(swept, 0.5, barycentric()).vertices);
+  // other times
+  for (auto& point : points) point[2] += 0.1 * point[0];
+  swept.set_points(points);
+  EXPECT_TRUE(of_wedges().vertices == extract<double>(swept, 0.5, barycentric()).vertices);
+}
+
 TEST(InTime, BadTimesAndNumbersOfValuesAreErrors) {
   const MeshData<3> mesh = kuhn_mesh(grid_points<3>({2, 2, 2}));
   const Complex<3> complex = mesh.complex();
@@ -160,6 +196,11 @@ TEST(InTime, BadTimesAndNumbersOfValuesAreErrors) {
   refuse("time 1 is inf", {0.0, std::numeric_limits<double>::infinity()}, 16, 0);
   refuse("15 values; expected 16: 8 points at 2 times", {0.0, 1.0}, 15, 0);
   refuse("8 moving points; expected 16", {0.0, 1.0}, 16, 8);
+  std::vector<std::array<double, 3>> moving(16, {0, 0, 0});
+  moving[10][1] = std::numeric_limits<double>::quiet_NaN();
+  expect_error(ErrorCode::InvalidArgument, "point 10: (0, nan, 0, 1); expected finite coordinates", [&] {
+    (void)in_time<3>(complex, std::vector<double>{0.0, 1.0}, std::vector<double>(16), moving);
+  });
 }
 
 }  // namespace
