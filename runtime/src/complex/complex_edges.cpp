@@ -13,12 +13,12 @@ namespace tegl::detail {
 
 namespace {
 
-CellBlocks find_blocks(const CellGroup& group) {
+/// The blocks of cells from ... to - 1 of a group. `from` is the first cell of a block.
+CellBlocks find_blocks(const CellGroup& group, std::size_t from, std::size_t to) {
   CellBlocks blocks;
   std::vector<Index> points;
-  for (std::size_t from = 0; from < group.size(); from += CellBlocks::kCells) {
-    const std::size_t to = std::min(group.size(), from + CellBlocks::kCells);
-    points.assign(group.cell(from), group.cell(to));
+  for (; from < to; from += CellBlocks::kCells) {
+    points.assign(group.cell(from), group.cell(std::min(to, from + CellBlocks::kCells)));
     std::sort(points.begin(), points.end());
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i == 0 || points[i] >> 5 != points[i - 1] >> 5) blocks.words.push_back({points[i] >> 5, 0});
@@ -27,6 +27,13 @@ CellBlocks find_blocks(const CellGroup& group) {
     blocks.first.push_back(blocks.words.size());
   }
   return blocks;
+}
+
+/// Appends the blocks of the next cells.
+void append(const CellBlocks& from, CellBlocks& to) {
+  const std::size_t words = to.words.size();
+  to.words.insert(to.words.end(), from.words.begin(), from.words.end());
+  for (std::size_t b = 1; b < from.first.size(); ++b) to.first.push_back(words + from.first[b]);
 }
 
 }  // namespace
@@ -49,9 +56,17 @@ ComplexEdges find_complex_edges(std::size_t points, const CellGroups& cells, con
   ComplexEdges edges;
   for (const CellGroup& group : cells.groups)
     edges.of_cells.emplace_back(group.size() * table_of(group.shape).edge_count);
+  std::vector<CellBlocks> blocks(ranges.size());
+  for_each_block(ranges.size(), 1, work.threads, part_of(work.progress, 0.7, 0.8),
+                 [&](std::size_t part, std::size_t, std::size_t) {
+                   const auto [g, from, to] = ranges[part];
+                   blocks[part] = find_blocks(cells.groups[g], from, to);
+                 });
   edges.blocks.resize(cells.groups.size());
-  for_each_item(cells.groups.size(), work.threads, part_of(work.progress, 0.7, 0.8),
-                [&](std::size_t g) { edges.blocks[g] = find_blocks(cells.groups[g]); });
+  for (std::size_t part = 0; part < ranges.size(); ++part) {
+    append(blocks[part], edges.blocks[ranges[part].group]);
+    blocks[part] = {};
+  }
   for_each_block(ranges.size(), 1, work.threads, part_of(work.progress, 0.8, 1.0),
                  [&](std::size_t part, std::size_t, std::size_t) {
                    const auto [g, from, to] = ranges[part];
