@@ -19,14 +19,15 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "intersect/meeting_tableau.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl::bench {
 
@@ -213,13 +214,17 @@ class FivePairs {
     return std::sqrt(squares / least) * 1.01;
   }
 
-  /// x * 2^120
+  /// x * 2^120. Throws UnsupportedData if |x| is below 2^-68 and not 0.
   static Integer integer_of(double x) {
     if (x == 0.0) return Integer(0);
     int exponent = 0;
     const double fraction = std::frexp(x, &exponent);
     const int shift = exponent - std::numeric_limits<double>::digits + 120;
-    if (shift < 0) throw std::range_error("a coordinate is too close to 0");
+    if (shift < 0)
+      throw Error(ErrorCode::UnsupportedData,
+                  fmt::format("5D: a coordinate is {}; expected 0 or a magnitude of at least 2^-68 (with log-uniform "
+                              "positions, a smaller --spread)",
+                              x));
     return Integer(static_cast<std::int64_t>(std::ldexp(fraction, std::numeric_limits<double>::digits))) << shift;
   }
   static std::array<Integer, 5> integers_of(const Point& p) {

@@ -13,9 +13,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <random>
 #include <set>
@@ -28,6 +30,7 @@
 
 #include "arguments.hpp"
 #include "five_intersections.hpp"
+#include "run_program.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
@@ -213,9 +216,17 @@ void count_tiles(const Settings& settings) {
   std::vector<Counts> counts(parts);
   std::vector<std::string> lists(parts);
   std::atomic<std::uint64_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex of_failure;
   const auto work = [&] {
-    for (std::uint64_t part = next++; part < parts; part = next++)
-      counts[part] = count_part<N>(settings, part * kPart, std::min(settings.tiles, (part + 1) * kPart), lists[part]);
+    try {
+      for (std::uint64_t part = next++; part < parts; part = next++)
+        counts[part] = count_part<N>(settings, part * kPart, std::min(settings.tiles, (part + 1) * kPart), lists[part]);
+    } catch (...) {
+      const std::scoped_lock lock(of_failure);
+      if (!failure) failure = std::current_exception();
+      next = parts;
+    }
   };
   const double start = bench::worked_seconds();
   {
@@ -225,6 +236,7 @@ void count_tiles(const Settings& settings) {
     for (unsigned i = 1; i < threads; ++i) others.emplace_back(work);
     work();
   }
+  if (failure) std::rethrow_exception(failure);
   const double seconds = bench::worked_seconds() - start;
   Counts all;
   for (const Counts& part : counts) all.add(part);
@@ -328,28 +340,28 @@ Settings parsed(int argc, char** argv) {
   }
   if (settings.dimension == 5 && (settings.has_shapes || settings.is_bias))
     throw Error(ErrorCode::InvalidArgument, "--shapes, --bias; expected --dimension 3 or 4");
+  if (settings.is_bias && (settings.is_searched || settings.lists || settings.has_shapes))
+    throw Error(ErrorCode::InvalidArgument, "--bias; expected without --searched, --list and --shapes");
   return settings;
+}
+
+int run(int argc, char** argv) {
+  if (bench::tells_usage(argc, argv, kUsage)) return 0;
+  Settings settings = parsed(argc, argv);
+  try {
+    if (settings.is_searched) settings.signatures = searched_signatures(settings);
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorCode::MalformedFile, fmt::format("the manifest of the tables: {}", error.what()));
+  }
+  if (settings.is_bias)
+    settings.dimension == 3 ? print_bias<3>(settings) : print_bias<4>(settings);
+  else
+    settings.dimension == 3   ? count_tiles<3>(settings)
+    : settings.dimension == 4 ? count_tiles<4>(settings)
+                              : count_tiles<5>(settings);
+  return 0;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (tegl::bench::tells_usage(argc, argv, kUsage)) return 0;
-  try {
-    Settings settings = parsed(argc, argv);
-    if (settings.is_searched) settings.signatures = searched_signatures(settings);
-    if (settings.is_bias)
-      settings.dimension == 3 ? print_bias<3>(settings) : print_bias<4>(settings);
-    else
-      settings.dimension == 3   ? count_tiles<3>(settings)
-      : settings.dimension == 4 ? count_tiles<4>(settings)
-                                : count_tiles<5>(settings);
-  } catch (const tegl::Error& error) {
-    fmt::print(stderr, "tile_intersections: {}\n", error.what());
-    return 2;
-  } catch (const nlohmann::json::exception& error) {
-    fmt::print(stderr, "tile_intersections: the manifest of the tables: {}\n", error.what());
-    return 2;
-  }
-  return 0;
-}
+int main(int argc, char** argv) { return tegl::bench::run_program("tile_intersections", argc, argv, run); }
