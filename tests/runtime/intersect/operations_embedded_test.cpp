@@ -46,7 +46,8 @@ template <int N, class Real>
 void expect_embedded(const Contour<N, Real>& contour, const std::string& name) {
   EXPECT_GT(contour.simplices.size(), 20u) << name << ": tests nothing";
   const auto found = find_intersections(contour);
-  EXPECT_EQ(found.pair_count, 0u) << name << ", depth " << found.depth;
+  EXPECT_TRUE(found.is_embedded()) << name << ": " << found.pair_count << " pairs, depth " << found.depth << ", "
+                                   << found.flat << " flat simplices";
 }
 
 /// Balls that are near each other and move: a smooth field.
