@@ -33,8 +33,8 @@ struct ExtractOptions {
   /// image the contour stays open.
   bool close = false;
   /// Keeps the points on edges at least this share of an edge away from the samples, in [0, 0.5). 0: exact positions; a
-  /// sample that equals the isovalue gives simplices of zero size. With any value, four vertices of a compact 4D tile
-  /// may be coplanar.
+  /// sample that equals the isovalue gives simplices of zero size. Values such as 0.01 avoid them; docs/limits.md lists
+  /// the exceptions (4D beside missing values, closed 5D).
   double epsilon = 0.0;
   /// Vertex normals: along the image's gradient, on the side of `direction`; of length 1, or 0 if the gradient is zero.
   /// At the image border and next to missing values, gradients are one-sided differences. They are interpolated between

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Self-intersections of contours: all pairs of simplices that meet where they should not, by exact arithmetic.
+// Self-intersections of contours: all pairs of simplices with a common point outside of their common face, by
+// exact arithmetic.
 #pragma once
 
 #include <array>
@@ -59,11 +60,12 @@ struct Intersections {
   std::uint64_t pair_count = 0;              ///< number of intersecting pairs
   std::uint64_t intersecting = 0;            ///< number of simplices in at least one pair
   std::vector<IntersectingPair<N>> pairs{};  ///< the first `most_listed`, by `first`, then `second`, or deepest first
-  double depth = 0.0;                        ///< the greatest depth of all pairs
+  double depth = 0.0;                        ///< the maximum depth of all pairs
   std::uint64_t tiles = 0;                   ///< tiles that contain the centroid of a simplex; 0 if not requested
   std::uint64_t tiles_hit = 0;               ///< tiles that contain the centroid of a simplex in a pair
 
-  /// Whether no two simplices intersect and none is flat: flat simplices are not tested, so they may hide intersections.
+  /// Whether no two simplices intersect and none is flat: flat simplices are not tested, so they may hide
+  /// intersections.
   [[nodiscard]] bool is_embedded() const noexcept { return pair_count == 0 && flat == 0; }
 };
 

@@ -46,7 +46,7 @@ class FoundPairs {
   FoundPairs(std::size_t most, bool deepest_first) : most_(most), deepest_first_(deepest_first) {}
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-  /// The greatest depth of all pairs.
+  /// The maximum depth of all pairs.
   [[nodiscard]] double depth() const noexcept { return depth_; }
 
   void add(const Pair& pair) {
