@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rates of reading images and writing meshes, beside those of the system for the same bytes.
+// Rates of reading images and writing meshes, beside the rates of the system for the same bytes.
 //
 //   file_bench [--runs N] [--samples N] [--write FOLDER]... [IMAGE[=DATA]...]
 //
 // `--write`: writes the contour of a gyroid of N^3 samples to FOLDER in each binary format, and then the bytes of each
 // file by plain calls of write(2). IMAGE: read by read_image, and then by plain reads of the whole file into fresh
 // memory or, if it is gzipped, by `gzip -dc`; DATA: the file with the bytes, if that is another one. One thread; CPU
-// times (user and system, of child processes too), the minimum of `--runs`. Bytes are those of the file, or of the
+// times (user and system, of child processes too), the minimum of `--runs`. Bytes are the bytes of the file, or of the
 // decompressed samples.
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -22,7 +22,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -33,6 +32,7 @@
 #include "image_file.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
+#include "timing.hpp"
 #include "usage.hpp"
 
 namespace tegl::bench {
@@ -65,13 +65,7 @@ double used_seconds() {
 /// The minimum CPU seconds over several runs.
 template <class Work>
 double least_used(int runs, const Work& work) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < runs; ++run) {
-    const double start = used_seconds();
-    work();
-    least = std::min(least, used_seconds() - start);
-  }
-  return least;
+  return least_seconds_by(used_seconds, work, runs);
 }
 
 [[noreturn]] void fail(ErrorCode code, const fs::path& path, const char* step) {

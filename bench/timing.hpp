@@ -18,16 +18,22 @@ inline double worked_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// The minimum seconds over several runs, by the clock `now()`.
+template <class Now, class Work>
+double least_seconds_by(const Now& now, const Work& work, int runs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < runs; ++run) {
+    const double start = now();
+    work();
+    least = std::min(least, now() - start);
+  }
+  return least;
+}
+
 /// The minimum CPU seconds over several runs.
 template <class Work>
 double least_seconds(const Work& work, int runs = 3) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < runs; ++run) {
-    const double start = worked_seconds();
-    work();
-    least = std::min(least, worked_seconds() - start);
-  }
-  return least;
+  return least_seconds_by(worked_seconds, work, runs);
 }
 
 /// y = start + each * x by least squares, and the explained share of the variance of y.

@@ -44,7 +44,7 @@ def contour_mesh(points, cells, values, level: float, *, times=None, triangulati
     triangulation, ambiguity, direction, epsilon, dtype, allow_empty, threads, progress
         As for `tegl.contour`. Ambiguity: "low" or "high". 4D contours are barycentric.
 
-    The columns of the vertices are those of `points`, then the time. Errors: ValueError, with the library's message;
+    The columns of the vertices are the columns of `points`, then the time. Errors: ValueError, with the library's message;
     TypeError for an argument of a wrong type; Cancelled if `progress` returns False.
     """
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,

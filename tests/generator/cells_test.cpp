@@ -25,7 +25,7 @@ using tables::CellTable;
 /// A simplex of a list by the masks of its vertices: an edge point is the mask of its edge.
 using Named = std::vector<std::uint64_t>;
 
-/// Maps local vertices and masks of a list to those of a signature.
+/// Maps local vertices and masks of a list to the vertices and masks of a signature.
 struct Element {
   const CellTable& table;
   const std::uint8_t* permutation;  ///< or null

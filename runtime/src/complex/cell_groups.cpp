@@ -92,7 +92,7 @@ const tables::CellTable& table_of(CellShape shape) noexcept {
 
 std::size_t table_corner(const CellKind& kind, std::size_t i) noexcept {
   if (!kind.is_ring) return i;
-  // a pyramid's layers have 5 corners, those of other cells 4
+  // a layer of a pyramid has 5 corners, of another cell 4
   const std::size_t layer =
       kind.shape == CellShape::pyramid || kind.shape == CellShape::pyramid_prism ? std::size_t{5} : std::size_t{4};
   const std::size_t in_layer = i % layer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Finds the edges of a complex, then looks up those of each cell.
+// Finds the edges of a complex, then looks up the edges of each cell.
 #include "complex/complex_edges.hpp"
 
 #include <algorithm>

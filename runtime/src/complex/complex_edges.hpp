@@ -35,7 +35,7 @@ struct CellBlocks {
   }
 };
 
-/// All edges of a complex, and those of each cell.
+/// All edges of a complex, and the edges of each cell.
 struct ComplexEdges {
   std::vector<EdgeEnds> ends;                ///< ascending, without duplicates
   std::vector<std::vector<Index>> of_cells;  ///< by group: #cells x (edges of the shape), numbers of edges

@@ -183,11 +183,11 @@ class Cutter {
     std::vector<Found> parts(block_count(touching_.size(), kBlock));
     sides_.resize(touching_.size());
     for_each_block(
-        touching_.size(), kBlock, threads_, {}, [] { return std::vector<std::uint64_t>(kRecent, ~std::uint64_t{0}); },
+        touching_.size(), kBlock, threads_, {}, [] { return std::vector<std::uint64_t>(kRecent); },
         [&](std::size_t block, std::size_t from, std::size_t to, std::vector<std::uint64_t>& recent) {
           Found& found = parts[block];
-          std::fill(recent.begin(), recent.end(),
-                    ~std::uint64_t{0});  // the same entries whichever thread did the last block
+          // empty, so that the entries do not depend on what else the thread has done
+          std::fill(recent.begin(), recent.end(), ~std::uint64_t{0});
           for (std::size_t i = from; i < to; ++i) {
             const auto& simplex = contour_.simplices[touching_[i]];
             const Sides sides = sides_of(simplex);

@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/progress.hpp"
 #include "base/workers.hpp"
@@ -31,8 +32,8 @@
 namespace tegl {
 namespace {
 
-/// Links between two progress calls; if each link is a surface of thousands of triangles, this takes some hundredths of a
-/// second.
+/// Links between two progress calls; if each link is a surface of thousands of triangles, this takes some hundredths of
+/// a second.
 constexpr std::size_t kVerticesAtOnce = 1024;
 
 /// A complex of D-simplices, valid vertex numbers only.
@@ -289,8 +290,8 @@ std::array<std::array<double, Space>, D> edges_of(const Index* row, std::size_t 
   std::array<std::array<double, Space>, D> edges;
   for (int j = 0; j < D; ++j)
     for (std::size_t a = 0; a < Space && a < space_dim; ++a)
-      edges[j][a] = static_cast<double>(values[row[j + 1] * space_dim + a]) -
-                    static_cast<double>(values[row[0] * space_dim + a]);
+      edges[j][a] =
+          static_cast<double>(values[row[j + 1] * space_dim + a]) - static_cast<double>(values[row[0] * space_dim + a]);
   return edges;
 }
 
@@ -367,11 +368,12 @@ void require_vertex_numbers(std::span<const Index> rows, std::size_t vertices, s
                             const Progress& progress) {
   std::atomic<std::size_t> first = rows.size();  // with a wrong number
   detail::for_each_part(rows.size(), threads, progress, [&](std::size_t from, std::size_t to) {
-    const auto at = std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(from),
-                                 rows.begin() + static_cast<std::ptrdiff_t>(to), [&](Index v) { return v >= vertices; });
+    const auto at =
+        std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(from), rows.begin() + static_cast<std::ptrdiff_t>(to),
+                     [&](Index v) { return v >= vertices; });
     const auto found = static_cast<std::size_t>(at - rows.begin());
     if (found == to) return;
-    for (std::size_t known = first; found < known && !first.compare_exchange_weak(known, found);) continue;
+    detail::lower_to(first, found);
   });
   if (first < rows.size())
     throw Error(ErrorCode::InvalidArgument,
@@ -446,9 +448,9 @@ LinkCounts count_links(const Complex<D>& complex, const detail::Stars& stars, de
           links.visit(static_cast<Index>(v), star, report);
         }
         const std::lock_guard lock(mutex);
-        for (const auto count : {&MeshReport::vertices, &MeshReport::components, &MeshReport::boundary_simplices,
-                                 &MeshReport::nonmanifold_simplices, &MeshReport::bad_links,
-                                 &MeshReport::orientation_conflicts})
+        for (const auto count :
+             {&MeshReport::vertices, &MeshReport::components, &MeshReport::boundary_simplices,
+              &MeshReport::nonmanifold_simplices, &MeshReport::bad_links, &MeshReport::orientation_conflicts})
           all.report.*count += report.*count;
         all.edges += links.take_edges();
         all.triangles += links.take_triangles();

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
@@ -130,8 +131,7 @@ void require_labels(const SimplexRows& contour, const ComponentLabels& labels, c
   std::atomic<std::size_t> first_fault = contour.size();
   detail::for_each_part(contour.size(), work.threads, work.progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s)
-      if (!is_sound(s))
-        for (std::size_t known = first_fault; s < known && !first_fault.compare_exchange_weak(known, s);) continue;
+      if (!is_sound(s)) detail::lower_to(first_fault, s);
   });
   if (const std::size_t s = first_fault; s < contour.size()) {
     const Index label = labels.simplices[s];

@@ -96,7 +96,7 @@ class PieceSums {
   }
 
  private:
-  /// So many terms are added plainly: their rounding errors are of the size of those in the terms.
+  /// So many terms are added plainly: their rounding errors are as large as the rounding errors in the terms.
   static constexpr int kFew = 8;
   struct Few {
     double size = 0.0, content = 0.0;
