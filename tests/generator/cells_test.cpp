@@ -13,6 +13,7 @@
 
 #include "base/determinant.hpp"
 #include "cells/cell_contours.hpp"
+#include "cells/cell_embedding.hpp"
 #include "cells/cell_tables.hpp"
 #include "tegl/generated/cells.hpp"
 
@@ -124,6 +125,27 @@ TEST(Cells, HaveTheClassesAndFiguresOfTheirShapes) {
     EXPECT_EQ(expected[i].classes, table.classes) << table.name;
     EXPECT_EQ(expected[i].others, table.others) << table.name;
   }
+}
+
+TEST(Cells, ACopyWithAVertexOffItsRayIsNotProved) {
+  const std::vector<Cell> cells = mesh_cells();
+  const Cell& cell = cells[static_cast<std::size_t>(CellShape::wedge_prism)];
+  const CellEmbedding embedding(cell);
+  CellContours contours(cell, Triangulation::barycentric);
+  static_cast<void>(contours.build(750));
+  CellContour contour = contours.local();
+  EXPECT_TRUE(embedding.unproved_pairs(contour).empty());
+  // the copy of a barycentre, moved towards the face's high corners
+  const std::size_t first_side = contour.masks.size() - contour.added_count[2];
+  const auto side = std::find_if(contour.masks.begin() + static_cast<std::ptrdiff_t>(first_side), contour.masks.end(),
+                                 [&](std::uint64_t mask) { return (mask & cell.tile.full()) == 0; });
+  ASSERT_NE(side, contour.masks.end());
+  std::uint64_t ends = 0;
+  for (std::uint32_t e = 0; e < cell.tile.edge_count(); ++e)
+    if ((*side >> (cell.tile.corner_count() + e) & 1u) != 0)
+      ends |= Signature{1} << cell.tile.edges[e][0] | Signature{1} << cell.tile.edges[e][1];
+  *side |= ends & 750;
+  EXPECT_FALSE(embedding.unproved_pairs(contour).empty());
 }
 
 TEST(Cells, EmittedTablesHaveTheContourOfEverySignature) {

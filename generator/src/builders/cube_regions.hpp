@@ -22,7 +22,6 @@ struct CubeRegions : RegionVertices {
     std::uint8_t corners, centre_count;
     std::uint16_t tetrahedron_count;
     std::uint32_t first_tetrahedron, first_centre;
-    bool is_proved;  ///< whether its tetrahedra are proved to be positive for all positions on edges and rays
   };
 
   std::vector<std::uint32_t> first_region;  ///< by 2 * list + side
@@ -31,13 +30,11 @@ struct CubeRegions : RegionVertices {
   std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near, or
                                         ///< kFirstDouble << j: on the ray of own vertex j, or
                                         ///< kNear | corner | edge: near the corner, on the way to the edge's point
-
-  [[nodiscard]] std::size_t proved() const;  ///< number of regions that are proved
 };
 
-/// `is_cap`: to close contours at the image border; then only the high sides. In squares, each
-/// polygon is a fan from its lowest corner, or from the middle one of three corners, as in the regions of
-/// RegionStyle::fan. Certifies every region. Throws Error{CertificateFailed}.
+/// `is_cap`: to close contours at the image border; then only the high sides. In squares, polygons are fans (CubeSide),
+/// as in the regions of RegionStyle::fan. Certifies every region, and proves that its tetrahedra are positive for all
+/// positions on edges and rays. Throws Error{CertificateFailed}.
 [[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool is_cap);
 
 }  // namespace tegl::gen

@@ -223,12 +223,6 @@ std::size_t TesseractArrays::region_count() const {
   return count;
 }
 
-std::size_t TesseractArrays::proved_regions() const {
-  std::size_t count = 0;
-  for (const CubeRegions& r : regions) count += r.proved();
-  return count;
-}
-
 unsigned TesseractArrays::most_triangles() const {
   unsigned most = 0;
   for (const CubeLists& of : lists)

@@ -19,8 +19,7 @@ struct TesseractArrays {
   std::vector<CubeRegions> regions;  ///< barycentric, compact; caps of both, for closed borders
 
   [[nodiscard]] std::size_t region_count() const;
-  [[nodiscard]] std::size_t proved_regions() const;  ///< those positive for all positions (CubeRegions)
-  [[nodiscard]] unsigned most_triangles() const;     ///< maximum per list
+  [[nodiscard]] unsigned most_triangles() const;  ///< maximum per list
 };
 
 /// Makes and certifies the arrays. Throws Error{CertificateFailed}.

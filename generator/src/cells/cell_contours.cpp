@@ -162,6 +162,20 @@ std::uint64_t CellContours::mask_of(tile::VertexId v) const {
   return mask;
 }
 
+/// The mask of a side vertex: in a 3-face with one polygon that has a barycentre, the barycentre's. So the copy of the
+/// barycentre is on its ray. A vertex near the corners of the side would see triangles of the polygon from behind, for
+/// some positions.
+std::uint64_t CellContours::on_ray(std::uint64_t mask,
+                                   const std::vector<std::pair<std::uint64_t, tile::VertexId>>& barycentres) const {
+  std::uint64_t found = 0;
+  for (const auto& [points, v] : barycentres) {
+    if ((points & ~mask) != 0) continue;
+    if (found != 0) return mask;
+    found = points;
+  }
+  return found != 0 ? found : mask;
+}
+
 CellContour CellContours::local() const {
   const auto n = static_cast<std::size_t>(cell_.tile.dim);
   // added vertices by kind, ordered by mask
@@ -178,6 +192,7 @@ CellContour CellContours::local() const {
           throw Error(ErrorCode::Internal, fmt::format("{}: a vertex of another kind", cell_.name));
         added[!own ? 0 : cone ? 1 : 2].emplace_back(mask_of(s[i]), s[i]);
       }
+  for (auto& [mask, v] : added[2]) mask = on_ray(mask, added[0]);
   // local numbers
   CellContour contour;
   std::vector<std::uint8_t> local(facets_.vertices.size(), 0);

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/tile_contour.hpp"
@@ -44,6 +45,8 @@ class CellContours {
   void find_orientation();
   [[nodiscard]] std::uint8_t edge_of(const tile::Vertex& vertex) const;
   [[nodiscard]] std::uint64_t mask_of(tile::VertexId vertex) const;
+  [[nodiscard]] std::uint64_t on_ray(std::uint64_t mask,
+                                     const std::vector<std::pair<std::uint64_t, tile::VertexId>>& barycentres) const;
 
   const Cell& cell_;
   Triangulation triangulation_;

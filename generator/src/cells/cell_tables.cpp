@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "cells/cell_contours.hpp"
+#include "cells/cell_embedding.hpp"
 #include "symmetry/tile_symmetry.hpp"
 #include "tegl/tile/tile_certifier.hpp"
 
@@ -113,13 +114,32 @@ class CertifiedCell {
   const tile::TileFacets* facets_ = nullptr;
 };
 
+/// Adds the evidence that the contour of `entries` signatures is embedded. Throws if it is not.
+void add_evidence(const Cell& cell, const CellEmbedding& embedding, const CellContour& contour, Signature signature,
+                  std::uint64_t entries, CellTables& table) {
+  const std::vector<SimplexPair> unproved = embedding.unproved_pairs(contour);
+  switch (embedding.of(contour, signature, unproved)) {
+    case Evidence::proved:
+      table.proved += entries;
+      break;
+    case Evidence::searched:
+      table.searched.push_back({signature, entries, unproved.size()});
+      break;
+    case Evidence::absent:
+      throw Error(ErrorCode::CertificateFailed,
+                  fmt::format("{}: the contour of signature {} intersects itself", cell.name, signature));
+  }
+}
+
 /// One list per signature.
 void add_all_signatures(const Cell& cell, const std::vector<TileSymmetry>& group, CellTables& table) {
   CertifiedCell make(cell, table.triangulation);
+  const CellEmbedding embedding(cell);
   std::vector<CellContour> contours;
   for (Signature s = 0; s <= cell.tile.full(); ++s) {
     contours.push_back(make(s));
     add_list(table, contours.back());
+    add_evidence(cell, embedding, contours.back(), s, 1, table);
     table.list_of.push_back(static_cast<std::uint16_t>(s));
     table.total_simplices += contours.back().simplices.size();
     table.others += make.has_other_components() ? 1 : 0;
@@ -132,9 +152,11 @@ void add_all_signatures(const Cell& cell, const std::vector<TileSymmetry>& group
 void add_classes(const Cell& cell, const std::vector<TileSymmetry>& group, const Transversal& classes,
                  CellTables& table) {
   CertifiedCell make(cell, table.triangulation);
+  const CellEmbedding embedding(cell);
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
     const CellContour contour = make(classes.representatives[c]);
     add_list(table, contour);
+    add_evidence(cell, embedding, contour, classes.representatives[c], classes.orbit_length[c], table);
     table.total_simplices += contour.simplices.size() * classes.orbit_length[c];
     table.others += make.has_other_components() ? classes.orbit_length[c] : 0;
   }

@@ -33,13 +33,21 @@ struct CellTables {
   std::uint64_t certified = 0;        ///< signatures that passed the certificate; for 4-cells one of each class
   std::uint64_t total_simplices = 0;  ///< sum over all signatures
   std::uint64_t others = 0;           ///< signatures with a component of Sigma that is no sphere
+
+  /// A list that is not proved to be embedded, but searched.
+  struct Searched {
+    Signature signature;           ///< of the list
+    std::uint64_t entries, pairs;  ///< signatures that have it; unproved pairs of simplices
+  };
+  std::uint64_t proved = 0;             ///< signatures whose contour is proved to be embedded
+  std::vector<Searched> searched = {};  ///< the others
 };
 
 /// Makes and certifies the table of a cell. The certificate (tile::TileCertifier): every contour is an oriented
 /// manifold with the boundary Sigma, and Sigma is in each face the contour that depends on that face alone, so cells
 /// that share the face match. Barycentric contours of 3-cells are also compared under all symmetries of the cell, so
-/// their polygons in a face of a 4-cell do not depend on the face's numbering either. Errors: CountMismatch,
-/// CertificateFailed.
+/// their polygons in a face of a 4-cell do not depend on the face's numbering either. Every contour is proved to be
+/// embedded, or searched (CellEmbedding). Errors: CountMismatch, CertificateFailed.
 [[nodiscard]] CellTables make_cell_tables(const Cell& cell, Triangulation triangulation);
 
 /// The tables of all cells in the order of tables::CellShape; for each, barycentric, then compact (2D and 3D).

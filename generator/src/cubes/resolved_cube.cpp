@@ -9,8 +9,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "base/error.hpp"
@@ -18,6 +21,7 @@
 #include "base/lattice.hpp"
 #include "cubes/cube_embedding.hpp"
 #include "cubes/cube_frame.hpp"
+#include "cubes/cube_sides.hpp"
 #include "cubes/cube_tunnel.hpp"
 #include "cubes/surface_search.hpp"
 #include "filling/balanced.hpp"
@@ -141,7 +145,13 @@ class Table {
     table_.entries.push_back(entry);
   }
 
-  ResolvedCube& table() { return table_; }
+  [[nodiscard]] std::size_t replaced() const { return replaced_.size(); }
+  /// The table; then the next one begins.
+  ResolvedCube take() {
+    ResolvedCube result = std::exchange(table_, {});
+    table_.squares = result.squares;
+    return result;
+  }
 
  private:
   /// The polygons that bound a facet of the tile.
@@ -157,7 +167,8 @@ class Table {
     return result;
   }
 
-  /// The fillings of all facets. If two discs may intersect, they become radial as well.
+  /// The fillings of all facets. If two discs may intersect, they become radial as well. If a side of the cube is not
+  /// divided, another filling of a disc is taken.
   [[nodiscard]] std::vector<CubeSurface> fillings(const std::vector<Polygon>& polygons, Choice choice) {
     std::vector<std::vector<Polygon>> boundaries;
     for (const tile::Facet& facet : tile_.facets) boundaries.push_back(around(facet, polygons));
@@ -171,21 +182,92 @@ class Table {
           if (boundaries[one].size() == 1) result[one] = radial(boundaries[one], encloses_high(boundaries[one][0]));
         if (!are_apart(result[f], result[g])) fail("two facets may intersect", boundaries.size());
       }
-    return result;
+    return has_divided_sides(result) ? result : with_another_disc(std::move(result), boundaries);
   }
 
-  /// Fills a polygon by the first filling that passes the certificate and does not intersect itself: a balanced
-  /// fan, one without and one with an own vertex.
+  /// Whether both sides of the cube with this contour are divided into tetrahedra that are positive for all positions.
+  [[nodiscard]] bool has_divided_sides(const std::vector<CubeSurface>& surfaces) {
+    std::vector<RegionTriangle> contour;
+    std::vector<std::uint32_t> masks;
+    for (const CubeSurface& surface : surfaces) {
+      for (const CubeTriangle& t : surface.triangles) {
+        RegionTriangle& triangle = contour.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+          triangle[i] = static_cast<std::uint8_t>(RegionVertices::kFirstEdge + t[i] + (t[i] < kOwn ? 0 : masks.size()));
+      }
+      masks.insert(masks.end(), surface.masks.begin(), surface.masks.end());
+    }
+    const auto key = std::tuple(signature_, high_squares_, contour);
+    if (divided_.contains(key)) return true;
+    const RegionFrame frame = region_frame(masks, 0, contour, false);
+    const auto is_divided = [&](bool is_high) {
+      const auto regions = CubeSide{static_cast<unsigned>(signature_), high_squares_, is_high}.regions(contour);
+      return std::all_of(regions.begin(), regions.end(), [&](const std::vector<RegionTriangle>& region) {
+        return divide_side_region(regions_, frame, region, is_high).has_value();
+      });
+    };
+    if (!is_divided(false) || !is_divided(true)) return false;
+    divided_.insert(key);
+    return true;
+  }
+
+  /// A polygon, and whether none, some or all of the cube's ambiguous squares are high. The emitted builder of the cube
+  /// knows no more, so every cube fills such a polygon alike.
+  using PolygonKind = std::pair<Polygon, int>;
+  [[nodiscard]] PolygonKind kind_of(const Polygon& polygon) const {
+    return {polygon, high_squares_ == 0 ? 0 : high_squares_ == table_.ambiguous.back() ? 2 : 1};
+  }
+
+  /// Replaces one disc by another one, so that both sides of the cube are divided. The table has to be made again:
+  /// other cubes may have the same polygon.
+  [[nodiscard]] std::vector<CubeSurface> with_another_disc(std::vector<CubeSurface> surfaces,
+                                                           const std::vector<std::vector<Polygon>>& boundaries) {
+    for (std::size_t f = 0; f < surfaces.size(); ++f) {
+      if (boundaries[f].size() > 1 || boundaries[f][0].size() == 3) continue;
+      const CubeSurface before = surfaces[f];
+      const auto is_accepted = [&](const CubeSurface& surface) {
+        for (std::size_t g = 0; g < surfaces.size(); ++g)
+          if (g != f && !are_apart(surface, surfaces[g])) return false;
+        surfaces[f] = surface;
+        return has_divided_sides(surfaces);
+      };
+      const PolygonKind kind = kind_of(boundaries[f][0]);
+      if (!replaced_.contains(kind) && flat_disc(boundaries[f], is_accepted)) {
+        replaced_[kind] = surfaces[f];
+        return surfaces;
+      }
+      surfaces[f] = before;
+    }
+    fail("a side that is not divided into positive tetrahedra", boundaries.size());
+  }
+
+  /// Fills a polygon without own vertices by the first filling that passes the certificate, does not intersect itself
+  /// and is accepted: a fan, from a vertex with a number as large as possible, or another one.
+  [[nodiscard]] std::optional<CubeSurface> flat_disc(const std::vector<Polygon>& boundary,
+                                                     const std::function<bool(const CubeSurface&)>& accepts) {
+    Alone alone(frame_, tile_, boundary);
+    const auto is_admissible = [&](const Triangles& filling) {
+      return embedding({}).is_embedded(filling) && alone.passes(filling) && accepts({filling, {}});
+    };
+    Polygon apexes = boundary[0];
+    std::sort(apexes.rbegin(), apexes.rend());
+    for (const std::uint8_t apex : apexes)
+      if (const Triangles fan = fan_from(apex, boundary[0]); is_admissible(fan)) return CubeSurface{fan, {}};
+    SurfaceSearch search(frame_, boundary, {});
+    search.may_add = [&](const CubeTriangle& t, const Triangles& others) { return embedding({}).may_add(t, others); };
+    search.accepts = is_admissible;
+    auto found = search.run();
+    return found ? std::optional(CubeSurface{std::move(*found), {}}) : std::nullopt;
+  }
+
+  /// Fills a polygon without, otherwise with an own vertex.
   [[nodiscard]] CubeSurface disc(const std::vector<Polygon>& boundary) {
+    if (const auto known = replaced_.find(kind_of(boundary[0])); known != replaced_.end()) return known->second;
+    if (auto found = flat_disc(boundary, [](const CubeSurface&) { return true; })) return *found;
     Alone alone(frame_, tile_, boundary);
     const auto is_admissible = [&](const Triangles& filling, const std::vector<std::uint32_t>& masks) {
       return embedding(masks).is_embedded(filling) && alone.passes(filling);
     };
-    if (const Triangles fan = balanced_fan(boundary[0]); is_admissible(fan, {})) return {fan, {}};
-    SurfaceSearch flat(frame_, boundary, {});
-    flat.may_add = [&](const CubeTriangle& t, const Triangles& others) { return embedding({}).may_add(t, others); };
-    flat.accepts = [&](const Triangles& filling) { return is_admissible(filling, {}); };
-    if (auto found = flat.run()) return {std::move(*found), {}};
     SurfaceSearch::Point mean{};
     std::uint32_t mask = 0;
     for (const std::uint8_t e : boundary[0]) {
@@ -249,6 +331,9 @@ class Table {
   tile::FacetBuilder builder_;
   RadialFilling radial_;
   std::map<std::vector<std::uint32_t>, CubeEmbedding> embeddings_;
+  RegionProof regions_;
+  std::set<std::tuple<Signature, unsigned, std::vector<RegionTriangle>>> divided_;  ///< has_divided_sides
+  std::map<PolygonKind, CubeSurface> replaced_;                                     ///< with_another_disc
   ResolvedCube table_;
   // State of the current entry.
   Signature signature_ = 0;
@@ -256,11 +341,8 @@ class Table {
   TileFacets tile_;
 };
 
-}  // namespace
-
-ResolvedCube make_resolved_cube() {
-  const CubeFrame frame;
-  Table table(frame);
+/// Adds every signature and resolution.
+void add_all(const CubeFrame& frame, Table& table) {
   std::vector<Choice> choices(frame.lattice.faces().size(), Choice::separate);
   for (Signature s = 0; s < 256; ++s) {
     const auto polygons = ambiguous_polygons(frame.lattice, s);
@@ -277,7 +359,19 @@ ResolvedCube make_resolved_cube() {
       high = (high - ambiguous) & ambiguous;
     } while (high != 0);
   }
-  return std::move(table.table());
+}
+
+}  // namespace
+
+ResolvedCube make_resolved_cube() {
+  const CubeFrame frame;
+  Table table(frame);
+  for (;;) {
+    const std::size_t replaced = table.replaced();
+    add_all(frame, table);
+    ResolvedCube result = table.take();
+    if (table.replaced() == replaced) return result;
+  }
 }
 
 std::uint64_t digest(const ResolvedCube& table) {

@@ -163,7 +163,7 @@ class Search {
 
  private:
   static constexpr std::size_t kMost = 32;  ///< vertices
-  static constexpr unsigned kMostNodes = 150;
+  static constexpr unsigned kMostNodes = 400;
   static constexpr std::uint8_t kUnused = 0, kOpen = 1, kOpenReversed = 2, kClosed = 3;
 
   static Set set_of(const Triangle& t) { return one(t[0]) | one(t[1]) | one(t[2]); }

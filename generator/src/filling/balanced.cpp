@@ -42,8 +42,12 @@ std::vector<TileContour> balanced_cubes(const Lattice& lattice) {
 }  // namespace
 
 std::vector<std::array<std::uint8_t, 3>> balanced_fan(const std::vector<std::uint8_t>& polygon) {
+  return fan_from(*std::max_element(polygon.begin(), polygon.end()), polygon);
+}
+
+std::vector<std::array<std::uint8_t, 3>> fan_from(std::uint8_t apex, const std::vector<std::uint8_t>& polygon) {
   const auto count = polygon.size();
-  const auto from = static_cast<std::size_t>(std::max_element(polygon.begin(), polygon.end()) - polygon.begin());
+  const auto from = static_cast<std::size_t>(std::find(polygon.begin(), polygon.end(), apex) - polygon.begin());
   std::vector<std::array<std::uint8_t, 3>> triangles;
   for (std::size_t k = 1; k + 1 < count; ++k)
     triangles.push_back({polygon[from], polygon[(from + k) % count], polygon[(from + k + 1) % count]});

@@ -18,6 +18,9 @@ namespace tegl::gen {
 /// every polygon of a tesseract's cubes is such a fan, the cone from a component's largest vertex is embedded: the fans
 /// contain each triangle around that vertex. (Fans from the smallest vertex give 0.7 % more tetrahedra on smooth data.)
 [[nodiscard]] std::vector<std::array<std::uint8_t, 3>> balanced_fan(const std::vector<std::uint8_t>& polygon);
+/// The same from another vertex of the polygon.
+[[nodiscard]] std::vector<std::array<std::uint8_t, 3>> fan_from(std::uint8_t apex,
+                                                                const std::vector<std::uint8_t>& polygon);
 
 /// The compact contours of the tesseracts that do not depend on the data beyond their signature, by signature; the
 /// others are empty.

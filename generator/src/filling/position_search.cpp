@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace tegl::gen {
 
@@ -42,24 +43,28 @@ class PositionSearch::Random {
 
 PositionSearch::PositionSearch(const FaceContours& faces, const TileContour& contour,
                                std::span<const SimplexPair> pairs)
-    : vertices_(faces, contour), at_(faces.tile().edge_count(), kEdge / 2), places_(256) {
+    : PositionSearch(faces.tile(), std::make_unique<VertexPlaces>(faces, contour), pairs) {}
+
+PositionSearch::PositionSearch(const Tile& tile, std::unique_ptr<ContourPlaces> places,
+                               std::span<const SimplexPair> pairs)
+    : vertices_(std::move(places)), at_(tile.edge_count(), kEdge / 2), places_(256) {
   for (const auto& [a, b] : pairs) {
-    const SimplexMeeting& pair = pairs_.emplace_back(faces.dim(), a, b);
+    const SimplexMeeting& pair = pairs_.emplace_back(tile.dim, a, b);
     std::uint32_t edges = 0;
-    for (const std::uint8_t v : pair.vertices()) edges |= vertices_.edges_of(v);
+    for (const std::uint8_t v : pair.vertices()) edges |= vertices_->edges_of(v);
     auto& list = edges_of_pair_.emplace_back();
     for (; edges != 0; edges &= edges - 1) list.push_back(static_cast<std::uint8_t>(std::countr_zero(edges)));
   }
 }
 
 void PositionSearch::draw(Random& random, bool near_ends) {
-  for (const std::uint8_t e : vertices_.edges()) at_[e] = random.position(near_ends);
+  for (const std::uint8_t e : vertices_->edges()) at_[e] = random.position(near_ends);
 }
 
 double PositionSearch::miss_of(std::size_t pair) { return pairs_[pair].miss(places_); }
 
 bool PositionSearch::any_meets() {
-  vertices_.compute(at_, places_);
+  vertices_->compute(at_, places_);
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     if (!pairs_[i].are_clearly_apart(places_) && miss_of(i) == 0) return true;
   return false;
@@ -68,7 +73,7 @@ bool PositionSearch::any_meets() {
 bool PositionSearch::descend(Random& random, std::uint32_t steps) {
   constexpr std::size_t kMostCompared = 64;  // pairs at the start
   draw(random, (random() & 1u) != 0);
-  vertices_.compute(at_, places_);
+  vertices_->compute(at_, places_);
   std::size_t pair = 0;
   double least = 2;
   for (std::size_t i = 0; i < std::min(pairs_.size(), kMostCompared); ++i) {
@@ -88,7 +93,7 @@ bool PositionSearch::descend(Random& random, std::uint32_t steps) {
       const std::int64_t changed = std::clamp(kind == 2 ? distance / 2 : distance * 2, std::int64_t{1}, kEdge - 1);
       moved = is_low ? changed : kEdge - changed;
     }
-    vertices_.compute(at_, places_);
+    vertices_->compute(at_, places_);
     const double miss = miss_of(pair);
     if (miss <= least)
       least = miss;

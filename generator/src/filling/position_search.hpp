@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,6 +33,8 @@ struct SearchPlan {
 class PositionSearch {
  public:
   PositionSearch(const FaceContours& faces, const TileContour& contour, std::span<const SimplexPair> pairs);
+  /// The same for another cell, with corners at integers.
+  PositionSearch(const Tile& tile, std::unique_ptr<ContourPlaces> places, std::span<const SimplexPair> pairs);
 
   /// Positions by edge, from the first end, in units of 2^-28, at which a pair meets; nothing if none was found.
   [[nodiscard]] std::optional<std::vector<std::int64_t>> find(const SearchPlan& plan, Signature signature);
@@ -43,7 +46,7 @@ class PositionSearch {
   [[nodiscard]] bool descend(Random& random, std::uint32_t steps);
   [[nodiscard]] double miss_of(std::size_t pair);
 
-  VertexPlaces vertices_;
+  std::unique_ptr<ContourPlaces> vertices_;
   std::vector<SimplexMeeting> pairs_;
   std::vector<std::vector<std::uint8_t>> edges_of_pair_;
   std::vector<std::int64_t> at_;

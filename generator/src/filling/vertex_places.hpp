@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Places of all vertices of a tile's contour for given points on its edges, as the runtime computes them (table
+// ContourPlaces of all vertices of a tile's contour for given points on its edges, as the runtime computes them (table
 // contract: "Positions"), in integers: the same on all machines.
 #pragma once
 
@@ -14,18 +14,27 @@
 
 namespace tegl::gen {
 
+/// Where a contour's vertices are, for given points on the edges of its cell.
+class ContourPlaces {
+ public:
+  virtual ~ContourPlaces() = default;
+  /// The edges with a vertex.
+  [[nodiscard]] virtual std::span<const std::uint8_t> edges() const noexcept = 0;
+  /// The edges on which the place of a vertex depends (bit e).
+  [[nodiscard]] virtual std::uint32_t edges_of(std::uint8_t vertex) const = 0;
+  /// `at`: by edge, the distance from its first end, in (0, 2^kGridBits). `places`: 256, by local vertex.
+  virtual void compute(std::span<const std::int64_t> at, std::span<GridPoint> places) const = 0;
+};
+
 /// Computes the places of one contour's vertices.
-class VertexPlaces {
+class VertexPlaces : public ContourPlaces {
  public:
   /// Copies what it needs of `contour`, a contour of `faces`, which must outlive this object.
   VertexPlaces(const FaceContours& faces, const TileContour& contour);
 
-  /// The edges with a vertex.
-  [[nodiscard]] std::span<const std::uint8_t> edges() const noexcept { return edges_; }
-  /// The edges on which the place of a vertex depends (bit e).
-  [[nodiscard]] std::uint32_t edges_of(std::uint8_t vertex) const { return edges_of_[vertex]; }
-  /// `at`: by edge, the distance from its first end, in (0, 2^kGridBits). `places`: 256, by local vertex.
-  void compute(std::span<const std::int64_t> at, std::span<GridPoint> places) const;
+  [[nodiscard]] std::span<const std::uint8_t> edges() const noexcept override { return edges_; }
+  [[nodiscard]] std::uint32_t edges_of(std::uint8_t vertex) const override { return edges_of_[vertex]; }
+  void compute(std::span<const std::int64_t> at, std::span<GridPoint> places) const override;
 
  private:
   /// The simplices opposite to the apex of a cone, n - 1 or (in a 4-tile's cubes) two vertices each.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The regions of cubes: those that are proved to be embedded consist of positive tetrahedra at random positions of the
-// contour's vertices. The positions and volumes are computed here, apart from the proof.
+// The regions of cubes consist of positive tetrahedra at random positions of the contour's vertices. The positions and
+// volumes are computed here, apart from the proof.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,13 +119,12 @@ std::string fault_of_region(const CubeRegions& regions, const CubeRegions::Regio
   return "";
 }
 
-/// "" if all tetrahedra of the proved regions of one side of a list have the side's orientation; else the region.
+/// "" if all tetrahedra of the regions of one side of a list have the side's orientation; else the region.
 std::string fault_of_side(const CubeLists& lists, const CubeRegions& regions, std::size_t list, bool high,
                           const Positions& positions) {
   const std::size_t side = 2 * list + (high ? 1 : 0);
   for (std::size_t r = regions.first_region[side]; r < regions.first_region[side + 1]; ++r) {
     const CubeRegions::Region& region = regions.regions[r];
-    if (!region.is_proved) continue;
     const bool is_near = region.centre_count != 0 && regions.centres[region.first_centre] >= CubeRegions::kNear;
     std::string fault = fault_of_region(regions, region, high, positions, is_near ? 0.5 : 0.0);
     for (double near = 0.25; is_near && near > 1e-12 && !fault.empty(); near *= 0.5)  // close enough
@@ -162,24 +161,18 @@ TEST(RegionProof, KnowsTheSignsOfTetrahedraForAllPositions) {
   EXPECT_EQ(proof.sign(ray, 1, 4, 16), Sign::negative);
 }
 
-TEST(CubeRegions, TetrahedraOfProvedRegionsArePositiveAtRandomPositions) {
+TEST(CubeRegions, TetrahedraOfAllRegionsArePositiveAtRandomPositions) {
   const TesseractArrays arrays = make_tesseract_arrays();
   EXPECT_EQ(fault_of_regions(arrays.lists[0], arrays.regions[0], 40), "");
   EXPECT_EQ(fault_of_regions(arrays.lists[1], arrays.regions[1], 40), "");
-  std::vector<std::size_t> proved;
-  for (const CubeRegions& regions : arrays.regions) {
-    EXPECT_EQ(regions.regions.size(), proved.size() < 2 ? 2346u : 1173u);  // caps: high sides only
-    proved.push_back(regions.proved());
-  }
-  EXPECT_EQ(proved, (std::vector<std::size_t>{2346, 2275, 1173, 1173}));
+  for (std::size_t i = 0; i < arrays.regions.size(); ++i)  // caps: high sides only
+    EXPECT_EQ(arrays.regions[i].regions.size(), i < 2 ? 2346u : 1173u);
 }
 
 TEST(CubeRegions, TetrahedraOfCapsArePositiveAtRandomPositions) {
   const TesseractArrays arrays = make_tesseract_arrays();
   EXPECT_EQ(fault_of_regions(arrays.lists[0], arrays.regions[2], 40), "");
   EXPECT_EQ(fault_of_regions(arrays.lists[1], arrays.regions[3], 40), "");
-  const auto& centres = arrays.regions[3].centres;
-  EXPECT_GT(std::count_if(centres.begin(), centres.end(), [](std::uint32_t m) { return m >= CubeRegions::kNear; }), 30);
 }
 
 TEST(CubeRegions, AFaultInOneRegionIsFoundByItsList) {
@@ -187,7 +180,6 @@ TEST(CubeRegions, AFaultInOneRegionIsFoundByItsList) {
   CubeRegions& regions = arrays.regions[1];
   const std::size_t list = 400;
   const CubeRegions::Region& region = regions.regions[regions.first_region[2 * list]];
-  ASSERT_TRUE(region.is_proved);
   CubeRegions::Tetrahedron& changed = regions.tetrahedra[region.first_tetrahedron];
   std::swap(changed[0], changed[1]);
   const std::string name =
