@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -66,7 +67,21 @@ struct Settings {
     options.ambiguity = ambiguity;
     options.triangulation = triangulation;
     options.work.threads = 1;
+    if (ambiguity == Ambiguity::custom) options.estimator.choose = random_choice;
     return options;
+  }
+
+ private:
+  /// `custom`: separate, low or high at random, by a hash of the face's axes and values (splitmix64).
+  static tile::Choice random_choice(const AmbiguousFace& face) {
+    std::uint64_t hash = face.axes();
+    for (const double value : face.values()) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(value)) + 0x9e3779b97f4a7c15u;
+      hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9u;
+      hash = (hash ^ hash >> 27) * 0x94d049bb133111ebu;
+      hash ^= hash >> 31;
+    }
+    return static_cast<tile::Choice>(hash % 3);
   }
 };
 
@@ -276,7 +291,7 @@ void print_bias(const Settings& settings) {
 constexpr const char* kUsage =
     "tile_intersections [options]: random images of one tile whose contours intersect themselves\n"
     "  --dimension 3|4|5         dimension of the image\n"
-    "  --ambiguity NAME          low, high, mean, saddle, squares or decider\n"
+    "  --ambiguity NAME          low, high, mean, saddle, squares, decider or custom (random choices)\n"
     "  --triangulation NAME      compact or barycentric\n"
     "  --tiles N                 number of tiles; with middle positions, signatures in turn\n"
     "  --positions NAME          middle, uniform or log-uniform\n"
@@ -299,8 +314,8 @@ std::size_t choice(std::string_view option, std::string_view name, const std::ar
 }
 
 Settings parsed(int argc, char** argv) {
-  constexpr std::array kAmbiguities = {"low", "high", "mean", "saddle", "squares", "decider"};
-  static_assert(static_cast<int>(Ambiguity::decider) == 5);
+  constexpr std::array kAmbiguities = {"low", "high", "mean", "saddle", "squares", "decider", "custom"};
+  static_assert(static_cast<int>(Ambiguity::custom) == 6);
   constexpr std::array kTriangulations = {"compact", "barycentric"};
   constexpr std::array kPositions = {"middle", "uniform", "log-uniform"};
   constexpr std::uint64_t kMost = std::uint64_t{1} << 40;
