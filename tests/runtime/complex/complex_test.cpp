@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -19,6 +20,7 @@
 #include "errors.hpp"
 #include "invariants.hpp"
 #include "meshes.hpp"
+#include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 
 namespace tegl {
@@ -272,6 +274,42 @@ TEST(Complex, InFourDimensionsSimplicesAndPrismsHaveClosedContours) {
       expect_closed_manifold(contour);
     }
   }
+}
+
+/// A projective map of a mesh on [-1, 1]^N; affine without `pull`. Faces stay flat.
+template <int N>
+MeshData<N> mapped(MeshData<N> mesh, double pull) {
+  for (auto& x : mesh.points) {
+    std::array<double, N> y;
+    double weight = 1.0;
+    for (int a = 0; a < N; ++a) weight += pull * (0.1 + 0.05 * a) * x[a];
+    for (int a = 0; a < N; ++a) y[a] = (x[a] + 0.6 * x[(a + 1) % N] - 0.2 * x[(a + 2) % N]) / weight;
+    x = y;
+  }
+  return mesh;
+}
+
+template <int N>
+std::uint64_t intersecting_pairs(const MeshData<N>& mesh, Triangulation t, Ambiguity ambiguity) {
+  Complex<N> complex = mesh.complex();
+  complex.set_values(closed_noise(mesh, 17));
+  const auto contour = extract<double>(complex, 0.5, options_of(t, ambiguity));
+  EXPECT_GT(contour.simplices.size(), 500u);
+  return find_intersections(contour).pair_count;
+}
+
+TEST(Complex, ContoursOfCellsWithFlatFacesDoNotIntersectThemselves) {
+  const MeshData<3> points = grid_points<3>({9, 9, 9}, 0.0);
+  const std::vector<MeshData<3>> meshes3 = {kuhn_mesh(grid_points<3>({9, 9, 9}, 0.15)),
+                                            mapped(cube_mesh(points, true), 0.0), mapped(cube_mesh(points, true), 1.0),
+                                            mapped(wedge_mesh(points), 1.0), mapped(pyramid_mesh(points), 1.0)};
+  for (const MeshData<3>& mesh : meshes3)
+    for (const Triangulation t : kTriangulations)
+      for (const Ambiguity a : {Ambiguity::low, Ambiguity::high}) EXPECT_EQ(intersecting_pairs(mesh, t, a), 0u);
+  const MeshData<4> points4 = grid_points<4>({5, 5, 5, 5}, 0.0);
+  for (const MeshData<4>& mesh : {kuhn_mesh(grid_points<4>({5, 5, 5, 5}, 0.1)), mapped(cube_mesh(points4), 0.0)})
+    for (const Ambiguity a : {Ambiguity::low, Ambiguity::high})
+      EXPECT_EQ(intersecting_pairs(mesh, Triangulation::barycentric, a), 0u);
 }
 
 TEST(Complex, InFourDimensionsVolumesConvergeWithOrderTwo) {
