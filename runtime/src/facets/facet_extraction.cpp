@@ -583,7 +583,7 @@ class FacetWriter : FacetExtraction<N> {
       if (inside.points.empty()) return;
       const auto index = place_of(row, i);
       const EdgePlaces<N, Axes> edges(source_, index, rows_.signature(kind.corners, row, i));
-      CubeRays<N> rays = edges.rays();
+      CellRays<N, 3> rays = edges.rays();
       for (const std::uint8_t own : inside.points) {
         const TilePoint<3> point = cube_own_place(ResolvedCubes::instance().mask(type, own), edges, rays);
         facets_.vertices[vertex] = placement_.template in_cell<CellFrame<N, Axes>>(index, point);

@@ -3,10 +3,11 @@
 // Roots of the trilinear interpolant on rays.
 #include "image/cube_heights.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+
+#include "image/ray_level.hpp"
 
 namespace tegl::detail {
 
@@ -39,31 +40,6 @@ double quadratic_level(double a, double b, double c) noexcept {
   return level;
 }
 
-/// The same for a + b x + c x^2 + d x^3: looks for the last change of sign between fourths, then iterates.
-double cubic_level(double a, double b, double c, double d) noexcept {
-  const auto value = [&](double x) { return a + x * (b + x * (c + x * d)); };
-  double above = 1.0, at_above = value(above);
-  const bool is_high = at_above >= 0.0;
-  double below = 0.75, at_below = value(below);
-  while ((at_below >= 0.0) == is_high) {
-    if (below == 0.0) return 0.0;
-    above = below, at_above = at_below;
-    below -= 0.25, at_below = value(below);
-  }
-  // Newton's method from the chord's root, or bisection where it leaves the interval
-  double x = below + (above - below) * (at_below / (at_below - at_above));
-  for (int step = 0; step < 8; ++step) {
-    const double at = value(x);
-    ((at >= 0.0) == is_high ? above : below) = x;
-    double next = x - at / (b + x * (2.0 * c + x * (3.0 * d)));
-    if (!(next >= below && next <= above)) next = 0.5 * (below + above);
-    const double moved = std::abs(next - x);
-    x = next;
-    if (moved < 1e-5) break;  // the next step would be below 1e-9
-  }
-  return x;
-}
-
 }  // namespace
 
 double CubeHeights::level(std::uint32_t corners) const noexcept {
@@ -80,12 +56,10 @@ double CubeHeights::level(std::uint32_t corners) const noexcept {
       level = quadratic_level(a, 2.0 * (s0 - s2), s0 - s1 + s2);
       break;
     default:
-      level = cubic_level(a, 3.0 * (s0 - s3) + s1 - s2, 3.0 * (s0 + s3) - s1 - s2, s0 - s1 + s2 - s3);
+      level = last_root<4>({a, 3.0 * (s0 - s3) + s1 - s2, 3.0 * (s0 + s3) - s1 - s2, s0 - s1 + s2 - s3});
   }
-  const double least = std::max(kLeast, epsilon);
   if (!(std::abs(a) <= std::numeric_limits<double>::max() / 64)) return 0.5;
-  constexpr double kStep = 1048576.0;  // rounds to multiples of 2^-32
-  return (std::clamp(level, least, 1.0 - least) + kStep) - kStep;
+  return level_inside(level, epsilon);
 }
 
 }  // namespace tegl::detail

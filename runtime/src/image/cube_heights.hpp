@@ -7,6 +7,8 @@
 #include <array>
 #include <cstdint>
 
+#include "image/ray_level.hpp"
+
 namespace tegl::detail {
 
 /// The samples at a cube's corners minus the isovalue, in the order of the cube's own corners.
@@ -24,7 +26,7 @@ struct CubeHeights {
   /// The interpolant is linear on rays to squares, quadratic on those to edges and cubic on those to corners.
   [[nodiscard]] double level(std::uint32_t corners) const noexcept;
 
-  static constexpr double kLeast = 1.0 / 32;
+  static constexpr double kLeast = kLeastRayLevel;
 };
 
 }  // namespace tegl::detail

@@ -100,13 +100,11 @@ void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* 
 }
 
 template <Value T, int N>
-CubeHeights RowSource<T, N>::cube_heights(const Index& base, unsigned axes) const noexcept {
-  CubeHeights heights{{}, epsilon_};
-  if constexpr (N > 2) {
-    corner_values(base, axes, heights.at.data());
-    for (double& height : heights.at) height -= this->isovalue();
-  }
-  return heights;
+double RowSource<T, N>::corner_heights(const Index& base, unsigned axes, double* out) const noexcept {
+  corner_values(base, axes, out);
+  const std::size_t corners = std::size_t{1} << std::popcount(axes);
+  for (std::size_t v = 0; v < corners; ++v) out[v] -= this->isovalue();
+  return epsilon_;
 }
 
 template <Value T, int N>

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "image/bitplanes.hpp"
-#include "image/cube_heights.hpp"
+#include "image/cell_heights.hpp"
 #include "image/gradient.hpp"
 
 namespace tegl::detail {
@@ -96,7 +96,7 @@ struct EdgesInRows {
 };
 
 /// Intersections of the contour with edges of the grid, as interpolation parameters: 0 at an edge's first end, 1 at its
-/// second, clamped to [epsilon, 1 - epsilon]. Also the data of intersections with rays inside cubes.
+/// second, clamped to [epsilon, 1 - epsilon]. Also the data of intersections with rays inside cells.
 template <int N>
 class EdgeCrossings {
  public:
@@ -110,14 +110,23 @@ class EdgeCrossings {
   /// edge e to out[e]. `out` has an entry for each edge of the cell; the other entries are undefined.
   virtual void cell_alphas(const SampleIndex<N>& base, unsigned axes, std::uint32_t edges,
                            double* out) const noexcept = 0;
-  /// Heights at the corners of the cube along three `axes` based at `base`.
-  [[nodiscard]] virtual CubeHeights cube_heights(const SampleIndex<N>& base, unsigned axes) const noexcept = 0;
+  /// Heights of the cell along K `axes` based at `base`: 3 (CubeHeights), 4 or 5 (TileHeights).
+  template <int K>
+  [[nodiscard]] CellHeights<K> heights(const SampleIndex<N>& base, unsigned axes) const noexcept {
+    std::array<double, std::size_t{1} << K> at;
+    const double epsilon = corner_heights(base, axes, at.data());
+    return CellHeights<K>{at, epsilon};
+  }
 
  protected:
   explicit EdgeCrossings(const Strides& strides) : strides_(strides) {}
   ~EdgeCrossings() = default;
 
  private:
+  /// Writes the samples at the corners of the cell along `axes` based at `base`, minus the isovalue, in the order of
+  /// the cell's own corners. Returns epsilon.
+  virtual double corner_heights(const SampleIndex<N>& base, unsigned axes, double* out) const noexcept = 0;
+
   Strides strides_;
 };
 

@@ -363,7 +363,7 @@ class TileWriter {
                  Index own, VertexRun<Vertex> vertices) const noexcept {
     std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
     const auto place = [&](unsigned v) -> decltype(auto) { return places(list.mapped(v)); };
-    if constexpr (N == 3)
+    if constexpr (N > 2)
       own_places<N>(list, compact_, place, points.data(), places.edges().rays());
     else
       own_places<N>(list, compact_, place, points.data());

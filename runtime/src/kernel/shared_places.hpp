@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "ambiguity/tesseract_decision.hpp"
 #include "image/sample_source.hpp"
@@ -18,25 +19,25 @@
 
 namespace tegl::detail {
 
-/// Levels of the contour on rays inside the cube along three `axes` based at `base` (CubeHeights). Reads the samples at
-/// the first request.
-template <int N>
-class CubeRays {
+/// Levels of the contour on rays inside the cell along K `axes` based at `base` (CellHeights). Reads the samples at the
+/// first request.
+template <int N, int K>
+class CellRays {
  public:
-  CubeRays(const EdgeCrossings<N>& source, const SampleIndex<N>& base, unsigned axes) noexcept
+  CellRays(const EdgeCrossings<N>& source, const SampleIndex<N>& base, unsigned axes) noexcept
       : source_(source), base_(base), axes_(axes) {}
-  [[nodiscard]] double operator()(std::uint32_t corners) noexcept {
-    if (!is_known_) heights_ = source_.cube_heights(base_, axes_);
-    is_known_ = true;
-    return heights_.level(corners);
+  /// `end`: corners of a cube (CubeHeights), or a point in the unit tile (TileHeights).
+  template <class End>
+  [[nodiscard]] double operator()(const End& end) noexcept {
+    if (!heights_) heights_ = source_.template heights<K>(base_, axes_);
+    return heights_->level(end);
   }
 
  private:
   const EdgeCrossings<N>& source_;
   SampleIndex<N> base_;
   unsigned axes_;
-  bool is_known_ = false;
-  CubeHeights heights_;
+  std::optional<CellHeights<K>> heights_;
 };
 
 /// Positions of the vertices on critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
@@ -53,17 +54,14 @@ class EdgePlaces {
     return edge_point<kDim>(edge, alphas_[edge]);
   }
   [[nodiscard]] double alpha(unsigned edge) const noexcept { return alphas_[edge]; }
-  /// Of the cell, which is a cube.
-  [[nodiscard]] CubeRays<N> rays() const noexcept {
-    static_assert(kDim == 3);
-    return CubeRays<N>(source_, base_, Axes);
-  }
+  /// Of the cell.
+  [[nodiscard]] CellRays<N, kDim> rays() const noexcept { return {source_, base_, Axes}; }
   /// Of a cube of the cell, which is a tesseract.
-  [[nodiscard]] CubeRays<N> rays_in(unsigned cube) const noexcept {
+  [[nodiscard]] CellRays<N, 3> rays_in(unsigned cube) const noexcept {
     static_assert(Axes == 15);
     auto base = base_;
     base[cube / 2] += cube % 2;
-    return CubeRays<N>(source_, base, Axes ^ 1u << cube / 2);
+    return {source_, base, Axes ^ 1u << cube / 2};
   }
 
  private:
@@ -99,6 +97,7 @@ class SharedPlaces<4> {
     return places_[v];
   }
 
+  [[nodiscard]] const EdgePlaces<4, 15>& edges() const noexcept { return edges_; }
   /// Number of barycentres of a cube of the tile.
   [[nodiscard]] unsigned cube_vertices(unsigned cube) const noexcept {
     return SimplexList<3>(*cube_, cube_signature(cube)).own_vertices();
@@ -163,7 +162,7 @@ class SharedPlaces<4> {
 class ResolvedPlaces {
  public:
   ResolvedPlaces(const EdgePlaces<4, 15>& edges, const ResolvedCubes& cubes, const ResolvedCubes::Lists& lists) noexcept
-      : edges_(edges), cubes_(cubes), lists_(lists) {}
+      : edges_(edges), cubes_(cubes), lists_(lists), rays_(edges.rays()) {}
 
   const TilePoint<4>& operator()(unsigned v) noexcept {
     if ((known_ >> v & 1u) == 0) find(v);
@@ -182,7 +181,7 @@ class ResolvedPlaces {
     }
     constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
     const auto on_edge = [&](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
-    place = mask_place<4>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), on_edge, true);
+    place = mask_place<4>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), on_edge, true, rays_);
     for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
       for (double& x : place) x = repeated_coordinate(x);
     return place;
@@ -233,6 +232,7 @@ class ResolvedPlaces {
   const EdgePlaces<4, 15>& edges_;
   const ResolvedCubes& cubes_;
   const ResolvedCubes::Lists& lists_;
+  CellRays<4, 4> rays_;
   std::uint64_t known_ = 0;
   std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< valid if known_ has the bit
 };

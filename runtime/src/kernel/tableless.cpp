@@ -429,20 +429,31 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     return result;
   }
 
-  /// Rays in the cubes of a cell. Cubes of a cap across the border are flat: the level does not matter.
+  /// Rays in the faces of a cell. Faces of a cap across the border are flat: the level does not matter.
   class Rays final : public TileRays {
    public:
     Rays(const TileExtraction& of, CellKind<N> kind, const typename RowShape<N>::Index& base) noexcept
         : of_(of), kind_(kind), base_(base) {}
     [[nodiscard]] double level(std::size_t face, std::uint32_t corners) const noexcept override {
-      const CubeFaces::Cell& cube = of_.cube_.cells()[face];
-      if (kind_.is_cap() && (cube.axes >> (N - 1) & 1u) != 0) return 0.5;
-      auto start = base_;
-      for (int a = 0; a < N; ++a) start[a] += kind_.spread(cube.base) >> a & 1u;
-      return of_.source_.cube_heights(start, kind_.spread(cube.axes)).level(corners);
+      return level_in<3>(face, corners);
+    }
+    [[nodiscard]] double level(std::size_t face, const TilePoint<4>& end) const noexcept override {
+      return level_in<4>(face, end);
+    }
+    [[nodiscard]] double level(std::size_t face, const TilePoint<5>& end) const noexcept override {
+      return level_in<5>(face, end);
     }
 
    private:
+    template <int K, class End>
+    [[nodiscard]] double level_in(std::size_t face, const End& end) const noexcept {
+      const CubeFaces::Cell& cell = of_.cube_.cells()[face];
+      if (kind_.is_cap() && (cell.axes >> (N - 1) & 1u) != 0) return 0.5;
+      auto start = base_;
+      for (int a = 0; a < N; ++a) start[a] += kind_.spread(cell.base) >> a & 1u;
+      return of_.source_.template heights<K>(start, kind_.spread(cell.axes)).level(end);
+    }
+
     const TileExtraction& of_;
     CellKind<N> kind_;
     const typename RowShape<N>::Index& base_;

@@ -227,13 +227,15 @@ inline constexpr auto kCornerPoints = [] {
 /// Weight of point number v of an uneven mean (mask_place).
 constexpr double uneven_weight(unsigned v) noexcept { return 1.0 + 0.01 * v; }
 
-/// One coordinate of an own vertex, from the mean of its points (mask_place). `axis`: number in the vertex's face. With
-/// corners the vertex lies on the ray from the face's centre to the mean, as copies of a side must; both halves are
-/// exact for the mean of one corner.
-[[gnu::always_inline]] inline double own_coordinate(double mean, int axis, bool has_corners, bool uneven) noexcept {
-  const double centre = uneven && !has_corners ? 0.487 + 0.01 * axis : 0.5;
-  const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
-  return share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
+/// One coordinate of an own vertex without corners, from the mean of its points (mask_place). `axis`: number in the
+/// vertex's face.
+[[gnu::always_inline]] inline double own_coordinate(double mean, int axis, bool uneven) noexcept {
+  return uneven ? 0.1 * (0.487 + 0.01 * axis) + 0.9 * mean : mean;
+}
+
+/// One coordinate of a vertex on the ray from a face's centre to `end`. Exact for corners and levels of TileHeights.
+[[gnu::always_inline]] inline double ray_coordinate(double end, double level) noexcept {
+  return 0.5 + level * (end - 0.5);
 }
 
 /// One coordinate of the next of several own vertices that have the same points: nearer to the face's centre.
@@ -246,16 +248,26 @@ inline constexpr auto kUnevenWeights = [] {
   return result;
 }();
 
+/// The level of rays of tiles without samples: half way.
+struct NoRays {
+  template <class End>
+  double operator()(const End&) const noexcept {
+    return 0.5;
+  }
+};
+
 /// Position of an own vertex from its mask (bit v: corner v, bit 2^K + e: edge e). With edges only, it is their mean;
-/// with corners, half way from the tile's centre to the mean of all. `corner(v)`: maps a corner to the current frame.
+/// with corners, on the ray from the tile's centre to the mean of all, as copies of a side must be. `corner(v)`: maps a
+/// corner to the current frame. `rays(end)`: level of a ray (TileHeights).
 ///
-/// `uneven`: slightly unequal weights, unless all points are corners: the mean of a cube's corners is its centre, on the
-/// rays of its own vertices. If samples have few different values, as masks have, vertices on edges take few
+/// `uneven`: slightly unequal weights, unless all points are corners: the mean of a cube's corners is its centre, on
+/// the rays of its own vertices. If samples have few different values, as masks have, vertices on edges take few
 /// positions. The mean could then lie on the line through two of them, and a triangle would have zero area. The vertex
 /// is also moved towards the centre, as all edges may lie in one face of the tile, which must contain only the face's
 /// own vertices.
-template <int K, class Corner, class Place>
-TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
+template <int K, class Corner, class Place, class Rays>
+TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven,
+                        Rays&& rays) noexcept {
   constexpr unsigned kCorners = 1u << K;
   const bool has_uneven = uneven && mask >> kCorners != 0;
   const auto weight = [has_uneven](unsigned v) { return has_uneven ? kUnevenWeights[v] : 1.0; };
@@ -270,7 +282,13 @@ TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& p
   }
   const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
   TilePoint<K> point;
-  for (int a = 0; a < K; ++a) point[a] = own_coordinate(sum.point[a] / sum.weight, a, has_corners, uneven);
+  for (int a = 0; a < K; ++a) point[a] = sum.point[a] / sum.weight;
+  if (has_corners) {
+    const double level = rays(point);
+    for (double& x : point) x = ray_coordinate(x, level);
+  } else {
+    for (int a = 0; a < K; ++a) point[a] = own_coordinate(point[a], a, uneven);
+  }
   return point;
 }
 
@@ -297,17 +315,12 @@ inline TilePoint<3> ray_place(std::uint32_t corners, double level) noexcept {
 template <class Place, class Rays>
 TilePoint<3> cube_own_place(std::uint32_t mask, const Place& place, Rays&& rays) noexcept {
   if (is_on_ray(mask)) return ray_place(mask, rays(mask));
-  return mask_place<3>(mask, std::identity(), place, true);
+  return mask_place<3>(mask, std::identity(), place, true, NoRays());
 }
-
-/// For tiles that have no vertices on rays.
-struct NoRays {
-  double operator()(std::uint32_t) const noexcept { return 0.5; }
-};
 
 /// Positions of a tile's cone vertices and side vertices in the unit tile, so that they do not depend on the units of
 /// the axes. `place(v)`: position of the stored vertex v < first_tile_vertex(K), in the frame of the signature. `out`:
-/// list.own_vertices() points. `rays`: as for cube_own_place.
+/// list.own_vertices() points. `rays`: as for cube_own_place or, if K = 4, mask_place.
 ///
 /// Tiles of a 3D image and cubes of a 4D image use the same function. Their barycentres agree bit by bit, so a 4D
 /// contour contains the 3D contours of its time steps.
@@ -328,7 +341,7 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
     if constexpr (K == 3)  // cubes have side vertices only if they are resolved from the data
       out[cones + j] = cube_own_place(static_cast<std::uint32_t>(list.side_mask(j)), place, rays);
     else
-      out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, false);
+      out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, false, rays);
 }
 
 }  // namespace tegl::detail

@@ -69,11 +69,14 @@ std::array<double, N> simplex_barycentre(std::span<const std::array<double, N>> 
   return sum.point;
 }
 
-/// Levels of the contour on rays inside the cubes of a tile (CubeHeights).
+/// Levels of the contour on rays inside the faces of a tile, by the number of the face in the lattice.
 class TileRays {
  public:
-  /// `face`: number of the cube in the lattice.
+  /// In a cube (CubeHeights).
   [[nodiscard]] virtual double level(std::size_t face, std::uint32_t corners) const noexcept = 0;
+  /// In a face of four or five dimensions (TileHeights).
+  [[nodiscard]] virtual double level(std::size_t face, const TilePoint<4>& end) const noexcept = 0;
+  [[nodiscard]] virtual double level(std::size_t face, const TilePoint<5>& end) const noexcept = 0;
 
  protected:
   ~TileRays() = default;
@@ -190,15 +193,32 @@ class TilePlaces {
     const bool is_even = vertex.is_even || !has_edges;
     for (std::size_t at = vertex.first; at < vertex.end; at += 2)
       sum.add((*this)(tile_->of[at]), is_even ? 1.0 : uneven_weight(tile_->of[at + 1]));
+    const Point mean = divided(sum);
+    const double level = has_corners ? level_towards(mean, vertex.face) : 0.0;
     const CubeFaces::Cell& face = cube_.cells()[vertex.face];
     Point point = corner_point<N>(face.base);
     int own_axis = 0;
     for (int a = 0; a < N; ++a) {
       if ((face.axes >> a & 1u) == 0) continue;
-      point[a] = own_coordinate(sum.point[a] / sum.weight, own_axis++, has_corners, !vertex.is_even);
+      point[a] = has_corners ? ray_coordinate(mean[a], level) : own_coordinate(mean[a], own_axis, !vertex.is_even);
+      ++own_axis;
       for (unsigned repeat = 0; repeat < vertex.repeats; ++repeat) point[a] = repeated_coordinate(point[a]);
     }
     return point;
+  }
+
+  /// Level of the ray from the centre of a face of four or five dimensions to a point in it.
+  [[nodiscard]] double level_towards(const Point& end, std::size_t face) const noexcept {
+    const CubeFaces::Cell& cell = cube_.cells()[face];
+    if (cell.dim == 5) return rays_->level(face, in_frame<5>(end, cell.axes));
+    return cell.dim == 4 ? rays_->level(face, in_frame<4>(end, cell.axes)) : 0.5;
+  }
+  template <int K>
+  static TilePoint<K> in_frame(const Point& point, unsigned axes) noexcept {
+    TilePoint<K> result{};
+    for (int a = 0, own_axis = 0; a < N; ++a)
+      if ((axes >> a & 1u) != 0) result[own_axis++] = point[a];
+    return result;
   }
 
   /// Midpoint of a vertex and the contour's copy of it.
@@ -206,11 +226,14 @@ class TilePlaces {
     return midpoint<N>((*this)(vertex.copied), pushed_inwards(vertex));
   }
 
-  /// Half way from the copied vertex to the centre of the face.
+  /// On the ray from the centre of the face to the copied vertex; half way, unless that is a corner.
   Point pushed_inwards(const BuiltTile::Vertex& vertex) noexcept {
     Point point = (*this)(vertex.copied);
+    const bool is_corner = tile_->vertices[vertex.copied].kind == tile::VertexKind::corner;
+    const double level = is_corner ? level_towards(point, vertex.face) : 0.5;
     for (int a = 0; a < N; ++a)
-      if (a != flat_axis_ && (cube_.cells()[vertex.face].axes >> a & 1u) != 0) point[a] = 0.5 * (0.5 + point[a]);
+      if (a != flat_axis_ && (cube_.cells()[vertex.face].axes >> a & 1u) != 0)
+        point[a] = ray_coordinate(point[a], level);
     return point;
   }
 

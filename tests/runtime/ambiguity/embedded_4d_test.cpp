@@ -2,6 +2,7 @@
 //
 // 4D contours with resolved ambiguities do not intersect themselves: random tiles with positions of the contour on
 // edges that are uniform or near the edges' ends, and noise, by the exact test of tegl/intersections.hpp.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -11,6 +12,7 @@
 
 #include "estimators.hpp"
 #include "fields.hpp"
+#include "interpolant_distance.hpp"
 #include "share.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
@@ -110,6 +112,35 @@ TEST(Embedded4d, ContoursOfNoiseDoNotIntersectThemselves) {
     const auto found = find_intersections(extract<double>(image.view(), 0.5, options));
     EXPECT_EQ(found.pair_count, 0u) << name;
     EXPECT_EQ(found.flat, 0u) << name;
+  }
+}
+
+/// Root-mean-square distances from the interpolant in random tiles: copies at their levels, and half way to the centre.
+std::array<double, 2> distances_of_copies(Ambiguity ambiguity, Triangulation triangulation) {
+  std::mt19937_64 bits(1994), places(1);
+  ExtractOptions options;
+  options.ambiguity = ambiguity;
+  options.triangulation = triangulation;
+  std::array<InterpolantDistance, 2> distance;
+  for (int i = 0; i < 1000; ++i) {
+    CellFunction<4>::Values values;
+    for (double& value : values) value = static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0;
+    auto contour = extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options);
+    const auto at_levels = contour;
+    if (move_copies_half_way<4>(contour) == 0) continue;
+    add_distances(CellFunction<4>(values), at_levels, 1, places, distance[0]);
+    add_distances(CellFunction<4>(values), contour, 1, places, distance[1]);
+  }
+  EXPECT_GT(distance[0].points, 3000u);
+  return {distance[0].root_mean_square(), distance[1].root_mean_square()};
+}
+
+TEST(Embedded4d, CopiesAtTheInterpolantsLevelsAreNearerToItThanHalfWay) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+    const auto [barycentric, barycentric_half_way] = distances_of_copies(ambiguity, Triangulation::barycentric);
+    EXPECT_LT(barycentric, 0.75 * barycentric_half_way);
+    const auto [compact, compact_half_way] = distances_of_copies(ambiguity, Triangulation::compact);
+    EXPECT_LT(compact, 0.9 * compact_half_way);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Levels of the contour on rays inside a cube, against the trilinear interpolant by its definition.
+// Levels of the contour on rays inside cubes and tiles, against the multilinear interpolant by its definition.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "image/cube_heights.hpp"
+#include "image/cell_heights.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -117,6 +117,73 @@ TEST(CubeHeights, OfAnyMagnitudeHaveLevelsInside) {
   }
   const CubeHeights zero{{}, 0.0};
   for (const std::uint32_t corners : ends_of_rays()) EXPECT_EQ(zero.level(corners), CubeHeights::kLeast);
+}
+
+/// The multilinear interpolant at a position on the ray from the centre to `end`.
+template <int K>
+double height_towards(const std::array<double, std::size_t{1} << K>& heights, const std::array<double, K>& end,
+                      double level) {
+  double sum = 0;
+  for (std::size_t v = 0; v < heights.size(); ++v) {
+    double weight = heights[v];
+    for (std::size_t a = 0; a < K; ++a) {
+      const double x = 0.5 + level * (end[a] - 0.5);
+      weight *= (v >> a & 1u) != 0 ? x : 1.0 - x;
+    }
+    sum += weight;
+  }
+  return sum;
+}
+
+/// Random points in the boundary and corners. Counts the levels that are zeros.
+template <int K>
+void expect_zeros_at_levels() {
+  std::mt19937 random(K);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::size_t inside = 0, with_opposite_ends = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    std::array<double, std::size_t{1} << K> heights, opposite;
+    for (std::size_t v = 0; v < heights.size(); ++v) heights[v] = uniform(random), opposite[v] = -heights[v];
+    const TileHeights<K> tile(heights, 0.0), reversed(opposite, 0.0);
+    std::array<double, K> end;
+    const bool is_corner = i % 2 == 0;
+    for (double& x : end) x = is_corner ? static_cast<double>(random() & 1u) : 0.5 + 0.5 * uniform(random);
+    end[random() % K] = static_cast<double>(random() & 1u);
+    const double level = tile.level(end);
+    ASSERT_EQ(level, reversed.level(end));
+    ASSERT_EQ(level, std::ldexp(std::round(std::ldexp(level, 32)), -32));
+    ASSERT_GE(level, kLeastRayLevel);
+    ASSERT_LE(level, 1.0 - kLeastRayLevel);
+    const double at_centre = height_towards<K>(heights, end, 0.0), at_end = height_towards<K>(heights, end, 1.0);
+    if (level > kLeastRayLevel && level < 1.0 - kLeastRayLevel) {
+      ++inside;
+      EXPECT_NEAR(height_towards<K>(heights, end, level), 0.0, 1e-8);
+    } else {
+      // a zero beside an end, or no change of sign: then the end with the smaller height
+      const double nearest = level < 0.5 ? at_centre : at_end;
+      const double clamped = height_towards<K>(heights, end, level);
+      EXPECT_TRUE(nearest * clamped <= 0 || (at_centre >= 0) == (at_end >= 0)) << level;
+    }
+    with_opposite_ends += (at_centre >= 0) != (at_end >= 0) ? 1 : 0;
+  }
+  EXPECT_GT(with_opposite_ends, 8'000u);
+  EXPECT_GT(inside, with_opposite_ends * 9 / 10);
+}
+
+TEST(TileHeights, AreZeroAtTheLevelsOfRays) {
+  expect_zeros_at_levels<4>();
+  expect_zeros_at_levels<5>();
+}
+
+TEST(TileHeights, KeepEpsilonFromBothEndsAndAreHalfWayIfInfinite) {
+  std::array<double, 16> heights;
+  heights.fill(-1.0);
+  heights[0] = 1e-9;  // the zero is beside the corner
+  const std::array<double, 4> corner{};
+  EXPECT_NEAR(TileHeights<4>(heights, 0.0).level(corner), 31.0 / 32, 1e-9);
+  EXPECT_NEAR(TileHeights<4>(heights, 0.125).level(corner), 0.875, 1e-9);
+  heights[0] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(TileHeights<4>(heights, 0.0).level(corner), 0.5);
 }
 
 }  // namespace
