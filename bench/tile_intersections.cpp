@@ -32,6 +32,7 @@
 #include "arguments.hpp"
 #include "five_intersections.hpp"
 #include "run_program.hpp"
+#include "support/interpolant_distance.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
@@ -59,6 +60,7 @@ struct Settings {
   bool lists = false;       ///< the tiles with intersections
   bool has_shapes = false;  ///< counts tiles of balls and others
   bool is_bias = false;
+  bool has_copies = false;                ///< only contours with copies of corners are tested
   bool is_searched = false;               ///< only signatures whose table entry is searched, not proved
   std::vector<std::uint64_t> signatures;  ///< the signatures to sample; if empty, all with a contour
 
@@ -188,6 +190,9 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
     for (std::size_t v = 0; v < kCorners; ++v)
       values[v] = (signature >> v & 1u) != 0 ? difference(settings, bits) : -difference(settings, bits);
     const auto contour = extract<double>(Image<double, N>(values.data(), grid), 0.0, extraction);
+    if (settings.has_copies &&
+        std::none_of(contour.vertices.begin(), contour.vertices.end(), test::is_copy_of_corner<N, double>))
+      continue;
     std::uint64_t pairs = 0, flat = 0;
     double depth = 0.0;
     if constexpr (N == 5) {
@@ -299,6 +304,7 @@ constexpr const char* kUsage =
     "  --threads T               0: all of the machine\n"
     "  --seed S                  of the random numbers\n"
     "  --searched                4D low or high: only signatures whose table entry is searched, not proved\n"
+    "  --copies                  tests only contours with copies of corners inside the cell\n"
     "  --list                    lists the tiles with pairs or flat simplices, with their values\n"
     "  --shapes                  3D, 4D: counts tiles whose components all are balls, and others, separately\n"
     "  --bias                    3D, 4D, instead: what the contours of noise and of its negative enclose\n";
@@ -322,10 +328,12 @@ Settings parsed(int argc, char** argv) {
   Settings settings;
   for (int i = 1; i < argc; ++i) {
     const std::string_view option = argv[i];
-    if (option == "--list" || option == "--shapes" || option == "--bias" || option == "--searched") {
+    if (option == "--list" || option == "--shapes" || option == "--bias" || option == "--searched" ||
+        option == "--copies") {
       (option == "--list"     ? settings.lists
        : option == "--shapes" ? settings.has_shapes
        : option == "--bias"   ? settings.is_bias
+       : option == "--copies" ? settings.has_copies
                               : settings.is_searched) = true;
       continue;
     }
@@ -355,8 +363,8 @@ Settings parsed(int argc, char** argv) {
   }
   if (settings.dimension == 5 && (settings.has_shapes || settings.is_bias))
     throw Error(ErrorCode::InvalidArgument, "--shapes, --bias; expected --dimension 3 or 4");
-  if (settings.is_bias && (settings.is_searched || settings.lists || settings.has_shapes))
-    throw Error(ErrorCode::InvalidArgument, "--bias; expected without --searched, --list and --shapes");
+  if (settings.is_bias && (settings.is_searched || settings.lists || settings.has_shapes || settings.has_copies))
+    throw Error(ErrorCode::InvalidArgument, "--bias; expected without --searched, --list, --shapes and --copies");
   return settings;
 }
 

@@ -166,7 +166,7 @@ void expect_zeros_at_levels() {
     }
     with_opposite_ends += (at_centre >= 0) != (at_end >= 0) ? 1 : 0;
   }
-  EXPECT_GT(with_opposite_ends, 8'000u);
+  EXPECT_GT(with_opposite_ends, 7'000u);
   EXPECT_GT(inside, with_opposite_ends * 9 / 10);
 }
 
