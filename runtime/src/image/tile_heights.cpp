@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "image/ray_level.hpp"
 
@@ -14,29 +16,35 @@ namespace tegl::detail {
 template <int K>
 TileHeights<K>::TileHeights(const std::array<double, kCorners>& at, double epsilon) noexcept
     : products_(at), epsilon_(epsilon) {
-  // Walsh-Hadamard transform: mean and half of the difference along each axis
+  // Walsh-Hadamard transform: sum and difference along each axis. A common factor does not matter.
+  double* const values = products_.data();
   for (std::size_t step = 1; step < kCorners; step *= 2)
-    for (std::size_t v = 0; v < kCorners; ++v)
-      if ((v & step) == 0) {
-        const double low = products_[v], high = products_[v | step];
-        products_[v] = 0.5 * low + 0.5 * high;
-        products_[v | step] = 0.5 * high - 0.5 * low;
+    for (std::size_t first = 0; first < kCorners; first += 2 * step)
+      for (std::size_t v = first; v < first + step; ++v) {
+        const double low = values[v], high = values[v + step];
+        values[v] = high + low;
+        values[v + step] = high - low;
       }
 }
 
 template <int K>
 double TileHeights<K>::level(const std::array<double, K>& end) const noexcept {
-  std::array<double, kCorners> weights;
-  weights[0] = 1.0;
   std::array<double, K + 1> by_degree{};
-  by_degree[0] = products_[0];
-  for (int a = 0; a < K; ++a) {
-    const double u = 2.0 * end[a] - 1.0;
-    const std::size_t first = std::size_t{1} << a;
-    for (std::size_t set = 0; set < first; ++set) weights[first + set] = u * weights[set];
+  // unrolled, so that degrees are constants: the weight of a set of axes is the product of u over them
+  [&]<std::size_t... Set>(std::index_sequence<Set...>) {
+    std::array<double, kCorners> weights;
+    const auto add = [&]<std::size_t S>(std::integral_constant<std::size_t, S>) {
+      if constexpr (S == 0) {
+        weights[0] = 1.0;
+      } else {
+        constexpr std::size_t kLast = std::bit_width(S) - 1;
+        weights[S] = weights[S ^ std::size_t{1} << kLast] * (2.0 * end[kLast] - 1.0);
+      }
+      by_degree[std::popcount(S)] += products_[S] * weights[S];
+    };
+    (add(std::integral_constant<std::size_t, Set>{}), ...);
   }
-  for (std::size_t set = 1; set < kCorners; ++set)
-    by_degree[static_cast<std::size_t>(std::popcount(set))] += products_[set] * weights[set];
+  (std::make_index_sequence<kCorners>());
   if (!(std::abs(products_[0]) <= std::numeric_limits<double>::max() / 64)) return 0.5;
   double level = last_root(by_degree);
   if (level < 0.0) {
