@@ -7,30 +7,29 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 namespace tegl::detail {
 
 /// Least distance of a vertex on a ray from both ends, as a share of the ray.
 inline constexpr double kLeastRayLevel = 1.0 / 32;
 
-/// The polynomial with these coefficients, the constant one first.
-template <std::size_t Count>
-double polynomial_value(const std::array<double, Count>& coefficients, double x) noexcept {
-  double value = coefficients[Count - 1];
-  // unrolled: few steps, for each of the tile's vertices
-  [&]<std::size_t... K>(std::index_sequence<K...>) { ((value = coefficients[Count - 2 - K] + x * value), ...); }
-  (std::make_index_sequence<Count - 1>());
-  return value;
+/// The polynomial with these coefficients, the constant one first. Unrolled: it is computed for each copied vertex.
+template <std::size_t Count, std::size_t K = 0>
+[[gnu::always_inline]] inline double polynomial_value(const std::array<double, Count>& coefficients,
+                                                      double x) noexcept {
+  if constexpr (K + 1 == Count)
+    return coefficients[K];
+  else
+    return coefficients[K] + x * polynomial_value<Count, K + 1>(coefficients, x);
 }
-template <std::size_t Count>
-double polynomial_slope(const std::array<double, Count>& coefficients, double x) noexcept {
-  double slope = static_cast<double>(Count - 1) * coefficients[Count - 1];
-  [&]<std::size_t... K>(std::index_sequence<K...>) {
-    ((slope = static_cast<double>(Count - 2 - K) * coefficients[Count - 2 - K] + x * slope), ...);
-  }
-  (std::make_index_sequence<Count - 2>());
-  return slope;
+template <std::size_t Count, std::size_t K = 1>
+[[gnu::always_inline]] inline double polynomial_slope(const std::array<double, Count>& coefficients,
+                                                      double x) noexcept {
+  const double term = static_cast<double>(K) * coefficients[K];
+  if constexpr (K + 1 == Count)
+    return term;
+  else
+    return term + x * polynomial_slope<Count, K + 1>(coefficients, x);
 }
 
 /// The last root in (0, 1) of those that the signs at the fourths of the interval show; -1 if there is none. Newton's

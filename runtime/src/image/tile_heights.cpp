@@ -18,13 +18,19 @@ TileHeights<K>::TileHeights(const std::array<double, kCorners>& at, double epsil
     : products_(at), epsilon_(epsilon) {
   // Walsh-Hadamard transform: sum and difference along each axis. A common factor does not matter.
   double* const values = products_.data();
-  for (std::size_t step = 1; step < kCorners; step *= 2)
-    for (std::size_t first = 0; first < kCorners; first += 2 * step)
-      for (std::size_t v = first; v < first + step; ++v) {
-        const double low = values[v], high = values[v + step];
-        values[v] = high + low;
-        values[v + step] = high - low;
-      }
+  const auto transform = [&]<std::size_t Step>(std::integral_constant<std::size_t, Step>) {
+    const auto pair = [&](std::size_t v) {
+      const double low = values[v], high = values[v + Step];
+      values[v] = high + low;
+      values[v + Step] = high - low;
+    };
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (pair(I / Step * 2 * Step + I % Step), ...); }
+    (std::make_index_sequence<kCorners / 2>());
+  };
+  [&]<std::size_t... A>(std::index_sequence<A...>) {
+    (transform(std::integral_constant<std::size_t, std::size_t{1} << A>{}), ...);
+  }
+  (std::make_index_sequence<K>());
 }
 
 template <int K>

@@ -269,7 +269,7 @@ template <int K, class Corner, class Place, class Rays>
 TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven,
                         Rays&& rays) noexcept {
   constexpr unsigned kCorners = 1u << K;
-  if (std::has_single_bit(mask) && mask >> kCorners == 0) {  // the most frequent copies
+  if ((mask & (mask - 1)) == 0 && mask >> kCorners == 0) {  // one corner: the most frequent copies
     TilePoint<K> point = kCornerPoints<K>[corner(static_cast<unsigned>(std::countr_zero(mask)))];
     const double level = rays(point);
     for (double& x : point) x = ray_coordinate(x, level);

@@ -23,8 +23,8 @@
 // B(t) its barycentre, v lies at sum M(t) B(t) / sum M(t) over these simplices. B of a segment is its midpoint. B of a
 // triangle (n = 4) is the position of t_1 if t_1 is a cube's barycentre (local id >= E), else sum |side| mid(side) /
 // sum |side| over its three sides (thesis, definition 10.1.4). In the compact triangulation a cone vertex is the mean
-// of the other vertices of its simplices. A side vertex with mask m is the midpoint of the tile's centre and the mean
-// of the corners and edge points in m.
+// of the other vertices of its simplices. A side vertex with mask m is the mean of the edge points in m or, with
+// corners, anywhere on the ray from the tile's centre to the mean of the corners and edge points in m.
 //
 // Orientation. The positive side of a simplex faces the high corners: for a simplex (v_0 ... v_{n-1}) and a vector d
 // towards the high side, det[v_1 - v_0, ..., v_{n-1} - v_0, d] > 0. In the plane, high is on the left of v_0 -> v_1. In
