@@ -133,10 +133,10 @@ struct RegionTable {
 /// 12 + j is own vertex j of the list. Its mask has bit v for corner v and bit 8 + e for the point of edge e. If it has
 /// edges, the vertex is the mean of their points. If it has corners, they are those of a corner, an edge or a square of
 /// the cube, and the vertex is on the ray from the cube's centre to their mean, anywhere between the two; the library
-/// chooses the point where the trilinear interpolant has the isovalue. Vertices of tunnels are on rays. Wherever they and
-/// the edge points are, no two triangles of a list intersect. The segments in a square are equal in all entries that
-/// resolve the square equally. Orientation as above. Single polygons are fans whose first edge does not depend on which
-/// side is high, so `separate` can have other diagonals than the list of the compact tables.
+/// chooses the point where the trilinear interpolant has the isovalue. Vertices of tunnels are on rays. Wherever they
+/// and the edge points are, no two triangles of a list intersect. The segments in a square are equal in all entries
+/// that resolve the square equally. Orientation as above. Single polygons are fans whose first edge does not depend on
+/// which side is high, so `separate` can have other diagonals than the list of the compact tables.
 struct ResolvedList {
   std::uint16_t first_triangle;  ///< index into ResolvedTable::triangles, in triangles
   std::uint8_t triangle_count;   ///< number of triangles
