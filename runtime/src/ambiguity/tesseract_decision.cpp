@@ -68,32 +68,6 @@ std::array<std::size_t, 4> moved(std::array<std::size_t, 4> base, unsigned corne
 
 }  // namespace
 
-KeptTile::KeptTile(const ResolvedTile& tile, std::uint8_t plan) noexcept {
-  for (unsigned f = 0; f < 6; ++f) words_[0] |= std::uint64_t{tile.lists[f]} << (kListBits * f);
-  words_[1] = std::uint64_t{tile.lists[6]} | std::uint64_t{tile.lists[7]} << kListBits |
-              std::uint64_t{tile.key.low_cubes} << 20 | std::uint64_t{tile.key.high_cubes} << 28 |
-              std::uint64_t{tile.with_vertices} << 36 | std::uint64_t{plan} << 44 |
-              std::uint64_t{static_cast<unsigned>(tile.key.tile)} << 52;
-}
-
-ResolvedTile KeptTile::tile(unsigned signature) const noexcept {
-  constexpr unsigned kMask = (1u << kListBits) - 1;
-  ResolvedTile result;
-  result.key.signature = static_cast<std::uint16_t>(signature);
-  for (unsigned f = 0; f < 8; ++f)
-    result.lists[f] = static_cast<std::uint16_t>(words_[f / 6] >> (kListBits * (f % 6)) & kMask);
-  result.key.low_cubes = static_cast<std::uint8_t>(words_[1] >> 20);
-  result.key.high_cubes = static_cast<std::uint8_t>(words_[1] >> 28);
-  result.with_vertices = static_cast<std::uint8_t>(words_[1] >> 36);
-  result.key.tile = static_cast<tile::Choice>(words_[1] >> 52 & 3);
-  if (plan() != ResolvedTesseract::kOther) return result;  // others do not need the squares
-  const auto lists = ResolvedCubes::instance().lists();
-  for (unsigned f = 0; f < 6; ++f)  // each square is in a cube across x, y or z
-    if (result.lists[f] != ResolvedCubes::kNone)
-      result.key.squares |= kSquaresOfCubes[f][lists[result.lists[f]].high_squares];
-  return result;
-}
-
 /// A tile without anything to decide.
 static ResolvedTile settled_tile(const ResolvedCubes& cubes, unsigned signature) noexcept {
   ResolvedTile tile;

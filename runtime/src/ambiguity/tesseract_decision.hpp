@@ -19,24 +19,6 @@ struct ResolvedTile {
   std::uint8_t with_vertices = 0;  ///< bit set of the cubes that own vertices
 };
 
-/// A resolved tile and its plan in 16 bytes, to be kept from counting to writing. Bits, from the lowest of the first
-/// word on: six lists of ten bits; in the second word: two lists, low cubes, high cubes, cubes with vertices, plan,
-/// choice of the tile. The squares follow from the lists.
-class KeptTile {
- public:
-  KeptTile() = default;
-  KeptTile(const ResolvedTile& tile, std::uint8_t plan) noexcept;
-  /// The tile, without the keys of its cubes.
-  [[nodiscard]] ResolvedTile tile(unsigned signature) const noexcept;
-  [[nodiscard]] std::uint8_t plan() const noexcept { return static_cast<std::uint8_t>(words_[1] >> 44); }
-
- private:
-  static constexpr unsigned kListBits = 10;
-  static_assert(ResolvedCubes::kNone < 1u << kListBits);
-
-  std::array<std::uint64_t, 2> words_{};
-};
-
 /// Whether a 4D tile is combined from its cubes if ambiguities are resolved from the data. This holds if the data
 /// affect the tile, and always in the barycentric triangulation, as the cubes' barycentres are listed with their tiles.
 inline bool is_put_together(const FaceEstimator<4>& estimator, unsigned signature) noexcept {

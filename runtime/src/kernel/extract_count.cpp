@@ -52,10 +52,11 @@ void Counter<N>::allocate(SlabPlanes<N>& planes) const {
   if (keeps_tiles()) {
     planes.tiles.allocate(shape_.rows() * shape_.size(0));
     planes.first_tile.assign(shape_.rows(), 0);
-    if (lists_cubes_ && keeps_resolved_)
-      planes.resolved.resize(shape_.rows() * shape_.size(0));
-    else if (lists_cubes_)
-      planes.plans.resize(shape_.rows() * shape_.size(0));
+    if (lists_cubes_) planes.plans.resize(shape_.rows() * shape_.size(0));
+    if (keeps_assembled()) {
+      planes.assembled.resize(shape_.chunks());
+      planes.first_assembled.assign(shape_.rows(), 0);
+    }
   }
   planes.edges.allocate(shape_.rows(), shape_.words());
   if (has_cubes_)
@@ -99,7 +100,7 @@ std::size_t Counter<N>::cube_row_bytes() const noexcept {
 template <int N>
 std::size_t Counter<N>::slab_planes_bytes() const noexcept {
   constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
-  const std::size_t plans = lists_cubes_ ? shape_.size(0) * (keeps_resolved_ ? sizeof(KeptTile) : 1) : 0;
+  const std::size_t plans = lists_cubes_ ? shape_.size(0) + sizeof(std::size_t) : 0;
   const std::size_t tiles = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + plans + sizeof(std::size_t) : 0;
   return shape_.rows() * (shape_.words() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.words()) +
                           (N - 1) * cube_row_bytes());
@@ -376,8 +377,9 @@ template <int N>
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile tile = tiles.resolve(base, i, signature);
       // add the filling's size
-      const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
-      if (kept.resolved != nullptr) kept.resolved[i] = KeptTile(tile, filling.plan);
+      const ResolvedSize filling = kept.assembled != nullptr && !kept.assembled->is_full()
+                                       ? assemble(tile, tesseract, *kept.assembled)
+                                       : tesseract.size(tile.key, tile.lists);
       if (kept.plans != nullptr) kept.plans[i] = filling.plan;
       count.simplices += filling.simplices;
       count.own_vertices += filling.own_vertices;
@@ -394,6 +396,14 @@ template <int N>
       take(found->in_layer, 7, base[0]);
     }
   }
+}
+
+template <int N>
+ResolvedSize Counter<N>::assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract,
+                                  AssembledTiles& assembled) const {
+  const ResolvedView& filling = tesseract.find(tile.key, tile.lists, ResolvedTesseract::kOther);
+  const bool is_kept = assembled.add(tile, filling, most_assembled_);
+  return {filling.simplex_count, filling.own_vertices, is_kept ? AssembledTiles::kPlan : ResolvedTesseract::kOther};
 }
 
 template <int N>
@@ -603,6 +613,7 @@ void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& s
   const bool ranks = !quick_ || ranks_ || !slab.all_valid || (above != nullptr && !above->all_valid);
   SlabChunk sums;
   std::uint64_t in_layer = 0;
+  if (!slab.assembled.empty()) slab.assembled[chunk].clear();
   for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
     if (keeps_tiles()) slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
     if (!ranks && goes_by_tiles(slab, row)) {

@@ -49,9 +49,9 @@ class Counter {
   /// Whether slabs keep the lists of their active tiles (4 bytes per sample). Otherwise each list is computed twice. In
   /// 4D, where slabs are large, the lists would be most of the working storage.
   void keep_tiles(bool keep) noexcept { keeps_tiles_ = keep; }
-  /// Whether slabs with lists keep 4D tiles resolved from the data too (16 bytes per sample). Otherwise they keep how
-  /// each is filled (1 byte), and resolve each tile twice.
-  void keep_resolved(bool keep) noexcept { keeps_resolved_ = keep; }
+  /// Slabs with lists keep how each 4D tile resolved from the data is filled (1 byte per sample), and up to `bytes` of
+  /// assembled tiles for each chunk. The others are assembled twice.
+  void keep_assembled(std::size_t bytes) noexcept { most_assembled_ = bytes / sizeof(std::uint64_t); }
 
   /// Allocate a layer's bits, the counts of a layer or slab, and the bits of missing values (only if any is missing).
   void allocate(Layer<N>& layer) const;
@@ -144,11 +144,13 @@ class Counter {
   /// Finds the active tiles of a row. Ambiguous tiles are replaced by their keys (N < 4).
   [[nodiscard]] TileCount find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const;
   void resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const;
-  /// Destinations, each may be null, of a row's resolved tiles and of their plans.
+  /// Destinations, each may be null, of a row's assembled tiles and of the plans of all.
   struct Kept {
-    KeptTile* resolved = nullptr;
+    AssembledTiles* assembled = nullptr;
     std::uint8_t* plans = nullptr;
   };
+  /// Assembles a tile and keeps it if there is room. Returns its size, and AssembledTiles::kPlan if it is kept.
+  ResolvedSize assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract, AssembledTiles& assembled) const;
   /// Destination of cubes that resolve_tesseracts finds.
   struct FoundCubes {
     CubePlane& in_layer;
@@ -158,8 +160,13 @@ class Counter {
                           ResolvedTesseract& tesseract, const Kept& kept, const FoundCubes* found) const;
   [[nodiscard]] Kept kept(Slab<N>& slab, std::size_t row) const noexcept {
     if (!keeps_tiles() || !lists_cubes_) return {};
-    if (keeps_resolved_) return {slab.resolved.data() + slab.first_tile[row], nullptr};
-    return {nullptr, slab.plans.data() + slab.first_tile[row]};
+    AssembledTiles* const assembled = slab.assembled.empty() ? nullptr : &slab.assembled[chunk_of(row)];
+    if (assembled != nullptr) slab.first_assembled[row] = assembled->size();
+    return {assembled, slab.plans.data() + slab.first_tile[row]};
+  }
+  /// Whether assembled tiles are kept. Not those of a caller's estimator, whose answers are compared with the counts.
+  [[nodiscard]] bool keeps_assembled() const noexcept {
+    return keeps_tiles() && lists_cubes_ && most_assembled_ != 0 && !estimator_->is_callers();
   }
   template <unsigned Axes>
   void list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
@@ -173,7 +180,7 @@ class Counter {
   bool ranks_;
   bool quick_ = false;
   bool keeps_tiles_ = true;
-  bool keeps_resolved_ = true;
+  std::size_t most_assembled_ = 0;                 ///< 64-bit words per chunk
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
   bool lists_cubes_ = false;

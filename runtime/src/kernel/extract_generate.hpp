@@ -81,8 +81,9 @@ class TileWriter {
     BitWalk active;
     Index next;                             ///< number of the next own vertex
     RowOfTesseracts* tesseracts = nullptr;  ///< N = 4, if resolved from the data without a caller's estimator
-    const KeptTile* resolved = nullptr;     ///< with `tesseracts`, by tile of the row; null: not kept
-    const std::uint8_t* plans = nullptr;    ///< ResolvedSize::plan, as `resolved`
+    const std::uint8_t* plans = nullptr;  ///< with `tesseracts`: ResolvedSize::plan by tile of the row; null: not kept
+    const AssembledTiles* assembled = nullptr;  ///< tiles whose plan is AssembledTiles::kPlan
+    std::size_t at = 0;                         ///< offset of the next one
 
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
@@ -91,12 +92,17 @@ class TileWriter {
       std::copy_n(edge_ids, tables::edge_count(N), ids.data());
       if constexpr (N == 4)
         if (own.writer.is_estimated_tile(key)) {
-          const KeptTile* const kept = own.resolved != nullptr ? own.resolved + ordinal : nullptr;
           const auto plan = own.plans != nullptr ? own.plans[ordinal] : ResolvedTesseract::kOther;
-          return own.writer.write_resolved(
-              own.view, own.row, own.index, key,
-              kept != nullptr ? kept->tile(key) : own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
-              kept != nullptr ? kept->plan() : plan, ids, own.next, own.vertices, *own.scratch.tesseract, out);
+          ResolvedTile tile;
+          if (plan == AssembledTiles::kPlan) {
+            const ResolvedView filling = own.assembled->read(own.at, tile);
+            return own.writer.write_resolved(own.view, own.row, own.index, key, tile, filling, ids, own.next,
+                                             own.vertices, out);
+          }
+          tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
+          return own.writer.write_resolved(own.view, own.row, own.index, key, tile,
+                                           own.scratch.tesseract->find(tile.key, tile.lists, plan), ids, own.next,
+                                           own.vertices, out);
         }
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
@@ -134,7 +140,10 @@ class TileWriter {
     own.tesseracts = &tesseracts;
     const Slab<N>& slab = *own.view.slab;
     if (slab.plans.size() != 0) own.plans = slab.plans.data() + slab.first_tile[own.row];
-    if (slab.resolved.size() != 0) own.resolved = slab.resolved.data() + slab.first_tile[own.row];
+    if (!slab.assembled.empty()) {
+      own.assembled = &slab.assembled[chunk_of(own.row)];
+      own.at = slab.first_assembled[own.row];
+    }
     write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }
 
@@ -164,8 +173,10 @@ class TileWriter {
         edges.ids(bit, ids.data());
         if constexpr (N == 4)
           if (is_estimated_tile(signature)) {
-            out = write_resolved(view, row, index, signature, tile_of(scratch.answers, index, signature),
-                                 ResolvedTesseract::kOther, ids, own, vertices, *scratch.tesseract, out);
+            const ResolvedTile tile = tile_of(scratch.answers, index, signature);
+            out = write_resolved(view, row, index, signature, tile,
+                                 scratch.tesseract->find(tile.key, tile.lists, ResolvedTesseract::kOther), ids, own,
+                                 vertices, out);
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
@@ -269,13 +280,12 @@ class TileWriter {
     return tile_of(own.scratch.answers, own.index, signature);
   }
 
-  /// Writes a resolved 4D tile, of which `plan` is known or kOther. Its own vertices are numbered from `own` on; `own`
-  /// is advanced. `ids`: numbers of its edges' vertices.
+  /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `ids`: numbers of its
+  /// edges' vertices.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
-                          unsigned signature, const ResolvedTile& tile, std::uint8_t plan, Ids& ids, Index& own,
-                          VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
+                          unsigned signature, const ResolvedTile& tile, const ResolvedView& filling, Ids& ids,
+                          Index& own, VertexRun<Vertex> vertices, Simplex* out) const noexcept {
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
-    const ResolvedView& filling = tesseract.find(tile.key, tile.lists, plan);
     // numbers of the cubes' vertices
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
       const auto cube = static_cast<unsigned>(std::countr_zero(rest));

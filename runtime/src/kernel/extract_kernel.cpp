@@ -57,7 +57,6 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
     const double most = (std::max(little, share * image) - fixed) / each;
     return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
   };
-  if (N == 4 && fit() < std::min(wanted, few)) counter.keep_resolved(false);
   if (N == 4 && fit() < std::min(wanted, few)) counter.keep_tiles(false);
   return std::max<std::size_t>(1, fit());
 }
@@ -99,6 +98,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
       caps_.emplace(source, shape_, tables_, counter_, placement_, estimator_.get(), inverted_,
                     against_tables(grid, options), plan.closed_axes);
     if (!plan.keeps_tiles) counter_.keep_tiles(false);
+    counter_.keep_assembled(kMostAssembled / (batch_ * shape_.chunks()));
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
     const std::size_t counted = kPassesPlanesOn ? batch_ + 1 : layers_.size();
     for (std::size_t k = 0; k < counted; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
@@ -466,6 +466,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
 
   static constexpr std::size_t kLeastWork = 4096;                 ///< minimum samples per task
   static constexpr std::size_t kMostWork = std::size_t{1} << 20;  ///< maximum samples between checks for cancellation
+  static constexpr std::size_t kMostAssembled = std::size_t{1} << 25;  ///< bytes of assembled tiles of a batch
   static constexpr unsigned kPasses = 4;  ///< passes over a batch: classify, count, generate, gather borders
   /// Whether finished planes are reused. The last layer is only classified, and the last slab only has its missing
   /// values found: neither needs planes. (In 2D a layer is one row, and reuse takes longer than it saves.)

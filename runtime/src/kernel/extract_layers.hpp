@@ -16,9 +16,9 @@
 #include <span>
 #include <vector>
 
-#include "ambiguity/tesseract_decision.hpp"
 #include "image/bitplanes.hpp"
 #include "image/sample_source.hpp"
+#include "kernel/assembled_tiles.hpp"
 #include "kernel/vertex_numbers.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/table_contract.hpp"
@@ -234,12 +234,13 @@ struct SlabPlanes {
   std::vector<Word> active;    ///< rows x words: valid tiles with high and low corners
   TileLists tiles;             ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
   Buffer<std::uint8_t> plans;  ///< with `tiles`, N = 4, resolved from the data: ResolvedSize::plan by tile
-  Buffer<KeptTile> resolved;   ///< instead of `plans`, if they fit (Counter::keep_resolved)
-  std::vector<std::size_t> first_tile;      ///< by row
-  std::vector<std::uint32_t> active_count;  ///< by row
-  EdgePlane edges;                          ///< along the last axis
-  std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
-  std::vector<Index> own_offset;            ///< by row: first vertex owned by its tiles, relative to the chunk's first
+  std::vector<AssembledTiles> assembled;     ///< with `plans`: by chunk; may be empty
+  std::vector<std::size_t> first_assembled;  ///< with `assembled`: by row with tiles
+  std::vector<std::size_t> first_tile;       ///< by row
+  std::vector<std::uint32_t> active_count;   ///< by row
+  EdgePlane edges;                           ///< along the last axis
+  std::array<CubePlane, N - 1> cubes;        ///< N = 4: by the axis that they leave out
+  std::vector<Index> own_offset;             ///< by row: first vertex owned by its tiles, relative to the chunk's first
   std::vector<std::uint64_t> simplex_offset;  ///< by row: first simplex, relative to the chunk's first
   std::vector<SlabChunk> chunks;
 
