@@ -19,10 +19,6 @@ namespace tegl::detail {
 /// with vertices, the numbers of own vertices and of simplices; the masks; the simplices, two per word.
 class AssembledTiles {
  public:
-  /// In place of ResolvedSize::plan: the tile is kept here.
-  static constexpr std::uint8_t kPlan = 253;
-  static_assert(kPlan > ResolvedTesseract::kFirstOwn && kPlan < ResolvedTesseract::kFromTable);
-
   /// Removes all tiles. Memory is kept.
   void clear() noexcept {
     words_.clear();
@@ -32,13 +28,12 @@ class AssembledTiles {
   /// Offset of the next tile, for `read`.
   [[nodiscard]] std::size_t size() const noexcept { return words_.size(); }
 
-  /// Appends a tile with its filling, unless more than `most` words would be kept. If so, no more tiles are added, and
-  /// the result is false.
-  bool add(const ResolvedTile& tile, const ResolvedView& filling, std::size_t most) {
+  /// Appends a tile with its filling, unless more than `most` words would be kept. If so, it is full.
+  void add(const ResolvedTile& tile, const ResolvedView& filling, std::size_t most) {
     const std::size_t first = words_.size();
     const std::size_t end = first + kHead + filling.own_vertices + (filling.simplex_count + 1) / 2;
     is_full_ = end > most;
-    if (is_full_) return false;
+    if (is_full_) return;
     if (end > words_.capacity()) words_.reserve(std::min(most, end + words_.capacity() / 4));
     words_.resize(end);
     std::uint64_t* const to = words_.data() + first;
@@ -50,7 +45,6 @@ class AssembledTiles {
             std::uint64_t{tile.with_vertices} << kCubesAt | sizes;
     if (filling.own_vertices != 0) std::memcpy(to + kHead, filling.masks, filling.own_vertices * sizeof *to);
     std::memcpy(to + kHead + filling.own_vertices, filling.simplices, 4 * std::size_t{filling.simplex_count});
-    return true;
   }
 
   /// The tile at offset `at`, which is advanced to the next one: its lists, its cubes with vertices and its filling.

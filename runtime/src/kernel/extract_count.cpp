@@ -52,11 +52,10 @@ void Counter<N>::allocate(SlabPlanes<N>& planes) const {
   if (keeps_tiles()) {
     planes.tiles.allocate(shape_.rows() * shape_.size(0));
     planes.first_tile.assign(shape_.rows(), 0);
-    if (lists_cubes_) planes.plans.resize(shape_.rows() * shape_.size(0));
-    if (keeps_assembled()) {
-      planes.assembled.resize(shape_.chunks());
-      planes.first_assembled.assign(shape_.rows(), 0);
-    }
+  }
+  if (keeps_assembled()) {
+    planes.assembled.resize(shape_.chunks());
+    planes.first_assembled.assign(shape_.rows(), 0);
   }
   planes.edges.allocate(shape_.rows(), shape_.words());
   if (has_cubes_)
@@ -100,8 +99,8 @@ std::size_t Counter<N>::cube_row_bytes() const noexcept {
 template <int N>
 std::size_t Counter<N>::slab_planes_bytes() const noexcept {
   constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
-  const std::size_t plans = lists_cubes_ ? shape_.size(0) + sizeof(std::size_t) : 0;
-  const std::size_t tiles = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + plans + sizeof(std::size_t) : 0;
+  const std::size_t lists = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + sizeof(std::size_t) : 0;
+  const std::size_t tiles = lists + (lists_cubes_ ? sizeof(std::size_t) : 0);
   return shape_.rows() * (shape_.words() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.words()) +
                           (N - 1) * cube_row_bytes());
 }
@@ -354,8 +353,8 @@ template <int N>
 
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
-                                                      TileCount& count, ResolvedTesseract& tesseract, const Kept& kept,
-                                                      const FoundCubes* found) const {
+                                                      TileCount& count, ResolvedTesseract& tesseract,
+                                                      AssembledTiles* assembled, const FoundCubes* found) const {
   if constexpr (N == 4) {
     const bool is_listed = shape_.size(0) <= kMostListed;
     BitWalk walk(room.active);
@@ -363,13 +362,13 @@ template <int N>
     base[N - 1] = view.k;
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active});
-    // Subtract the table's sizes. In a loop of their own, entries are fetched together: they are seldom in a cache.
+    // Subtract the table's sizes. In a loop of their own, entries are fetched together: they are seldom in a cache. No
+    // branches, which noise makes hard to predict.
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
-      if (!is_put_together(*estimator_, signature)) continue;
-      const std::uint32_t replaced = rows_->entries[signature];
-      count.simplices -= replaced & RowTable::kCountMask;
-      if ((replaced & RowTable::kOwnFlag) != 0) count.own_vertices -= rows_->own_vertices(signature);
+      const std::uint32_t replaced = 0u - static_cast<std::uint32_t>(is_put_together(*estimator_, signature));
+      count.simplices -= rows_->entries[signature] & RowTable::kCountMask & replaced;
+      count.own_vertices -= rows_->own_vertices(signature) & replaced;
     }
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
@@ -377,10 +376,7 @@ template <int N>
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile tile = tiles.resolve(base, i, signature);
       // add the filling's size
-      const ResolvedSize filling = kept.assembled != nullptr && !kept.assembled->is_full()
-                                       ? assemble(tile, tesseract, *kept.assembled)
-                                       : tesseract.size(tile.key, tile.lists);
-      if (kept.plans != nullptr) kept.plans[i] = filling.plan;
+      const ResolvedSize filling = assemble(tile, tesseract, assembled);
       count.simplices += filling.simplices;
       count.own_vertices += filling.own_vertices;
       // record its cubes that own vertices, each by one tile only
@@ -400,10 +396,11 @@ template <int N>
 
 template <int N>
 ResolvedSize Counter<N>::assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract,
-                                  AssembledTiles& assembled) const {
+                                  AssembledTiles* assembled) const {
+  if (assembled == nullptr || assembled->is_full()) return tesseract.size(tile.key, tile.lists);
   const ResolvedView& filling = tesseract.find(tile.key, tile.lists, ResolvedTesseract::kOther);
-  const bool is_kept = assembled.add(tile, filling, most_assembled_);
-  return {filling.simplex_count, filling.own_vertices, is_kept ? AssembledTiles::kPlan : ResolvedTesseract::kOther};
+  assembled->add(tile, filling, most_assembled_);
+  return {filling.simplex_count, filling.own_vertices, ResolvedTesseract::kOther};
 }
 
 template <int N>
@@ -456,7 +453,7 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   if (rows_ != nullptr) {
     const TileRoom room = tile_room(slab, row, scratch);
     TileCount count = find_tiles(view, row, room);
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, kept(slab, row), nullptr);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, assembled(slab, row), nullptr);
     keep_count(count, slab, row);
     return;
   }
@@ -518,7 +515,7 @@ void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>
     const TileRoom room = tile_room(slab, row, scratch);
     count = find_tiles(view, row, room);
     const FoundCubes found{upper.cubes, slab.cubes};
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, kept(slab, row), &found);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, assembled(slab, row), &found);
   }
   keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];
@@ -615,6 +612,7 @@ void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& s
   std::uint64_t in_layer = 0;
   if (!slab.assembled.empty()) slab.assembled[chunk].clear();
   for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
+    if (!slab.assembled.empty()) slab.first_assembled[row] = slab.assembled[chunk].size();
     if (keeps_tiles()) slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
     if (!ranks && goes_by_tiles(slab, row)) {
       count_quickly(view, upper, slab, row, scratch);

@@ -49,8 +49,8 @@ class Counter {
   /// Whether slabs keep the lists of their active tiles (4 bytes per sample). Otherwise each list is computed twice. In
   /// 4D, where slabs are large, the lists would be most of the working storage.
   void keep_tiles(bool keep) noexcept { keeps_tiles_ = keep; }
-  /// Slabs with lists keep how each 4D tile resolved from the data is filled (1 byte per sample), and up to `bytes` of
-  /// assembled tiles for each chunk. The others are assembled twice.
+  /// Up to `bytes` of 4D tiles resolved from the data are kept by each chunk of a slab, as they were assembled for
+  /// counting. The others are assembled twice.
   void keep_assembled(std::size_t bytes) noexcept { most_assembled_ = bytes / sizeof(std::uint64_t); }
 
   /// Allocate a layer's bits, the counts of a layer or slab, and the bits of missing values (only if any is missing).
@@ -144,29 +144,21 @@ class Counter {
   /// Finds the active tiles of a row. Ambiguous tiles are replaced by their keys (N < 4).
   [[nodiscard]] TileCount find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const;
   void resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const;
-  /// Destinations, each may be null, of a row's assembled tiles and of the plans of all.
-  struct Kept {
-    AssembledTiles* assembled = nullptr;
-    std::uint8_t* plans = nullptr;
-  };
-  /// Assembles a tile and keeps it if there is room. Returns its size, and AssembledTiles::kPlan if it is kept.
-  ResolvedSize assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract, AssembledTiles& assembled) const;
+  /// Returns the size of a tile. If there is room, assembles and keeps it. `assembled`: of the chunk, or null.
+  ResolvedSize assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract, AssembledTiles* assembled) const;
   /// Destination of cubes that resolve_tesseracts finds.
   struct FoundCubes {
     CubePlane& in_layer;
     std::array<CubePlane, N - 1>& in_slab;
   };
   void resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
-                          ResolvedTesseract& tesseract, const Kept& kept, const FoundCubes* found) const;
-  [[nodiscard]] Kept kept(Slab<N>& slab, std::size_t row) const noexcept {
-    if (!keeps_tiles() || !lists_cubes_) return {};
-    AssembledTiles* const assembled = slab.assembled.empty() ? nullptr : &slab.assembled[chunk_of(row)];
-    if (assembled != nullptr) slab.first_assembled[row] = assembled->size();
-    return {assembled, slab.plans.data() + slab.first_tile[row]};
+                          ResolvedTesseract& tesseract, AssembledTiles* assembled, const FoundCubes* found) const;
+  [[nodiscard]] static AssembledTiles* assembled(Slab<N>& slab, std::size_t row) noexcept {
+    return slab.assembled.empty() ? nullptr : &slab.assembled[chunk_of(row)];
   }
   /// Whether assembled tiles are kept. Not those of a caller's estimator, whose answers are compared with the counts.
   [[nodiscard]] bool keeps_assembled() const noexcept {
-    return keeps_tiles() && lists_cubes_ && most_assembled_ != 0 && !estimator_->is_callers();
+    return lists_cubes_ && most_assembled_ != 0 && !estimator_->is_callers();
   }
   template <unsigned Axes>
   void list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;

@@ -79,11 +79,10 @@ class TileWriter {
     typename RowShape<N>::Index index;  ///< of the current tile
     VertexRun<Vertex> vertices;
     BitWalk active;
-    Index next;                             ///< number of the next own vertex
-    RowOfTesseracts* tesseracts = nullptr;  ///< N = 4, if resolved from the data without a caller's estimator
-    const std::uint8_t* plans = nullptr;  ///< with `tesseracts`: ResolvedSize::plan by tile of the row; null: not kept
-    const AssembledTiles* assembled = nullptr;  ///< tiles whose plan is AssembledTiles::kPlan
-    std::size_t at = 0;                         ///< offset of the next one
+    Index next;                                 ///< number of the next own vertex
+    RowOfTesseracts* tesseracts = nullptr;      ///< N = 4, if resolved from the data without a caller's estimator
+    const AssembledTiles* assembled = nullptr;  ///< with `tesseracts`: the row's first tiles may be kept here
+    std::size_t at = 0, end = 0;                ///< offset of the next one, and the end
 
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
@@ -92,17 +91,16 @@ class TileWriter {
       std::copy_n(edge_ids, tables::edge_count(N), ids.data());
       if constexpr (N == 4)
         if (own.writer.is_estimated_tile(key)) {
-          const auto plan = own.plans != nullptr ? own.plans[ordinal] : ResolvedTesseract::kOther;
           ResolvedTile tile;
-          if (plan == AssembledTiles::kPlan) {
+          if (own.at < own.end) {
             const ResolvedView filling = own.assembled->read(own.at, tile);
             return own.writer.write_resolved(own.view, own.row, own.index, key, tile, filling, ids, own.next,
                                              own.vertices, out);
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
           return own.writer.write_resolved(own.view, own.row, own.index, key, tile,
-                                           own.scratch.tesseract->find(tile.key, tile.lists, plan), ids, own.next,
-                                           own.vertices, out);
+                                           own.scratch.tesseract->find(tile.key, tile.lists, ResolvedTesseract::kOther),
+                                           ids, own.next, own.vertices, out);
         }
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
@@ -139,10 +137,10 @@ class TileWriter {
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
     own.tesseracts = &tesseracts;
     const Slab<N>& slab = *own.view.slab;
-    if (slab.plans.size() != 0) own.plans = slab.plans.data() + slab.first_tile[own.row];
     if (!slab.assembled.empty()) {
       own.assembled = &slab.assembled[chunk_of(own.row)];
       own.at = slab.first_assembled[own.row];
+      own.end = slab.end_assembled(own.row);
     }
     write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }

@@ -231,11 +231,12 @@ struct TileLists {
 /// Counts of a slab.
 template <int N>
 struct SlabPlanes {
-  std::vector<Word> active;    ///< rows x words: valid tiles with high and low corners
-  TileLists tiles;             ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
-  Buffer<std::uint8_t> plans;  ///< with `tiles`, N = 4, resolved from the data: ResolvedSize::plan by tile
-  std::vector<AssembledTiles> assembled;     ///< with `plans`: by chunk; may be empty
-  std::vector<std::size_t> first_assembled;  ///< with `assembled`: by row with tiles
+  std::vector<Word> active;  ///< rows x words: valid tiles with high and low corners
+  TileLists tiles;           ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
+  /// N = 4, resolved from the data: by chunk the first tiles that are assembled (Counter::keep_assembled); may be
+  /// empty.
+  std::vector<AssembledTiles> assembled;
+  std::vector<std::size_t> first_assembled;  ///< with `assembled`: by row
   std::vector<std::size_t> first_tile;       ///< by row
   std::vector<std::uint32_t> active_count;   ///< by row
   EdgePlane edges;                           ///< along the last axis
@@ -249,6 +250,10 @@ struct SlabPlanes {
   }
   [[nodiscard]] std::uint64_t first_simplex(std::size_t row) const noexcept {
     return chunks[chunk_of(row)].first_simplex + simplex_offset[row];
+  }
+  /// End of a row's assembled tiles.
+  [[nodiscard]] std::size_t end_assembled(std::size_t row) const noexcept {
+    return is_last_of_chunk(row) ? assembled[chunk_of(row)].size() : first_assembled[row + 1];
   }
   /// Vertices owned by the tiles of a row, and its simplices. Derived from the offsets, so valid only once these are
   /// computed.
