@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Measures of a contour, and measures of its cuts without constructing them.
-//
-// Based on: H. B. Curry and I. J. Schoenberg, On Pólya frequency functions IV: the fundamental spline functions and
-// their limits, 1966. The volume of the cuts of a simplex is a B-spline whose knots are the positions of the vertices.
+// The sums over the cuts of simplices are in cut_sums.cpp.
 #include "tegl/measure.hpp"
 
 #include <algorithm>
@@ -14,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "base/slice_at.hpp"
-#include "base/sort_few.hpp"
 #include "base/workers.hpp"
+#include "mesh/cut_sums.hpp"
 #include "mesh/measure_pieces.hpp"
 
 namespace tegl {
@@ -24,35 +22,6 @@ namespace {
 using detail::CompensatedSum;
 using detail::kBlock;
 using detail::PointOf;
-
-/// The B-spline of degree N - 2 with the knots k_0 ≤ … ≤ k_{N-1} and integral 1, for many places. Recursion by convex
-/// combinations of two splines with one knot less, so there is no cancellation.
-template <int N>
-class Spline {
- public:
-  explicit Spline(const std::array<double, N>& knots) noexcept : knots_(knots) {
-    for (int width = 1; width < N; ++width)
-      for (int i = 0; i + width < N; ++i) {
-        const double length = knots[i + width] - knots[i];
-        per_length_[width][i] = length > 0.0 ? 1.0 / length : 0.0;
-      }
-  }
-
-  /// At t from knot J to knot J + 1, which differ.
-  template <int J>
-  [[nodiscard]] double at(double t) const noexcept {
-    std::array<double, N> spline{};  // with one knot more in each round
-    spline[J] = per_length_[1][J];
-    for (int width = 2; width < N; ++width)
-      for (int i = std::max(0, J - width + 1); i <= std::min(J, N - 1 - width); ++i)
-        spline[i] = ((t - knots_[i]) * spline[i] + (knots_[i + width] - t) * spline[i + 1]) * per_length_[width][i];
-    return spline[0] * (N - 1);
-  }
-
- private:
-  std::array<double, N> knots_;
-  std::array<std::array<double, N>, N> per_length_;  ///< by number of intervals, then by first knot
-};
 
 /// The requested values in ascending order, with lookup of those that cut a range from `low` to `high`.
 class CutValues {
@@ -64,7 +33,8 @@ class CutValues {
     for (std::size_t i = 0; i < at.size(); ++i) at_[i] = at[order_[i]];
   }
   [[nodiscard]] std::size_t size() const noexcept { return at_.size(); }
-  [[nodiscard]] double operator[](std::size_t i) const noexcept { return at_[i]; }
+  /// Ascending.
+  [[nodiscard]] std::span<const double> all() const noexcept { return at_; }
   /// Index in the caller's list.
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return order_[i]; }
   /// The number of values at most t; at the minimum of the contour, below t. The values that cut a simplex between two
@@ -89,51 +59,6 @@ class CutValues {
   std::vector<std::size_t> order_;
   double first_;
 };
-
-/// Sums at one value: the size of the cut, and N - 1 times the content that it encloses, with their rounding errors
-/// apart (CompensatedSum). In pairs, so that the compiler adds to both at once.
-struct CutSum {
-  std::array<double, 2> sum{}, rest{};
-
-  void add(double size, double content) noexcept {
-    const std::array<double, 2> both = {size, content};
-    for (int k = 0; k < 2; ++k) detail::add_exactly(both[k], sum[k], rest[k]);
-  }
-  [[nodiscard]] double size() const noexcept { return detail::with_rest(sum[0], rest[0]); }
-  [[nodiscard]] double content() const noexcept { return detail::with_rest(sum[1], rest[1]); }
-};
-
-/// Adds the cuts of one simplex to the sums. Its cut at t lies in the plane with the normal w (the spatial part of the
-/// simplex's normal vector W), in which x . w = x_0 . w + (t_0 - t) W_t for any of its vertices (x_0, t_0). `counts`:
-/// by vertex, CutValues::count_to.
-template <int N>
-void add_cuts(const detail::SimplexView<N>& contour, std::size_t s, const PointOf<N>& origin, const CutValues& values,
-              const Buffer<Index>& counts, std::span<CutSum> sums) noexcept {
-  std::array<Index, N> cut;
-  for (int j = 0; j < N; ++j) cut[j] = counts[contour.simplices()[s][j]];
-  detail::sort_few(cut);
-  if (cut.front() == cut.back()) return;
-  const std::array<PointOf<N>, N> corners = contour.corners(s);
-  std::array<double, N> knots;
-  for (int j = 0; j < N; ++j) knots[j] = corners[j][N - 1];
-  detail::sort_few(knots);
-  const Spline<N> spline(knots);
-  const PointOf<N> normal = detail::normal_vector_of<N>(corners);
-  PointOf<N - 1> spatial;
-  std::copy_n(normal.begin(), N - 1, spatial.begin());
-  const double area = detail::length_of<N - 1>(spatial);
-  double along = 0.0;
-  for (int a = 0; a + 1 < N; ++a) along += spatial[a] * (corners[0][a] - origin[a]);
-  const auto add_between = [&]<int J>(std::integral_constant<int, J>) {
-    const double last = corners[0][N - 1], slope = normal[N - 1];
-    for (Index i = cut[J]; i < cut[J + 1]; ++i) {
-      const double at = values[i], share = spline.template at<J>(at);
-      sums[i].add(area * share, (along + (last - at) * slope) * share);
-    }
-  };
-  [&]<int... J>(std::integer_sequence<int, J...>) { (add_between(std::integral_constant<int, J>()), ...); }
-  (std::make_integer_sequence<int, N - 1>());
-}
 
 /// By value, whether the cut is open: an (N-2)-face whose orientations do not cancel is cut there.
 template <int N>
@@ -239,20 +164,19 @@ std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& cont
   const std::size_t parts =
       std::clamp<std::size_t>((std::size_t{1} << 20) / std::max<std::size_t>(1, values.size()), 1, 64);
   const std::size_t size = std::max(kBlock, detail::block_count(simplices, parts));
-  std::vector<std::vector<CutSum>> sums(detail::block_count(simplices, size));
+  std::vector<detail::CutSums> sums(detail::block_count(simplices, size));
   detail::for_each_block(simplices, size, work.threads, detail::part_of(work.progress, 0.6, 1.0),
                          [&](std::size_t block, std::size_t from, std::size_t to) {
-                           sums[block].resize(values.size());
-                           for (std::size_t s = from; s < to; ++s)
-                             add_cuts<N>(contour, s, origin, values, counts, sums[block]);
+                           sums[block] = detail::CutSums(values.size());
+                           detail::add_cuts<N>({contour, origin, values.all(), counts}, from, to, sums[block]);
                          });
   // add up the parts
   std::vector<CutMeasures> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     CompensatedSum total_size, total_content;
     for (const auto& part : sums) {
-      total_size.add(part[i].size());
-      total_content.add(part[i].content());
+      total_size.add(part.size(i));
+      total_content.add(part.content(i));
     }
     CutMeasures& cut = result[values.place(i)];
     cut.at = at[values.place(i)];

@@ -8,7 +8,7 @@
 namespace tegl::detail {
 
 template <int N>
-PointOf<N> normal_vector_of(const std::array<PointOf<N>, N>& corners) noexcept {
+PointOf<N> normal_vector_by_minors(const std::array<PointOf<N>, N>& corners) noexcept {
   using Minor = Eigen::Matrix<double, N - 1, N - 1>;
   constexpr double kFactorial = [] {
     double product = 1.0;
@@ -29,9 +29,8 @@ PointOf<N> normal_vector_of(const std::array<PointOf<N>, N>& corners) noexcept {
   return normal;
 }
 
-template PointOf<2> normal_vector_of<2>(const std::array<PointOf<2>, 2>&) noexcept;
-template PointOf<3> normal_vector_of<3>(const std::array<PointOf<3>, 3>&) noexcept;
-template PointOf<4> normal_vector_of<4>(const std::array<PointOf<4>, 4>&) noexcept;
-template PointOf<5> normal_vector_of<5>(const std::array<PointOf<5>, 5>&) noexcept;
+template PointOf<2> normal_vector_by_minors<2>(const std::array<PointOf<2>, 2>&) noexcept;
+template PointOf<3> normal_vector_by_minors<3>(const std::array<PointOf<3>, 3>&) noexcept;
+template PointOf<5> normal_vector_by_minors<5>(const std::array<PointOf<5>, 5>&) noexcept;
 
 }  // namespace tegl::detail
