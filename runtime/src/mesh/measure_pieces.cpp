@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/workers.hpp"
+#include "mesh/closed_stars.hpp"
 
 namespace tegl::detail {
 
@@ -70,6 +71,11 @@ std::vector<Index> first_items(std::span<const Index> labels, Index count) {
     --missing;
   }
   return first;
+}
+
+/// The vertex at the centre, minus the edges, plus the triangles, minus the tetrahedra.
+std::int64_t euler_above(const ClosedStar& star) {
+  return 1 - std::int64_t{star.edges} + std::int64_t{star.triangles} - std::int64_t{star.tetrahedra};
 }
 
 /// Calls add(found, item) for each item with a label below `count`, in parallel by block. Then calls merge(found of a
@@ -142,13 +148,21 @@ std::vector<FaceCounts> count_faces(
       vertices, kBlock, threads, progress, [&] { return FacesOfStars<N>(rows.data(), vertices, with_euler); },
       [&](std::size_t block, std::size_t from, std::size_t to, FacesOfStars<N>& faces) {
         auto& part = parts[block];
+        std::vector<ClosedStar> closed;
+        if constexpr (N == 4) {
+          closed.resize(to - from);
+          count_closed_stars(rows.data(), stars, from, with_euler, closed);
+        }
         for (std::size_t v = from; v < to; ++v) {
           const std::span<const Index> star = stars.of(v);
           if (star.empty()) continue;
           const Index label = labels.empty() ? 0 : labels[v];
           if (part.empty() || part.back().first != label) part.emplace_back(label, FaceCounts{});
-          part.back().second +=
-              faces.visit(static_cast<Index>(v), star, [&](const auto& ridge) { on_open(block, ridge); });
+          FaceCounts& counts = part.back().second;
+          if (N == 4 && closed[v - from].is_closed)
+            counts.euler += euler_above(closed[v - from]);
+          else
+            counts += faces.visit(static_cast<Index>(v), star, [&](const auto& ridge) { on_open(block, ridge); });
         }
       });
   std::vector<FaceCounts> result(label_count);

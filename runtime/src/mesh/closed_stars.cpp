@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Faces of closed stars. A triangle at the centre v of a star is an edge of v's link, directed as its tetrahedron
+// orients it: one word of 64 bits. Each word is compared with the reverses of all others of the star, several at a
+// time, which is faster than a table for the few that there are. Highway's foreach_target compiles this file once per
+// instruction set.
+#include <array>
+#include <cstdint>
+
+#include "mesh/closed_stars.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mesh/closed_stars.cpp"
+#include "base/dispatch.hpp"
+// This include must precede Highway's own headers.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET != HWY_SCALAR
+
+/// The edges of v's link between vertices above v, in one tetrahedron with v.
+struct Arrows {
+  /// Places in the tetrahedron: the start and the end of each edge. Tetrahedra with one vertex above: its place first.
+  alignas(32) std::array<std::uint32_t, 8> places{};
+  std::uint8_t count = 0;   ///< edges
+  std::uint8_t single = 0;  ///< 1 if there is one vertex above
+};
+
+/// By the set of places of vertices above v, plus 16 times the set that contains the place of v.
+constexpr std::array<Arrows, 256> make_arrows() {
+  std::array<Arrows, 256> all{};
+  for (unsigned at = 0; at < 4; ++at)
+    for (unsigned above = 0; above < 16; ++above) {
+      if ((above >> at & 1u) != 0) continue;
+      Arrows& arrows = all[16u << at | above];
+      std::array<std::uint32_t, 3> others{};  // so that v followed by them has the tetrahedron's orientation
+      for (unsigned i = 0, k = 0; i < 4; ++i)
+        if (i != at) others[k++] = i;
+      if (at % 2 == 1) others = {others[0], others[2], others[1]};
+      unsigned above_count = 0;
+      for (unsigned i = 0; i < 3; ++i) {
+        const std::uint32_t from = others[i], to = others[(i + 1) % 3];
+        if ((above >> from & 1u) == 0) continue;
+        if (++above_count == 1 && arrows.count == 0) arrows.places[0] = from;
+        if ((above >> to & 1u) == 0) continue;
+        arrows.places[2 * arrows.count] = from;
+        arrows.places[2 * arrows.count + 1] = to;
+        ++arrows.count;
+      }
+      arrows.single = above_count == 1 ? 1 : 0;
+    }
+  return all;
+}
+constexpr std::array<Arrows, 256> kArrows = make_arrows();
+
+/// Counts one star at a time.
+class Counter {
+ public:
+  HWY_INLINE ClosedStar count(const Index* rows, Index v, std::span<const Index> star, bool with_edges) {
+    ClosedStar found;
+    if (star.size() > kMostTetrahedra) return found;
+    load(rows, v, star);
+    if (!all_paired()) return found;
+    found.is_closed = true;
+    found.triangles = static_cast<std::uint16_t>(arrows_ / 2);
+    found.tetrahedra = static_cast<std::uint16_t>(tetrahedra_);
+    if (with_edges) found.edges = static_cast<std::uint16_t>(count_edges());
+    return found;
+  }
+
+ private:
+  static constexpr std::size_t kMostTetrahedra = 64;
+  static constexpr std::size_t kMostArrows = 3 * kMostTetrahedra;
+  static constexpr std::size_t kPadding = 16;  ///< at least the lanes of a vector
+
+  HWY_INLINE void load(const Index* rows, Index v, std::span<const Index> star) {
+    const hn::CappedTag<std::uint32_t, 8> d;
+    const hn::FixedTag<std::uint32_t, 4> d4;
+    const auto centre = hn::Set(d4, v);
+    std::uint32_t* to = ends_.data();
+    std::size_t singles = 0, tetrahedra = 0;
+    for (const Index s : star) {
+      const Index* const row = rows + std::size_t{s} * 4;
+      const auto vertices = hn::LoadU(d4, row);
+      std::uint8_t bits[16] = {};
+      hn::StoreMaskBits(d4, hn::Gt(vertices, centre), bits);
+      hn::StoreMaskBits(d4, hn::Eq(vertices, centre), bits + 8);
+      const Arrows& arrows = kArrows[static_cast<unsigned>(bits[0]) | static_cast<unsigned>(bits[8]) << 4];
+      const auto repeated = hn::LoadDup128(d, row);
+      for (std::size_t k = 0; k < 8; k += hn::Lanes(d))
+        hn::StoreU(hn::TableLookupLanes(repeated, hn::SetTableIndices(d, arrows.places.data() + k)), d, to + k);
+      singles_[singles] = row[arrows.places[0]];
+      singles += arrows.single;
+      tetrahedra += arrows.count == 3 ? 1 : 0;
+      to += 2 * arrows.count;
+    }
+    arrows_ = static_cast<std::size_t>(to - ends_.data()) / 2;
+    single_count_ = singles;
+    tetrahedra_ = tetrahedra;
+  }
+
+  /// Whether each directed edge occurs once, and its reverse, too.
+  HWY_INLINE bool all_paired() {
+    const hn::ScalableTag<std::uint64_t> d;
+    const std::size_t lanes = hn::Lanes(d);
+    if (arrows_ % 2 != 0) return false;
+    for (std::size_t i = 0; i < arrows_; ++i) reversed_[i] = std::uint64_t{ends_[2 * i]} << 32 | ends_[2 * i + 1];
+    const auto one = hn::Set(d, std::uint64_t{1});
+    auto wrong = hn::Zero(d);
+    for (std::size_t j = 0; j < arrows_; j += lanes) {
+      const auto here = hn::BitCast(d, hn::LoadU(hn::Repartition<std::uint32_t, decltype(d)>(), ends_.data() + 2 * j));
+      auto matches = hn::Zero(d);
+      for (std::size_t i = 0; i < arrows_; ++i)
+        matches = hn::Sub(matches, hn::VecFromMask(d, hn::Eq(here, hn::Set(d, reversed_[i]))));
+      const auto is_here = hn::FirstN(d, arrows_ - j);
+      wrong = hn::Or(wrong, hn::IfThenElseZero(is_here, hn::Xor(matches, one)));
+    }
+    return hn::AllTrue(d, hn::Eq(wrong, hn::Zero(d)));
+  }
+
+  /// The number of different vertices of the link above v, if all edges are paired: the starts of edges, and the
+  /// vertices without such an edge.
+  HWY_INLINE std::size_t count_edges() {
+    const hn::ScalableTag<std::uint32_t> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const std::size_t count = arrows_ + single_count_;
+    for (std::size_t i = 0; i < arrows_; ++i) starts_[i] = ends_[2 * i];
+    for (std::size_t i = 0; i < single_count_; ++i) starts_[arrows_ + i] = singles_[i];
+    std::size_t repeats = 0;
+    for (std::size_t j = 0; j < count; j += lanes) {
+      const auto here = hn::LoadU(d, starts_.data() + j);
+      const auto number = hn::Iota(d, static_cast<std::uint32_t>(j));
+      // repeats of those before this vector, then of those within it
+      auto is_repeat = hn::MaskFromVec(hn::Zero(d));
+      for (std::size_t i = 0; i < j; ++i) is_repeat = hn::Or(is_repeat, hn::Eq(here, hn::Set(d, starts_[i])));
+      for (std::size_t i = j; i < j + lanes && i < count; ++i)
+        is_repeat = hn::Or(is_repeat, hn::And(hn::Eq(here, hn::Set(d, starts_[i])),
+                                              hn::Gt(number, hn::Set(d, static_cast<std::uint32_t>(i)))));
+      repeats += hn::CountTrue(d, hn::And(is_repeat, hn::FirstN(d, count - j)));
+    }
+    return count - repeats;
+  }
+
+  std::size_t arrows_ = 0, single_count_ = 0, tetrahedra_ = 0;
+  alignas(64) std::array<std::uint32_t, 2 * (kMostArrows + kPadding)> ends_{};  ///< start and end of each edge
+  alignas(64) std::array<std::uint64_t, kMostArrows> reversed_{};               ///< the edges with their ends exchanged
+  std::array<std::uint32_t, kMostTetrahedra + 1> singles_{};                    ///< vertices without an edge
+  alignas(64) std::array<std::uint32_t, kMostArrows + kMostTetrahedra + kPadding> starts_{};
+};
+
+void count_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
+                 std::span<ClosedStar> found) {
+  Counter counter;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    found[i] = counter.count(rows, static_cast<Index>(from + i), stars.of(from + i), with_edges);
+}
+
+#else
+
+void count_stars(const Index*, const Stars&, std::size_t, bool, std::span<ClosedStar> found) {
+  for (ClosedStar& star : found) star = {};  // left to the caller
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+HWY_EXPORT(count_stars);
+void count_closed_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
+                        std::span<ClosedStar> found) {
+  HWY_DYNAMIC_DISPATCH(count_stars)(rows, stars, from, with_edges, found);
+}
+
+}  // namespace tegl::detail
+
+#endif  // HWY_ONCE

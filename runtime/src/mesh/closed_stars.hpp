@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Counts the faces of tetrahedra that have a vertex as their smallest one, at vertices where all triangles that are
+// counted are shared by two tetrahedra of opposite orientations: nearly all vertices of a contour. Other vertices are
+// left to the caller.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "mesh/vertex_stars.hpp"
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+/// The faces whose smallest vertex is the centre of a star.
+struct ClosedStar {
+  std::uint16_t edges = 0;  ///< 0 unless they are requested
+  std::uint16_t triangles = 0;
+  std::uint16_t tetrahedra = 0;
+  /// Whether each of these triangles is in two tetrahedra, which induce opposite orientations on it. If not, or if the
+  /// star is large, nothing else is set.
+  bool is_closed = false;
+};
+
+/// The stars of the vertices from, from + 1, … `rows`: #S x 4, row = tetrahedron.
+void count_closed_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
+                        std::span<ClosedStar> found);
+
+}  // namespace tegl::detail
