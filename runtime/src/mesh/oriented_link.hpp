@@ -3,6 +3,11 @@
 // Links of vertices of triangles and tetrahedra, if they are small, oriented, and circles, arcs, spheres or discs:
 // nearly all links of a contour. Other links are left to the caller.
 //
+// D = 3: triangles that are connected across edges, each edge in one or two of them, form a connected surface some of
+// whose points may be identified. The Euler characteristic of a connected surface is 2 for a sphere, 1 for a disc, and
+// less for any other surface without or with a border; each identification of two points subtracts 1. So if it is 2
+// without a border, or 1 with one, the triangles are a sphere or a disc, and no points are identified.
+//
 // Based on: H. Seifert and W. Threlfall, Lehrbuch der Topologie, 1934, § 38 (a connected surface without a border is a
 // sphere iff its Euler characteristic is 2; with a border it is a disc iff it is 1).
 #pragma once
@@ -68,11 +73,12 @@ class OrientedLink {
     }
     faces_ = {};
     Loading state(*this, v);
-    for (std::size_t i = 0; i < star.size() && state.number.size() < kMost - D; ++i)
-      state.add(rows_ + std::size_t{star[i]} * (D + 1));
+    for (std::size_t i = 0; i < star.size() && state.number.size() < kMost - D && state.parts < kMost; ++i)
+      state.add(rows_ + std::size_t{star[i]} * (D + 1), static_cast<unsigned>(i));
     numbers_.keep(state.number);
-    if (state.repeated != 0 || state.number.size() >= kMost - D) return false;
+    if (state.repeated != 0 || state.number.size() >= kMost - D || state.parts >= kMost) return false;
     paired_ = state.paired;
+    parts_ = state.parts;
     faces_ = state.faces;
     for (unsigned a = 0; a < numbers_.size(); ++a) {
       is_above_[a] = numbers_.vertex(a) > v;
@@ -87,29 +93,53 @@ class OrientedLink {
     LinkNumbers::Numbering number;
     OrientedLink& link;
     std::size_t paired = 0;
+    unsigned parts = 0;  ///< D = 3: triangles that have no edge in common with one before them
     FacesAbove faces;
     Set repeated = 0;  ///< not empty if two simplices have the same arrow
 
     Loading(OrientedLink& of, Index centre) : v(centre), number(of.numbers_, centre), link(of) {}
 
-    void add(const Index* row) {
+    /// `order`: of the simplex in the star.
+    void add(const Index* row, unsigned order) {
       const OthersOfSimplex<D + 1> others(row, v);
       std::array<unsigned, D> piece, is_above;
       for (unsigned i = 0; i < D; ++i) {
         piece[i] = number(others[i]);
         is_above[i] = others[i] > v ? 1 : 0;
       }
+      if constexpr (D == 3) join_neighbours(piece, order);
       for (unsigned i = 0; i < (D == 2 ? 1 : D); ++i) {
         const unsigned next = i + 1 == D ? 0 : i + 1;
         const unsigned from = piece[i], to = piece[next];
-        if constexpr (D == 3) {
-          link.next_[from * kMost + to] = static_cast<Small>(piece[next + 1 == D ? 0 : next + 1]);
+        if constexpr (D == 3)
           count_side(static_cast<unsigned>(link.in_[from] >> to & 1), is_above[i] & is_above[next]);
-        }
+        else
+          ++link.arrows_from_[from];
         repeated |= link.out_[from] & one(to);
         link.out_[from] |= one(to);
         link.in_[to] |= one(from);
-        ++link.arrows_from_[from];
+      }
+    }
+    /// D = 3: gives a triangle the least part of the triangles that share an edge with it, else a new part, and notes
+    /// that these parts are connected. Without a branch: it depends irregularly on the link which edges are shared.
+    void join_neighbours(const std::array<unsigned, D>& piece, unsigned order) {
+      std::array<unsigned, D> beside;  // the parts across the edges; kMost if there is none
+      unsigned part = kMost;
+      for (unsigned i = 0; i < D; ++i) {
+        const unsigned from = piece[i], to = piece[i + 1 == D ? 0 : i + 1];
+        const bool is_shared = (link.in_[from] >> to & 1) != 0;
+        beside[i] = is_shared ? link.part_[link.triangle_[to * kMost + from]] : kMost;
+        part = beside[i] < part ? beside[i] : part;
+      }
+      const bool is_new = part == kMost;
+      part = is_new ? parts : part;
+      link.joined_[part] = is_new ? 0 : link.joined_[part];
+      parts += is_new ? 1 : 0;
+      link.part_[order] = static_cast<Small>(part);
+      for (unsigned i = 0; i < D; ++i) {
+        link.joined_[part] |= beside[i] < kMost ? one(beside[i] & (kMost - 1)) : 0;
+        link.joined_[beside[i]] |= one(part);
+        link.triangle_[piece[i] * kMost + piece[i + 1 == D ? 0 : i + 1]] = static_cast<Small>(order);
       }
     }
     /// D = 3: counts a side of a triangle, and its edge when it is met first.
@@ -146,35 +176,20 @@ class OrientedLink {
     const std::size_t edges = 3 * triangles - paired_;
     const bool is_closed = 2 * edges == 3 * triangles;
     if (numbers_.size() + triangles != edges + (is_closed ? 2 : 1)) return false;
-    for (unsigned a = 0; a < numbers_.size(); ++a)
-      if (!has_one_fan(a)) return false;
     return is_connected();
   }
 
-  /// D = 3: whether one fan contains all triangles around a vertex.
-  [[nodiscard]] bool has_one_fan(unsigned a) const {
-    const Set out = out_[a], starts = out & ~in_[a];
-    if ((starts & (starts - 1)) != 0) return false;
-    const auto start = static_cast<unsigned>(std::countr_zero(starts != 0 ? starts : out));
-    unsigned met = 0;
-    unsigned b = start;
-    do {
-      b = next_[a * kMost + b];
-      ++met;
-    } while (b != start && (out & one(b)) != 0);
-    return met == arrows_from_[a];
-  }
-
+  /// D = 3: whether all triangles are connected across edges.
   [[nodiscard]] bool is_connected() const {
     Set reached = 1, open = 1;
     while (open != 0) {
-      const auto a = static_cast<unsigned>(std::countr_zero(open));
+      const auto part = static_cast<unsigned>(std::countr_zero(open));
       open &= open - 1;
-      const Set beside = (out_[a] | in_[a]) & ~reached;
+      const Set beside = joined_[part] & ~reached;
       reached |= beside;
       open |= beside;
     }
-    return reached == ~Set{0} >> (kMost - numbers_.size());
+    return reached == ~Set{0} >> (kMost - parts_);
   }
 
   const Index* rows_;
@@ -182,10 +197,14 @@ class OrientedLink {
   std::size_t paired_ = 0;  ///< D = 3: sides of triangles that are sides of others, too, divided by 2
   FacesAbove faces_;
   std::array<Small, kMost> is_above_;     ///< whether its number in the complex is greater than the centre's
-  std::array<Small, kMost> arrows_from_;  ///< how many
+  std::array<Small, kMost> arrows_from_;  ///< D = 2: how many
   /// Arrows from and to each vertex. D = 2: an arrow is a simplex of the link; D = 3: a side of a triangle.
   std::array<Set, kMost> out_, in_;
-  std::array<Small, std::size_t{kMost} * kMost> next_;  ///< D = 3: the third vertex of the triangle of an arrow
+  // D = 3
+  unsigned parts_ = 0;
+  std::array<Small, std::size_t{kMost} * kMost> triangle_{};  ///< by arrow: its triangle's place in the star
+  std::array<Small, 2 * kMost> part_{};                       ///< by triangle: its part
+  std::array<Set, kMost + 1> joined_{};                       ///< by part: parts connected with it
 };
 
 }  // namespace tegl::detail

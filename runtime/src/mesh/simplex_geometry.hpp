@@ -27,18 +27,24 @@ std::array<PointOf<N>, N> corners_of(const Contour<N, Real>& contour, std::size_
   return corners;
 }
 
+/// Scaled as in hypot, so that squares neither overflow nor underflow.
 template <int N>
-double length_of(const PointOf<N>& v) noexcept {
-  double sum = 0.0;
-  for (const double x : v) sum += x * x;
-  if (sum > 1e-280 && sum < 1e280) return std::sqrt(sum);
-  // Scaled as in hypot, so that squares neither overflow nor underflow.
+[[gnu::noinline]] double scaled_length_of(const PointOf<N>& v) noexcept {
   double largest = 0.0;
   for (const double x : v) largest = std::max(largest, std::abs(x));
   if (!(largest > 0.0) || std::isinf(largest)) return largest;
   double square = 0.0;
   for (const double x : v) square += (x / largest) * (x / largest);
   return largest * std::sqrt(square);
+}
+
+template <int N>
+inline double length_of(const PointOf<N>& v) noexcept {
+  double sum = 0.0;
+  for (const double x : v) sum += x * x;
+  if (sum > 1e-280 && sum < 1e280) [[likely]]
+    return std::sqrt(sum);
+  return scaled_length_of<N>(v);
 }
 
 template <int N>

@@ -161,11 +161,44 @@ class LinkSides {
       above |= upper;
     }
     numbers_.keep(number_of);
+    below_ = below;
+    above_ = above;
     return numbers_.size() <= LinkNumbers::kMost - N && is_connected(below) && is_connected(above);
+  }
+
+  /// After `are_connected` found that they are: the Euler characteristic of the link above v minus that of the link
+  /// below it. N = 3, 4.
+  [[nodiscard]] std::int64_t euler_change(Index v, std::span<const Index> star) {
+    std::int64_t change = euler_of_graph(above_) - euler_of_graph(below_);
+    if constexpr (N == 4) {
+      above_triangles_.clear();
+      below_triangles_.clear();
+      for (const Index s : star) {
+        const std::array<Index, N>& simplex = simplices_[s];
+        if (simplex.front() == v) above_triangles_.push_back(simplex);
+        if (simplex.back() == v) below_triangles_.push_back(simplex);
+      }
+      change += distinct(above_triangles_) - distinct(below_triangles_);
+    }
+    return change;
   }
 
  private:
   using Set = LinkNumbers::Set;
+
+  /// Vertices minus edges.
+  [[nodiscard]] std::int64_t euler_of_graph(Set all) const {
+    std::int64_t ends = 0;  // of edges, and each vertex with itself
+    for (Set rest = all; rest != 0; rest &= rest - 1)
+      ends += std::popcount(beside_[static_cast<unsigned>(std::countr_zero(rest))]);
+    const std::int64_t vertices = std::popcount(all);
+    return vertices - (ends - vertices) / 2;
+  }
+
+  static std::int64_t distinct(std::vector<std::array<Index, N>>& simplices) {
+    std::sort(simplices.begin(), simplices.end());
+    return std::unique(simplices.begin(), simplices.end()) - simplices.begin();
+  }
 
   [[nodiscard]] bool is_connected(Set all) const {
     Set reached = all & (~all + 1), open = reached;  // the first one
@@ -181,6 +214,8 @@ class LinkSides {
   std::span<const std::array<Index, N>> simplices_;
   LinkNumbers numbers_;
   std::array<Set, LinkNumbers::kMost> beside_;  ///< by number: vertices on the same side in a common simplex
+  Set below_ = 0, above_ = 0;                   ///< vertices of the link
+  std::vector<std::array<Index, N>> above_triangles_, below_triangles_;  ///< simplices with v as an end
 };
 
 }  // namespace tegl::detail

@@ -75,7 +75,7 @@ class SweptComplex {
     stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
                            part_of(progress, 0.3, 0.5));
     find_border(threads, part_of(progress, 0.5, 0.8));
-    find_passed(threads, part_of(progress, 0.8, 1.0));
+    find_passages(threads, part_of(progress, 0.8, 1.0));
   }
 
   [[nodiscard]] const SimplexView<N>& contour() const { return contour_; }
@@ -99,9 +99,16 @@ class SweptComplex {
     }
     return border;
   }
-  /// Whether the level set passes the vertex without an event: the lower and the upper link are connected, not empty,
-  /// and for N = 4 the vertex is not in the border. May be false for other such vertices whose links are large.
-  [[nodiscard]] bool is_passed(Index v) const { return passed_[v] != 0; }
+  /// How the level set passes a vertex whose lower and upper link are connected and not empty: no component begins,
+  /// ends, merges or splits there.
+  struct Passage {
+    Index below = kNone;      ///< a cell just below the vertex; kNone if the above does not hold, or is not known
+    Index front = kNone;      ///< the lowest vertex of that cell
+    std::int32_t growth = 0;  ///< cells that begin at the vertex minus those that end
+    std::int32_t euler = 0;   ///< change of the level set's Euler characteristic: 0 except in the border
+  };
+  /// Unknown for some vertices whose links are large.
+  [[nodiscard]] const Passage& passage(Index v) const { return passages_[v]; }
 
  private:
   struct Timed {
@@ -158,17 +165,32 @@ class SweptComplex {
         });
   }
 
-  void find_passed(unsigned threads, const Progress& progress) {
-    passed_.assign(contour_.vertex_count(), 0);
+  void find_passages(unsigned threads, const Progress& progress) {
+    passages_.resize(contour_.vertex_count());
     for_each_block(
         contour_.vertex_count(), kBlock, threads, progress,
         [&] { return LinkSides<N>(simplices_, contour_.vertex_count()); },
         [&](std::size_t, std::size_t from, std::size_t to, LinkSides<N>& sides) {
-          for (std::size_t v = from; v < to; ++v) {
-            if (N == 4 && in_border_[v] != 0) continue;
-            passed_[v] = sides.are_connected(static_cast<Index>(v), star(static_cast<Index>(v))) ? 1 : 0;
+          for (std::size_t i = from; i < to; ++i) {
+            const auto v = static_cast<Index>(i);
+            passages_[v] = {};
+            if (!sides.are_connected(v, star(v))) continue;
+            passages_[v] = count_cells(v);
+            if constexpr (N == 4)
+              if (in_border_[v] != 0) passages_[v].euler = static_cast<std::int32_t>(sides.euler_change(v, star(v)));
           }
         });
+  }
+  [[nodiscard]] Passage count_cells(Index v) const {
+    Passage passage;
+    for (const Index s : star(v)) {
+      const Simplex& simplex = simplices_[s];
+      const bool begins = simplex.front() == v;
+      passage.growth += (begins ? 1 : 0) - (simplex.back() == v ? 1 : 0);
+      passage.below = begins ? passage.below : s;
+      passage.front = begins ? passage.front : simplex.front();
+    }
+    return passage;
   }
 
   SimplexView<N> contour_;
@@ -179,7 +201,7 @@ class SweptComplex {
   Stars stars_;
   std::vector<std::uint8_t> border_;
   std::vector<std::uint8_t> in_border_;  ///< by vertex: whether it is in the border
-  std::vector<std::uint8_t> passed_;
+  Buffer<Passage> passages_;
 };
 
 /// Star and link of one vertex at a time.

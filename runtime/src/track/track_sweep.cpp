@@ -57,6 +57,7 @@ class Sweeper {
         star_(complex_) {
     const std::size_t count = contour.simplices().size();
     labels_.assign(count, kNone);
+    labels_of_new_.assign(contour.vertex_count(), kNone);
     seen_.assign(count, 0);
     for (const double time : options.times)
       times_.push_back(contour.is_single() ? static_cast<double>(rounded_at<float>(time)) : rounded_at<double>(time));
@@ -103,29 +104,42 @@ class Sweeper {
     const std::span<const Index> cells = complex_.star(v);
     tell_all(1 + cells.size());
     if (cells.empty()) return;
-    born_ = died_ = 0;
-    Index below = kNone;  // a cell just below the vertex
+    if (const auto& passage = complex_.passage(v); passage.below != kNone) return pass_by(v, passage);
+    growth_ = 0;
     for (const Index s : cells) {
       const auto& simplex = complex_.simplex(s);
-      born_ += simplex.front() == v ? 1 : 0;
-      died_ += simplex.back() == v ? 1 : 0;
-      below = simplex.front() == v ? below : s;
+      growth_ += (simplex.front() == v ? 1 : 0) - (simplex.back() == v ? 1 : 0);
     }
-    if (complex_.is_passed(v)) return pass(cells, sets_.find(labels_[below]), 0);
     star_.load(v);
     if (star_.parts_below() == 1 && star_.parts_above() == 1 && !(N == 4 && star_.at_border()))
-      pass(cells, find_incoming().front(), 0);
+      pass(v, find_incoming(v).front(), 0);
     else
       visit_special(v);
   }
 
+  /// Visits a vertex at which no component begins, ends, merges or splits.
+  void pass_by(Index v, const typename SweptComplex<N>::Passage& passage) {
+    growth_ = passage.growth;
+    const Index label = labels_[passage.below];
+    const Index set = sets_.find(label != kNone ? label : labels_of_new_[passage.front]);
+    pass(v, set, passage.euler);
+    if (passage.euler != 0)
+      result_.handles.push_back(
+          {complex_.vertex(v), complex_.time(v), components_[set].arc, true, std::int64_t{passage.euler}});
+  }
+
+  /// A member of the set that a cell which exists belongs to.
+  [[nodiscard]] Index label_of(Index s) const {
+    return labels_[s] != kNone ? labels_[s] : labels_of_new_[complex_.simplex(s).front()];
+  }
+
   /// The sets of the cells below the vertex, without duplicates, sorted by arc.
-  const std::vector<Index>& find_incoming() {
+  const std::vector<Index>& find_incoming(Index v) {
     incoming_.clear();
     const bool one = star_.parts_below() == 1;
     for (const Index s : star_.cells()) {
-      if (labels_[s] == kNone) continue;
-      const Index set = sets_.find(labels_[s]);
+      if (complex_.simplex(s).front() == v) continue;  // above
+      const Index set = sets_.find(label_of(s));
       if (std::find(incoming_.begin(), incoming_.end(), set) == incoming_.end()) incoming_.push_back(set);
       if (one) break;
     }
@@ -135,29 +149,28 @@ class Sweeper {
   }
 
   /// Adds the new cells above the vertex to the set.
-  void pass(std::span<const Index> cells, Index set, std::int64_t euler_change) {
+  void pass(Index v, Index set, std::int64_t euler_change) {
     Component& component = components_[set];
     if (component.time != time_) {
       component.time = time_;
       component.size_before = component.size;
       component.euler_before = component.euler;
     }
-    component.size = component.size + born_ - died_;
+    component.size += static_cast<std::uint64_t>(growth_);  // modulo 2^64, as it may be negative
     component.euler += euler_change;
-    for (const Index s : cells) {
-      if (labels_[s] != kNone) continue;
-      labels_[s] = set;
-      if (options_.label_simplices) result_.simplex_arcs[s] = component.arc;
-    }
+    labels_of_new_[v] = set;
+    if (!options_.label_simplices) return;
+    for (const Index s : complex_.star(v))
+      if (complex_.simplex(s).front() == v) result_.simplex_arcs[s] = component.arc;
   }
 
   void visit_special(Index v) {
     const std::int64_t euler_change = star_.euler(true) - star_.euler(false);
-    const std::vector<Index>& incoming = find_incoming();
+    const std::vector<Index>& incoming = find_incoming(v);
     std::vector<Component> before;
     for (const Index set : incoming) before.push_back(components_[set]);
     const Index set = join(incoming);
-    pass(star_.cells(), set, euler_change);
+    pass(v, set, euler_change);
     const std::vector<Index> outgoing = star_.parts_above() == 0 ? std::vector<Index>{} : separate(v, set);
     if (before.size() == 1 && outgoing.size() == 1) {
       if (euler_change != 0)
@@ -224,7 +237,7 @@ class Sweeper {
     if (!options_.label_simplices) return;
     for (const Index s : star_.cells())
       if (star_.part(s, true) != kNone && complex_.simplex(s).front() == v)
-        result_.simplex_arcs[s] = components_[sets_.find(labels_[s])].arc;
+        result_.simplex_arcs[s] = components_[sets_.find(label_of(s))].arc;
   }
 
   // ---- separation of the cells above a vertex ----
@@ -415,7 +428,7 @@ class Sweeper {
     sums_.clear();
     for (const Index s : cut_) {
       tell_all(1);
-      const Index arc = components_[sets_.find(labels_[s])].arc;
+      const Index arc = components_[sets_.find(label_of(s))].arc;
       if (slots_.size() <= arc) slots_.resize(result_.arcs.size(), kNone);
       if (slots_[arc] == kNone) {
         slots_[arc] = static_cast<Index>(sums_.size());
@@ -461,13 +474,13 @@ class Sweeper {
   SweepResult result_;
   DisjointSets sets_;
   std::vector<Component> components_;  ///< by set, valid at its root
-  std::vector<Index>
-      labels_;  ///< #S: a member of the set that the simplex's cell belongs to; kNone before the cell exists
+  /// #S: a member of the set that the simplex's cell belongs to; kNone while it is that of the cell's lowest vertex.
+  std::vector<Index> labels_;
+  std::vector<Index> labels_of_new_;  ///< by vertex: a member of the set that the cells above it began in
   std::vector<Index> incoming_;
   std::vector<Index> started_;  ///< sets whose arcs started at the current time
   std::uint64_t time_ = 0;      ///< number of distinct times so far
-  std::uint64_t born_ = 0;      ///< cells that begin and that end at the current vertex
-  std::uint64_t died_ = 0;
+  std::int64_t growth_ = 0;     ///< cells that begin at the current vertex minus those that end
 
   std::vector<Front> fronts_;
   DisjointSets groups_;              ///< of fronts
