@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -68,6 +69,11 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                                    const WorkOptions& work = {});
+/// The same, in less time, with the contour's incidence. Errors: also InvalidArgument if it is another contour's.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                                   const Incidence<N>& incidence, const WorkOptions& work = {});
 
 /// One contour per component, in the order of the labels. Vertices and simplices keep their order; normals, attributes,
 /// names and units are kept. Vertices without simplices are left out. Errors: InvalidArgument (a vertex number out of

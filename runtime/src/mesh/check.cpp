@@ -2,7 +2,8 @@
 //
 // Invariants of a simplicial complex, vertex by vertex. Everything that `check` counts is visible in the star of a
 // vertex (the simplices around it) and is counted at the smallest vertex of the face. So `check` needs one table, from
-// vertices to simplices, and small sorts in each star, but no sort of all faces.
+// vertices to simplices, and small sorts in each star, but no sort of all faces. For D = 3 the faces come from the
+// incidence of the simplices, and nearly all links are tested by a search through their triangles.
 //
 // Based on: H. Seifert and W. Threlfall, Lehrbuch der Topologie, 1934, chapters 3, 6 and 7 (a complex is a manifold iff
 // all links are spheres or balls; surfaces are classified by boundary, orientability and Euler characteristic).
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,7 +25,10 @@
 #include "base/disjoint_sets.hpp"
 #include "base/progress.hpp"
 #include "base/workers.hpp"
+#include "mesh/incidence_data.hpp"
 #include "mesh/oriented_link.hpp"
+#include "mesh/star_search.hpp"
+#include "mesh/validate.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "tegl/error.hpp"
 #include "tegl/tile/complex.hpp"
@@ -60,11 +65,10 @@ class LinkChecker {
 
   /// Adds the counts at the star of `v` to the report.
   void visit(Index v, std::span<const Index> star, MeshReport& report) {
-    if constexpr (D == 2 || D == 3) {
+    if constexpr (D == 2) {
       detail::FacesAbove faces;
       if (usual_.settle(v, star, faces)) {
         edges_ += faces.edges;
-        if constexpr (D == 3) triangles_ += faces.ridges;
         report.boundary_simplices += faces.boundary;
         return;
       }
@@ -245,7 +249,7 @@ class LinkChecker {
   };
 
   const Complex<D>& complex_;
-  std::conditional_t<D == 2 || D == 3, detail::OrientedLink<D == 2 ? 2 : 3>, NoLink> usual_;
+  std::conditional_t<D == 2, detail::OrientedLink, NoLink> usual_;
   std::vector<Index> seen_;  // by vertex: the last vertex in whose link it was met
   std::vector<Piece> pieces_;
   std::vector<Ridge> ridges_;
@@ -459,9 +463,55 @@ LinkCounts count_links(const Complex<D>& complex, const detail::Stars& stars, de
   return all;
 }
 
+/// The same for tetrahedra, whose faces are known.
+LinkCounts count_links(const Complex<3>& complex, const detail::IncidenceData<4>& incidence,
+                       detail::SharedDisjointSets& connected, unsigned threads, const Progress& progress) {
+  struct Scratch {
+    std::vector<std::uint8_t> is_good;
+    std::optional<detail::StarSearch> search;  ///< made when it is needed, as is `others`
+    std::optional<LinkChecker<3>> others;
+  };
+  LinkCounts all;
+  std::mutex mutex;
+  detail::for_each_block(
+      complex.vertex_count, kVerticesAtOnce, threads, progress, [] { return Scratch(); },
+      [&](std::size_t, std::size_t from, std::size_t to, Scratch& scratch) {
+        LinkCounts found;
+        scratch.is_good.resize(to - from);
+        detail::find_spheres_and_discs(complex.rows.data(), incidence, from, scratch.is_good);
+        for (std::size_t i = from; i < to; ++i) {
+          const auto v = static_cast<Index>(i);
+          const std::span<const Index> star = incidence.stars.of(v);
+          if (star.empty()) continue;
+          ++found.report.vertices;
+          if (connected.find(v) == v) ++found.report.components;
+          found.report.euler += incidence.euler_above[v];
+          if (scratch.is_good[i - from] != 0) continue;
+          if (!scratch.search) scratch.search.emplace(complex.rows, incidence);
+          if (scratch.search->is_sphere_or_disc(v)) continue;
+          if (!scratch.others) scratch.others.emplace(complex);
+          MeshReport report;
+          scratch.others->visit(v, star, report);
+          found.report.bad_links += report.bad_links;
+        }
+        const std::lock_guard lock(mutex);
+        all.report.vertices += found.report.vertices;
+        all.report.components += found.report.components;
+        all.report.bad_links += found.report.bad_links;
+        all.report.euler += found.report.euler;
+      });
+  for (const detail::IrregularFaces& faces : incidence.irregular) {
+    all.report.boundary_simplices += faces.boundary;
+    all.report.nonmanifold_simplices += faces.several;
+    all.report.orientation_conflicts += faces.conflicts;
+  }
+  return all;
+}
+
+/// `incidence`: null if it is not known.
 template <int D>
 MeshReport check_complex(std::span<const Index> rows, int space_dim, const Coordinates& coordinates,
-                         const WorkOptions& work) {
+                         const detail::IncidenceData<D + 1>* incidence, const WorkOptions& work) {
   using detail::part_of;
   const unsigned threads = work.threads;
   const Progress& progress = work.progress;
@@ -469,19 +519,32 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, const Coord
   require_vertex_numbers(rows, complex.vertex_count, D + 1, threads, part_of(progress, 0.0, 0.02));
   const std::uint64_t nonfinite =
       count_nonfinite(coordinates, complex.vertex_count, threads, part_of(progress, 0.02, 0.03));
-  const detail::Stars stars =
-      detail::make_stars<D + 1>(rows, complex.vertex_count, threads, part_of(progress, 0.03, 0.2));
   detail::SharedDisjointSets connected(complex.vertex_count);
   SimplexCounts simplices;
-  count_simplices<D>(complex, space_dim, coordinates, connected, threads, part_of(progress, 0.2, 0.4), simplices);
-  const LinkCounts links = count_links<D>(complex, stars, connected, threads, part_of(progress, 0.4, 1.0));
+  count_simplices<D>(complex, space_dim, coordinates, connected, threads, part_of(progress, 0.03, 0.2), simplices);
+  LinkCounts links;
+  if constexpr (D == 3) {
+    std::optional<detail::IncidenceData<4>> made;
+    if (incidence == nullptr)
+      incidence =
+          &made.emplace(detail::make_incidence<4>(rows, complex.vertex_count, threads, part_of(progress, 0.2, 0.7)));
+    links = count_links(complex, *incidence, connected, threads, part_of(progress, 0.7, 1.0));
+  } else if (incidence != nullptr) {
+    links = count_links<D>(complex, incidence->stars, connected, threads, part_of(progress, 0.2, 1.0));
+  } else {
+    const detail::Stars stars =
+        detail::make_stars<D + 1>(rows, complex.vertex_count, threads, part_of(progress, 0.2, 0.4));
+    links = count_links<D>(complex, stars, connected, threads, part_of(progress, 0.4, 1.0));
+  }
   MeshReport report = links.report;
   report.dim = D;
   report.simplices = complex.size();
   report.nonfinite_vertices = nonfinite;
   report.degenerate_simplices = simplices.degenerate;
   report.unused_vertices = complex.vertex_count - report.vertices;
-  // V - E + F - …, with the simplices last. For D < 2, 3, 4 the counts of edges, triangles and tetrahedra are 0.
+  if (D == 3) return report;  // with the Euler characteristic
+  // V - E + F - …, with the simplices last. For D < 2 there are no edges, for D < 4 no triangles and tetrahedra
+  // in the counts.
   report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges) +
                  static_cast<std::int64_t>(links.triangles) - static_cast<std::int64_t>(links.tetrahedra) +
                  (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(simplices.sound.load());
@@ -509,10 +572,15 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, con
   if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
     throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",
                                                  simplices.size() / width, coordinates.size() / space_dim, kLimit));
-  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates, work);
-  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates, work);
-  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates, work);
-  return check_complex<4>(simplices, space_dim, coordinates, work);
+  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates, nullptr, work);
+  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates, nullptr, work);
+  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates, nullptr, work);
+  return check_complex<4>(simplices, space_dim, coordinates, nullptr, work);
+}
+
+template <int N, class Real>
+Coordinates coordinates_of(const Contour<N, Real>& contour) {
+  return Coordinates(detail::flat_rows(std::span<const std::array<Real, N>>(contour.vertices)));
 }
 
 }  // namespace
@@ -524,14 +592,21 @@ MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::sp
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& contour, const WorkOptions& work) {
-  const std::span<const Index> rows(contour.simplices.empty() ? nullptr : contour.simplices.data()->data(),
-                                    contour.simplices.size() * N);
-  const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
-                                          contour.vertices.size() * N);
-  return check_any(N - 1, rows, N, Coordinates(coordinates), work);
+  return check_any(N - 1, detail::flat_rows(std::span<const std::array<Index, N>>(contour.simplices)), N,
+                   coordinates_of(contour), work);
 }
 
-#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) template MeshReport check(const Contour<N, Real>&, const WorkOptions&);
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> MeshReport check(const Contour<N, Real>& contour, const Incidence<N>& incidence,
+                                                    const WorkOptions& work) {
+  const auto rows = detail::flat_rows(std::span<const std::array<Index, N>>(contour.simplices));
+  detail::require_incidence<N>(incidence.data(), rows, contour.vertices.size());
+  return check_complex<N - 1>(rows, N, coordinates_of(contour), &incidence.data(), work);
+}
+
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                           \
+  template MeshReport check(const Contour<N, Real>&, const WorkOptions&); \
+  template MeshReport check(const Contour<N, Real>&, const Incidence<N>&, const WorkOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

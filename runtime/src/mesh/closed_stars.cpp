@@ -4,8 +4,10 @@
 // orients it: one word of 64 bits. Each word is compared with the reverses of all others of the star, several at a
 // time, which is faster than a table for the few that there are. Highway's foreach_target compiles this file once per
 // instruction set.
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "mesh/closed_stars.hpp"
 
@@ -27,8 +29,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct Arrows {
   /// Places in the tetrahedron: the start and the end of each edge. Tetrahedra with one vertex above: its place first.
   alignas(32) std::array<std::uint32_t, 8> places{};
-  std::uint8_t count = 0;   ///< edges
-  std::uint8_t single = 0;  ///< 1 if there is one vertex above
+  std::array<std::uint8_t, 4> omitted{};  ///< by edge: the place of the vertex that is neither v nor one of its ends
+  std::uint8_t count = 0;                 ///< edges
+  std::uint8_t single = 0;                ///< 1 if there is one vertex above
 };
 
 /// By the set of places of vertices above v, plus 16 times the set that contains the place of v.
@@ -50,6 +53,7 @@ constexpr std::array<Arrows, 256> make_arrows() {
         if ((above >> to & 1u) == 0) continue;
         arrows.places[2 * arrows.count] = from;
         arrows.places[2 * arrows.count + 1] = to;
+        arrows.omitted[arrows.count] = static_cast<std::uint8_t>(6 - at - from - to);
         ++arrows.count;
       }
       arrows.single = above_count == 1 ? 1 : 0;
@@ -61,15 +65,17 @@ constexpr std::array<Arrows, 256> kArrows = make_arrows();
 /// Counts one star at a time.
 class Counter {
  public:
-  HWY_INLINE ClosedStar count(const Index* rows, Index v, std::span<const Index> star, bool with_edges) {
+  HWY_INLINE ClosedStar count(const Index* rows, Index v, std::span<const Index> star, bool with_edges,
+                              ClosedStars* more) {
     ClosedStar found;
     if (star.size() > kMostTetrahedra) return found;
     load(rows, v, star);
     if (!all_paired()) return found;
+    if (more != nullptr) write_across(more->across);
     found.is_closed = true;
     found.triangles = static_cast<std::uint16_t>(arrows_ / 2);
     found.tetrahedra = static_cast<std::uint16_t>(tetrahedra_);
-    if (with_edges) found.edges = static_cast<std::uint16_t>(count_edges());
+    if (with_edges) found.edges = static_cast<std::uint16_t>(count_edges(more));
     return found;
   }
 
@@ -94,6 +100,11 @@ class Counter {
       const auto repeated = hn::LoadDup128(d, row);
       for (std::size_t k = 0; k < 8; k += hn::Lanes(d))
         hn::StoreU(hn::TableLookupLanes(repeated, hn::SetTableIndices(d, arrows.places.data() + k)), d, to + k);
+      const std::size_t arrow = static_cast<std::size_t>(to - ends_.data()) / 2;
+      for (std::size_t k = 0; k < 3; ++k) {
+        tetrahedra_of_[arrow + k] = s;
+        omitted_[arrow + k] = arrows.omitted[k];
+      }
       singles_[singles] = row[arrows.places[0]];
       singles += arrows.single;
       tetrahedra += arrows.count == 3 ? 1 : 0;
@@ -104,28 +115,40 @@ class Counter {
     tetrahedra_ = tetrahedra;
   }
 
-  /// Whether each directed edge occurs once, and its reverse, too.
+  /// Whether each directed edge occurs once, and its reverse, too. Sets the places of the reverses.
   HWY_INLINE bool all_paired() {
     const hn::ScalableTag<std::uint64_t> d;
+    const hn::Repartition<std::uint32_t, decltype(d)> d_ends;
     const std::size_t lanes = hn::Lanes(d);
     if (arrows_ % 2 != 0) return false;
-    for (std::size_t i = 0; i < arrows_; ++i) reversed_[i] = std::uint64_t{ends_[2 * i]} << 32 | ends_[2 * i + 1];
     const auto one = hn::Set(d, std::uint64_t{1});
-    auto wrong = hn::Zero(d);
     for (std::size_t j = 0; j < arrows_; j += lanes) {
-      const auto here = hn::BitCast(d, hn::LoadU(hn::Repartition<std::uint32_t, decltype(d)>(), ends_.data() + 2 * j));
-      auto matches = hn::Zero(d);
-      for (std::size_t i = 0; i < arrows_; ++i)
-        matches = hn::Sub(matches, hn::VecFromMask(d, hn::Eq(here, hn::Set(d, reversed_[i]))));
-      const auto is_here = hn::FirstN(d, arrows_ - j);
-      wrong = hn::Or(wrong, hn::IfThenElseZero(is_here, hn::Xor(matches, one)));
+      const auto reverse = hn::BitCast(d, hn::Shuffle2301(hn::LoadU(d_ends, ends_.data() + 2 * j)));
+      auto places = hn::Set(d, std::uint64_t{kMostArrows});
+      auto place = hn::Zero(d);
+      for (std::size_t i = 0; i < arrows_; ++i) {
+        std::uint64_t arrow;
+        std::memcpy(&arrow, ends_.data() + 2 * i, sizeof arrow);
+        places = hn::IfThenElse(hn::Eq(reverse, hn::Set(d, arrow)), place, places);
+        place = hn::Add(place, one);
+      }
+      hn::StoreU(places, d, places_.data() + j);
     }
-    return hn::AllTrue(d, hn::Eq(wrong, hn::Zero(d)));
+    // An edge that occurs twice is not the reverse of its reverse at one of the two places.
+    places_[kMostArrows] = kMostArrows;
+    bool is_paired = true;
+    for (std::size_t i = 0; i < arrows_; ++i) is_paired = is_paired & (places_[places_[i]] == i);
+    return is_paired;
+  }
+
+  HWY_INLINE void write_across(Index* across) const {
+    for (std::size_t i = 0; i < arrows_; ++i)
+      across[std::size_t{tetrahedra_of_[i]} * 4 + omitted_[i]] = tetrahedra_of_[places_[i]];
   }
 
   /// The number of different vertices of the link above v, if all edges are paired: the starts of edges, and the
   /// vertices without such an edge.
-  HWY_INLINE std::size_t count_edges() {
+  HWY_INLINE std::size_t count_edges(ClosedStars* more) {
     const hn::ScalableTag<std::uint32_t> d;
     const std::size_t lanes = hn::Lanes(d);
     const std::size_t count = arrows_ + single_count_;
@@ -141,28 +164,36 @@ class Counter {
       for (std::size_t i = j; i < j + lanes && i < count; ++i)
         is_repeat = hn::Or(is_repeat, hn::And(hn::Eq(here, hn::Set(d, starts_[i])),
                                               hn::Gt(number, hn::Set(d, static_cast<std::uint32_t>(i)))));
-      repeats += hn::CountTrue(d, hn::And(is_repeat, hn::FirstN(d, count - j)));
+      const auto is_new = hn::AndNot(is_repeat, hn::FirstN(d, count - j));
+      repeats += std::min(lanes, count - j) - hn::CountTrue(d, is_new);
+      if (more != nullptr) {
+        std::array<std::uint32_t, kPadding> kept;
+        const std::size_t size = hn::CompressBlendedStore(here, is_new, d, kept.data());
+        more->edges.insert(more->edges.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(size));
+      }
     }
     return count - repeats;
   }
 
   std::size_t arrows_ = 0, single_count_ = 0, tetrahedra_ = 0;
   alignas(64) std::array<std::uint32_t, 2 * (kMostArrows + kPadding)> ends_{};  ///< start and end of each edge
-  alignas(64) std::array<std::uint64_t, kMostArrows> reversed_{};               ///< the edges with their ends exchanged
-  std::array<std::uint32_t, kMostTetrahedra + 1> singles_{};                    ///< vertices without an edge
+  std::array<Index, kMostArrows + kPadding> tetrahedra_of_{};                   ///< by edge
+  std::array<std::uint8_t, kMostArrows + kPadding> omitted_{};
+  alignas(64) std::array<std::uint64_t, kMostArrows + kPadding> places_{};  ///< by edge: the place of its reverse
+  std::array<std::uint32_t, kMostTetrahedra + 1> singles_{};                ///< vertices without an edge
   alignas(64) std::array<std::uint32_t, kMostArrows + kMostTetrahedra + kPadding> starts_{};
 };
 
-void count_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
-                 std::span<ClosedStar> found) {
+void count_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges, std::span<ClosedStar> found,
+                 ClosedStars* more) {
   Counter counter;
   for (std::size_t i = 0; i < found.size(); ++i)
-    found[i] = counter.count(rows, static_cast<Index>(from + i), stars.of(from + i), with_edges);
+    found[i] = counter.count(rows, static_cast<Index>(from + i), stars.of(from + i), with_edges, more);
 }
 
 #else
 
-void count_stars(const Index*, const Stars&, std::size_t, bool, std::span<ClosedStar> found) {
+void count_stars(const Index*, const Stars&, std::size_t, bool, std::span<ClosedStar> found, ClosedStars*) {
   for (ClosedStar& star : found) star = {};  // left to the caller
 }
 
@@ -178,8 +209,8 @@ namespace tegl::detail {
 
 HWY_EXPORT(count_stars);
 void count_closed_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
-                        std::span<ClosedStar> found) {
-  HWY_DYNAMIC_DISPATCH(count_stars)(rows, stars, from, with_edges, found);
+                        std::span<ClosedStar> found, ClosedStars* more) {
+  HWY_DYNAMIC_DISPATCH(count_stars)(rows, stars, from, with_edges, found, more);
 }
 
 }  // namespace tegl::detail

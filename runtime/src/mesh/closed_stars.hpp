@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "mesh/vertex_stars.hpp"
 #include "tegl/contour.hpp"
@@ -24,8 +25,17 @@ struct ClosedStar {
   bool is_closed = false;
 };
 
-/// The stars of the vertices from, from + 1, … `rows`: #S x 4, row = tetrahedron.
+/// More about closed stars, on request.
+struct ClosedStars {
+  /// By tetrahedron, its row of the tetrahedra across its triangles: entry i is across the triangle opposite to vertex
+  /// i. Entries are written for the triangles that are counted.
+  Index* across = nullptr;
+  std::vector<Index> edges;  ///< the other ends of the edges that are counted, star after star
+};
+
+/// The stars of the vertices from, from + 1, … `rows`: #S x 4, row = tetrahedron. `more`: null or what to add to; needs
+/// `with_edges`.
 void count_closed_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
-                        std::span<ClosedStar> found);
+                        std::span<ClosedStar> found, ClosedStars* more = nullptr);
 
 }  // namespace tegl::detail

@@ -16,6 +16,7 @@
 #include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/workers.hpp"
+#include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 
 namespace tegl {
@@ -195,18 +196,20 @@ ComponentLabels label_rows(const SimplexRows& contour, const WorkOptions& work) 
   return labels;
 }
 
-/// `check_coordinates()` throws InvalidArgument unless they are finite.
+/// `check_coordinates()` throws InvalidArgument unless they are finite. `incidence`: null if it is not known.
 template <int N>
 std::vector<Component<N>> measure_components(const detail::SimplexView<N>& contour, GradientDirection direction,
-                                             const ComponentLabels& labels, const WorkOptions& work,
-                                             detail::FunctionRef<void()> check_coordinates) {
+                                             const ComponentLabels& labels, const detail::IncidenceData<N>* incidence,
+                                             const WorkOptions& work, detail::FunctionRef<void()> check_coordinates) {
   require_labels({contour.rows(), N, contour.vertex_count()}, labels,
                  {work.threads, detail::part_of(work.progress, 0.0, 0.05)});
   check_coordinates();
   // count faces by label
   const std::span<const Index> rows = contour.rows();
   std::vector<detail::FaceCounts> faces;
-  {
+  if (incidence != nullptr) {
+    faces = detail::count_faces<N>(*incidence, labels.vertices, labels.count);
+  } else {
     const detail::Stars stars =
         detail::make_stars<N>(rows, contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.05, 0.1));
     faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, work.threads,
@@ -265,8 +268,19 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Contour<N, Real>& contour,
                                                                         const ComponentLabels& labels,
                                                                         const WorkOptions& work) {
-  return measure_components(detail::SimplexView<N>(contour), contour.direction, labels, work,
-                            [&] { detail::require_finite(contour); });
+  return measure_components<N>(detail::SimplexView<N>(contour), contour.direction, labels, nullptr, work,
+                               [&] { detail::require_finite(contour); });
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> std::vector<Component<N>> components(const Contour<N, Real>& contour,
+                                                                        const ComponentLabels& labels,
+                                                                        const Incidence<N>& incidence,
+                                                                        const WorkOptions& work) {
+  const detail::SimplexView<N> view(contour);
+  detail::require_incidence<N>(incidence.data(), view.rows(), view.vertex_count());
+  return measure_components<N>(view, contour.direction, labels, &incidence.data(), work,
+                               [&] { detail::require_finite(contour); });
 }
 
 template <int N, Coordinate Real>
@@ -330,6 +344,8 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> add_component_attribute(Cont
 #define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                                       \
   template ComponentLabels label_components(const Contour<N, Real>&, const WorkOptions&);                             \
   template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const WorkOptions&); \
+  template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const Incidence<N>&, \
+                                                const WorkOptions&);                                                  \
   template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&,            \
                                                           const WorkOptions&);                                        \
   template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \

@@ -14,6 +14,7 @@
 #include "base/slice_at.hpp"
 #include "base/workers.hpp"
 #include "mesh/cut_sums.hpp"
+#include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 
 namespace tegl {
@@ -106,8 +107,10 @@ std::pair<PointOf<N>, PointOf<N>> bounding_box(const detail::SimplexView<N>& con
   return {low, high};
 }
 
+/// `incidence`: null if it is not known.
 template <int N>
-Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirection direction, const WorkOptions& work) {
+Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirection direction,
+                         const detail::IncidenceData<N>* incidence, const WorkOptions& work) {
   Measures<N> result;
   if (contour.simplices().empty()) {
     result.content = 0.0;  // it has no boundary
@@ -117,7 +120,9 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
   const std::span<const Index> rows = contour.rows();
   detail::FaceCounts faces;
   Buffer<Index> of_vertices(contour.vertex_count());
-  {
+  if (incidence != nullptr) {
+    faces = detail::count_faces<N>(*incidence, {}, 1).front();
+  } else {
     const detail::Stars stars =
         detail::make_stars<N>(rows, contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.0, 0.1));
     faces = detail::count_faces<N>(rows, stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.7),
@@ -193,7 +198,16 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work) {
   detail::require_vertices(contour);
   detail::require_finite(contour);
-  return measure_view(detail::SimplexView<N>(contour), contour.direction, work);
+  return measure_view<N>(detail::SimplexView<N>(contour), contour.direction, nullptr, work);
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const Incidence<N>& incidence,
+                                                       const WorkOptions& work) {
+  const detail::SimplexView<N> view(contour);
+  detail::require_incidence<N>(incidence.data(), view.rows(), view.vertex_count());
+  detail::require_finite(contour);
+  return measure_view<N>(view, contour.direction, &incidence.data(), work);
 }
 
 template <int N, Coordinate Real>
@@ -208,8 +222,9 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
   return measure_cuts_of_view(detail::SimplexView<N>(contour), contour.direction, at, work);
 }
 
-#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \
-  template Measures<N> measure(const Contour<N, Real>&, const WorkOptions&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                              \
+  template Measures<N> measure(const Contour<N, Real>&, const WorkOptions&); \
+  template Measures<N> measure(const Contour<N, Real>&, const Incidence<N>&, const WorkOptions&);
 #include "base/instantiate.hpp"
 
 template std::vector<CutMeasures> measure_cuts(const Contour<3, float>&, std::span<const double>, const WorkOptions&);

@@ -13,8 +13,8 @@ namespace tegl::detail {
 
 namespace {
 
-/// Calls visit(vertex, simplex) for the corners from `first_vertex` to `end_vertex` - 1, simplices ascending. Leaves out
-/// simplices that repeat a vertex.
+/// Calls visit(vertex, simplex) for the corners from `first_vertex` to `end_vertex` - 1, simplices ascending. Leaves
+/// out simplices that repeat a vertex.
 template <int Width, class Visit>
 void for_corners(std::span<const Index> rows, Index first_vertex, Index end_vertex, LoopProgress& done,
                  const Visit& visit) {
