@@ -29,6 +29,7 @@
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/io.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/project.hpp"
@@ -151,6 +152,29 @@ void add_tracks(Subject<T>& subject, std::vector<Operation>& list) {
                   }});
 }
 
+/// Checks, components, measures and tracks of one contour: its incidence is found once, or by each of them.
+template <Value T>
+void add_several(Subject<T>& subject, std::vector<Operation>& list) {
+  const auto all = [&](const auto&... incidence) {
+    const WorkOptions work = subject.work_options();
+    TrackOptions options;
+    options.work = work;
+    const ComponentLabels labels = label_components(subject.contour, work);
+    const auto links = check(subject.contour, incidence..., work).bad_links;
+    const auto parts = components(subject.contour, labels, incidence..., work).size();
+    const double size = measure(subject.contour, incidence..., work).size;
+    const auto events = track(subject.contour, incidence..., options).events.size();
+    return fmt::format("{} bad links, {} components, size {:.6g}, {} events", links, parts, size, events);
+  };
+  list.push_back({"`Incidence`", [&] {
+                    const Incidence<4> incidence(subject.contour, subject.work_options());
+                    return counted(incidence.simplex_count(), "tetrahedra");
+                  }});
+  list.push_back({"all of these", [all] { return all(); }});
+  list.push_back({"all of these, one `Incidence`",
+                  [&, all] { return all(Incidence<4>(subject.contour, subject.work_options())); }});
+}
+
 template <Value T>
 void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`sample` (the image itself)",
@@ -226,6 +250,7 @@ std::vector<Operation> operations_on(Subject<T>& subject) {
   add_cuts(subject, list);
   add_parts(subject, list);
   add_tracks(subject, list);
+  add_several(subject, list);
   add_fields(subject, list);
   add_simplification(subject, list);
   return list;

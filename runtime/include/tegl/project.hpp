@@ -5,6 +5,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/vector.hpp"
 #include "tegl/work.hpp"
 
@@ -61,5 +62,10 @@ template <Coordinate Real>
 template <Coordinate Real>
 [[nodiscard]] Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection = {},
                                        const WorkOptions& work = {});
+
+/// The same, in less time, with the contour's incidence. Errors: also InvalidArgument if it is another contour's.
+template <Coordinate Real>
+[[nodiscard]] Contour<3, Real> outline(const Contour<4, Real>& contour, const Incidence<4>& incidence,
+                                       const Projection& projection = {}, const WorkOptions& work = {});
 
 }  // namespace tegl

@@ -19,6 +19,7 @@
 #include "tegl/grid.hpp"
 #include "tegl/hyperplane.hpp"
 #include "tegl/image.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/intersections.hpp"
 #include "tegl/layers.hpp"
 #include "tegl/measure.hpp"

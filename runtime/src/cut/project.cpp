@@ -25,6 +25,7 @@
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "cut/hyperplane_family.hpp"
+#include "mesh/incidence_data.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
 #include "mesh/vertex_stars.hpp"
@@ -171,16 +172,19 @@ void fill_from_neighbours(const Contour<4, Real>& contour, VertexNormals& normal
   }
 }
 
-/// By vertex, the sum of the normals of its tetrahedra, in the order of these.
+/// By vertex, the sum of the normals of its tetrahedra, in the order of these. `incidence`: null if it is not known.
 template <class Real>
-VertexNormals vertex_normals(const Contour<4, Real>& contour, const WorkOptions& work) {
+VertexNormals vertex_normals(const Contour<4, Real>& contour, const detail::IncidenceData<4>* incidence,
+                             const WorkOptions& work) {
   Buffer<detail::PointOf<4>> of_simplices(contour.simplices.size());
   detail::for_each_item(
       of_simplices.size(), work.threads, detail::part_of(work.progress, 0.0, 0.3),
       [&](std::size_t s) { of_simplices[s] = detail::normal_vector_of<4>(detail::corners_of(contour, s)); });
-  const detail::Stars stars =
-      detail::make_stars<4>(detail::flat_rows(std::span<const std::array<Index, 4>>(contour.simplices)),
-                            contour.vertices.size(), work.threads, detail::part_of(work.progress, 0.3, 0.6));
+  detail::Stars made;
+  if (incidence == nullptr)
+    made = detail::make_stars<4>(detail::flat_rows(std::span<const std::array<Index, 4>>(contour.simplices)),
+                                 contour.vertices.size(), work.threads, detail::part_of(work.progress, 0.3, 0.6));
+  const detail::Stars& stars = incidence != nullptr ? incidence->stars : made;
   VertexNormals normals(contour.vertices.size());
   detail::for_each_item(normals.size(), work.threads, detail::part_of(work.progress, 0.6, 1.0), [&](std::size_t v) {
     normals[v].setZero();
@@ -193,12 +197,12 @@ VertexNormals vertex_normals(const Contour<4, Real>& contour, const WorkOptions&
 /// towards low values: negative on the near side, positive on the far side. Values within rounding of 0 count as far,
 /// as for tetrahedra.
 template <class Real>
-std::vector<double> along_sight(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view,
-                                const WorkOptions& work) {
+std::vector<double> along_sight(const Contour<4, Real>& contour, const detail::IncidenceData<4>* incidence,
+                                const Projection& projection, const View<Real>& view, const WorkOptions& work) {
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
   const Eigen::Vector4d up = as_eigen(frame.up);
   const Eigen::Matrix<double, 4, 3> axes = as_eigen(frame.axes).transpose();
-  VertexNormals normals = vertex_normals(contour, {work.threads, detail::part_of(work.progress, 0.0, 0.8)});
+  VertexNormals normals = vertex_normals(contour, incidence, {work.threads, detail::part_of(work.progress, 0.0, 0.8)});
   fill_from_neighbours(contour, normals);
   std::vector<double> result(normals.size());
   detail::for_each_item(normals.size(), work.threads, detail::part_of(work.progress, 0.8, 1.0), [&](std::size_t v) {
@@ -239,12 +243,15 @@ ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection
   return result;
 }
 
+namespace {
+
 template <Coordinate Real>
-Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
+Contour<3, Real> outline_with(const Contour<4, Real>& contour, const detail::IncidenceData<4>* incidence,
+                              const Projection& projection, const WorkOptions& work) {
   detail::tell(work.progress, 0.0, kCancelledProject);
   const View<Real> view = view_of(contour, projection, {work.threads, detail::part_of(work.progress, 0.0, 0.2)});
   const std::vector<double> sides =
-      along_sight(contour, projection, view, {work.threads, detail::part_of(work.progress, 0.2, 0.6)});
+      along_sight(contour, incidence, projection, view, {work.threads, detail::part_of(work.progress, 0.2, 0.6)});
   // The projected contour with the side function as last coordinate; the outline is its cut at 0.
   Contour<4, double> raised;
   raised.vertices.resize(view.points.size());
@@ -273,9 +280,30 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   return result;
 }
 
+}  // namespace
+
+template <Coordinate Real>
+Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
+  return outline_with<Real>(contour, nullptr, projection, work);
+}
+
+template <Coordinate Real>
+Contour<3, Real> outline(const Contour<4, Real>& contour, const Incidence<4>& incidence, const Projection& projection,
+                         const WorkOptions& work) {
+  detail::require_vertices(contour);
+  detail::require_incidence<4>(incidence.data(),
+                               detail::flat_rows(std::span<const std::array<Index, 4>>(contour.simplices)),
+                               contour.vertices.size());
+  return outline_with<Real>(contour, &incidence.data(), projection, work);
+}
+
 template ProjectedContour<float> project(const Contour<4, float>&, const Projection&, const WorkOptions&);
 template ProjectedContour<double> project(const Contour<4, double>&, const Projection&, const WorkOptions&);
 template Contour<3, float> outline(const Contour<4, float>&, const Projection&, const WorkOptions&);
 template Contour<3, double> outline(const Contour<4, double>&, const Projection&, const WorkOptions&);
+template Contour<3, float> outline(const Contour<4, float>&, const Incidence<4>&, const Projection&,
+                                   const WorkOptions&);
+template Contour<3, double> outline(const Contour<4, double>&, const Incidence<4>&, const Projection&,
+                                    const WorkOptions&);
 
 }  // namespace tegl

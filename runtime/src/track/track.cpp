@@ -13,6 +13,7 @@
 
 #include "base/function_ref.hpp"
 #include "base/progress.hpp"
+#include "mesh/incidence_data.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
 #include "track/track_graph.hpp"
@@ -280,15 +281,33 @@ std::vector<double> even_times(double first, double last, std::size_t count) {
   return times;
 }
 
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
+namespace {
+
+/// `incidence`: null if it is not known.
+template <int N, class Real>
+TrackGraph track_with(const Contour<N, Real>& contour, const detail::IncidenceData<N>* incidence,
+                      const TrackOptions& options) {
   require_sound(options);
   require_sound(contour);
   const detail::SimplexView<N> view(contour);
+  if (incidence != nullptr) detail::require_incidence<N>(*incidence, view.rows(), view.vertex_count());
   const auto coordinate = [&](Index vertex, int axis) { return view.coordinate(vertex, axis); };
   const SweptContour swept{contour.axis_names, contour.axis_units, view.rows(),
                            static_cast<double>(std::numeric_limits<Real>::epsilon()), coordinate};
-  return Builder(swept, options, detail::sweep(contour, options)).build();
+  return Builder(swept, options, detail::sweep(contour, incidence, options)).build();
+}
+
+}  // namespace
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
+  return track_with<N, Real>(contour, nullptr, options);
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const Incidence<N>& incidence,
+                                                    const TrackOptions& options) {
+  return track_with<N, Real>(contour, &incidence.data(), options);
 }
 
 TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep) {
@@ -326,7 +345,9 @@ TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep)
   return result;
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) template TrackGraph track(const Contour<N, Real>&, const TrackOptions&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                 \
+  template TrackGraph track(const Contour<N, Real>&, const TrackOptions&); \
+  template TrackGraph track(const Contour<N, Real>&, const Incidence<N>&, const TrackOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

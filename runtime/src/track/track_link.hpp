@@ -16,6 +16,7 @@
 #include "base/radix_sort.hpp"
 #include "base/sort_few.hpp"
 #include "base/workers.hpp"
+#include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "track/link_sides.hpp"
@@ -69,12 +70,19 @@ class SweptComplex {
  public:
   using Simplex = std::array<Index, N>;
 
-  SweptComplex(const SimplexView<N>& contour, unsigned threads, const Progress& progress) : contour_(contour) {
+  /// `incidence`: null if it is not known; must outlive the complex.
+  SweptComplex(const SimplexView<N>& contour, const IncidenceData<N>* incidence, unsigned threads,
+               const Progress& progress)
+      : contour_(contour), incidence_(incidence) {
     rank_vertices(threads, part_of(progress, 0.0, 0.2));
     rank_simplices(threads, part_of(progress, 0.2, 0.3));
-    stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
-                           part_of(progress, 0.3, 0.5));
-    find_border(threads, part_of(progress, 0.5, 0.8));
+    if (incidence != nullptr) {
+      copy_border(threads, part_of(progress, 0.3, 0.8));
+    } else {
+      stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
+                             part_of(progress, 0.3, 0.5));
+      find_border(threads, part_of(progress, 0.5, 0.8));
+    }
     find_passages(threads, part_of(progress, 0.8, 1.0));
   }
 
@@ -86,7 +94,9 @@ class SweptComplex {
   /// The vertex of the contour.
   [[nodiscard]] Index vertex(Index rank) const { return order_[rank]; }
   /// Simplices around a vertex, ascending, without those that repeat a vertex.
-  [[nodiscard]] std::span<const Index> star(Index v) const { return stars_.of(v); }
+  [[nodiscard]] std::span<const Index> star(Index v) const {
+    return incidence_ != nullptr ? incidence_->stars.of(order_[v]) : stars_.of(v);
+  }
   /// Bit i: the facet without vertex i is in no other simplex (border).
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
   /// The same for positions in the simplex of the contour.
@@ -148,6 +158,30 @@ class SweptComplex {
     });
   }
 
+  /// As find_border, from the incidence.
+  void copy_border(unsigned threads, const Progress& progress) {
+    border_.assign(simplices_.size(), 0);
+    in_border_.assign(contour_.vertex_count(), 0);
+    for_each_item(simplices_.size(), threads, progress, [&](std::size_t s) {
+      const auto& across = incidence_->across[s];
+      if (std::find(across.begin(), across.end(), kNoSimplex) == across.end()) return;
+      const Simplex& simplex = simplices_[s];
+      if (std::adjacent_find(simplex.begin(), simplex.end()) != simplex.end()) return;  // repeats a vertex
+      unsigned border = 0;
+      for (int i = 0; i < N; ++i) {
+        if (across[i] != kNoSimplex) continue;
+        const Index omitted = rank_[contour_.simplices()[s][i]];
+        for (int j = 0; j < N; ++j) {
+          if (simplex[j] == omitted)
+            border |= 1u << j;
+          else
+            std::atomic_ref(in_border_[simplex[j]]).store(1, std::memory_order_relaxed);
+        }
+      }
+      border_[s] = static_cast<std::uint8_t>(border);
+    });
+  }
+
   void find_border(unsigned threads, const Progress& progress) {
     border_.assign(simplices_.size(), 0);
     in_border_.assign(contour_.vertex_count(), 0);
@@ -194,11 +228,12 @@ class SweptComplex {
   }
 
   SimplexView<N> contour_;
+  const IncidenceData<N>* incidence_;
   Buffer<Index> order_;
   Buffer<Index> rank_;
   Buffer<double> times_;       ///< by rank
   Buffer<Simplex> simplices_;  ///< by ranks
-  Stars stars_;
+  Stars stars_;                ///< empty if the incidence is known
   std::vector<std::uint8_t> border_;
   std::vector<std::uint8_t> in_border_;  ///< by vertex: whether it is in the border
   Buffer<Passage> passages_;

@@ -50,10 +50,11 @@ struct Component {
 template <int N>
 class Sweeper {
  public:
-  Sweeper(const SimplexView<N>& contour, GradientDirection direction, const TrackOptions& options)
+  Sweeper(const SimplexView<N>& contour, const IncidenceData<N>* incidence, GradientDirection direction,
+          const TrackOptions& options)
       : options_(options),
         direction_(direction),
-        complex_(contour, options.work.threads, part_of(options.work.progress, 0.0, kReady)),
+        complex_(contour, incidence, options.work.threads, part_of(options.work.progress, 0.0, kReady)),
         star_(complex_) {
     const std::size_t count = contour.simplices().size();
     labels_.assign(count, kNone);
@@ -503,11 +504,12 @@ class Sweeper {
 }  // namespace
 
 template <int N, class Real>
-SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options) {
-  return Sweeper<N>(SimplexView<N>(contour), contour.direction, options).run();
+SweepResult sweep(const Contour<N, Real>& contour, const IncidenceData<N>* incidence, const TrackOptions& options) {
+  return Sweeper<N>(SimplexView<N>(contour), incidence, contour.direction, options).run();
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) template SweepResult sweep(const Contour<N, Real>&, const TrackOptions&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
+  template SweepResult sweep(const Contour<N, Real>&, const IncidenceData<N>*, const TrackOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/incidence_data.hpp"
 #include "tegl/track.hpp"
 #include "track/sweep_result.hpp"
 
@@ -16,8 +17,8 @@ namespace tegl::detail {
 inline constexpr double kSwept = 0.95;
 
 /// Reports progress up to kSwept. Instantiated for the same types as `track`. The options must be valid, and the
-/// contour's numbers finite and in range.
+/// contour's numbers finite and in range. `incidence`: null if it is not known.
 template <int N, class Real>
-SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options);
+SweepResult sweep(const Contour<N, Real>& contour, const IncidenceData<N>* incidence, const TrackOptions& options);
 
 }  // namespace tegl::detail
