@@ -13,6 +13,7 @@
 #include "tegl/deviation.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/project.hpp"
 #include "tegl/scrubber.hpp"
@@ -100,6 +101,66 @@ const Contour<N, double>& contour_of_noise() {
   return contour;
 }
 
+void add_report(Bytes& bytes, const MeshReport& report) {
+  for (const auto count :
+       {&MeshReport::vertices, &MeshReport::unused_vertices, &MeshReport::simplices, &MeshReport::components,
+        &MeshReport::boundary_simplices, &MeshReport::nonmanifold_simplices, &MeshReport::bad_links,
+        &MeshReport::orientation_conflicts, &MeshReport::degenerate_simplices})
+    bytes.add(report.*count);
+  bytes.add(report.euler);
+}
+
+template <int N>
+void add_components(Bytes& bytes, const std::vector<Component<N>>& all) {
+  for (const Component<N>& component : all) {
+    bytes.add(component.vertices);
+    bytes.add(component.simplices);
+    bytes.add(component.size);
+    bytes.add(component.content);
+    bytes.add(component.centroid);
+    bytes.add(component.lowest);
+    bytes.add(component.highest);
+    bytes.add(component.euler);
+    bytes.add(component.boundary_simplices);
+  }
+}
+
+template <int N>
+void add_measures(Bytes& bytes, const Measures<N>& all) {
+  bytes.add(all.size);
+  bytes.add(all.content);
+  bytes.add(all.centroid);
+  bytes.add(all.lowest);
+  bytes.add(all.highest);
+  bytes.add(all.boundary_simplices);
+  bytes.add(all.open_simplices);
+}
+
+void add_graph(Bytes& bytes, const TrackGraph& graph) {
+  for (const TrackEvent& event : graph.events) {
+    bytes.add(event.time);
+    bytes.add(event.vertex);
+    bytes.add(event.euler_change);
+    bytes.add(static_cast<int>(event.kind));
+    bytes.add_all(event.in);
+    bytes.add_all(event.out);
+  }
+  for (const TrackSegment& segment : graph.segments) {
+    bytes.add(segment.track);
+    bytes.add(segment.size_at_start);
+    bytes.add(segment.size_at_end);
+    bytes.add(segment.euler_at_start);
+    bytes.add(segment.euler_at_end);
+    for (const TrackSample& sample : segment.samples) {
+      bytes.add(sample.measure);
+      bytes.add(sample.content);
+      bytes.add(sample.centroid);
+    }
+  }
+  for (const TrackHandle& handle : graph.handles) bytes.add(handle.vertex);
+  bytes.add_all(graph.simplex_segments);
+}
+
 template <class T>
 class SameOperations : public testing::Test {};
 using OperationDimensions =
@@ -109,41 +170,15 @@ TYPED_TEST_SUITE(SameOperations, OperationDimensions);
 TYPED_TEST(SameOperations, OfCheckComponentsMeasuresAndElements) {
   constexpr int N = TypeParam::value;
   const Contour<N, double>& contour = contour_of_noise<N>();
-  expect_same_bytes("check", [&](Bytes& bytes, const WorkOptions& work) {
-    const MeshReport report = check(contour, work);
-    for (const auto count :
-         {&MeshReport::vertices, &MeshReport::unused_vertices, &MeshReport::simplices, &MeshReport::components,
-          &MeshReport::boundary_simplices, &MeshReport::nonmanifold_simplices, &MeshReport::bad_links,
-          &MeshReport::orientation_conflicts, &MeshReport::degenerate_simplices})
-      bytes.add(report.*count);
-    bytes.add(report.euler);
-  });
+  expect_same_bytes("check", [&](Bytes& bytes, const WorkOptions& work) { add_report(bytes, check(contour, work)); });
   expect_same_bytes("components", [&](Bytes& bytes, const WorkOptions& work) {
     const ComponentLabels labels = label_components(contour, work);
     bytes.add_all(labels.vertices);
     bytes.add_all(labels.simplices);
-    for (const Component<N>& component : components(contour, labels, work)) {
-      bytes.add(component.vertices);
-      bytes.add(component.simplices);
-      bytes.add(component.size);
-      bytes.add(component.content);
-      bytes.add(component.centroid);
-      bytes.add(component.lowest);
-      bytes.add(component.highest);
-      bytes.add(component.euler);
-      bytes.add(component.boundary_simplices);
-    }
+    add_components(bytes, components(contour, labels, work));
   });
-  expect_same_bytes("measure", [&](Bytes& bytes, const WorkOptions& work) {
-    const Measures<N> all = measure(contour, work);
-    bytes.add(all.size);
-    bytes.add(all.content);
-    bytes.add(all.centroid);
-    bytes.add(all.lowest);
-    bytes.add(all.highest);
-    bytes.add(all.boundary_simplices);
-    bytes.add(all.open_simplices);
-  });
+  expect_same_bytes("measure",
+                    [&](Bytes& bytes, const WorkOptions& work) { add_measures(bytes, measure(contour, work)); });
   expect_same_bytes("elements", [&](Bytes& bytes, const WorkOptions& work) { bytes.add(elements(contour, work)); });
   expect_same_bytes("elements_by_cell", [&](Bytes& bytes, const WorkOptions& work) {
     std::array<std::size_t, N> sizes;
@@ -160,30 +195,75 @@ TYPED_TEST(SameOperations, OfTracks) {
     options.times = even_times(0.0, 13.0, 7);
     options.label_simplices = true;
     options.work = work;
-    const TrackGraph graph = track(contour, options);
-    for (const TrackEvent& event : graph.events) {
-      bytes.add(event.time);
-      bytes.add(event.vertex);
-      bytes.add(event.euler_change);
-      bytes.add(static_cast<int>(event.kind));
-      bytes.add_all(event.in);
-      bytes.add_all(event.out);
-    }
-    for (const TrackSegment& segment : graph.segments) {
-      bytes.add(segment.track);
-      bytes.add(segment.size_at_start);
-      bytes.add(segment.size_at_end);
-      bytes.add(segment.euler_at_start);
-      bytes.add(segment.euler_at_end);
-      for (const TrackSample& sample : segment.samples) {
-        bytes.add(sample.measure);
-        bytes.add(sample.content);
-        bytes.add(sample.centroid);
-      }
-    }
-    for (const TrackHandle& handle : graph.handles) bytes.add(handle.vertex);
-    bytes.add_all(graph.simplex_segments);
+    add_graph(bytes, track(contour, options));
   });
+}
+
+TYPED_TEST(SameOperations, OfAnIncidenceAndThoseThatTakeIt) {
+  constexpr int N = TypeParam::value;
+  const Contour<N, double>& contour = contour_of_noise<N>();
+  const auto add_all = [&](Bytes& bytes, const WorkOptions& work, const auto&... incidence) {
+    const ComponentLabels labels = label_components(contour, work);
+    add_report(bytes, check(contour, incidence..., work));
+    add_components<N>(bytes, components(contour, labels, incidence..., work));
+    add_measures<N>(bytes, measure(contour, incidence..., work));
+    TrackOptions options;
+    options.times = even_times(0.0, 13.0, 7);
+    options.label_simplices = true;
+    options.work = work;
+    add_graph(bytes, track(contour, incidence..., options));
+    if constexpr (N == 4) bytes.add(outline(contour, incidence..., Projection{}, work));
+  };
+  Bytes without;
+  add_all(without, {1, {}});
+  for (const unsigned threads : {1u, 2u, 4u}) {
+    Bytes with;
+    add_all(with, {threads, {}}, Incidence<N>(contour, {threads, {}}));
+    EXPECT_TRUE(with == without) << threads << " threads";
+  }
+  expect_same_bytes("Incidence", [&](Bytes& bytes, const WorkOptions& work) {
+    const Incidence<N> incidence(contour, work);
+    EXPECT_TRUE(incidence.fits(contour));
+    for (Index v = 0; v < incidence.vertex_count(); ++v) bytes.add_all(incidence.around(v));
+    for (Index s = 0; s < incidence.simplex_count(); ++s) bytes.add(incidence.across(s));
+  });
+}
+
+TYPED_TEST(SameOperations, RefuseTheIncidenceOfAnotherContour) {
+  constexpr int N = TypeParam::value;
+  const Contour<N, double>& contour = contour_of_noise<N>();
+  const auto expect_refused = [&](const Contour<N, double>& other) {
+    const Incidence<N> incidence(contour);
+    EXPECT_FALSE(incidence.fits(other));
+    const ComponentLabels labels = label_components(other);
+    const auto is_refused = [](const auto& call) {
+      try {
+        call();
+      } catch (const Error& error) {
+        return error.code() == ErrorCode::InvalidArgument &&
+               std::string_view(error.what()).find("incidence") != std::string_view::npos;
+      }
+      return false;
+    };
+    EXPECT_TRUE(is_refused([&] { (void)check(other, incidence); }));
+    EXPECT_TRUE(is_refused([&] { (void)components(other, labels, incidence); }));
+    EXPECT_TRUE(is_refused([&] { (void)measure(other, incidence); }));
+    EXPECT_TRUE(is_refused([&] { (void)track(other, incidence); }));
+    if constexpr (N == 4) {
+      EXPECT_TRUE(is_refused([&] { (void)outline(other, incidence); }));
+    }
+  };
+  Contour<N, double> other = contour;
+  std::swap(other.simplices[0], other.simplices[1]);
+  expect_refused(other);
+  other = contour;
+  other.simplices.pop_back();
+  expect_refused(other);
+  other = contour;
+  other.vertices.push_back(other.vertices.back());
+  other.normals.push_back(other.normals.back());
+  other.vertex_attributes[0].values.push_back(0.0);
+  expect_refused(other);
 }
 
 TYPED_TEST(SameOperations, OfSimplificationAndDeviation) {

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -14,6 +15,8 @@
 
 #include "base/radix_sort.hpp"
 #include "fields.hpp"
+#include "mesh/incidence_data.hpp"
+#include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "track/link_sides.hpp"
 
@@ -81,6 +84,16 @@ int sort_signed(std::array<Index, N>& row) {
   return sign;
 }
 
+/// The vertices of a simplex except one, ascending.
+template <int N>
+std::array<Index, N - 1> face_without(const std::array<Index, N>& row, int omitted) {
+  std::array<Index, N - 1> face;
+  for (int i = 0, k = 0; i < N; ++i)
+    if (i != omitted) face[k++] = row[i];
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
 template <int N>
 ListedFaces<N> list_faces(const SimplexList<N>& rows) {
   ListedFaces<N> faces;
@@ -132,6 +145,48 @@ void expect_faces_as_listed(const SimplexList<N>& rows) {
     if (with_euler) {
       EXPECT_EQ(counts.euler, euler);
     }
+  }
+}
+
+/// The simplices with each (N-2)-face.
+template <int N>
+std::map<std::array<Index, N - 1>, std::vector<Index>> simplices_by_face(const SimplexList<N>& rows) {
+  std::map<std::array<Index, N - 1>, std::vector<Index>> found;
+  for (Index s = 0; s < rows.size(); ++s)
+    for (int omitted = 0; omitted < N; ++omitted) found[face_without<N>(rows[s], omitted)].push_back(s);
+  return found;
+}
+
+template <int N>
+void expect_incidence_as_listed(const SimplexList<N>& rows) {
+  const ListedFaces<N> faces = list_faces<N>(rows);
+  const auto of_face = simplices_by_face<N>(rows);
+  const std::size_t vertices = vertices_of<N>(rows);
+  const auto incidence = detail::make_incidence<N>(flat<N>(rows), vertices, 1, {});
+  for (Index s = 0; s < rows.size(); ++s)
+    for (int i = 0; i < N; ++i) {
+      const std::vector<Index>& here = of_face.at(face_without<N>(rows[s], i));
+      const Index other = here.front() == s ? here.back() : here.front();
+      EXPECT_EQ(incidence.across[s][i], here.size() == 1 ? kNoSimplex : here.size() == 2 ? other : kSeveralSimplices);
+    }
+  std::int64_t boundary = 0, several = 0, conflicts = 0;
+  for (const auto& [ridge, found] : faces.ridges) {
+    boundary += found.first == 1 ? 1 : 0;
+    several += found.first > 2 ? 1 : 0;
+    conflicts += found.first == 2 && found.second != 0 ? 1 : 0;
+  }
+  for (const detail::IrregularFaces& irregular : incidence.irregular) {
+    boundary -= irregular.boundary;
+    several -= irregular.several;
+    conflicts -= irregular.conflicts;
+  }
+  EXPECT_EQ(boundary, 0);
+  EXPECT_EQ(several, 0);
+  EXPECT_EQ(conflicts, 0);
+  if constexpr (N == 4) {
+    std::size_t ends = 0;
+    for (Index v = 0; v < vertices; ++v) ends += incidence.edges_of(v);
+    EXPECT_EQ(ends, 2 * faces.by_size[2].size());
   }
 }
 
@@ -216,6 +271,7 @@ TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnContours) {
   const SimplexList<N> rows = rows_of_contour<N>();
   ASSERT_GT(rows.size(), 10u);
   expect_faces_as_listed<N>(rows);
+  expect_incidence_as_listed<N>(rows);
   expect_single_faces_as_listed<N>(rows);
   expect_sides_as_defined<N>(rows);
 }
@@ -227,6 +283,7 @@ TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnRandomComplexes) {
     const auto vertices = static_cast<Index>(N + random() % 12);
     const SimplexList<N> rows = random_rows<N>(1 + random() % 40, vertices, random);
     expect_faces_as_listed<N>(rows);
+    expect_incidence_as_listed<N>(rows);
     expect_single_faces_as_listed<N>(rows);
     expect_sides_as_defined<N>(rows);
     if (testing::Test::HasFailure()) FAIL() << "run " << run;
@@ -243,10 +300,85 @@ TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnLargeStars) {
     for (auto& row : rows)
       if (std::find(row.begin(), row.end(), centre) == row.end()) row[random() % N] = centre;
     expect_faces_as_listed<N>(rows);
+    expect_incidence_as_listed<N>(rows);
     expect_single_faces_as_listed<N>(rows);
     expect_sides_as_defined<N>(rows);
     if (testing::Test::HasFailure()) FAIL() << vertices << " vertices";
   }
+}
+
+/// Whether the triangles of a link are a sphere or a disc, by its definition: each edge in one or two triangles, the
+/// triangles around each vertex connected, all connected, and the Euler characteristic.
+bool is_sphere_or_disc(const SimplexList<4>& rows, std::span<const Index> star, Index v) {
+  std::map<std::array<Index, 2>, std::vector<Index>> of_edge;
+  std::set<Index> vertices;
+  for (const Index s : star)
+    for (int i = 0; i < 4; ++i) {
+      if (rows[s][i] == v) continue;
+      vertices.insert(rows[s][i]);
+      std::array<Index, 2> edge{};
+      for (int j = 0, k = 0; j < 4; ++j)
+        if (j != i && rows[s][j] != v) edge[k++] = rows[s][j];
+      std::sort(edge.begin(), edge.end());
+      of_edge[edge].push_back(s);
+    }
+  // connected across edges, of those at u or of all
+  const auto is_connected = [&](std::optional<Index> u) {
+    const auto has = [&](Index s) { return !u || std::find(rows[s].begin(), rows[s].end(), *u) != rows[s].end(); };
+    std::set<Index> all, reached;
+    for (const Index s : star)
+      if (has(s)) all.insert(s);
+    reached.insert(*all.begin());
+    for (bool grows = true; grows;) {
+      grows = false;
+      for (const auto& [edge, sides] : of_edge) {
+        if (u && edge[0] != *u && edge[1] != *u) continue;
+        if (std::none_of(sides.begin(), sides.end(), [&](Index s) { return reached.count(s) != 0; })) continue;
+        for (const Index s : sides) grows = reached.insert(s).second || grows;
+      }
+    }
+    return reached == all;
+  };
+  bool is_closed = true;
+  for (const auto& [edge, sides] : of_edge) {
+    if (sides.size() > 2) return false;
+    is_closed = is_closed && sides.size() == 2;
+  }
+  if (!std::all_of(vertices.begin(), vertices.end(), is_connected) || !is_connected({})) return false;
+  return vertices.size() + star.size() == of_edge.size() + (is_closed ? 2 : 1);
+}
+
+TEST(LinksOfTetrahedra, AreGoodByDefinition) {
+  std::mt19937 random(4);
+  std::size_t good = 0, bad = 0;
+  const SimplexList<4> contour = rows_of_contour<4>();
+  for (int run = 0; run < 60; ++run) {
+    // few vertices; or a contour with some of its vertices identified and tetrahedra left out
+    SimplexList<4> rows;
+    if (run % 2 == 0) {
+      rows = random_rows<4>(1 + random() % 12, static_cast<Index>(5 + random() % 4), random);
+    } else {
+      const Index from = static_cast<Index>(random() % 200), to = static_cast<Index>(random() % 200);
+      for (std::size_t s = 0; s < 1500 && s < contour.size(); ++s) {
+        std::array<Index, 4> row = contour[s];
+        std::replace(row.begin(), row.end(), from, to);
+        if (random() % 400 != 0 && !detail::is_collapsed<4>(row.data())) rows.push_back(row);
+      }
+    }
+    const std::size_t vertices = vertices_of<4>(rows);
+    const detail::Stars stars = detail::make_stars<4>(flat<4>(rows), vertices, 1);
+    std::size_t expected = 0;
+    for (Index v = 0; v < vertices; ++v)
+      if (const auto star = stars.of(v); !star.empty()) {
+        const bool is_good = is_sphere_or_disc(rows, star, v);
+        expected += is_good ? 0 : 1;
+        ++(is_good ? good : bad);
+      }
+    const std::vector<double> coordinates(4 * vertices, 0.0);
+    EXPECT_EQ(check(3, flat<4>(rows), 4, coordinates, {1, {}}).bad_links, expected) << "run " << run;
+  }
+  EXPECT_GT(good, 500u);
+  EXPECT_GT(bad, 500u);
 }
 
 TEST(RadixSort, IsStableForAnyNumberOfThreads) {
