@@ -144,12 +144,12 @@ IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_
   // simplices that repeat a vertex get no other entries
   std::array<Index, N> nothing;
   nothing.fill(kNoSimplex);
-  for_each_item(count, threads, {}, [&](std::size_t s) {
+  for_each_item(count, threads, part_of(progress, 0.2, 0.3), [&](std::size_t s) {
     if (is_collapsed<N>(rows.data() + s * N)) data.across[s] = nothing;
   });
   std::vector<std::vector<IrregularFaces>> irregular(block_count(vertex_count, kBlock));
   for_each_block(
-      vertex_count, kBlock, threads, part_of(progress, 0.2, 1.0), [&] { return AnyStar<N>(rows, vertex_count); },
+      vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0), [&] { return AnyStar<N>(rows, vertex_count); },
       [&](std::size_t block, std::size_t from, std::size_t to, AnyStar<N>& any) {
         std::vector<ClosedStar> closed(to - from);
         ClosedStars found{count == 0 ? nullptr : data.across.data()->data(), {}};
