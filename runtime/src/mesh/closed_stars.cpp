@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "mesh/closed_stars.hpp"
+#include "tegl/incidence.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mesh/closed_stars.cpp"
@@ -70,12 +71,14 @@ class Counter {
     ClosedStar found;
     if (star.size() > kMostTetrahedra) return found;
     load(rows, v, star);
-    if (!all_paired()) return found;
+    const std::size_t paired = find_reverses();
+    if (paired != arrows_ && (more == nullptr || repeats_one())) return found;
     if (more != nullptr) write_across(more->across);
-    found.is_closed = true;
-    found.triangles = static_cast<std::uint16_t>(arrows_ / 2);
+    found.is_settled = true;
+    found.triangles = static_cast<std::uint16_t>(arrows_ - paired / 2);
+    found.boundary = static_cast<std::uint16_t>(arrows_ - paired);
     found.tetrahedra = static_cast<std::uint16_t>(tetrahedra_);
-    if (with_edges) found.edges = static_cast<std::uint16_t>(count_edges(more));
+    if (with_edges) found.edges = static_cast<std::uint16_t>(count_edges(paired != arrows_, more));
     return found;
   }
 
@@ -115,12 +118,12 @@ class Counter {
     tetrahedra_ = tetrahedra;
   }
 
-  /// Whether each directed edge occurs once, and its reverse, too. Sets the places of the reverses.
-  HWY_INLINE bool all_paired() {
+  /// Sets the places of the reverses of the directed edges; kMostArrows for those without one. Returns the number of
+  /// edges that occur once and whose reverse occurs once.
+  HWY_INLINE std::size_t find_reverses() {
     const hn::ScalableTag<std::uint64_t> d;
     const hn::Repartition<std::uint32_t, decltype(d)> d_ends;
     const std::size_t lanes = hn::Lanes(d);
-    if (arrows_ % 2 != 0) return false;
     const auto one = hn::Set(d, std::uint64_t{1});
     for (std::size_t j = 0; j < arrows_; j += lanes) {
       const auto reverse = hn::BitCast(d, hn::Shuffle2301(hn::LoadU(d_ends, ends_.data() + 2 * j)));
@@ -136,24 +139,35 @@ class Counter {
     }
     // An edge that occurs twice is not the reverse of its reverse at one of the two places.
     places_[kMostArrows] = kMostArrows;
-    bool is_paired = true;
-    for (std::size_t i = 0; i < arrows_; ++i) is_paired = is_paired & (places_[places_[i]] == i);
-    return is_paired;
+    std::size_t paired = 0;
+    for (std::size_t i = 0; i < arrows_; ++i) paired += places_[places_[i]] == i ? 1 : 0;
+    return paired;
+  }
+
+  /// Whether a directed edge occurs twice.
+  [[nodiscard]] bool repeats_one() const {
+    for (std::size_t i = 0; i < arrows_; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (ends_[2 * i] == ends_[2 * j] && ends_[2 * i + 1] == ends_[2 * j + 1]) return true;
+    return false;
   }
 
   HWY_INLINE void write_across(Index* across) const {
     for (std::size_t i = 0; i < arrows_; ++i)
-      across[std::size_t{tetrahedra_of_[i]} * 4 + omitted_[i]] = tetrahedra_of_[places_[i]];
+      across[std::size_t{tetrahedra_of_[i]} * 4 + omitted_[i]] =
+          places_[i] == kMostArrows ? kNoSimplex : tetrahedra_of_[places_[i]];
   }
 
-  /// The number of different vertices of the link above v, if all edges are paired: the starts of edges, and the
-  /// vertices without such an edge.
-  HWY_INLINE std::size_t count_edges(ClosedStars* more) {
+  /// The number of different vertices of the link above v: the starts of edges, the ends of edges without a reverse
+  /// (with `boundary`), and the vertices without such an edge.
+  HWY_INLINE std::size_t count_edges(bool boundary, ClosedStars* more) {
     const hn::ScalableTag<std::uint32_t> d;
     const std::size_t lanes = hn::Lanes(d);
-    const std::size_t count = arrows_ + single_count_;
+    std::size_t count = arrows_ + single_count_;
     for (std::size_t i = 0; i < arrows_; ++i) starts_[i] = ends_[2 * i];
     for (std::size_t i = 0; i < single_count_; ++i) starts_[arrows_ + i] = singles_[i];
+    for (std::size_t i = 0; boundary && i < arrows_; ++i)
+      if (places_[i] == kMostArrows) starts_[count++] = ends_[2 * i + 1];
     std::size_t repeats = 0;
     for (std::size_t j = 0; j < count; j += lanes) {
       const auto here = hn::LoadU(d, starts_.data() + j);
@@ -181,7 +195,7 @@ class Counter {
   std::array<std::uint8_t, kMostArrows + kPadding> omitted_{};
   alignas(64) std::array<std::uint64_t, kMostArrows + kPadding> places_{};  ///< by edge: the place of its reverse
   std::array<std::uint32_t, kMostTetrahedra + 1> singles_{};                ///< vertices without an edge
-  alignas(64) std::array<std::uint32_t, kMostArrows + kMostTetrahedra + kPadding> starts_{};
+  alignas(64) std::array<std::uint32_t, 2 * kMostArrows + kMostTetrahedra + kPadding> starts_{};
 };
 
 void count_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges, std::span<ClosedStar> found,

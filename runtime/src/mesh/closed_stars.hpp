@@ -20,12 +20,13 @@ struct ClosedStar {
   std::uint16_t edges = 0;  ///< 0 unless they are requested
   std::uint16_t triangles = 0;
   std::uint16_t tetrahedra = 0;
-  /// Whether each of these triangles is in two tetrahedra, which induce opposite orientations on it. If not, or if the
-  /// star is large, nothing else is set.
-  bool is_closed = false;
+  std::uint16_t boundary = 0;  ///< triangles in one tetrahedron
+  /// Whether each of these triangles is in two tetrahedra, which induce opposite orientations on it, or, on request, in
+  /// one. If not, or if the star is large, nothing else is set.
+  bool is_settled = false;
 };
 
-/// More about closed stars, on request.
+/// More about stars, on request. Then boundary triangles are allowed.
 struct ClosedStars {
   /// By tetrahedron, its row of the tetrahedra across its triangles: entry i is across the triangle opposite to vertex
   /// i. Entries are written for the triangles that are counted.

@@ -160,10 +160,11 @@ IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_
           const std::span<const Index> star = data.stars.of(v);
           data.euler_above[v] = 0;
           if (star.empty()) continue;
-          if (const ClosedStar& here = closed[i - from]; N == 4 && here.is_closed) {
+          if (const ClosedStar& here = closed[i - from]; N == 4 && here.is_settled) {
             data.euler_above[v] = 1 - int{here.edges} + int{here.triangles} - int{here.tetrahedra};
             add_edges(data, v, to, std::span<const Index>(found.edges).subspan(edge, here.edges));
             edge += here.edges;
+            if (here.boundary > 0) irregular[block].push_back({v, here.boundary, 0, 0, here.boundary});
             continue;
           }
           data.euler_above[v] = static_cast<std::int32_t>(any.euler_above(v, star));

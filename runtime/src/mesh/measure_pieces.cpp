@@ -159,7 +159,7 @@ std::vector<FaceCounts> count_faces(
           const Index label = labels.empty() ? 0 : labels[v];
           if (part.empty() || part.back().first != label) part.emplace_back(label, FaceCounts{});
           FaceCounts& counts = part.back().second;
-          if (N == 4 && closed[v - from].is_closed)
+          if (N == 4 && closed[v - from].is_settled)
             counts.euler += euler_above(closed[v - from]);
           else
             counts += faces.visit(static_cast<Index>(v), star, [&](const auto& ridge) { on_open(block, ridge); });
