@@ -80,6 +80,9 @@ class ContourCommand final : public Command {
                 "one image with one more axis",
                 Files::image) {
     options_.add_to(app(), true);
+    options_.add_periodic_to(app());
+    app().add_flag("--unroll", unroll_,
+                   "with --periodic, .vtkhdf: double the vertices on the seam, for pictures; other formats always do");
     app()
         .add_option("-o,--output", output_,
                     std::string("the result: ") + kContourFiles +
@@ -117,6 +120,7 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
     const std::vector<double> point = picked_point();
     ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
+    require_periodic_options();
     require_inputs();
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
@@ -168,6 +172,18 @@ class ContourCommand final : public Command {
       results[i].compression = compress_.compression();
     }
     return results;
+  }
+
+  void require_periodic_options() const {
+    if (unroll_ && options_.periodic().empty())
+      throw Error(ErrorCode::InvalidArgument, "--unroll without --periodic; expected both");
+    if (is_streamed()) options_.refuse_periodic(stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
+    if (!index_.empty()) options_.refuse_periodic("--index");
+    if (facets_) options_.refuse_periodic("--facets");
+    if (app().count("--pick") > 0) options_.refuse_periodic("--pick");
+    if (one_file_) options_.refuse_periodic("--one-file");
+    if (options_.polygon_triangulation()) options_.refuse_periodic("a triangulation of polygons");
+    if (attributes_.wanted()) options_.refuse_periodic("--attribute");
   }
 
   void require_one_file_of_several(std::size_t isovalues) const {
@@ -259,7 +275,8 @@ class ContourCommand final : public Command {
           triangulated_polygons(
               image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
     else
-      result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished);
+      result.mesh =
+          extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, options_.periodic());
   }
 
   /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
@@ -287,8 +304,8 @@ class ContourCommand final : public Command {
   /// possible.
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
-    const bool needs_memory = !index_.empty() || facets_ || one_file_ || app().count("--pick") > 0 ||
-                              options_.wants_shape_normals() || attributes_.wanted() ||
+    const bool needs_memory = !options_.periodic().empty() || !index_.empty() || facets_ || one_file_ ||
+                              app().count("--pick") > 0 || options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
@@ -335,12 +352,12 @@ class ContourCommand final : public Command {
     result.seconds.generate += watch.lap();
   }
 
-  /// The mesh of a contour with the normals and attributes of --normals and --attribute.
+  /// The mesh of a contour with the normals and attributes of --normals and --attribute; unrolled if it has to be.
   template <class AnyContour>
   Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
     options_.add_shape_normals(contour);
     attributes_.sample_to(contour, image_options(), threads, bar);
-    return to_mesh(std::move(contour));
+    return to_mesh(unrolled_for(std::move(contour), output_, unroll_));
   }
 
   /// Extracts the contours with --index, which is read once; its time counts as reading.
@@ -460,6 +477,7 @@ class ContourCommand final : public Command {
   bool stream_ = false;
   bool one_file_ = false;
   bool facets_ = false;
+  bool unroll_ = false;
   std::string pick_;
   bool no_check_ = false;
 };

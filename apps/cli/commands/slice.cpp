@@ -100,7 +100,7 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
       result.image_dim = N;
       auto cut = std::exchange(cuts[i], {});
       own.add_shape_normals(cut);
-      result.mesh = to_mesh(std::move(cut));
+      result.mesh = to_mesh(unrolled_for(std::move(cut), result.output, false));
       result.cut->frame = frame_for_report<N>(*result.cut, factors);
     }
     // The time of a pass is divided equally among its cuts.

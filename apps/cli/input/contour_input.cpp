@@ -36,6 +36,7 @@ Contour<N, double> widened(Contour<N, Real> contour) {
     result.axis_names = std::move(contour.axis_names);
     result.axis_units = std::move(contour.axis_units);
     result.direction = contour.direction;
+    result.periods = std::move(contour.periods);
     result.vertex_attributes = std::move(contour.vertex_attributes);
     result.simplex_attributes = std::move(contour.simplex_attributes);
     return result;
@@ -148,6 +149,7 @@ ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& n
     : Command(program, name, description,
               "an image (with --iso), or a contour saved by 'tegl contour' (.vtkhdf, .ply, .glb ...)", files) {
   options_.add_to(app(), false);
+  options_.add_periodic_to(app());
   add_image_options();
   add_quiet();
 }
@@ -179,12 +181,14 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");
-  result.contour = extract_and_use<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
-                                               [&](auto extraction) {
-                                                 result.stats = extraction.stats;
-                                                 options_.add_shape_normals(extraction.contour);
-                                                 return AnyContour(widened(std::move(extraction.contour)));
-                                               });
+  result.contour = extract_and_use<AnyContour>(
+      input.image, *result.isovalue, options, options_.single_precision(),
+      [&](auto extraction) {
+        result.stats = extraction.stats;
+        options_.add_shape_normals(extraction.contour);
+        return AnyContour(widened(std::move(extraction.contour)));
+      },
+      options_.periodic());
   if (result.size().simplices == 0) remark(remark_without_contour(input.image, *result.isovalue));
   result.seconds.add(*result.stats);
   if (keep_image) result.image = std::move(input);

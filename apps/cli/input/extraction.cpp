@@ -4,10 +4,12 @@
 #include "input/extraction.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 
 #include "base/numbers.hpp"
 #include "base/statistics.hpp"
@@ -64,6 +66,21 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
   };
   options_.front()->required(of_images_alone);
   app.add_flag("--allow-empty", allow_empty_, "a value outside of the data gives an empty result, not an error");
+}
+
+void ExtractionOptions::add_periodic_to(CLI::App& app) {
+  options_.push_back(app.add_option("--periodic", periodic_,
+                                    "axes that are periodic, by name, as in lon or x,y,z; or all; the period is the "
+                                    "number of samples x the step, or as in lon=360")
+                         ->delimiter(',')
+                         ->allow_extra_args(false)
+                         ->type_name("AXES"));
+}
+
+void ExtractionOptions::refuse_periodic(const std::string& with) const {
+  if (!periodic_.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--periodic {} with {}; expected one of the two", fmt::join(periodic_, ","), with));
 }
 
 std::vector<std::string> ExtractionOptions::given() const {
@@ -147,6 +164,42 @@ template void ExtractionOptions::add_shape_normals(Contour<3, float>&) const;
 template void ExtractionOptions::add_shape_normals(Contour<3, double>&) const;
 template void ExtractionOptions::add_shape_normals(Contour<4, float>&) const;
 template void ExtractionOptions::add_shape_normals(Contour<4, double>&) const;
+
+template <int N>
+AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
+  AxisPeriods<N> periods{};
+  const AxisPeriods<N> longitudes = longitude_periods(grid);
+  const auto period_of = [&](int a) {
+    const auto axis = static_cast<std::size_t>(a);
+    return longitudes[axis] != 0.0 ? longitudes[axis] : sample_periods(grid, std::span(&a, 1))[axis];
+  };
+  for (const std::string& name : names) {
+    const std::size_t equal = name.find('=');
+    bool is_known = name == "all";
+    for (int a = 0; a < N; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      if (name != "all" && !equal_ignoring_case(axis_label(grid.axes[axis].name, axis), name.substr(0, equal)))
+        continue;
+      is_known = true;
+      if (periods[axis] != 0.0)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--periodic names the axis {} twice; expected it once", name));
+      periods[axis] = equal == std::string::npos ? period_of(a) : parse_finite("--periodic", name.substr(equal + 1));
+      if (periods[axis] == 0.0)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic {}; expected a positive period", name));
+    }
+    if (is_known) continue;
+    std::vector<std::string> labels;
+    for (std::size_t a = 0; a < N; ++a) labels.push_back(axis_label(grid.axes[a].name, a));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--periodic {} names no axis; expected one of {}, or all", name, fmt::join(labels, ", ")));
+  }
+  return periods;
+}
+
+template AxisPeriods<2> periods_of(const Grid<2>&, const std::vector<std::string>&);
+template AxisPeriods<3> periods_of(const Grid<3>&, const std::vector<std::string>&);
+template AxisPeriods<4> periods_of(const Grid<4>&, const std::vector<std::string>&);
 
 int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
 

@@ -17,6 +17,7 @@
 #include "output/result.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io/images.hpp"
+#include "tegl/periodic.hpp"
 #include "tegl/polygons.hpp"
 
 namespace tegl::cli {
@@ -28,6 +29,13 @@ class ExtractionOptions {
   /// Adds the options to a command. A command that only contours images requires --iso and allows triangulation of
   /// polygons. This object must outlive the parse.
   void add_to(CLI::App& app, bool of_images_alone);
+
+  /// Adds --periodic to a command.
+  void add_periodic_to(CLI::App& app);
+  /// The axes of --periodic; none without it. Throws InvalidArgument for options that do not go with it.
+  [[nodiscard]] const std::vector<std::string>& periodic() const { return periodic_; }
+  /// Throws InvalidArgument with --periodic. `with`: another option or a command.
+  void refuse_periodic(const std::string& with) const;
 
   /// The names of the options that were given.
   [[nodiscard]] std::vector<std::string> given() const;
@@ -59,6 +67,7 @@ class ExtractionOptions {
  private:
   std::vector<CLI::Option*> options_;
   std::vector<std::string> isos_;
+  std::vector<std::string> periodic_;
   std::string triangulation_ = "compact";
   std::string ambiguity_ = "low";
   std::string direction_ = "descent";
@@ -87,12 +96,35 @@ std::string remark_without_contour(const AnyImage& image, double isovalue);
 /// The remark that missing samples prevent a contour.
 std::string remark_on_missing(double isovalue);
 
+/// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD. Throws InvalidArgument for other names.
+template <int N>
+AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names);
+
+/// A wrapped contour, unrolled if `unroll` is set or if only .vtkhdf could hold its periods. Vertices then have the
+/// attribute "original". Other contours are returned unchanged.
+template <int N, class Real>
+Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& output, bool unroll) {
+  if constexpr (N <= 4) {
+    const MeshFileFormat* const format = find_mesh_file_format(output);
+    if (contour.periods.empty() || (!unroll && format != nullptr && format->extension == ".vtkhdf")) return contour;
+    Unrolled<N, Real> result = tegl::unroll(contour);
+    Attribute& attribute = result.contour.vertex_attributes.emplace_back(Attribute{"original", "", 1, {}});
+    attribute.values.assign(result.originals.begin(), result.originals.end());
+    return std::move(result.contour);
+  }
+}
+
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
-/// Extraction<N, double>.
+/// Extraction<N, double>. `periodic`: ExtractionOptions::periodic.
 template <class Result, class Use>
 Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOptions& options, bool single_precision,
-                       const Use& use) {
-  const auto of_owned = [&](const auto& owned) -> Result {
+                       const Use& use, const std::vector<std::string>& periodic = {}) {
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> Result {
+    if (!periodic.empty()) {
+      const AxisPeriods<N> periods = periods_of(owned.grid, periodic);
+      if (single_precision) return use(extract_periodic_with_stats<float>(owned.view(), periods, isovalue, options));
+      return use(extract_periodic_with_stats<double>(owned.view(), periods, isovalue, options));
+    }
     if (single_precision) return use(extract_with_stats<float>(owned.view(), isovalue, options));
     return use(extract_with_stats<double>(owned.view(), isovalue, options));
   };

@@ -12,6 +12,7 @@
 
 #include "tegl/dimensions.hpp"
 #include "tegl/memory.hpp"
+#include "tegl/vector.hpp"
 
 namespace tegl {
 
@@ -40,6 +41,16 @@ struct Attribute {
 /// The side that the oriented contour and its normals face: low samples (descent) or high samples (ascent).
 enum class GradientDirection { descent, ascent };
 
+/// A period of a wrapped contour (tegl/periodic.hpp): the points x and x + vector are the same. Vertices have their
+/// share of the period, <dual, x> - start, in [0, 1), up to rounding.
+template <int N>
+struct Period {
+  Vector<N> vector = {};                           ///< in world coordinates
+  Vector<N> dual = {};                             ///< <dual, vector> is 1, and 0 for the vectors of other periods
+  double start = 0;                                ///< <dual, x> of the first sample
+  bool operator==(const Period&) const = default;  ///< equal if all numbers are equal
+};
+
 /// The contour of an N-dimensional image: an (N-1)-dimensional simplicial complex in N-space.
 /// N = 2: segments, 3: triangles, 4: tetrahedra, 5: 4-simplices. tegl/eigen.hpp has views of vertices and simplices as
 /// Eigen matrices.
@@ -58,6 +69,9 @@ struct Contour {
   GradientDirection direction = GradientDirection::descent;  ///< which side simplices and normals face
   std::vector<Attribute> vertex_attributes = {};             ///< empty after `extract`
   std::vector<Attribute> simplex_attributes = {};            ///< empty after `extract`
+  /// Only of wrapped contours (tegl/periodic.hpp). A simplex may then cross the seam: its corners are those next to
+  /// each other modulo the periods. Functions that do not know periods refuse the contour with UnsupportedData.
+  std::vector<Period<N>> periods = {};
 };
 
 }  // namespace tegl

@@ -67,6 +67,17 @@ void check_mesh(const MeshView& mesh, const fs::path& path) {
   fail(ErrorCode::InvalidArgument, path, "mesh with vertex number {}; expected less than {}", *bad, vertices);
 }
 
+/// Throws unless the format can hold the periods of a wrapped contour.
+void check_wrapped(const MeshView& mesh, const MeshFileFormat& format, const fs::path& path) {
+  if (!mesh.periods.empty() && format.extension != ".vtkhdf")
+    fail(ErrorCode::UnsupportedFormat, path,
+         "'{}' cannot hold a wrapped contour, with periods; expected .vtkhdf, or an unrolled contour",
+         path.extension().string());
+  if (mesh.periods.size() % (2 * static_cast<std::size_t>(mesh.space_dim) + 1) != 0)
+    fail(ErrorCode::InvalidArgument, path, "mesh with {} numbers of periods; expected a multiple of {}",
+         mesh.periods.size(), 2 * mesh.space_dim + 1);
+}
+
 /// Every format supports triangles, and all except STL support lines. Tetrahedra and a fourth coordinate are only
 /// supported by formats with most_dim = 3.
 void check_combination(const MeshView& mesh, const MeshFileFormat& format, const fs::path& path) {
@@ -88,6 +99,7 @@ const MeshFileFormat& checked_format(const MeshView& mesh, const fs::path& path,
     fail(ErrorCode::UnsupportedFormat, path, "'{}' has no compression; expected .vtkhdf", path.extension().string());
   check_mesh(mesh, path);
   check_combination(mesh, format, path);
+  check_wrapped(mesh, format, path);
   tick(options.work.progress, 0.0, path);
   return format;
 }
@@ -130,6 +142,30 @@ MeshArray<double> as_doubles(Rows&& rows) {
   }
 }
 
+/// Periods as in Mesh.
+template <int N>
+std::vector<double> numbers_of(const std::vector<Period<N>>& periods) {
+  std::vector<double> numbers;
+  for (const Period<N>& period : periods) {
+    numbers.insert(numbers.end(), period.vector.begin(), period.vector.end());
+    numbers.insert(numbers.end(), period.dual.begin(), period.dual.end());
+    numbers.push_back(period.start);
+  }
+  return numbers;
+}
+
+template <int N>
+std::vector<Period<N>> periods_of(const std::vector<double>& numbers) {
+  std::vector<Period<N>> periods(numbers.size() / (2 * N + 1));
+  auto at = numbers.begin();
+  for (Period<N>& period : periods) {
+    for (double& x : period.vector) x = *at++;
+    for (double& x : period.dual) x = *at++;
+    period.start = *at++;
+  }
+  return periods;
+}
+
 /// The mesh of a contour, which is a temporary (its memory is taken over) or not.
 template <class AnyContour>
 Mesh mesh_of(AnyContour&& contour) {
@@ -144,6 +180,7 @@ Mesh mesh_of(AnyContour&& contour) {
   mesh.single_precision = std::is_same_v<typename Vertex::value_type, float>;
   mesh.axis_names = as_vector(contour.axis_names);
   mesh.axis_units = as_vector(contour.axis_units);
+  mesh.periods = numbers_of<kDim>(contour.periods);
   mesh.vertex_attributes = std::forward<AnyContour>(contour).vertex_attributes;
   mesh.simplex_attributes = std::forward<AnyContour>(contour).simplex_attributes;
   return mesh;
@@ -188,6 +225,7 @@ Contour<N, double> contour_of(AnyMesh&& mesh) {
     contour.axis_names[static_cast<std::size_t>(a)] = axis_text(mesh.axis_names, a);
     contour.axis_units[static_cast<std::size_t>(a)] = axis_text(mesh.axis_units, a);
   }
+  if (mesh.space_dim == N) contour.periods = periods_of<N>(mesh.periods);
   contour.vertex_attributes = std::forward<AnyMesh>(mesh).vertex_attributes;
   contour.simplex_attributes = std::forward<AnyMesh>(mesh).simplex_attributes;
   return contour;
@@ -206,6 +244,7 @@ MeshView::MeshView(const Mesh& mesh)
       vertex_attributes(mesh.vertex_attributes),
       simplex_attributes(mesh.simplex_attributes),
       isovalue(mesh.isovalue),
+      periods(mesh.periods),
       single_precision(mesh.single_precision) {}
 
 template <int N, Coordinate Real>
@@ -219,6 +258,7 @@ requires DimensionBetween<N, 2, 4> MeshView::MeshView(const Contour<N, Real>& co
       axis_units(contour.axis_units),
       vertex_attributes(contour.vertex_attributes),
       simplex_attributes(contour.simplex_attributes),
+      periods(numbers_of<N>(contour.periods)),
       single_precision(std::is_same_v<Real, float>) {}
 
 template <int N, Coordinate Real>

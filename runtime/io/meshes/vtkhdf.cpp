@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "base/common.hpp"
@@ -62,6 +63,7 @@ class Reader {
     mesh_.axis_names = split(file_.get_text(group_.id(), "tegl_axis_names"), n);
     mesh_.axis_units = split(file_.get_text(group_.id(), "tegl_axis_units"), n);
     read_isovalue();
+    read_periods();
     return std::move(mesh_);
   }
 
@@ -186,15 +188,35 @@ class Reader {
   }
 
   /// Reads the field array `isovalue`, if it is one finite number.
-  void read_isovalue() {
-    if (!file_.has(group_.id(), "FieldData")) return;
+  /// The finite numbers of a field array with at most `most` of them; none if there is no such array.
+  [[nodiscard]] std::vector<double> field_numbers(const char* name, std::uint64_t most) const {
+    if (!file_.has(group_.id(), "FieldData")) return {};
     const H5Handle field_data = file_.open_group("VTKHDF/FieldData");
     const std::vector<std::string> names = file_.number_datasets(field_data.id());
-    if (std::find(names.begin(), names.end(), kIsovalue) == names.end()) return;
-    if (file_.rank(field_data.id(), kIsovalue) != 1 || file_.sizes(field_data.id(), kIsovalue)[0] != 1) return;
-    double isovalue = 0.0;
-    file_.read(field_data.id(), kIsovalue, H5T_NATIVE_DOUBLE, &isovalue);
-    if (std::isfinite(isovalue)) mesh_.isovalue = isovalue;
+    if (std::find(names.begin(), names.end(), name) == names.end() || file_.rank(field_data.id(), name) != 1) return {};
+    const std::uint64_t count = file_.sizes(field_data.id(), name)[0];
+    if (count > most) return {};
+    std::vector<double> numbers(static_cast<std::size_t>(count));
+    if (count > 0) file_.read(field_data.id(), name, H5T_NATIVE_DOUBLE, numbers.data());
+    if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) return {};
+    return numbers;
+  }
+
+  void read_isovalue() {
+    if (const std::vector<double> numbers = field_numbers(kIsovalue, 1); numbers.size() == 1)
+      mesh_.isovalue = numbers.front();
+  }
+
+  void read_periods() {
+    const auto width = 2 * static_cast<std::size_t>(mesh_.space_dim) + 1;
+    std::vector<double> numbers = field_numbers(kPeriods, width * static_cast<std::size_t>(mesh_.space_dim));
+    if (numbers.size() % width != 0 || mesh_.dim + 1 != mesh_.space_dim) return;
+    for (std::size_t at = 0; at < numbers.size(); at += width) {  // arrays of other programs may have the same name
+      const auto vector = numbers.begin() + static_cast<std::ptrdiff_t>(at);
+      const auto dual = vector + mesh_.space_dim;
+      if (std::abs(std::inner_product(vector, dual, dual, 0.0) - 1.0) > 1e-6) return;
+    }
+    mesh_.periods = std::move(numbers);
   }
 
   /// The arrays of a group with one row per vertex or simplex: first the arrays of VtkhdfWriter, in its order.
@@ -255,7 +277,8 @@ VtkhdfLayout layout_of(const MeshView& mesh, Compression compression) {
           mesh.isovalue,
           mesh.single_precision,
           mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
-          compression};
+          compression,
+          mesh.periods};
 }
 
 }  // namespace

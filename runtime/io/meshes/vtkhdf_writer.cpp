@@ -33,9 +33,14 @@ H5Handle create_root(const H5File& file, const VtkhdfLayout& layout) {
   file.put_numbers(group.id(), "tegl_dim_and_space_dim", dims);
   file.put_text(group.id(), "tegl_axis_names", joined(layout.axis_names));
   file.put_text(group.id(), "tegl_axis_units", joined(layout.axis_units));
-  if (layout.isovalue) {
+  if (layout.isovalue || !layout.periods.empty()) {
     const H5Handle field_data = file.create_group("VTKHDF/FieldData");
-    file.create_table(field_data.id(), kIsovalue, H5T_IEEE_F64LE, 0, 1).append(H5T_NATIVE_DOUBLE, &*layout.isovalue, 1);
+    const auto put = [&](const char* name, const double* numbers, std::size_t count) {
+      if (count != 0)
+        file.create_table(field_data.id(), name, H5T_IEEE_F64LE, 0, count).append(H5T_NATIVE_DOUBLE, numbers, count);
+    };
+    if (layout.isovalue) put(kIsovalue, &*layout.isovalue, 1);
+    put(kPeriods, layout.periods.data(), layout.periods.size());
   }
   return group;
 }

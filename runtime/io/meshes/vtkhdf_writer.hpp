@@ -30,6 +30,7 @@ struct VtkhdfLayout {
   bool single_precision = false;   ///< points, times and normals are float
   bool narrow_ids = false;         ///< vertex numbers and offsets are int32; all must fit
   Compression compression = Compression::none;
+  std::vector<double> periods = {};  ///< Mesh::periods; written to the field array "periods"
 };
 
 /// Writes to the temporary file of a PendingPath. Errors: WriteFailed, naming the target. Memory: a few MiB.

@@ -211,6 +211,8 @@ void put_mesh(Packer& packer, Mesh& mesh) {
   put_attributes(packer, mesh.simplex_attributes);
   packer.number(static_cast<std::uint8_t>(mesh.isovalue.has_value()));
   packer.number(mesh.isovalue.value_or(0.0));
+  packer.number(static_cast<std::uint64_t>(mesh.periods.size()));
+  for (const double x : mesh.periods) packer.number(x);
 }
 
 Mesh get_mesh(Unpacker& unpacker) {
@@ -238,6 +240,13 @@ Mesh get_mesh(Unpacker& unpacker) {
   const auto isovalue = unpacker.number<double>();
   if (has_isovalue && !std::isfinite(isovalue)) throw BadPackage();
   if (has_isovalue) mesh.isovalue = isovalue;
+  const auto width = 2 * static_cast<std::uint64_t>(mesh.space_dim) + 1;
+  mesh.periods.resize(unpacker.count(width * static_cast<std::uint64_t>(mesh.space_dim)));
+  for (double& x : mesh.periods) {
+    x = unpacker.number<double>();
+    if (!std::isfinite(x)) throw BadPackage();
+  }
+  if (mesh.periods.size() % width != 0) throw BadPackage();
   return mesh;
 }
 

@@ -50,6 +50,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/index_map.hpp"
+#include "base/periods.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
 #include "cut/slice_piece.hpp"
@@ -146,6 +147,7 @@ class Cutter {
       result.axis_units[i] = contour_.axis_units[a];
     }
     result.direction = contour_.direction;
+    result.periods = periods_within();
     result.vertices.resize(keys_.size());
     for_each_item(keys_.size(), threads_, {}, [&](std::size_t i) { result.vertices[i] = position(keys_[i]); });
     if (!contour_.normals.empty()) {
@@ -167,6 +169,33 @@ class Cutter {
     std::uint8_t below = 0;
     std::uint8_t on = 0;
   };
+
+  /// The periods of the cut of a wrapped contour. Throws InvalidArgument if the hyperplane is not along all of them.
+  [[nodiscard]] std::vector<Period<N - 1>> periods_within() const {
+    std::vector<Period<N - 1>> result;
+    for (const Period<N>& period : contour_.periods) {
+      Period<N - 1>& inside = result.emplace_back();
+      inside.vector = family_.within(period.vector);
+      inside.dual = family_.within(period.dual);
+      double length = 0.0, inner = 0.0, share = 0.0;
+      for (int a = 0; a < N; ++a) length += period.vector[a] * period.vector[a];
+      for (int a = 0; a + 1 < N; ++a) inner += inside.vector[a] * inside.vector[a];
+      for (int a = 0; a + 1 < N; ++a) share += inside.dual[a] * inside.vector[a];
+      if (std::abs(inner - length) > 1e-9 * length || std::abs(share - 1.0) > 1e-9)
+        throw Error(ErrorCode::InvalidArgument,
+                    "cut of a wrapped contour across one of its periods; expected a cut along all of them, or an "
+                    "unrolled contour");
+      // the part of <dual, x> that is the same for all points of the cut
+      double along = 0.0;
+      if (!touching_.empty()) {
+        const std::array<double, N> x = widened_point<N>(contour_.vertices[contour_.simplices[touching_[0]][0]]);
+        const std::array<double, N - 1> y = family_.within(x);
+        along = share_of(period, x) - share_of(inside, y);
+      }
+      inside.start = period.start - along;
+    }
+    return result;
+  }
 
   [[nodiscard]] double height(Index v) const { return family_.height(contour_.vertices[v]); }
   [[nodiscard]] bool is_on(Index v) const { return height(v) == level_; }
@@ -477,6 +506,14 @@ class Cutter {
 
   [[nodiscard]] std::array<Real, N - 1> position(PointKey key) const {
     const auto [low, high, share] = place(key);
+    if (!contour_.periods.empty()) {
+      const auto point = between_modulo<N>(contour_.vertices[low], contour_.vertices[high], share,
+                                           std::span<const Period<N>>(contour_.periods));
+      const std::array<double, N - 1> inside = family_.within(widened_point<N>(point));
+      std::array<Real, N - 1> result;
+      for (int a = 0; a < N - 1; ++a) result[a] = static_cast<Real>(inside[a]);
+      return result;
+    }
     const std::array<double, N - 1> y = family_.within(between(contour_.vertices[low], contour_.vertices[high], share));
     std::array<Real, N - 1> result;
     for (int a = 0; a < N - 1; ++a) result[a] = static_cast<Real>(y[a]);
@@ -548,10 +585,10 @@ class Cutter {
     const auto corner = [&](int i) -> const std::array<Real, N - 1>& { return result.vertices[piece.points[i]]; };
     const auto length = [&](int i, int j) {
       double sum = 0.0;
-      for (int a = 0; a < N - 1; ++a) {
-        const double d = static_cast<double>(corner(j)[a]) - static_cast<double>(corner(i)[a]);
-        sum += d * d;
-      }
+      std::array<double, N - 1> to = widened_point<N - 1>(corner(j));
+      const std::array<double, N - 1> from = widened_point<N - 1>(corner(i));
+      move_near(std::span<const Period<N - 1>>(result.periods), from, to);
+      for (int a = 0; a < N - 1; ++a) sum += (to[a] - from[a]) * (to[a] - from[a]);
       return sum;
     };
     const double first = length(0, 2);

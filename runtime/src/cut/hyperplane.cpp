@@ -63,6 +63,11 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> scale_axes(Contour<N, Real> 
                   fmt::format("factor {} of axis {}; expected a finite number above 0", factors[a], a));
   for (auto& vertex : contour.vertices)
     for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(static_cast<double>(vertex[a]) * factors[a]);
+  for (Period<N>& period : contour.periods)
+    for (int a = 0; a < N; ++a) {
+      period.vector[a] *= factors[a];
+      period.dual[a] /= factors[a];
+    }
   for (auto& normal : contour.normals) {
     Eigen::Matrix<double, N, 1> turned;
     for (int a = 0; a < N; ++a) turned[a] = static_cast<double>(normal[a]) / factors[a];

@@ -22,6 +22,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "cut/hyperplane_family.hpp"
@@ -92,6 +93,7 @@ bool is_far(const View<Real>& view, const std::array<Index, 4>& simplex, bool fl
 template <class Real>
 View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& work) {
   check_projection(projection);
+  detail::require_unwrapped(contour, "project");
   detail::require_sound(contour);
   const HyperplaneFamily<4> family(projection.direction);
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});

@@ -24,6 +24,7 @@
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
@@ -110,6 +111,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
     : contour_(&contour), normal_(hyperplane.normal) {
   const detail::HyperplaneFamily<N> family(normal_);
   (void)family.template level<Real>(hyperplane.offset);  // throws if it is not finite
+  detail::require_unwrapped(contour, "Scrubber");
   detail::require_sound(contour);
   detail::tell(work.progress, 0.0, kCancelledScrubber);
   if (contour.simplices.empty()) {

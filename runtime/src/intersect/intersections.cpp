@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "intersect/box_blocks.hpp"
 #include "intersect/found_pairs.hpp"
@@ -194,6 +195,7 @@ Intersections<N> intersections_of(std::span<const PointN<N>> points, std::span<c
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Intersections<N> find_intersections(const Contour<N, Real>& contour,
                                                                        const IntersectionOptions<N>& options) {
+  detail::require_unwrapped(contour, "find_intersections");
   detail::require_vertices(contour);
   detail::require_finite(contour);
   if (options.tiles) detail::require_tiles(*options.tiles);

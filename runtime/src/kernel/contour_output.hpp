@@ -57,6 +57,12 @@ struct ContourPart {
 template <int N, class Real>
 class Caps;
 class NonmanifoldCandidates;
+template <int N>
+class RowShape;
+template <int N>
+struct Layer;
+template <int N>
+struct Slab;
 
 /// Output of an extraction. It receives the parts in order, each by open and close. Vertex numbers in simplices count
 /// modulo 2^32; those in a part's simplices belong to this part or to the previous one.
@@ -86,6 +92,13 @@ class ContourOutput {
   /// Called after a part is written. `nonmanifold`: vertices of this and all previous parts that may have to be
   /// duplicated.
   virtual void close(const ContourPart& /*part*/, const NonmanifoldCandidates& /*nonmanifold*/) {}
+  /// Whether see_layer and see_slab read the numbers of vertices on edges.
+  [[nodiscard]] virtual bool reads_numbers() const noexcept { return false; }
+  /// Called for layer 0, then for each slab and the layer above it, in order, when their vertices are numbered.
+  /// `lists_cubes`: as Counter::lists_cubes.
+  virtual void see_layer(std::size_t /*k*/, const RowShape<N>& /*shape*/, const Layer<N>& /*layer*/,
+                         bool /*lists_cubes*/) {}
+  virtual void see_slab(const RowShape<N>& /*shape*/, const Slab<N>& /*slab*/, bool /*lists_cubes*/) {}
   /// Called after all parts are written. `caps` may be null.
   virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) = 0;
 };

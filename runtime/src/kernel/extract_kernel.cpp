@@ -17,6 +17,7 @@
 #include "kernel/extract_generate.hpp"
 #include "kernel/extract_progress.hpp"
 #include "kernel/generate_cubes.hpp"
+#include "kernel/memory_output.hpp"
 #include "kernel/split_nonmanifold.hpp"
 #include "kernel/tile_selection.hpp"
 
@@ -79,7 +80,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         tables_(tables),
         placement_(grid, N == 4 || plan.keeps_off_layers),
         estimator_(make_estimator(source, grid, options, plan)),
-        counter_(shape_, tables, tables.rows, options.close, estimator_.get()),
+        counter_(shape_, tables, tables.rows, options.close || output.reads_numbers(), estimator_.get()),
         tiles_(source, tables, tables.rows, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes() && !counter_.lists_cubes()),
         nonmanifold_(shape_, counter_),
@@ -314,8 +315,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   void expect_output() const {
     const double samples = static_cast<double>(shape_.rows() * shape_.size(0)) * static_cast<double>(shape_.layers());
     const double own = tables_.max_tile_vertices + (counter_.has_cubes() ? 4.0 * tables::kFaceSlots : 0.0);
-    output_.expect(std::min(samples * (N + own), static_cast<double>(max_vertices_)),
-                   samples * tables_.max_simplices);
+    output_.expect(std::min(samples * (N + own), static_cast<double>(max_vertices_)), samples * tables_.max_simplices);
   }
 
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
@@ -450,6 +450,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     if (first == 0) {
       nonmanifold_.open_slab(0, slab(0));
       nonmanifold_.add_layer(0, layer(0));
+      output_.see_layer(0, shape_, layer(0), counter_.lists_cubes());
       if (caps_) caps_->add_layer(0, layer(0), nullptr, &slab(0));
     }
     reporter_.begin_pass(end - first);
@@ -457,6 +458,8 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
       nonmanifold_.add_slab(k, slab(k));
       if (const Slab<N>* const above = slab_above(k + 1)) nonmanifold_.open_slab(k + 1, *above);
       nonmanifold_.add_layer(k + 1, layer(k + 1));
+      output_.see_slab(shape_, slab(k), counter_.lists_cubes());
+      output_.see_layer(k + 1, shape_, layer(k + 1), counter_.lists_cubes());
       if (caps_) {
         caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
         caps_->add_slab(k, view(k));
@@ -503,97 +506,6 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   std::uint64_t before_part_ = 0;  ///< first vertex of the batch before it
 };
 
-/// Output to a contour in memory.
-template <int N, class Real>
-class MemoryOutput final : public ContourOutput<N, Real> {
- public:
-  using typename ContourOutput<N, Real>::Vertex;
-  using typename ContourOutput<N, Real>::Simplex;
-  using typename ContourOutput<N, Real>::Room;
-  MemoryOutput(Contour<N, Real>& contour, bool normals, std::uint64_t max_vertices)
-      : contour_(contour), normals_(normals), max_vertices_(max_vertices) {}
-
-  /// Reserves address space for the largest possible contour; memory is taken when it is written to. If address space
-  /// does not suffice for all outputs and for other needs (kElse), outputs grow by reallocation instead.
-  void expect(double vertices, double simplices) override {
-    constexpr double kMostBytes = 0x1p40;
-    constexpr std::size_t kElse = std::size_t{1} << 26;
-    const auto reserve = [](auto& output, double most) {
-      const auto size = static_cast<double>(sizeof(output[0]));
-      output.reserve(static_cast<std::size_t>(std::min(most, kMostBytes / size)));
-    };
-    const auto give_back = [](auto& output) { std::remove_reference_t<decltype(output)>().swap(output); };
-    try {
-      reserve(contour_.vertices, vertices);
-      reserve(contour_.simplices, simplices);
-      if (normals_) reserve(contour_.normals, vertices);
-      Buffer<unsigned char>().reserve(kElse);
-    } catch (const std::bad_alloc&) {
-      give_back(contour_.vertices);
-      give_back(contour_.simplices);
-      give_back(contour_.normals);
-    }
-  }
-
-  Room open(const ContourPart& part) override {
-    ahead_.clear();
-    resize(contour_.vertices, part.end_vertex, part);
-    resize(contour_.simplices, part.end_simplex, part);
-    if (normals_) resize(contour_.normals, part.end_vertex, part);
-    return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex,
-            normals_ ? contour_.normals.data() + part.first_vertex : nullptr};
-  }
-
-  [[nodiscard]] std::size_t pieces_ahead() const noexcept override { return ahead_.size(); }
-  void touch_ahead(std::size_t piece) noexcept override { *static_cast<volatile unsigned char*>(ahead_[piece]) = 0; }
-
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
-    if (caps != nullptr) add_caps(*caps, all.end_vertex);
-    if (!nonmanifold.any_missing()) return;
-    std::vector<Index> candidates(nonmanifold.vertices().begin(), nonmanifold.vertices().end());
-    for (std::uint64_t v = all.end_vertex; v < contour_.vertices.size(); ++v)
-      candidates.push_back(static_cast<Index>(v));
-    split_nonmanifold(contour_, candidates, max_vertices_);
-  }
-
- private:
-  void add_caps(const Caps<N, Real>& caps, std::uint64_t first) {
-    check_vertex_count(first + caps.vertices().size(), max_vertices_);
-    contour_.vertices.insert(contour_.vertices.end(), caps.vertices().begin(), caps.vertices().end());
-    contour_.normals.insert(contour_.normals.end(), caps.normals().begin(), caps.normals().end());
-    contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
-    for (const auto& simplex : caps.simplices()) {
-      Simplex& narrow = contour_.simplices.emplace_back();
-      for (int j = 0; j < N; ++j) narrow[j] = static_cast<Index>(caps.number(simplex[j], first));
-    }
-  }
-
-  template <class Items>
-  void resize(Items& output, std::uint64_t size, const ContourPart& part) {
-    const std::uint64_t last = size - output.size();
-    resize_output(output, size, part.done);
-    look_ahead(output, last, part.done);
-  }
-
-  /// Records the huge pages after the current end: as much as the last part took, within the estimated total size.
-  template <class Items>
-  void look_ahead(Items& output, std::uint64_t last, double done) {
-    constexpr std::size_t kItem = sizeof(output[0]);
-    if (output.capacity() * kItem < kLargeBlock) return;
-    const auto rest = static_cast<std::uint64_t>(static_cast<double>(output.size()) * (1.0 - done) / done);
-    const std::size_t more = std::min<std::uint64_t>({last, rest, output.capacity() - output.size()});
-    // Large blocks start on a page boundary.
-    auto* const block = reinterpret_cast<unsigned char*>(output.data());
-    const std::size_t first = (output.size() * kItem + kLargeBlock - 1) / kLargeBlock * kLargeBlock;
-    for (std::size_t at = first; at < (output.size() + more) * kItem; at += kLargeBlock) ahead_.push_back(block + at);
-  }
-
-  Contour<N, Real>& contour_;
-  bool normals_;
-  std::uint64_t max_vertices_;
-  std::vector<void*> ahead_;
-};
-
 }  // namespace
 
 template <int N, class Real>
@@ -618,11 +530,7 @@ Extraction<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid,
                                    const ExtractOptions& options, const ExtractPlan& plan) {
   Extraction<N, Real> result;
   Contour<N, Real>& contour = result.contour;
-  for (int a = 0; a < N; ++a) {
-    contour.axis_names[a] = grid.axes[a].name;
-    contour.axis_units[a] = grid.axes[a].unit;
-  }
-  contour.direction = options.direction;
+  describe(grid, options, contour);
   MemoryOutput<N, Real> output(contour, options.normals != Normals::none, plan.max_vertices);
   result.stats = extract_to(source, grid, tables, options, plan, output);
   return result;

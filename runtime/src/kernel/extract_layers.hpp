@@ -64,6 +64,10 @@ class RowShape {
     for (int a = 1; a < N - 1; ++a) row -= (mask >> a & 1u) * stride_[a];
     return row;
   }
+  /// The row at the start of an axis, 0 < axis < N - 1, that differs from `row` only along it.
+  [[nodiscard]] std::size_t at_start(std::size_t row, int axis) const noexcept {
+    return row - indices_[row][axis] * stride_[axis];
+  }
   /// Whether cells along the axes in `mask` start in a row with this index (axes 0 and N-1 are ignored).
   [[nodiscard]] bool has_cells(const Index& index, unsigned mask) const noexcept {
     for (int a = 1; a < N - 1; ++a)
@@ -137,6 +141,11 @@ struct CubePlane : RankPlane<tables::kFaceSlots> {
   void add(std::size_t row, std::size_t at, unsigned key, unsigned vertices) {
     lists.add(row, {static_cast<std::uint32_t>(at), count[row], static_cast<std::uint16_t>(key)});
     count[row] += vertices;
+  }
+  /// Number of vertices of the i-th listed cube of a row.
+  [[nodiscard]] std::uint32_t listed_vertices(std::size_t row, std::size_t i) const noexcept {
+    const auto of_row = lists.row(row);
+    return (i + 1 < of_row.size() ? of_row[i + 1].before : count[row]) - of_row[i].before;
   }
   /// First vertex of a listed cube.
   [[nodiscard]] Index listed_id(std::size_t row, std::size_t at) const noexcept {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/periods.hpp"
 #include "kernel/contour_output.hpp"
 
 namespace tegl::detail {
@@ -174,6 +175,9 @@ class NonmanifoldSplitter {
       points.push_back(middle);
     };
     add_middle(contour_.vertices);
+    if (v != w && !contour_.periods.empty())
+      contour_.vertices.back() =
+          between_modulo<N>(contour_.vertices[v], contour_.vertices[w], 0.5, std::span(contour_.periods));
     if (!contour_.normals.empty()) {
       add_middle(contour_.normals);
       if (v != w) normalize(contour_.normals.back());

@@ -65,6 +65,7 @@ Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<cons
   part.axis_names = contour.axis_names;
   part.axis_units = contour.axis_units;
   part.direction = contour.direction;
+  part.periods = contour.periods;
   gather(contour.vertices, vertices, part.vertices, copied);
   if (!contour.normals.empty()) gather(contour.normals, vertices, part.normals, copied);
   gather(contour.simplices, simplices, part.simplices, copied);

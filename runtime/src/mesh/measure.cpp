@@ -214,6 +214,7 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
                                                                          std::span<const double> at,
                                                                          const WorkOptions& work) {
+  detail::require_unwrapped(contour, "measure_cuts");
   detail::require_vertices(contour);
   detail::require_finite(contour);
   for (const double t : at)

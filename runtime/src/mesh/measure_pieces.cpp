@@ -4,6 +4,7 @@
 #include "mesh/measure_pieces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/workers.hpp"
@@ -98,6 +99,31 @@ void for_labelled(std::span<const Index> labels, Index count, unsigned threads, 
 }  // namespace
 
 template <int N>
+std::optional<PointOf<N>> across_periods(std::span<const Period<N>> periods) {
+  // Gram-Schmidt: an orthonormal basis of the periods, then the axis with the longest rest
+  std::vector<PointOf<N>> basis;
+  const auto rest_of = [&](PointOf<N> x) {
+    for (const PointOf<N>& unit : basis) {
+      double along = 0.0;
+      for (int a = 0; a < N; ++a) along += unit[a] * x[a];
+      for (int a = 0; a < N; ++a) x[a] -= along * unit[a];
+    }
+    return x;
+  };
+  const auto unit_of = [](PointOf<N> x) {
+    const double length = length_of<N>(x);
+    for (double& component : x) component /= length;
+    return x;
+  };
+  for (const Period<N>& period : periods) basis.push_back(unit_of(rest_of(period.vector)));
+  if (basis.size() >= N) return std::nullopt;
+  PointOf<N> best{};
+  for (int a = 0; a < N; ++a)
+    if (const PointOf<N> rest = rest_of(unit_vector<N>(a)); length_of<N>(rest) > length_of<N>(best) + 1e-9) best = rest;
+  return unit_of(best);
+}
+
+template <int N>
 std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std::span<const Index> vertex_labels,
                                              std::span<const Index> simplex_labels, Index count, unsigned threads,
                                              const Progress& progress) {
@@ -107,17 +133,31 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
     reference.push_back(contour.point(contour.simplices()[s][0]));
   const auto reference_of = [&](Index label) { return reference[label]; };
   // sums over simplices
-  std::vector<PieceSums<N>> sums(reference.begin(), reference.end());
+  const std::span<const Period<N>> periods = contour.periods();
+  std::optional<PointOf<N>> across;
+  if (!periods.empty()) across = across_periods(periods);
+  const PointOf<N>* const direction = across ? &*across : nullptr;
+  std::vector<PieceSums<N>> sums;
+  for (const PointOf<N>& point : reference) sums.emplace_back(point, direction);
   for_labelled<PieceSums<N>>(
-      simplex_labels, count, threads, part_of(progress, 0.0, 0.9), reference_of,
-      [&](PieceSums<N>& sum, Index s) { sum.add(contour.corners(s)); },
+      simplex_labels, count, threads, part_of(progress, 0.0, 0.9),
+      [&](Index label) { return PieceSums<N>(reference[label], direction); },
+      [&](PieceSums<N>& sum, Index s) {
+        std::array<PointOf<N>, N> corners = contour.corners(s);
+        if (!periods.empty()) {
+          move_near(periods, reference[simplex_labels[s]], corners[0]);
+          for (int j = 1; j < N; ++j) move_near(periods, corners[0], corners[j]);
+        }
+        sum.add(corners);
+      },
       [&](const PieceSums<N>& sum, Index label) { sums[label].add(sum); });
   // boxes of vertices
   std::vector<Extent<N>> extents(reference.begin(), reference.end());
   for_labelled<Extent<N>>(
       vertex_labels, count, threads, part_of(progress, 0.9, 1.0), reference_of,
       [&](Extent<N>& extent, Index v) {
-        const PointOf<N> point = contour.point(v);
+        PointOf<N> point = contour.point(v);
+        move_near(periods, reference[vertex_labels[v]], point);
         extent.add(point, point, 1);
       },
       [&](const Extent<N>& extent, Index label) {
@@ -132,7 +172,8 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
                      sums[label].content(),
                      sums[label].centroid(lowest, highest),
                      lowest,
-                     highest};
+                     highest,
+                     periods.empty() || (across && std::abs(sums[label].directed()) <= 1e-6 * sums[label].size())};
   }
   return result;
 }
@@ -183,6 +224,9 @@ template std::vector<FaceCounts> count_faces<4>(std::span<const Index>, const St
 template std::vector<FaceCounts> count_faces<5>(std::span<const Index>, const Stars&, std::span<const Index>,
                                                 std::size_t, bool, unsigned, const Progress&,
                                                 FunctionRef<void(std::size_t, const FacesOfStars<5>::Ridge&)>);
+template std::optional<PointOf<2>> across_periods<2>(std::span<const Period<2>>);
+template std::optional<PointOf<3>> across_periods<3>(std::span<const Period<3>>);
+template std::optional<PointOf<4>> across_periods<4>(std::span<const Period<4>>);
 template std::vector<PieceMeasures<2>> measure_pieces<2>(const SimplexView<2>&, std::span<const Index>,
                                                          std::span<const Index>, Index, unsigned, const Progress&);
 template std::vector<PieceMeasures<3>> measure_pieces<3>(const SimplexView<3>&, std::span<const Index>,

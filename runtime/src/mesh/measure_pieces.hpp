@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/exact_sum.hpp"
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "mesh/faces_of_stars.hpp"
 #include "mesh/simplex_geometry.hpp"
@@ -53,10 +54,15 @@ inline Groups group_by(std::span<const Index> labels, Index count, const Progres
 }
 
 /// Sums over simplices. Coordinates are relative to a reference point near them, so that the terms are small.
+///
+/// A wrapped contour has no inside of its own cell: the flux of the position vector depends on where the cell is cut.
+/// The flux of the field <e, x> e does not, for a unit vector e across all periods. Its divergence is 1, too.
 template <int N>
 class PieceSums {
  public:
-  explicit PieceSums(const PointOf<N>& reference) : reference_(reference) {}
+  /// `across`: e of a wrapped contour (`across_periods`); null for others.
+  explicit PieceSums(const PointOf<N>& reference, const PointOf<N>* across = nullptr)
+      : reference_(reference), across_(across) {}
 
   void add(const std::array<PointOf<N>, N>& corners) noexcept {
     const PointOf<N> normal = normal_vector_of<N>(corners);
@@ -69,6 +75,7 @@ class PieceSums {
       few_.moment[a] += measure * (middle / N);
       flux += normal[a] * (corners[0][a] - reference_[a]);
     }
+    if (across_ != nullptr) flux = add_flux_across(corners, normal);
     few_.content += flux;
     ++count_;
     if (++few_.count == kFew) settle();
@@ -79,6 +86,7 @@ class PieceSums {
     count_ += other.count_;
     size_.add(other.size());
     content_.add(other.content());
+    directed_.add(other.directed());
     for (int a = 0; a < N; ++a) moment_[a].add(other.moment_[a].value() + other.few_.moment[a]);
   }
 
@@ -86,6 +94,9 @@ class PieceSums {
   [[nodiscard]] double size() const noexcept { return size_.value() + few_.size; }
   /// N times the volume of the cone over the simplices with its apex at the reference point.
   [[nodiscard]] double content() const noexcept { return content_.value() + few_.content; }
+  /// The sum of the normal vectors' components along `across`: not 0 if a wrapped contour has different sides at the
+  /// two ends of space, as a plane has.
+  [[nodiscard]] double directed() const noexcept { return directed_.value() + few_.directed; }
   /// The middle of the bounding box if the size is 0.
   [[nodiscard]] PointOf<N> centroid(const PointOf<N>& lowest, const PointOf<N>& highest) const noexcept {
     PointOf<N> middle;
@@ -99,25 +110,43 @@ class PieceSums {
   /// So many terms are added plainly: their rounding errors are as large as the rounding errors in the terms.
   static constexpr int kFew = 8;
   struct Few {
-    double size = 0.0, content = 0.0;
+    double size = 0.0, content = 0.0, directed = 0.0;
     std::array<double, N> moment{};
     int count = 0;
   };
 
+  /// Returns N times the flux of <e, x> e.
+  double add_flux_across(const std::array<PointOf<N>, N>& corners, const PointOf<N>& normal) noexcept {
+    double directed = 0.0, height = 0.0;
+    for (int a = 0; a < N; ++a) {
+      directed += normal[a] * (*across_)[a];
+      for (const PointOf<N>& corner : corners) height += (corner[a] - reference_[a]) * (*across_)[a];
+    }
+    few_.directed += directed;
+    return directed * height;
+  }
+
   void settle() noexcept {
     size_.add(few_.size);
     content_.add(few_.content);
+    if (across_ != nullptr) directed_.add(few_.directed);
     for (int a = 0; a < N; ++a) moment_[a].add(few_.moment[a]);
     few_ = {};
   }
 
   PointOf<N> reference_;
+  const PointOf<N>* across_;
   std::uint64_t count_ = 0;
   Few few_;
   CompensatedSum size_;
   CompensatedSum content_;
+  CompensatedSum directed_;
   std::array<CompensatedSum, N> moment_;
 };
+
+/// A unit vector across all periods of a wrapped contour, along an axis if possible; none if there is none.
+template <int N>
+std::optional<PointOf<N>> across_periods(std::span<const Period<N>> periods);
 
 /// Sums and bounding box of the simplices with one label.
 template <int N>
@@ -128,6 +157,7 @@ struct PieceMeasures {
   PointOf<N> centroid{};
   PointOf<N> lowest{};
   PointOf<N> highest{};
+  bool bounds = true;  ///< false: the simplices are of a wrapped contour and enclose nothing
 };
 
 /// Measures of the simplices with each label 0 … count - 1. Each label must have a simplex. Simplices and vertices with
@@ -141,7 +171,7 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
 /// The enclosed content from the sums of a contour; empty if the contour is open.
 template <int N>
 std::optional<double> content_of(const PieceMeasures<N>& sums, const FaceCounts& faces, GradientDirection direction) {
-  if (faces.open > 0) return std::nullopt;
+  if (faces.open > 0 || !sums.bounds) return std::nullopt;
   const double content = sums.content / N;
   return direction == GradientDirection::descent ? content : -content;
 }

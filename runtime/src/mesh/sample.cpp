@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "image/locate.hpp"
 #include "image/row_source.hpp"
@@ -58,6 +59,7 @@ void interpolate(const detail::CornerValues<N>& samples, const Grid<N>& grid, co
 template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour,
                                                     std::string name, std::string unit, const WorkOptions& work) {
+  detail::require_unwrapped(contour, "sample");
   Attribute attribute{std::move(name), std::move(unit), 1, {}};
   attribute.values.resize(contour.vertices.size());
   interpolate(detail::ImageSource<T, N>(image, 0.0, 0.0), image.grid(), detail::SimplexView<N>(contour), work,

@@ -11,6 +11,7 @@
 #include <span>
 #include <type_traits>
 
+#include "base/periods.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
@@ -18,12 +19,14 @@ namespace tegl::detail {
 template <int N>
 using PointOf = std::array<double, N>;
 
-/// The corners of simplex s, N points.
+/// The corners of simplex s, N points; those of a wrapped contour are moved next to the first one.
 template <int N, class Real>
 std::array<PointOf<N>, N> corners_of(const Contour<N, Real>& contour, std::size_t s) noexcept {
   std::array<PointOf<N>, N> corners;
   for (int j = 0; j < N; ++j)
     for (int a = 0; a < N; ++a) corners[j][a] = static_cast<double>(contour.vertices[contour.simplices[s][j]][a]);
+  if (!contour.periods.empty())
+    for (int j = 1; j < N; ++j) move_near(std::span<const Period<N>>(contour.periods), corners[0], corners[j]);
   return corners;
 }
 
@@ -93,7 +96,10 @@ class SimplexView {
  public:
   template <class Real>
   explicit SimplexView(const Contour<N, Real>& contour) noexcept
-      : simplices_(contour.simplices), is_single_(std::is_same_v<Real, float>), vertex_count_(contour.vertices.size()) {
+      : simplices_(contour.simplices),
+        is_single_(std::is_same_v<Real, float>),
+        vertex_count_(contour.vertices.size()),
+        periods_(contour.periods) {
     if constexpr (std::is_same_v<Real, float>)
       singles_ = contour.vertices.data();
     else
@@ -102,6 +108,8 @@ class SimplexView {
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
   [[nodiscard]] std::span<const std::array<Index, N>> simplices() const noexcept { return simplices_; }
+  /// The periods of a wrapped contour.
+  [[nodiscard]] std::span<const Period<N>> periods() const noexcept { return periods_; }
   /// Whether the coordinates are in single precision.
   [[nodiscard]] bool is_single() const noexcept { return is_single_; }
   /// Vertex numbers, #S x N, row = simplex.
@@ -118,10 +126,12 @@ class SimplexView {
   [[nodiscard]] double coordinate(Index v, int axis) const noexcept {
     return is_single_ ? static_cast<double>(singles_[v][axis]) : doubles_[v][axis];
   }
-  /// The corners of simplex s, N points.
+  /// The corners of simplex s, N points; those of a wrapped contour are moved next to the first one.
   [[nodiscard]] std::array<PointOf<N>, N> corners(std::size_t s) const noexcept {
     std::array<PointOf<N>, N> result;
     for (int j = 0; j < N; ++j) result[j] = point(simplices_[s][j]);
+    if (!periods_.empty())
+      for (int j = 1; j < N; ++j) move_near(periods_, result[0], result[j]);
     return result;
   }
 
@@ -131,6 +141,7 @@ class SimplexView {
   const std::array<double, N>* doubles_ = nullptr;
   bool is_single_;
   std::size_t vertex_count_;
+  std::span<const Period<N>> periods_;
 };
 
 }  // namespace tegl::detail

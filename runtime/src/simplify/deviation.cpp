@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/simplex_shapes.hpp"
@@ -595,6 +596,8 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
                                                        const DeviationOptions<N>& options) {
   using namespace detail;
+  detail::require_unwrapped(from, "deviation");
+  detail::require_unwrapped(to, "deviation");
   require_scale<N>(options.scale);
   if (!(options.enough >= 0.0))
     throw Error(ErrorCode::InvalidArgument, fmt::format("enough is {}; expected 0 or more", options.enough));

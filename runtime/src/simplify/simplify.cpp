@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "mesh/validate.hpp"
 #include "simplify/collapsible_complex.hpp"
@@ -668,6 +669,7 @@ Contour<N, To> with_coordinates(Source&& contour) {
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Simplification<N, Real> simplify(const Contour<N, Real>& contour,
                                                                     const SimplifyOptions<N>& options) {
+  detail::require_unwrapped(contour, "simplify");
   if constexpr (std::is_same_v<Real, double>) {
     return detail::Simplifier<N>(contour, false, options).run();
   } else {

@@ -46,6 +46,9 @@ void require_sound(const TrackOptions& options) {
 
 template <int N, class Real>
 void require_sound(const Contour<N, Real>& contour) {
+  for (const Period<N>& period : contour.periods)
+    if (period.vector[N - 1] != 0.0 || period.dual[N - 1] != 0.0)
+      refuse("the last axis, the time, is periodic or not separate from a periodic axis; expected other periodic axes");
   detail::require_vertices(contour);
   detail::require_finite(contour);
 }

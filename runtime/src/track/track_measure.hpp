@@ -19,6 +19,9 @@ namespace tegl::detail {
 /// Sums of the contributions of simplices to a sample.
 struct PartSums {
   bool open = false;
+  bool has_near = false;         ///< of a wrapped contour: whether `near` is set
+  std::array<double, 4> near{};  ///< a corner next to which the others are moved
+  double directed = 0;           ///< of a wrapped contour: as PieceSums::directed
   double measure = 0;
   double content = 0;
   std::array<double, 3> moment{};
@@ -32,7 +35,7 @@ struct PartSums {
     TrackSample sample;
     sample.time = time;
     sample.measure = measure;
-    if (!open) sample.content = content;
+    if (!open && std::abs(directed) <= 1e-6 * measure) sample.content = content;
     for (int a = 0; a < dim; ++a) {
       // The centroid of a component of zero size is the middle of its box.
       const double middle = measure > 0 ? moment[a] / measure : 0.5 * (lower[a] + upper[a]);
@@ -63,8 +66,9 @@ class CutCell {
       for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // cyclic order of a quadrilateral
   }
 
-  /// `normal`: normal of the simplex towards the low side, of any length.
-  void add_to(PartSums& sums, const Corner& normal) const {
+  /// `normal`: normal of the simplex towards the low side, of any length. `across`: of a wrapped contour, as in
+  /// PieceSums; null for others.
+  void add_to(PartSums& sums, const Corner& normal, const PointOf<D>* across) const {
     const Eigen::Map<const Place> outward(normal.data());  // its components within the cut
     const auto [size, centre] = size_and_centre();
     sums.measure += size;
@@ -76,7 +80,14 @@ class CutCell {
       }
     }
     const double length = outward.norm();
-    if (length > 0) sums.content += size * outward.dot(points_[0]) / (length * D);
+    if (length > 0 && across != nullptr) {
+      const Eigen::Map<const Place> unit(across->data());
+      const double directed = size * outward.dot(unit) / length;
+      sums.directed += directed;
+      sums.content += directed * centre.dot(unit);
+    } else if (length > 0) {
+      sums.content += size * outward.dot(points_[0]) / (length * D);
+    }
   }
 
  private:

@@ -28,6 +28,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/slice_at.hpp"
 #include "track/track_link.hpp"
@@ -408,6 +409,16 @@ class Sweeper {
       starting_[starts_[first_cut(s) + 1]++] = s;
     }
     for (int a = 0; a < N - 1; ++a) origin_[a] = contour.coordinate(0, a);
+    find_across();
+  }
+
+  /// Sets `across_` of a wrapped contour.
+  void find_across() {
+    std::vector<Period<N - 1>> spatial;
+    for (const Period<N>& period : complex_.contour().periods())
+      std::copy_n(period.vector.begin(), N - 1, spatial.emplace_back().vector.begin());
+    if constexpr (N > 2)
+      if (!spatial.empty()) across_ = across_periods<N - 1>(std::span<const Period<N - 1>>(spatial));
   }
 
   [[nodiscard]] std::pair<double, double> span(Index s) const {
@@ -444,6 +455,17 @@ class Sweeper {
 
   void add_cut(Index s, double time, PartSums& sums) const {
     std::array<PointOf<N>, N> corners = complex_.contour().corners(s);
+    if (const auto periods = complex_.contour().periods(); !periods.empty()) {
+      if (!across_) sums.open = true;
+      if (!sums.has_near) std::copy(corners[0].begin(), corners[0].end(), sums.near.begin());
+      sums.has_near = true;
+      PointOf<N> near;
+      std::copy_n(sums.near.begin(), N, near.begin());
+      for (auto& corner : corners) {
+        move_near(periods, near, corner);
+        near = corners[0];
+      }
+    }
     for (auto& corner : corners)
       for (int a = 0; a < N - 1; ++a) corner[a] -= origin_[a];
     PointOf<N> normal = normal_vector_of<N>(corners);
@@ -459,7 +481,7 @@ class Sweeper {
     for (int i = 0; i < N; ++i)
       if (((border >> i) & 1u) != 0 && (below & ~(1u << i)) != 0 && (~below & kAll & ~(1u << i)) != 0) sums.open = true;
     std::stable_partition(corners.begin(), corners.end(), is_below);
-    CutCell<N>(corners, std::popcount(below), time).add_to(sums, normal);
+    CutCell<N>(corners, std::popcount(below), time).add_to(sums, normal, across_ ? &*across_ : nullptr);
   }
 
   static constexpr unsigned kAll = (1u << N) - 1;
@@ -497,7 +519,8 @@ class Sweeper {
   std::vector<Index> starting_;
   std::vector<Index> cut_;  ///< simplices cut at the previous sample time
   std::array<double, 3> origin_{};
-  std::vector<Index> slots_;  ///< by arc: its position in `sums_`
+  std::optional<PointOf<N - 1>> across_;  ///< of a wrapped contour: as in PieceSums
+  std::vector<Index> slots_;              ///< by arc: its position in `sums_`
   std::vector<std::pair<Index, PartSums>> sums_;
 };
 

@@ -33,6 +33,8 @@ struct Mesh {
   std::vector<Attribute> vertex_attributes = {};   ///< #V rows each; names are unique and not empty
   std::vector<Attribute> simplex_attributes = {};  ///< #S rows each; names are unique and not empty
   std::optional<double> isovalue = {};             ///< of the contour, if known; finite
+  /// Of a wrapped contour (Contour::periods): for each period `vector`, `dual` and `start`, 2 space_dim + 1 numbers.
+  std::vector<double> periods = {};
   /// Coordinates and normals have at most single precision. Formats with both types then store float, and 32-bit vertex
   /// numbers. Coordinates that float does not represent are rounded.
   bool single_precision = false;
@@ -75,6 +77,7 @@ struct MeshView {
   std::span<const Attribute> vertex_attributes = {};   ///< as in Mesh
   std::span<const Attribute> simplex_attributes = {};  ///< as in Mesh
   std::optional<double> isovalue = {};                 ///< as in Mesh
+  std::vector<double> periods = {};                    ///< as in Mesh
   bool single_precision = false;                       ///< as in Mesh
 
   MeshView() = default;        ///< an empty mesh
@@ -135,7 +138,7 @@ struct MeshFileFormat {
 /// with names and units), and _NAME attributes of vertices (.gltf/.glb; as float, of up to four numbers; wider
 /// attributes and those of simplices are left out). The isovalue: the field array `isovalue` (.vtkhdf), a comment
 /// (.ply), or asset.extras (.gltf/.glb). .stl and .obj cannot hold attributes, isovalue, names and units, which are
-/// left out.
+/// left out. Periods: the field array `periods` (.vtkhdf); other formats refuse them.
 ///
 /// Written to a temporary name beside the target and renamed at the end, so there is never a partial file. An empty
 /// mesh gives a valid file. Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh),

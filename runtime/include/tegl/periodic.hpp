@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of images with periodic axes: longitudes, unit cells of crystals, simulations with periodic boundaries.
+#pragma once
+
+#include <array>
+#include <span>
+#include <type_traits>
+
+#include "tegl/contour.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/image.hpp"
+
+namespace tegl {
+
+/// The period of each axis in its own unit; 0: the axis is not periodic.
+template <int N>
+using AxisPeriods = std::type_identity_t<Vector<N>>;
+
+/// The periods of `axes`: the number of samples x the step, so that the first sample follows the last one after one
+/// step; along an uneven axis, the length plus the mean step. Errors: InvalidArgument for an axis that the grid does
+/// not have.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] AxisPeriods<N> sample_periods(const Grid<N>& grid, std::span<const int> axes);
+
+/// The periods of longitudes: 360 for each even axis with a unit of degrees_east (also degree_east, degree_E,
+/// degrees_E, degreeE, degreesE) whose samples span 360 degrees without repeating the first one; 0 for the others.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] AxisPeriods<N> longitude_periods(const Grid<N>& grid);
+
+/// As `extract_periodic`, with counts and times.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Extraction<N, Real> extract_periodic_with_stats(const Image<T, N>& image, const AxisPeriods<N>& periods,
+                                                              double isovalue, const ExtractOptions& options = {});
+
+/// Extracts the contour of an image with periodic axes: there is one more layer of tiles, between the last and the
+/// first sample. The result is *wrapped*: vertices on the seam are there once, all vertices are inside the periods (up
+/// to rounding), and simplices across the seam connect vertices at both ends (Contour::periods). So check, components,
+/// track, measure, cuts along the seam and elements have the contour's true topology and geometry. `unroll` makes a
+/// contour for pictures and for all other functions.
+///
+/// At missing values the contour is made a manifold across the seam, too. The result does not depend on the number of
+/// threads. Errors: those of `extract`; InvalidArgument for a period that is not positive and finite, is at most the
+/// distance between the first and the last sample, or has fewer than three samples, and for options that this function
+/// does not have: close, normals (tegl/normals.hpp has geometric ones), Ambiguity::custom. Time: that of `extract` and
+/// of merging, O(V + S). If only the last axis is periodic, samples are not copied; otherwise a few layers at a time.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, Real> extract_periodic(const Image<T, N>& image, const AxisPeriods<N>& periods,
+                                                double isovalue, const ExtractOptions& options = {}) {
+  return extract_periodic_with_stats<Real>(image, periods, isovalue, options).contour;
+}
+
+/// A contour whose vertices on the seam are doubled.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+struct Unrolled {
+  Contour<N, Real> contour = {};  ///< without periods
+  Buffer<Index> originals = {};   ///< by vertex: its number in the wrapped contour; equal ones are one point
+};
+
+/// Unrolls a wrapped contour: each simplex across the seam is moved to the end of the period, with copies of its
+/// vertices at the start. Vertices keep their numbers, copies follow. Simplices keep their numbers. Normals and
+/// attributes are copied. A contour without periods is returned unchanged. Errors: InvalidArgument for a contour that
+/// is not sound; TooLarge. O(V + S) time.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Unrolled<N, Real> unroll(const Contour<N, Real>& contour);
+
+}  // namespace tegl

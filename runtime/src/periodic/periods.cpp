@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Periods of axes: of samples, of longitudes, and in the world.
+#include "periodic/periods.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include "base/periods.hpp"
+#include "tegl/eigen.hpp"
+#include "tegl/error.hpp"
+
+namespace tegl {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); }
+
+std::string label_of(const Axis& axis, int a) {
+  return axis.name.empty() ? fmt::format("axis {}", a) : fmt::format("axis {} ({})", a, axis.name);
+}
+
+double length_of(const Axis& axis) { return std::abs(axis[axis.size() - 1] - axis[0]); }
+
+void check_period(const Axis& axis, int a, double period) {
+  if (!std::isfinite(period) || period < 0.0)
+    refuse(fmt::format("the period of {} is {}; expected a positive number, or 0 if it is not periodic",
+                       label_of(axis, a), period));
+  if (axis.size() < 3)
+    refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", label_of(axis, a), axis.size()));
+  if (!(period > length_of(axis)))
+    refuse(fmt::format("the period of {} is {}; expected more than {}, the distance between its first and last sample",
+                       label_of(axis, a), period, length_of(axis)));
+}
+
+bool is_longitude(const Axis& axis) {
+  constexpr std::array<std::string_view, 6> kUnits = {"degrees_east", "degree_east", "degree_E",
+                                                      "degrees_E",    "degreeE",     "degreesE"};
+  constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
+  if (axis.size() < 3 || std::find(kUnits.begin(), kUnits.end(), axis.unit) == kUnits.end()) return false;
+  const double step = (axis[axis.size() - 1] - axis[0]) / static_cast<double>(axis.size() - 1);
+  for (std::size_t i = 1; i < axis.size(); ++i)
+    if (std::abs(axis[i] - axis[i - 1] - step) > kTolerance * std::abs(step)) return false;
+  return std::abs(std::abs(step) * static_cast<double>(axis.size()) - 360.0) <=
+         kTolerance * static_cast<double>(axis.size()) * std::abs(step);
+}
+
+}  // namespace
+
+template <int N>
+requires DimensionBetween<N, 2, 4> AxisPeriods<N> sample_periods(const Grid<N>& grid, std::span<const int> axes) {
+  AxisPeriods<N> periods{};
+  for (const int a : axes) {
+    if (a < 0 || a >= N) refuse(fmt::format("axis {} is periodic; expected 0 to {}", a, N - 1));
+    const Axis& axis = grid.axes[static_cast<std::size_t>(a)];
+    if (axis.size() < 3)
+      refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", label_of(axis, a), axis.size()));
+    const auto size = static_cast<double>(axis.size());
+    periods[static_cast<std::size_t>(a)] =
+        axis.is_uniform() ? size * std::abs(axis.step()) : length_of(axis) * size / (size - 1);
+  }
+  return periods;
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> AxisPeriods<N> longitude_periods(const Grid<N>& grid) {
+  AxisPeriods<N> periods{};
+  for (std::size_t a = 0; a < N; ++a)
+    if (is_longitude(grid.axes[a])) periods[a] = 360.0;
+  return periods;
+}
+
+namespace detail {
+
+template <int N>
+void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const ExtractOptions& options) {
+  for (int a = 0; a < N; ++a)
+    if (periods[a] != 0.0) check_period(grid.axes[a], a, periods[a]);
+  if (std::all_of(periods.begin(), periods.end(), [](double period) { return period == 0.0; }))
+    refuse("no axis is periodic; expected a period that is not 0");
+  if (options.close) refuse("close with periodic axes; expected close = false");
+  if (options.normals != Normals::none)
+    refuse("normals from the image with periodic axes; expected none: tegl/normals.hpp has geometric ones");
+  if (options.ambiguity == Ambiguity::custom)
+    refuse("Ambiguity::custom with periodic axes; expected another: a custom estimator may read samples at the border");
+}
+
+template <int N>
+std::vector<Period<N>> world_periods(const Grid<N>& grid, const AxisPeriods<N>& periods) {
+  const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
+  const Eigen::Matrix<double, N, N> inverse = linear.inverse();
+  Vector<N> first = grid.offset;  // world coordinates of the first sample
+  for (int a = 0; a < N; ++a)
+    for (int b = 0; b < N; ++b) first[a] += grid.linear[a][b] * grid.axes[b][0];
+  std::vector<Period<N>> result;
+  for (int b = 0; b < N; ++b) {
+    if (periods[b] == 0.0) continue;
+    const double length = grid.axes[b].is_descending() ? -periods[b] : periods[b];
+    Period<N>& period = result.emplace_back();
+    for (int a = 0; a < N; ++a) {
+      period.vector[a] = grid.linear[a][b] * length;
+      period.dual[a] = inverse(b, a) / length;
+    }
+    period.start = share_of(period, first);
+  }
+  return result;
+}
+
+#define TEGL_INSTANTIATE_PERIODS(N)                                                             \
+  template void check_periods<N>(const Grid<N>&, const AxisPeriods<N>&, const ExtractOptions&); \
+  template std::vector<Period<N>> world_periods<N>(const Grid<N>&, const AxisPeriods<N>&);
+TEGL_INSTANTIATE_PERIODS(2)
+TEGL_INSTANTIATE_PERIODS(3)
+TEGL_INSTANTIATE_PERIODS(4)
+#undef TEGL_INSTANTIATE_PERIODS
+
+}  // namespace detail
+
+#define TEGL_INSTANTIATE_PERIODS(N)                                                \
+  template AxisPeriods<N> sample_periods<N>(const Grid<N>&, std::span<const int>); \
+  template AxisPeriods<N> longitude_periods<N>(const Grid<N>&);
+TEGL_INSTANTIATE_PERIODS(2)
+TEGL_INSTANTIATE_PERIODS(3)
+TEGL_INSTANTIATE_PERIODS(4)
+#undef TEGL_INSTANTIATE_PERIODS
+
+}  // namespace tegl

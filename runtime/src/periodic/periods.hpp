@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Checks of periodic axes, and their periods in the world.
+#pragma once
+
+#include <vector>
+
+#include "tegl/periodic.hpp"
+
+namespace tegl::detail {
+
+/// Throws InvalidArgument for bad periods, and for options that periodic extraction does not have.
+template <int N>
+void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const ExtractOptions& options);
+
+/// The periods of a wrapped contour of an image on `grid`.
+template <int N>
+std::vector<Period<N>> world_periods(const Grid<N>& grid, const AxisPeriods<N>& periods);
+
+}  // namespace tegl::detail

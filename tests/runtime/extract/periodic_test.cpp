@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of images with periodic axes: topology on tori of two to four dimensions, the seam, measures, tracks and
+// cuts of wrapped contours.
+#include "tegl/periodic.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "errors.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/track.hpp"
+
+namespace tegl::test {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// Samples of f(x) with x in [0, 1)^N, at multiples of the steps, moved by `shift` samples along all axes.
+template <int N, class T = float, class F>
+OwnedImage<T, N> torus_image(const std::array<std::size_t, N>& sizes, const F& f, std::size_t shift = 0) {
+  OwnedImage<T, N> image;
+  std::size_t count = 1;
+  for (int a = 0; a < N; ++a) {
+    image.grid.axes[a] = Axis::uniform(sizes[a], 0.0, 1.0 / static_cast<double>(sizes[a]));
+    count *= sizes[a];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<double, N> x;
+    std::size_t rest = i;
+    for (int a = 0; a < N; ++a) {
+      x[a] = static_cast<double>((rest % sizes[a] + shift) % sizes[a]) / static_cast<double>(sizes[a]);
+      rest /= sizes[a];
+    }
+    image.values.push_back(static_cast<T>(f(x)));
+  }
+  return image;
+}
+
+template <int N>
+AxisPeriods<N> all_periodic() {
+  AxisPeriods<N> periods;
+  periods.fill(1.0);
+  return periods;
+}
+
+/// The wrapped contour of an image, which may be a temporary.
+template <class Real = float, class T, int N>
+Contour<N, Real> wrapped(const OwnedImage<T, N>& image, const AxisPeriods<N>& periods, double isovalue,
+                         const ExtractOptions& options = {}) {
+  return extract_periodic<Real>(image.view(), periods, isovalue, options);
+}
+
+double gyroid(const std::array<double, 3>& x) {
+  const auto s = [&](int a) { return std::sin(kTurn * x[a]); };
+  const auto c = [&](int a) { return std::cos(kTurn * x[a]); };
+  return s(0) * c(1) + s(1) * c(2) + s(2) * c(0);
+}
+
+template <int N>
+double sum_of_cosines(const std::array<double, N>& x) {
+  double sum = 0.0;
+  for (const double each : x) sum += std::cos(kTurn * each);
+  return sum;
+}
+
+/// A field of noise by the sample's place.
+template <int N>
+auto noise_of(unsigned seed) {
+  return [seed](const std::array<double, N>& x) {
+    std::uint64_t state = seed;
+    for (const double each : x) state = state * 6364136223846793005u + static_cast<std::uint64_t>(each * 4096.0) + 1;
+    std::mt19937_64 random(state);
+    return std::uniform_real_distribution<double>(-1.0, 1.0)(random);
+  };
+}
+
+bool is_manifold(const MeshReport& report) {
+  return report.nonmanifold_simplices == 0 && report.bad_links == 0 && report.orientation_conflicts == 0;
+}
+bool is_closed(const MeshReport& report) { return is_manifold(report) && report.boundary_simplices == 0; }
+
+template <int N>
+void expect_closed(const Contour<N, float>& contour) {
+  const MeshReport report = check(contour);
+  EXPECT_TRUE(is_closed(report));
+  EXPECT_GT(contour.simplices.size(), 0u);
+  for (const auto& vertex : contour.vertices)
+    for (const float x : vertex) {
+      EXPECT_GE(x, -1e-6f);
+      EXPECT_LT(x, 1.0f);
+    }
+}
+
+TEST(Periodic, TheGyroidsCellHasEulerCharacteristicMinusEight) {
+  const auto image = torus_image<3>({21, 20, 23}, gyroid);
+  const auto contour = wrapped(image, all_periodic<3>(), 0.0);
+  expect_closed(contour);
+  EXPECT_EQ(check(contour).euler, -8);
+  EXPECT_EQ(check(contour).components, 1u);
+  // Schwarz's primitive surface
+  const auto primitive = torus_image<3>({21, 20, 23}, sum_of_cosines<3>);
+  EXPECT_EQ(check(wrapped(primitive, all_periodic<3>(), 0.01)).euler, -4);
+}
+
+TEST(Periodic, ContoursOnToriAreClosedWhateverTheTriangulationAndAmbiguity) {
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}) {
+      ExtractOptions options;
+      options.triangulation = triangulation;
+      options.ambiguity = ambiguity;
+      expect_closed(wrapped(torus_image<2>({9, 7}, noise_of<2>(1)), all_periodic<2>(), 0.0, options));
+      expect_closed(wrapped(torus_image<3>({7, 5, 6}, noise_of<3>(2)), all_periodic<3>(), 0.0, options));
+      expect_closed(wrapped(torus_image<4>({4, 5, 3, 4}, noise_of<4>(3)), all_periodic<4>(), 0.0, options));
+    }
+}
+
+template <int N>
+void expect_shift_changes_nothing(const std::array<std::size_t, N>& sizes) {
+  const auto contour = wrapped(torus_image<N>(sizes, noise_of<N>(7)), all_periodic<N>(), 0.0);
+  const auto shifted = wrapped(torus_image<N>(sizes, noise_of<N>(7), 1), all_periodic<N>(), 0.0);
+  EXPECT_EQ(contour.vertices.size(), shifted.vertices.size());
+  EXPECT_EQ(contour.simplices.size(), shifted.simplices.size());
+  EXPECT_EQ(check(contour).components, check(shifted).components);
+  EXPECT_EQ(check(contour).euler, check(shifted).euler);
+  EXPECT_NEAR(measure(contour).size, measure(shifted).size, 1e-5 * measure(contour).size);
+}
+
+TEST(Periodic, ShiftedSamplesGiveTheSameContour) {
+  expect_shift_changes_nothing<2>({70, 11});
+  expect_shift_changes_nothing<3>({5, 7, 6});
+  expect_shift_changes_nothing<4>({4, 5, 3, 5});
+}
+
+TEST(Periodic, AnySetOfAxesMayBePeriodic) {
+  const auto image = torus_image<3>({6, 5, 7}, noise_of<3>(11));
+  for (unsigned axes = 1; axes < 8; ++axes) {
+    AxisPeriods<3> periods{};
+    for (int a = 0; a < 3; ++a) periods[a] = (axes >> a & 1u) != 0 ? 1.0 : 0.0;
+    const auto contour = wrapped<double>(image, periods, 0.0);
+    EXPECT_EQ(contour.periods.size(), std::size_t(std::popcount(axes)));
+    EXPECT_TRUE(is_manifold(check(contour)));
+    EXPECT_EQ(is_closed(check(contour)), axes == 7u);
+    // the simplices are those of the longer image, and so are their sizes
+    const auto unrolled = unroll(contour);
+    EXPECT_EQ(unrolled.contour.simplices.size(), contour.simplices.size());
+    EXPECT_TRUE(unrolled.contour.periods.empty());
+    EXPECT_EQ(unrolled.originals.size(), unrolled.contour.vertices.size());
+    EXPECT_NEAR(measure(unrolled.contour).size, measure(contour).size, 1e-9);
+    double longest = 0.0;
+    for (const auto& simplex : unrolled.contour.simplices)
+      for (int a = 0; a < 3; ++a)
+        longest = std::max(
+            longest, std::abs(unrolled.contour.vertices[simplex[0]][a] - unrolled.contour.vertices[simplex[1]][a]));
+    EXPECT_LT(longest, 0.21);
+    for (std::size_t s = 0; s < contour.simplices.size(); ++s)
+      for (int j = 0; j < 3; ++j)
+        EXPECT_EQ(unrolled.originals[unrolled.contour.simplices[s][j]], contour.simplices[s][j]);
+  }
+}
+
+template <int N>
+void expect_manifold_with_missing_values(const std::array<std::size_t, N>& sizes, unsigned seed) {
+  auto image = torus_image<N>(sizes, noise_of<N>(seed));
+  std::mt19937 random(seed);
+  for (float& value : image.values)
+    if (random() % 8 == 0) value = std::numeric_limits<float>::quiet_NaN();
+  const auto contour = wrapped(image, all_periodic<N>(), 0.0);
+  EXPECT_TRUE(is_manifold(check(contour))) << "seed " << seed;
+  EXPECT_GT(contour.simplices.size(), 0u);
+  for (const auto& simplex : unroll(contour).contour.simplices)
+    EXPECT_EQ(std::set(simplex.begin(), simplex.end()).size(), std::size_t{N});
+}
+
+TEST(Periodic, AtMissingValuesOnTheSeamTheContourIsAManifold) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    expect_manifold_with_missing_values<2>({7, 6}, seed);
+    expect_manifold_with_missing_values<3>({5, 4, 6}, seed);
+    expect_manifold_with_missing_values<4>({4, 3, 5, 4}, seed);
+  }
+}
+
+TEST(Periodic, SamplesThatEqualTheIsovalueAreMergedByTheirCells) {
+  const auto sign = [](const auto& x) { return std::round(sum_of_cosines<3>(x)); };
+  const auto image = torus_image<3, std::int8_t>({8, 8, 8}, sign);
+  const auto contour = wrapped(image, all_periodic<3>(), 0.0);
+  EXPECT_TRUE(is_closed(check(contour)));
+  const auto shifted = wrapped(torus_image<3, std::int8_t>({8, 8, 8}, sign, 3), all_periodic<3>(), 0.0);
+  EXPECT_EQ(check(contour).euler, check(shifted).euler);
+}
+
+TEST(Periodic, TheBytesDoNotDependOnThreads) {
+  const auto image = torus_image<4>({9, 8, 10, 9}, noise_of<4>(5));
+  ExtractOptions one, many;
+  one.work.threads = 1;
+  many.work.threads = 4;
+  const auto first = wrapped(image, all_periodic<4>(), 0.1, one);
+  const auto second = wrapped(image, all_periodic<4>(), 0.1, many);
+  EXPECT_EQ(first.vertices, second.vertices);
+  EXPECT_EQ(first.simplices, second.simplices);
+}
+
+/// A ball of radius 0.3 whose centre moves along x over time, so that it crosses the seam; 4 samples of time.
+double moving_ball(double x, double y, double z, double t) {
+  const double d = std::abs(x - t) - std::round(std::abs(x - t));
+  return 0.3 - std::sqrt(d * d + (y - 0.5) * (y - 0.5) + (z - 0.5) * (z - 0.5));
+}
+
+TEST(Periodic, ABallAcrossTheSeamHasTheMeasuresOfABall) {
+  const auto at = [](double t) {
+    return torus_image<3>({40, 40, 40}, [t](const auto& x) { return moving_ball(x[0], x[1], x[2], t); });
+  };
+  const auto across = wrapped<double>(at(0.0), {1.0, 0.0, 0.0}, 0.0);
+  const auto inside = wrapped<double>(at(0.5), {1.0, 0.0, 0.0}, 0.0);
+  EXPECT_EQ(check(across).components, 1u);
+  EXPECT_EQ(check(across).euler, 2);
+  EXPECT_NEAR(measure(across).size, measure(inside).size, 1e-9);
+  ASSERT_TRUE(measure(across).content);
+  EXPECT_NEAR(*measure(across).content, *measure(inside).content, 1e-9);
+  EXPECT_NEAR(*measure(across).content, 4.0 / 3.0 * std::numbers::pi * 0.027, 1e-3);
+  const auto parts = components(across, label_components(across));
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_NEAR(*parts[0].content, *measure(inside).content, 1e-9);
+  EXPECT_NEAR(std::remainder(parts[0].centroid[0], 1.0), 0.0, 1e-6);
+  EXPECT_NEAR(parts[0].highest[0] - parts[0].lowest[0], 0.6, 1e-2);
+}
+
+TEST(Periodic, AThingThatCrossesTheDateLineIsOneTrack) {
+  const auto image =
+      torus_image<4>({24, 24, 24, 12}, [](const auto& x) { return moving_ball(x[0], x[1], x[2], 2 * x[3]); });
+  const auto contour = wrapped<double>(image, {1.0, 0.0, 0.0, 0.0}, 0.0);
+  EXPECT_EQ(check(contour).components, 1u);
+  TrackOptions options;
+  options.times = {0.2, 0.5, 0.6};
+  const TrackGraph graph = track(contour, options);
+  EXPECT_EQ(graph.tracks.size(), 1u);
+  const auto cut = slice(contour, Hyperplane<4>::across(3, 0.5));
+  EXPECT_TRUE(is_closed(check(cut)));
+  EXPECT_EQ(check(cut).components, 1u);
+  EXPECT_EQ(cut.periods.size(), 1u);
+  EXPECT_NEAR(*measure(cut).content, 4.0 / 3.0 * std::numbers::pi * 0.027, 6e-3);
+  ASSERT_EQ(graph.segments.size(), 1u);
+  ASSERT_EQ(graph.segments[0].samples.size(), 3u);
+  EXPECT_NEAR(graph.segments[0].samples[1].measure, measure(cut).size, 1e-9);
+  EXPECT_NEAR(graph.segments[0].samples[1].content, *measure(cut).content, 1e-9);
+  // with a border instead of the seam there are two
+  EXPECT_GT(check(extract(image.view(), 0.0)).components, 1u);
+}
+
+TEST(Periodic, ASurfaceAroundThePeriodEnclosesWhatIsAcross) {
+  // a tube along x, and a plane that has no inside
+  const auto tube =
+      torus_image<3>({12, 40, 40}, [](const auto& x) { return 0.3 - std::hypot(x[1] - 0.5, x[2] - 0.5); });
+  const auto contour = wrapped<double>(tube, {1.0, 0.0, 0.0}, 0.0);
+  EXPECT_TRUE(is_closed(check(contour)));
+  EXPECT_EQ(check(contour).euler, 0);
+  EXPECT_NEAR(*measure(contour).content, std::numbers::pi * 0.09, 2e-3);
+  EXPECT_NEAR(measure(contour).size, kTurn * 0.3, 1e-2);
+  const auto plane = torus_image<3>({12, 9, 10}, [](const auto& x) { return 0.45 - x[2]; });
+  const auto layer = wrapped<double>(plane, {1.0, 1.0, 0.0}, 0.0);
+  EXPECT_TRUE(is_closed(check(layer)));
+  EXPECT_NEAR(measure(layer).size, 1.0, 1e-9);
+  EXPECT_FALSE(measure(layer).content);
+}
+
+TEST(Periodic, AffineMapsAndDescendingAxesKeepTheTopology) {
+  auto image = torus_image<3>({14, 15, 13}, gyroid);
+  image.grid.linear = {{{0.0, 0.5, 0.5}, {0.5, 0.0, 0.5}, {0.5, 0.5, 0.0}}};
+  image.grid.offset = {3.0, -2.0, 7.0};
+  image.grid.axes[1] = Axis::uniform(15, 5.0, -1.0 / 15);
+  const auto contour = wrapped(image, all_periodic<3>(), 0.0);
+  EXPECT_TRUE(is_closed(check(contour)));
+  EXPECT_EQ(check(contour).euler, -8);
+  const auto unrolled = unroll(contour).contour;
+  EXPECT_NEAR(measure(unrolled).size, measure(contour).size, 1e-5);
+  EXPECT_LT(measure(unrolled).size, 3.0);
+}
+
+TEST(Periodic, LongitudesAreFoundByTheirUnitAndSpan) {
+  Grid<3> grid = Grid<3>::unit({72, 36, 4});
+  grid.axes[0] = Axis::uniform(72, -177.5, 5.0);
+  grid.axes[1] = Axis::uniform(36, -87.5, 5.0);
+  grid.axes[0].unit = "degrees_east";
+  grid.axes[1].unit = "degrees_north";
+  EXPECT_EQ(longitude_periods(grid), (AxisPeriods<3>{360.0, 0.0, 0.0}));
+  EXPECT_EQ(sample_periods(grid, std::array{0, 2}), (AxisPeriods<3>{360.0, 0.0, 4.0}));
+  grid.axes[0] = grid.axes[0].part(0, 71);
+  EXPECT_EQ(longitude_periods(grid), (AxisPeriods<3>{}));
+}
+
+TEST(Periodic, BadPeriodsAndOptionsAreRefused) {
+  const auto image = torus_image<2>({5, 4}, sum_of_cosines<2>);
+  const auto refuses = [&](const std::string& part, const AxisPeriods<2>& periods, const ExtractOptions& options = {}) {
+    expect_error(ErrorCode::InvalidArgument, part, [&] { (void)wrapped(image, periods, 0.0, options); });
+  };
+  refuses("no axis is periodic", {0.0, 0.0});
+  refuses("more than 0.8", {0.8, 0.0});
+  refuses("is -1; expected a positive number", {-1.0, 0.0});
+  refuses("is inf", {std::numeric_limits<double>::infinity(), 0.0});
+  ExtractOptions options;
+  options.close = true;
+  refuses("close", {1.0, 0.0}, options);
+  options = {};
+  options.normals = Normals::differences;
+  refuses("normals", {1.0, 0.0}, options);
+  const auto contour = wrapped(torus_image<3>({5, 4, 5}, gyroid), all_periodic<3>(), 0.0);
+  expect_error(ErrorCode::InvalidArgument, "across one of its periods",
+               [&] { (void)slice(contour, Hyperplane<3>::across(0, 0.5)); });
+  expect_error(ErrorCode::UnsupportedData, "simplify: a wrapped contour, with 3 periods",
+               [&] { (void)simplify(contour, {}); });
+  expect_error(ErrorCode::InvalidArgument, "is periodic", [&] { (void)track(contour, {}); });
+}
+
+}  // namespace
+}  // namespace tegl::test
