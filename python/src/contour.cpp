@@ -102,12 +102,25 @@ AnyContour contour_of(int dim, const py::array& vertices, const Rows<Index>& sim
               fmt::format("vertices and simplices have rows of {} numbers; expected 2 to 5", dim));
 }
 
+/// `numbers`: for each period `vector`, `dual` and `start`.
+template <int N>
+void set_periods(const std::vector<double>& numbers, std::vector<Period<N>>& periods) {
+  auto at = numbers.begin();
+  for (std::size_t p = 0; p < numbers.size() / (2 * N + 1); ++p) {
+    Period<N>& period = periods.emplace_back();
+    for (double& x : period.vector) x = *at++;
+    for (double& x : period.dual) x = *at++;
+    period.start = *at++;
+  }
+}
+
 std::unique_ptr<AnyContour> from_arrays(const py::array& vertices, const Rows<Index>& simplices,
                                         const std::optional<py::array>& normals,
                                         const std::vector<std::string>& axis_names,
                                         const std::vector<std::string>& axis_units, const std::string& direction,
                                         std::optional<double> isovalue, const AttributeArguments& vertex_attributes,
-                                        const AttributeArguments& simplex_attributes) {
+                                        const AttributeArguments& simplex_attributes,
+                                        const std::vector<double>& periods) {
   const int dim = vertices.ndim() == 2 ? static_cast<int>(vertices.shape(1)) : 0;
   const bool is_double = py::isinstance<py::array_t<double>>(vertices);
   auto result = std::make_unique<AnyContour>(is_double ? contour_of<double>(dim, vertices, simplices, normals)
@@ -122,6 +135,7 @@ std::unique_ptr<AnyContour> from_arrays(const py::array& vertices, const Rows<In
         contour.direction = named<GradientDirection>("direction", direction, gradient_directions());
         contour.vertex_attributes = to_attributes(vertex_attributes, contour.vertices.size(), "vertices");
         contour.simplex_attributes = to_attributes(simplex_attributes, contour.simplices.size(), "simplices");
+        set_periods(periods, contour.periods);
       },
       result->contour);
   return result;
@@ -155,6 +169,15 @@ void bind_contour(py::module_& m) {
   const auto direction = [](const auto& c, const py::object&) {
     return c.direction == GradientDirection::descent ? "descent" : "ascent";
   };
+  const auto periods = [](const auto& c, const py::object&) {
+    std::vector<double> numbers;
+    for (const auto& period : c.periods) {
+      numbers.insert(numbers.end(), period.vector.begin(), period.vector.end());
+      numbers.insert(numbers.end(), period.dual.begin(), period.dual.end());
+      numbers.push_back(period.start);
+    }
+    return numbers;
+  };
   const auto of_vertices = [](const auto& c, const py::object& self) {
     return attribute_arrays(c.vertex_attributes, self);
   };
@@ -165,6 +188,7 @@ void bind_contour(py::module_& m) {
       .def_static("from_arrays", &from_arrays, py::arg("vertices"), py::arg("simplices"), py::arg("normals"),
                   py::arg("axis_names"), py::arg("axis_units"), py::arg("direction"), py::arg("isovalue"),
                   py::arg("vertex_attributes"), py::arg("simplex_attributes"),
+                  py::arg("periods") = std::vector<double>(),
                   "A contour from arrays, which are copied. Attributes: (name, unit, values) each.")
       .def("take_arrays", &take_arrays,
            "(vertices, simplices, normals): the memory itself, to write to. The contour is empty afterwards.")
@@ -175,6 +199,7 @@ void bind_contour(py::module_& m) {
       .def_property_readonly("axis_names", of_contour(names))
       .def_property_readonly("axis_units", of_contour(units))
       .def_property_readonly("direction", of_contour(direction))
+      .def_property_readonly("periods", of_contour(periods), "vector, dual and start of each period, flat")
       .def_property_readonly("vertex_attributes", of_contour(of_vertices), "name -> (values, unit)")
       .def_property_readonly("simplex_attributes", of_contour(of_simplices), "name -> (values, unit)")
       .def_readonly("isovalue", &AnyContour::isovalue);

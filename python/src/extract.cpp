@@ -5,9 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/normals.hpp"
+#include "tegl/periodic.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl::python {
@@ -133,6 +136,56 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
   });
 }
 
+template <class Real>
+AnyContour periodic_contour_of(const AnyImage& image, const std::vector<int>& axes, const std::vector<double>& given,
+                               double level, const ExtractOptions& options) {
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
+    if constexpr (N <= 4) {
+      AxisPeriods<N> periods = sample_periods(view.grid(), axes);
+      const AxisPeriods<N> longitudes = longitude_periods(view.grid());
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        const auto axis = static_cast<std::size_t>(axes[i]);
+        if (longitudes[axis] != 0.0) periods[axis] = longitudes[axis];
+        if (!std::isnan(given.at(i))) periods[axis] = given[i];
+      }
+      return {extract_periodic<Real>(view, periods, level, options), level};
+    } else {
+      throw_dimension("periodic axes", N, "2 to 4 dimensions");
+    }
+  });
+}
+
+std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const std::vector<int>& axes,
+                                                 const std::vector<double>& periods, double level, bool is_double,
+                                                 const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
+  return call.run([&] {
+    auto result =
+        std::make_unique<AnyContour>(is_double ? periodic_contour_of<double>(image, axes, periods, level, options)
+                                               : periodic_contour_of<float>(image, axes, periods, level, options));
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
+}
+
+std::pair<std::unique_ptr<AnyContour>, py::array> unroll_any(const AnyContour& contour) {
+  Buffer<Index> originals;
+  auto result = std::make_unique<AnyContour>(std::visit(
+      [&]<int N, class Real>(const Contour<N, Real>& c) -> AnyContour {
+        if constexpr (N <= 4) {
+          Unrolled<N, Real> unrolled = unroll(c);
+          originals = std::move(unrolled.originals);
+          return {std::move(unrolled.contour), contour.isovalue};
+        } else {
+          throw_dimension("unroll", N, "2 to 4 dimensions");
+        }
+      },
+      contour.contour));
+  return {std::move(result), py::array_t<Index>(static_cast<py::ssize_t>(originals.size()), originals.data())};
+}
+
 std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, double level, const py::dict& arguments,
                                                   const py::object& progress) {
   Call call(progress);
@@ -183,6 +236,9 @@ void bind_extract(py::module_& m) {
       .def_property_readonly("ndim", [](const AnyImage& image) { return image.array.ndim(); });
   m.def("extract", &extract_any, py::arg("image"), py::arg("level"), py::arg("double"), py::arg("options"),
         py::arg("progress"), doc::extract);
+  m.def("extract_periodic", &extract_periodic_any, py::arg("image"), py::arg("axes"), py::arg("periods"),
+        py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
+  m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
   m.def("count", &count_any, py::arg("image"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::slice_image);

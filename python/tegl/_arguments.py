@@ -145,6 +145,24 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     return axis % ndim
 
 
+def periodic_axes(periodic: object, prepared: Prepared) -> tuple[list[int], list[float]]:
+    """The library's axes and their periods (NaN: by the samples) of the argument `periodic`."""
+    if isinstance(periodic, str) and periodic == "all":
+        periodic = list(range(prepared.ndim))
+    if isinstance(periodic, (str, int, np.integer)) and not isinstance(periodic, bool):
+        periodic = [periodic]
+    if isinstance(periodic, Mapping):
+        given = [(axis, as_number(f"periodic[{axis!r}]", period)) for axis, period in periodic.items()]
+    elif isinstance(periodic, (list, tuple)):
+        given = [(axis, float("nan")) for axis in periodic]
+    else:
+        raise TypeError(f"periodic is {periodic!r}; expected an axis, a list of axes, 'all', or a dict of axes and periods")
+    axes = [prepared.library_axis(axis) for axis, _ in given]
+    if not axes or len(set(axes)) != len(axes):
+        raise ValueError(f"periodic is {periodic!r}; expected at least one axis, each once")
+    return axes, [period for _, period in given]
+
+
 def turn_around(time_axis: int, ndim: int) -> bool:
     """Whether the library's axes are the array's in reverse order."""
     if as_whole("time_axis", time_axis) not in (0, -1, ndim - 1):

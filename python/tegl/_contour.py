@@ -159,6 +159,12 @@ class Contour:
         return self._core.direction
 
     @property
+    def periods(self) -> np.ndarray:
+        """#P x N: the vectors by which a wrapped contour repeats itself, columns as in `vertices`; 0 x N for others."""
+        numbers = np.array(self._core.periods).reshape(-1, 2 * self.ndim + 1)
+        return self._turned(numbers[:, :self.ndim])
+
+    @property
     def isovalue(self) -> float | None:
         """The level of the contour; None if a file does not contain it."""
         return self._core.isovalue
@@ -173,7 +179,8 @@ class Contour:
         return _restored, (type(self), np.array(core.vertices), np.array(core.simplices),
                            None if core.normals is None else np.array(core.normals), core.axis_names, core.axis_units,
                            core.direction, core.isovalue, attributes(core.vertex_attributes),
-                           attributes(core.simplex_attributes), self._is_reversed, self._extent), own or None
+                           attributes(core.simplex_attributes), core.periods, self._is_reversed,
+                           self._extent), own or None
 
     def __repr__(self) -> str:
         what = {2: "segments", 3: "triangles", 4: "tetrahedra", 5: "4-simplices"}[self.ndim]
@@ -193,6 +200,16 @@ class Contour:
                                 self.axis_units[axis], of)
 
     # What can be done with it: see the functions of the same names.
+
+    def unroll(self) -> tuple[Contour, np.ndarray]:
+        """An unrolled copy of a wrapped contour (`tegl.contour(..., periodic=...)`), and the number of each of its
+        vertices in the wrapped one.
+
+        Simplices across the seam are moved to the end of the period, with copies of their vertices. Vertices and
+        simplices keep their numbers; the copies follow. For pictures, and for operations that do not know periods.
+        """
+        core, originals = _tegl.unroll(self._core)
+        return Contour._of(core, self._is_reversed, None, self._grid), originals
 
     @typing.overload
     def slice(self, at: Place | None = None, *, axis: int | str | None = None,

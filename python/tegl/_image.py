@@ -22,7 +22,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals = False, gradient: _kinds.Gradient = "differences",
-            dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
+            dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+            periodic=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
@@ -69,6 +70,10 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     progress
         Called repeatedly with the fraction done. If it returns False, the call raises `tegl.Cancelled`. Ctrl-C ends the
         call too.
+    periodic
+        Axes that are periodic: a name or number, a list of these, "all", or a dict of axes and their periods. Otherwise
+        the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
+        across the seam, and `Contour.unroll` makes one for pictures. See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -81,7 +86,11 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     is_double = _arguments.is_double(dtype, prepared)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     with prepared.terms():
-        core = _tegl.extract(prepared.image, level, is_double, options, progress)
+        if periodic is None:
+            core = _tegl.extract(prepared.image, level, is_double, options, progress)
+        else:
+            axes, periods = _arguments.periodic_axes(periodic, prepared)
+            core = _tegl.extract_periodic(prepared.image, axes, periods, level, is_double, options, progress)
     if not allow_empty and not len(core.simplices):
         _outside.require_level(prepared, level)
     return Contour._of(core, prepared.is_reversed, prepared.extent, prepared.image.grid)

@@ -2,6 +2,7 @@
 """tegl.contour: what it takes, what it gives, and that nothing is copied on the way."""
 
 import gc
+import pickle
 import sys
 
 import numpy as np
@@ -289,3 +290,42 @@ def test_the_docstrings_are_those_of_the_headers():
     assert "Follows the parts (connected components) of the cuts" in tegl.track.__doc__
     for name in tegl.__all__:
         assert getattr(tegl, name).__doc__, name
+
+
+def test_periodic_axes_give_a_wrapped_contour(tmp_path):
+
+    turn = 2 * np.pi * np.arange(20) / 20
+    z, y, x = np.meshgrid(turn, turn, turn, indexing="ij")
+    gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    contour = tegl.contour(gyroid, 0.01, periodic="all", dtype=float)
+    report = contour.check()
+    assert report.is_closed and report.euler == -8
+    np.testing.assert_array_equal(contour.periods, 20 * np.eye(3)[::-1])
+    unrolled, originals = contour.unroll()
+    assert len(unrolled.periods) == 0 and not unrolled.check().is_closed
+    np.testing.assert_array_equal(originals[unrolled.simplices], contour.simplices)
+    assert unrolled.measure().size == pytest.approx(contour.measure().size)
+    contour.save(tmp_path / "gyroid.vtkhdf")
+    for other in (tegl.load(tmp_path / "gyroid.vtkhdf"), pickle.loads(pickle.dumps(contour))):
+        np.testing.assert_array_equal(other.periods, contour.periods)
+        assert other.measure().size == pytest.approx(contour.measure().size)
+    with pytest.raises(ValueError, match="cannot hold a wrapped contour"):
+        contour.save(tmp_path / "gyroid.ply")
+    with pytest.raises(ValueError, match="expected an unrolled one"):
+        contour.simplify(0.5)
+
+
+def test_periodic_axes_by_name_number_and_period():
+    image = np.add.outer(np.zeros(8), np.cos(2 * np.pi * np.arange(12) / 12))
+    def edges(**arguments):
+        return tegl.contour(image, 0.1, **arguments).check().boundary_simplices
+    assert edges() == 4 and edges(periodic=0) == 0
+    assert edges(periodic="x", axis_names=["y", "x"]) == 4 and edges(periodic={0: 8.0}) == 0
+    for periodic, expected in (({0: 7.0}, "expected more than 7"), ([], "at least one axis"), ([0, -2], "each once"),
+                               ("q", "no axis is named 'q'")):
+        with pytest.raises(ValueError, match=expected):
+            edges(periodic=periodic, axis_names=["y", "x"])
+    with pytest.raises(TypeError, match="periodic is True"):
+        edges(periodic=True)
+    with pytest.raises(ValueError, match="close"):
+        edges(periodic=0, close=True)

@@ -113,7 +113,10 @@ TEST(Cells, HaveTheClassesAndFiguresOfTheirShapes) {
                                                   {"tetrahedron_prism", 8, 16, 48, 22, 0},
                                                   {"wedge_prism", 12, 24, 48, 158, 48},
                                                   {"pyramid_prism", 10, 21, 16, 123, 12},
-                                                  {"hexahedron_prism", 16, 32, 384, 402, 1860}};
+                                                  {"hexahedron_prism", 16, 32, 384, 402, 1860},
+                                                  {"octahedron", 6, 12, 48, 10, 0},
+                                                  {"octahedron_prism", 12, 30, 96, 0, 150},
+                                                  {"cell16", 8, 24, 384, 15, 6}};
   const std::vector<Cell> cells = mesh_cells();
   ASSERT_EQ(std::size_t{tables::kCellShapes}, cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -13,6 +13,7 @@
 #include "input/commands.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::cli {
 
@@ -37,6 +38,7 @@ struct Description {
   std::vector<Axis> axes;
   std::vector<std::vector<double>> linear;  ///< empty if there is no world map
   std::vector<double> offset;
+  std::vector<std::string> around;  ///< the axes of longitudes that span 360 degrees
   ValueStatistics values;
   double read_seconds = 0;
   double statistics_seconds = 0;
@@ -45,6 +47,9 @@ struct Description {
 template <int N>
 void describe_grid(const Grid<N>& grid, Description& description) {
   description.axes.assign(grid.axes.begin(), grid.axes.end());
+  const AxisPeriods<N> longitudes = longitude_periods(grid);
+  for (std::size_t a = 0; a < N; ++a)
+    if (longitudes[a] != 0.0) description.around.push_back(axis_label(grid.axes[a].name, a));
   if (!grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
     description.linear.emplace_back();
@@ -122,6 +127,7 @@ Json to_json(const Description& description, const InputFiles& input) {
   json["image_dim"] = description.axes.size();
   Json& axes = json["axes"] = Json::array();
   for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
+  json["periodic"] = description.around;
   json["world_frame"] = info.world_frame;
   json["world"] = nullptr;
   if (!description.linear.empty()) {
@@ -250,6 +256,11 @@ std::string to_text(const Console& console, const Description& description, cons
   if (info.variables.size() > 1) text += report_line("variables", fmt::format("{}", fmt::join(info.variables, ", ")));
   for (std::size_t i = 0; i < description.axes.size(); ++i) {
     text += report_line(i == 0 ? "axes" : "", axis_text(description, i));
+  }
+  if (!description.around.empty()) {
+    const std::string names = fmt::format("{}", fmt::join(description.around, ","));
+    text += report_line("periodic",
+                        fmt::format("{} spans 360 degrees: --periodic {} continues across its ends", names, names));
   }
   text += world_text(description);
   const ValueType stored = info.stored_type.value_or(description.value_type);

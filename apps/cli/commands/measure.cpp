@@ -198,6 +198,8 @@ class MeasureCommand final : public ContourInputCommand {
     else if (found.boundary > 0)
       text += report_line("encloses", fmt::format("not defined: it is open (border of {})",
                                                   counted_simplices(dim - 1, found.boundary)));
+    else if (found.open == 0)
+      text += report_line("encloses", "not defined: it continues across the seam of periodic axes");
     else
       text += report_line("encloses", fmt::format("not defined: its orientations do not agree at {}",
                                                   counted_simplices(dim - 1, found.open)));

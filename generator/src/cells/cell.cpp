@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pyramids and prisms over polytopes.
+// Pyramids, prisms and double pyramids over polytopes.
 #include "cells/cell.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -43,6 +44,29 @@ Polytope prism(const Polytope& base) {
   return result;
 }
 
+/// The base's centre must be at 1 along each of its axes.
+Polytope double_pyramid(const Polytope& base) {
+  const Signature lower = Signature{1} << base.corners.size();
+  Polytope result{base.dim + 1, base.corners, {}};
+  for (const Signature apex : {lower, lower << 1})
+    for (const Signature face : base.faces) result.faces.push_back(face | apex);
+  for (Corner& corner : result.corners) corner[static_cast<std::size_t>(base.dim)] = 1;
+  Corner tip{};
+  std::fill_n(tip.begin(), base.dim, 1.0);
+  result.corners.push_back(tip);
+  tip[static_cast<std::size_t>(base.dim)] = 2;
+  result.corners.push_back(tip);
+  return result;
+}
+
+/// With corner 0 at the origin.
+Polytope at_origin(Polytope polytope) {
+  const Corner first = polytope.corners.front();
+  for (Corner& corner : polytope.corners)
+    for (std::size_t i = 0; i < corner.size(); ++i) corner[i] -= first[i];
+  return polytope;
+}
+
 Cell cell_of(std::string name, const Polytope& polytope) {
   Cell cell{std::move(name), {}, tile::FaceLattice(polytope.dim, polytope.faces)};
   cell.tile.dim = polytope.dim;
@@ -68,17 +92,24 @@ std::vector<Cell> mesh_cells() {
   const Polytope segment = pyramid(Polytope{}), triangle = pyramid(segment), square = prism(segment);
   const Polytope tetrahedron = pyramid(triangle), wedge = prism(triangle), square_pyramid = pyramid(square),
                  hexahedron = prism(square);
-  const std::pair<const char*, Polytope> shapes[tables::kCellShapes] = {{"triangle", triangle},
-                                                                        {"quadrilateral", square},
-                                                                        {"tetrahedron", tetrahedron},
-                                                                        {"wedge", wedge},
-                                                                        {"pyramid", square_pyramid},
-                                                                        {"hexahedron", hexahedron},
-                                                                        {"simplex4", pyramid(tetrahedron)},
-                                                                        {"tetrahedron_prism", prism(tetrahedron)},
-                                                                        {"wedge_prism", prism(wedge)},
-                                                                        {"pyramid_prism", prism(square_pyramid)},
-                                                                        {"hexahedron_prism", prism(hexahedron)}};
+  Polytope across = segment;  // of length 2, around 1
+  across.corners[1][0] = 2;
+  const Polytope octahedron = double_pyramid(double_pyramid(across)), cell16 = double_pyramid(octahedron);
+  const std::pair<const char*, Polytope> shapes[tables::kCellShapes] = {
+      {"triangle", triangle},
+      {"quadrilateral", square},
+      {"tetrahedron", tetrahedron},
+      {"wedge", wedge},
+      {"pyramid", square_pyramid},
+      {"hexahedron", hexahedron},
+      {"simplex4", pyramid(tetrahedron)},
+      {"tetrahedron_prism", prism(tetrahedron)},
+      {"wedge_prism", prism(wedge)},
+      {"pyramid_prism", prism(square_pyramid)},
+      {"hexahedron_prism", prism(hexahedron)},
+      {"octahedron", at_origin(octahedron)},
+      {"octahedron_prism", prism(at_origin(octahedron))},
+      {"cell16", at_origin(cell16)}};
   std::vector<Cell> cells;
   for (const auto& [name, polytope] : shapes) cells.push_back(cell_of(name, polytope));
   return cells;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The shapes of mesh cells. None is typed by hand: each is a pyramid or a prism over a smaller one, down to a point.
+// The shapes of mesh cells. None is typed by hand: each is a pyramid, a prism or a double pyramid over a
+// smaller one, down to a point.
 #pragma once
 
 #include <string>

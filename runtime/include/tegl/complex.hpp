@@ -34,11 +34,14 @@ enum class CellType : std::uint8_t {
   wedge = 13,               ///< 6 corners: two triangles
   pyramid = 14,             ///< 5 corners: the base around its border, then the apex
   simplex4 = 100,           ///< 4D: 5 corners
+  octahedron = 101,         ///< 3D: 6 corners, three pairs of opposite ones (not in VTK)
+  cell16 = 102,             ///< 4D: the 16-cell; 8 corners, four pairs of opposite ones
   tetrahedron_prism = 110,  ///< 4D: 8 corners
   voxel_prism = 111,        ///< 4D: 16 corners
   hexahedron_prism = 112,   ///< 4D: 16 corners
   wedge_prism = 113,        ///< 4D: 12 corners
   pyramid_prism = 114,      ///< 4D: 10 corners
+  octahedron_prism = 115,   ///< 4D: 12 corners
 };
 
 /// The name of a type, such as "tetrahedron"; "unknown" for another number.

@@ -42,7 +42,8 @@ struct Attribute {
 enum class GradientDirection { descent, ascent };
 
 /// A period of a wrapped contour (tegl/periodic.hpp): the points x and x + vector are the same. Vertices have their
-/// share of the period, <dual, x> - start, in [0, 1), up to rounding.
+/// share of the period, <dual, x> - start, in [0, 1], up to rounding; 1 only if a sample equals the isovalue or is
+/// missing.
 template <int N>
 struct Period {
   Vector<N> vector = {};                           ///< in world coordinates

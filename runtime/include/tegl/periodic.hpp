@@ -37,8 +37,8 @@ requires DimensionBetween<N, 2, 4>
                                                               double isovalue, const ExtractOptions& options = {});
 
 /// Extracts the contour of an image with periodic axes: there is one more layer of tiles, between the last and the
-/// first sample. The result is *wrapped*: vertices on the seam are there once, all vertices are inside the periods (up
-/// to rounding), and simplices across the seam connect vertices at both ends (Contour::periods). So check, components,
+/// first sample. The result is *wrapped*: vertices on the seam are there once, all vertices are inside the periods,
+/// and simplices across the seam connect vertices at both ends (Contour::periods). So check, components,
 /// track, measure, cuts along the seam and elements have the contour's true topology and geometry. `unroll` makes a
 /// contour for pictures and for all other functions.
 ///

@@ -33,13 +33,16 @@ constexpr CellKind kKinds[] = {
     {CellType::hexahedron_prism, "hexahedron_prism", CellShape::hexahedron_prism, true},
     {CellType::wedge_prism, "wedge_prism", CellShape::wedge_prism, false},
     {CellType::pyramid_prism, "pyramid_prism", CellShape::pyramid_prism, true},
+    {CellType::octahedron, "octahedron", CellShape::octahedron, false},
+    {CellType::cell16, "cell16", CellShape::cell16, false},
+    {CellType::octahedron_prism, "octahedron_prism", CellShape::octahedron_prism, false},
 };
 
 const CellKind& kind_of(CellType type) {
   const CellKind* const kind = find_kind(type);
   if (kind == nullptr)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("cell type {}; expected 5, 8 to 14, 100, or 110 to 114", static_cast<int>(type)));
+                fmt::format("cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115", static_cast<int>(type)));
   return *kind;
 }
 
@@ -111,6 +114,8 @@ CellShape prism_of(CellShape shape) noexcept {
       return CellShape::wedge_prism;
     case CellShape::pyramid:
       return CellShape::pyramid_prism;
+    case CellShape::octahedron:
+      return CellShape::octahedron_prism;
     default:
       return CellShape::hexahedron_prism;
   }

@@ -88,6 +88,9 @@ struct ComplexAccess {
   static double largest_coordinate(const Complex<N>& complex) noexcept {
     return complex.largest_coordinate_;
   }
+  /// A complex of cells of one type whose corners have the same orientation, also in cells without volume.
+  template <int N>
+  static Complex<N> oriented(std::vector<std::array<double, N>> points, CellType type, std::span<const Index> corners);
   /// A complex of cells that need no check.
   template <int N>
   static Complex<N> layered(std::vector<std::array<double, N>> points, CellGroups cells);

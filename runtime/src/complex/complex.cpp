@@ -4,6 +4,7 @@
 #include "tegl/complex.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -57,6 +58,25 @@ Complex<N> ComplexAccess::layered(std::vector<std::array<double, N>> points, Cel
   complex.is_layered_ = true;
   return complex;
 }
+
+template <int N>
+Complex<N> ComplexAccess::oriented(std::vector<std::array<double, N>> points, CellType type,
+                                   std::span<const Index> corners) {
+  Complex<N> complex(std::move(points), type, corners);
+  // All signs become those of the majority: only cells that are flat up to rounding differ.
+  CellSigns signs = *complex.signs_;
+  std::size_t inverted = 0;
+  for (const std::vector<std::uint64_t>& words : signs)
+    for (const std::uint64_t word : words) inverted += static_cast<std::size_t>(std::popcount(word));
+  const std::uint64_t all = 2 * inverted > complex.cell_count() ? ~std::uint64_t{0} : 0;
+  for (std::vector<std::uint64_t>& words : signs) std::fill(words.begin(), words.end(), all);
+  complex.signs_ = std::make_shared<const CellSigns>(std::move(signs));
+  return complex;
+}
+template Complex<2> ComplexAccess::oriented<2>(std::vector<std::array<double, 2>>, CellType, std::span<const Index>);
+template Complex<3> ComplexAccess::oriented<3>(std::vector<std::array<double, 3>>, CellType, std::span<const Index>);
+template Complex<4> ComplexAccess::oriented<4>(std::vector<std::array<double, 4>>, CellType, std::span<const Index>);
+
 template Complex<3> ComplexAccess::layered<3>(std::vector<std::array<double, 3>>, CellGroups);
 template Complex<4> ComplexAccess::layered<4>(std::vector<std::array<double, 4>>, CellGroups);
 

@@ -96,10 +96,6 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
         std::copy(contour.vertices.begin() + first, contour.vertices.begin() + end, contour.vertices.begin() + to);
     });
     contour.vertices.resize(number.size() - dropped_.size());
-    const std::span<const Period<N>> periods(contour.periods);
-    for_each_part(contour.vertices.size(), threads_, {}, [&](std::size_t from, std::size_t end) {
-      for (std::size_t v = from; v < end; ++v) move_inside_if_needed(periods, contour.vertices[v]);
-    });
     if (dropped_.empty()) return;
     const Index least = dropped_.front();  // smaller numbers do not change
     for_each_part(contour.simplices.size(), threads_, {}, [&](std::size_t from, std::size_t end) {
@@ -109,23 +105,6 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
         for (Index& v : simplex) v = number[v];
       }
     });
-  }
-
-  /// Vertices of the longer image have shares in [0, 1]. Most are inside, which one coordinate shows if the period is
-  /// along an axis.
-  static void move_inside_if_needed(std::span<const Period<N>> periods, Vertex& vertex) noexcept {
-    constexpr double kInside = 1.0 - 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-    bool is_inside = true;
-    for (const Period<N>& period : periods) {
-      double share = -period.start;
-      for (int a = 0; a < N; ++a)
-        if (period.dual[a] != 0.0) share += period.dual[a] * static_cast<double>(vertex[a]);
-      is_inside = is_inside && share < kInside;
-    }
-    if (is_inside) return;
-    std::array<double, N> x = widened_point<N>(vertex);
-    move_inside<N, Real>(periods, x);
-    for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(x[a]);
   }
 
   SeamCells<N> cells_;

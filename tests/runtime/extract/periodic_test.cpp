@@ -194,6 +194,7 @@ TEST(Periodic, SamplesThatEqualTheIsovalueAreMergedByTheirCells) {
   const auto image = torus_image<3, std::int8_t>({8, 8, 8}, sign);
   const auto contour = wrapped(image, all_periodic<3>(), 0.0);
   EXPECT_TRUE(is_closed(check(contour)));
+  EXPECT_EQ(check(unroll(contour).contour).unused_vertices, 0u);
   const auto shifted = wrapped(torus_image<3, std::int8_t>({8, 8, 8}, sign, 3), all_periodic<3>(), 0.0);
   EXPECT_EQ(check(contour).euler, check(shifted).euler);
 }

@@ -4,7 +4,8 @@
 // and others, and their prisms over an interval of time. table_contract.hpp has the tables of the cells of images.
 //
 // Corners. Corner 0 is the origin. A pyramid over a base of m corners has the base's corners first, its apex last; a
-// prism has the base's corners, then the same at the upper end: corner v + m is above corner v. So a quadrilateral and
+// prism has the base's corners, then the same at the upper end: corner v + m is above corner v. A double pyramid has the base's corners, then the two
+// apexes, so corners 2 a and 2 a + 1 of an octahedron and of a 16-cell are opposite. So a quadrilateral and
 // a hexahedron have the numbering of cubes (bit i of v is coordinate i). A signature has bit v set iff corner v is
 // high.
 //
@@ -48,9 +49,12 @@ enum class CellShape : std::uint8_t {
   wedge_prism,        ///< 4D: wedge x interval
   pyramid_prism,      ///< 4D: pyramid x interval
   hexahedron_prism,   ///< 4D: hexahedron x interval
+  octahedron,         ///< 3D: a double pyramid over a square
+  octahedron_prism,   ///< 4D: octahedron x interval
+  cell16,             ///< 4D: a double pyramid over an octahedron, the cross-polytope
 };
 /// Number of shapes.
-inline constexpr unsigned kCellShapes = 11;
+inline constexpr unsigned kCellShapes = 14;
 
 /// The contour of one signature.
 struct CellList {

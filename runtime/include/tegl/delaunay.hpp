@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Complexes of scattered points: Delaunay triangulations in 2D to 4D.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "tegl/complex.hpp"
+
+namespace tegl {
+
+/// Whether the library was built with Qhull, which `delaunay` needs.
+[[nodiscard]] bool has_delaunay() noexcept;
+
+/// The Delaunay triangulation of points in N = 2, 3 or 4 dimensions, as a complex whose point numbers are those of
+/// `points`; set its values to contour them. What lies outside of the convex hull is outside of the complex. Points on
+/// a common sphere, as in grids, are triangulated in one of the possible ways; some of the cells may then have no
+/// volume, and the contour has simplices of zero size in them. Contours are closed oriented manifolds away from the
+/// hull.
+///
+/// Errors: InvalidArgument (fewer than N + 1 points, a coordinate that is not finite, two equal points, all points in a
+/// hyperplane; points so close to others that rounding hides them, which are named); TooLarge (2^31 points or more);
+/// UnsupportedData (a build without Qhull). Time and memory: those of Qhull, about O(P log P) in 2D and 3D; one thread.
+///
+/// Based on: C. B. Barber, D. P. Dobkin and H. Huhdanpaa, The Quickhull algorithm for convex hulls, 1996 (the library
+/// Qhull; merged facets are triangulated, and input is not joggled).
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Complex<N> delaunay(std::span<const std::array<double, N>> points);
+
+}  // namespace tegl

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Delaunay triangulations by Qhull.
+#include "tegl/delaunay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "complex/cell_groups.hpp"
+#include "tegl/error.hpp"
+
+#ifdef TEGL_HAS_QHULL
+extern "C" {
+#include <libqhull_r/qhull_ra.h>
+}
+#endif
+
+namespace tegl {
+namespace {
+
+[[noreturn]] [[maybe_unused]] void refuse(const std::string& message) {
+  throw Error(ErrorCode::InvalidArgument, message);
+}
+
+/// Throws for points that Qhull cannot or should not take.
+template <int N>
+[[maybe_unused]] void check_points(std::span<const std::array<double, N>> points) {
+  if (points.size() < N + 1) refuse(fmt::format("{} points in {}D; expected at least {}", points.size(), N, N + 1));
+  if (points.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw Error(ErrorCode::TooLarge, fmt::format("{} points; expected fewer than 2^31", points.size()));
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (const double x : points[p])
+      if (!std::isfinite(x)) refuse(fmt::format("point {} has the coordinate {}; expected finite ones", p, x));
+  std::vector<Index> order(points.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return points[a] < points[b]; });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (points[order[i]] == points[order[i - 1]])
+      refuse(fmt::format("points {} and {} are equal; expected different points", order[i - 1], order[i]));
+}
+
+#ifdef TEGL_HAS_QHULL
+/// A run of Qhull, with its messages in memory.
+class Qhull {
+ public:
+  Qhull() : messages_(open_memstream(&text_, &length_)) {
+    if (messages_ == nullptr) throw std::bad_alloc();
+    qh_zero(&qh_, messages_);
+  }
+  Qhull(const Qhull&) = delete;
+  Qhull& operator=(const Qhull&) = delete;
+  ~Qhull() {
+    qh_.NOerrexit = True;
+    qh_freeqhull(&qh_, qh_ALL);
+    int current = 0, total = 0;
+    qh_memfreeshort(&qh_, &current, &total);
+    std::fclose(messages_);
+    std::free(text_);
+  }
+
+  /// Returns Qhull's exit code.
+  int run(int dim, std::vector<double>& coordinates, const char* command) {
+    std::string copy = command;
+    return qh_new_qhull(&qh_, dim, static_cast<int>(coordinates.size()) / dim, coordinates.data(), False, copy.data(),
+                        nullptr, messages_);
+  }
+  /// Qhull's first message.
+  [[nodiscard]] std::string message() {
+    std::fflush(messages_);
+    const std::string all(text_, length_);
+    return all.substr(0, all.find('\n'));
+  }
+  [[nodiscard]] qhT& state() noexcept { return qh_; }
+
+ private:
+  char* text_ = nullptr;
+  std::size_t length_ = 0;
+  std::FILE* messages_;
+  qhT qh_{};
+};
+
+/// The corners of the simplices of the lower hull, all with the same orientation: that of the hull, which is known
+/// also for simplices without volume.
+template <int N>
+std::vector<Index> lower_simplices(qhT& state) {
+  qhT* const qh = &state;
+  std::vector<Index> corners;
+  facetT* facet = nullptr;
+  vertexT *vertex = nullptr, **vertexp = nullptr;
+  FORALLfacets {
+    if (facet->upperdelaunay != 0U) continue;
+    std::array<Index, N + 1> simplex{};
+    std::size_t count = 0;
+    FOREACHvertex_(facet->vertices) {
+      if (count <= N) simplex[count] = static_cast<Index>(qh_pointid(qh, vertex->point));
+      ++count;
+    }
+    if (count != N + 1) throw Error(ErrorCode::UnsupportedData, "Qhull left a facet that is no simplex");
+    if (facet->toporient != 0U) std::swap(simplex[0], simplex[1]);
+    corners.insert(corners.end(), simplex.begin(), simplex.end());
+  }
+  return corners;
+}
+#endif
+
+constexpr CellType simplex_type(int dim) {
+  return dim == 2 ? CellType::triangle : dim == 3 ? CellType::tetrahedron : CellType::simplex4;
+}
+
+/// Throws if a point is in no cell.
+[[maybe_unused]] void require_all_points(std::size_t points, const std::vector<Index>& corners) {
+  std::vector<bool> is_used(points, false);
+  for (const Index p : corners) is_used[p] = true;
+  const auto lost = std::find(is_used.begin(), is_used.end(), false);
+  if (lost == is_used.end()) return;
+  refuse(
+      fmt::format("point {} and {} others are so close to other points that rounding hides them; expected points "
+                  "that are further apart",
+                  lost - is_used.begin(), std::count(lost + 1, is_used.end(), false)));
+}
+
+}  // namespace
+
+bool has_delaunay() noexcept {
+#ifdef TEGL_HAS_QHULL
+  return true;
+#else
+  return false;
+#endif
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Complex<N> delaunay(std::span<const std::array<double, N>> points) {
+#ifdef TEGL_HAS_QHULL
+  check_points<N>(points);
+  std::vector<double> coordinates;
+  coordinates.reserve(points.size() * N);
+  // relative to the middle, so that squares of coordinates lose few digits
+  std::array<double, N> middle{};
+  for (int a = 0; a < N; ++a) {
+    const auto [least, most] =
+        std::minmax_element(points.begin(), points.end(), [a](const auto& p, const auto& q) { return p[a] < q[a]; });
+    middle[a] = (*least)[a] + 0.5 * ((*most)[a] - (*least)[a]);
+  }
+  for (const std::array<double, N>& point : points)
+    for (int a = 0; a < N; ++a) coordinates.push_back(point[a] - middle[a]);
+  Qhull qhull;
+  // d: Delaunay; Qbb: scaled last coordinate; Qt: triangulated facets; Qz: a point at infinity, for points on a sphere
+  const int exit = qhull.run(N, coordinates, "qhull d Qbb Qt Qz Q12");
+  if (exit == qh_ERRsingular)
+    refuse(fmt::format("{} points that lie in a {}; expected points in {} dimensions", points.size(),
+                       N == 2   ? "line"
+                       : N == 3 ? "plane"
+                                : "hyperplane",
+                       N));
+  if (exit != 0)
+    throw Error(ErrorCode::UnsupportedData, fmt::format("Qhull: {}; expected other points", qhull.message()));
+  const std::vector<Index> corners = lower_simplices<N>(qhull.state());
+  require_all_points(points.size(), corners);
+  return detail::ComplexAccess::oriented<N>({points.begin(), points.end()}, simplex_type(N), corners);
+#else
+  (void)points;
+  throw Error(ErrorCode::UnsupportedData, "this build of tegl has no Qhull; expected one with libqhull-dev");
+#endif
+}
+
+template Complex<2> delaunay<2>(std::span<const std::array<double, 2>>);
+template Complex<3> delaunay<3>(std::span<const std::array<double, 3>>);
+template Complex<4> delaunay<4>(std::span<const std::array<double, 4>>);
+
+}  // namespace tegl

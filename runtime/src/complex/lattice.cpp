@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Complexes of images on staggered lattices.
+#include "tegl/lattice.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "complex/lattice_cells.hpp"
+#include "tegl/error.hpp"
+
+namespace tegl {
+namespace {
+
+struct LatticeFacts {
+  Lattice lattice;
+  const char* name;
+  int dim;
+  double layer_step;
+};
+constexpr LatticeFacts kLattices[] = {{Lattice::triangular, "triangular", 2, 0.86602540378443864676},
+                                      {Lattice::fcc, "fcc", 3, 0.70710678118654752440},
+                                      {Lattice::bcc, "bcc", 3, 0.5},
+                                      {Lattice::d4, "d4", 4, 0.5},
+                                      {Lattice::fcc_in_time, "fcc_in_time", 4, 0.70710678118654752440}};
+
+const LatticeFacts& facts_of(Lattice lattice) noexcept {
+  return *std::find_if(std::begin(kLattices), std::end(kLattices) - 1,
+                       [&](const LatticeFacts& facts) { return facts.lattice == lattice; });
+}
+
+/// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are two layers.
+template <int N>
+void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
+  for (int a = 0; a < layers; ++a) {
+    const Axis& axis = grid.axes[a];
+    const double step = axis.step();
+    for (std::size_t i = 1; i < axis.size(); ++i)
+      if (std::abs(axis[i] - axis[i - 1] - step) > 1e-6 * std::abs(step))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("lattice {}: axis {} has a step of {}; expected {}, that of all others",
+                                name_of(lattice), a, axis[i] - axis[i - 1], step));
+  }
+  if (grid.axes[layers].size() < 2)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("lattice {}: {} layers; expected at least 2", name_of(lattice), grid.axes[layers].size()));
+}
+
+/// The places of samples in the world; the odd layers of axis `layers` are shifted along the axes before it.
+template <int N>
+std::vector<std::array<double, N>> points_of(const Grid<N>& grid, int layers) {
+  std::size_t count = 1;
+  for (const Axis& axis : grid.axes) {
+    if (axis.size() == 0 || count > std::numeric_limits<Index>::max() / axis.size())
+      throw Error(ErrorCode::TooLarge, "2^32 samples of a lattice or more; expected fewer");
+    count *= axis.size();
+  }
+  std::vector<std::array<double, N>> points(count);
+  std::array<std::size_t, N> index{};
+  for (std::array<double, N>& point : points) {
+    std::array<double, N> x;
+    for (int a = 0; a < N; ++a) x[a] = grid.axes[a][index[a]];
+    for (int a = 0; a < layers && index[layers] % 2 == 1; ++a) x[a] += 0.5 * grid.axes[a].step();
+    for (int row = 0; row < N; ++row) {
+      point[row] = grid.offset[row];
+      for (int a = 0; a < N; ++a) point[row] += grid.linear[row][a] * x[a];
+    }
+    for (int a = 0; a < N && ++index[a] == grid.axes[a].size(); ++a) index[a] = 0;
+  }
+  return points;
+}
+
+template <Value T, int N>
+std::vector<double> values_of(const Image<T, N>& image) {
+  std::size_t count = 1;
+  for (int a = 0; a < N; ++a) count *= image.size(a);
+  std::vector<double> values(count);
+  std::array<std::size_t, N> index{};
+  for (double& value : values) {
+    value = static_cast<double>(image(index));
+    for (int a = 0; a < N && ++index[a] == image.size(a); ++a) index[a] = 0;
+  }
+  return values;
+}
+
+template <int N>
+std::array<std::size_t, 4> four_sizes(const Grid<N>& grid) {
+  std::array<std::size_t, 4> sizes{1, 1, 1, 1};
+  for (int a = 0; a < N; ++a) sizes[a] = grid.axes[a].size();
+  return sizes;
+}
+
+/// The prisms of the cells of one layer in time.
+template <Value T>
+Complex<4> in_time_of(const Image<T, 4>& image) {
+  const Grid<4>& grid = image.grid();
+  if (!grid.is_separate(3))
+    throw Error(ErrorCode::InvalidArgument,
+                "lattice fcc_in_time: the world map mixes time and space; expected one that does not");
+  Grid<3> space;
+  std::copy_n(grid.axes.begin(), 3, space.axes.begin());
+  for (int row = 0; row < 3; ++row) {
+    std::copy_n(grid.linear[row].begin(), 3, space.linear[row].begin());
+    space.offset[row] = grid.offset[row];
+  }
+  check_grid(space, Lattice::fcc_in_time, 2);
+  const detail::LatticeCells cells = detail::cells_of_lattice(Lattice::fcc, four_sizes(space));
+  const Complex<3> layer(points_of(space, 2), cells.types, cells.corners);
+  std::vector<double> times;
+  for (std::size_t k = 0; k < grid.axes[3].size(); ++k)
+    times.push_back(grid.linear[3][3] * grid.axes[3][k] + grid.offset[3]);
+  return in_time<3>(layer, times, values_of(image));
+}
+
+}  // namespace
+
+std::string_view name_of(Lattice lattice) noexcept { return facts_of(lattice).name; }
+int dimension(Lattice lattice) noexcept { return facts_of(lattice).dim; }
+double layer_step(Lattice lattice) noexcept { return facts_of(lattice).layer_step; }
+
+template <Value T, int N>
+requires DimensionBetween<N, 2, 4> Complex<N> lattice_complex(const Image<T, N>& image, Lattice lattice) {
+  if (dimension(lattice) != N)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("lattice {} of a {}D image; expected {} dimensions",
+                                                        name_of(lattice), N, dimension(lattice)));
+  if constexpr (N == 4)
+    if (lattice == Lattice::fcc_in_time) return in_time_of(image);
+  check_grid(image.grid(), lattice, N - 1);
+  const detail::LatticeCells cells = detail::cells_of_lattice(lattice, four_sizes(image.grid()));
+  Complex<N> complex(points_of(image.grid(), N - 1), cells.types, cells.corners);
+  complex.set_values(values_of(image));
+  return complex;
+}
+
+#define TEGL_INSTANTIATE(T)                                               \
+  template Complex<2> lattice_complex<T, 2>(const Image<T, 2>&, Lattice); \
+  template Complex<3> lattice_complex<T, 3>(const Image<T, 3>&, Lattice); \
+  template Complex<4> lattice_complex<T, 4>(const Image<T, 4>&, Lattice);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

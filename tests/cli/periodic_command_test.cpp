@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// --periodic of tegl contour and of commands that contour an image, run as in a shell.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sample_files.hpp"
+#include "tegl/check.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::HasSubstr;
+
+class PeriodicCommand : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    // a ball of radius 5 around x = 0, half of it at the other end
+    file_ = write("ball.nii", nifti_bytes(sample({30, 20, 20},
+                                                 [](const std::vector<double>& x) {
+                                                   return 5.0 -
+                                                          std::hypot(std::min(x[0], 30 - x[0]), x[1] - 9.5, x[2] - 9.5);
+                                                 }),
+                                          {1, 1, 1}));
+  }
+  [[nodiscard]] nlohmann::json run_json(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.json();
+  }
+  void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
+    arguments.insert(arguments.begin(), {"contour", file_, "--iso", "0"});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+  std::string file_;
+};
+
+TEST_F(PeriodicCommand, ABallAcrossTheSeamIsOneComponentAlsoFromASavedContour) {
+  EXPECT_EQ(run_json({"components", file_, "--iso", "0"})["count"], 2);
+  const nlohmann::json direct = run_json({"components", file_, "--iso", "0", "--periodic", "x"});
+  EXPECT_EQ(direct["count"], 1);
+  const std::string saved = path("ball.vtkhdf");
+  (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x=30", "-o", saved});
+  const nlohmann::json components = run_json({"components", saved});
+  EXPECT_EQ(components["count"], 1);
+  EXPECT_EQ(components["components"], direct["components"]);
+  const nlohmann::json measure = run_json({"measure", saved});
+  EXPECT_NEAR(measure["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 125, 10);
+}
+
+TEST_F(PeriodicCommand, OtherFormatsGetTheUnrolledContourWithItsMap) {
+  for (const char* const name : {"ball.ply", "ball.vtkhdf"}) {
+    const std::string output = path(name);
+    const nlohmann::json report =
+        run_json({"contour", file_, "--iso", "0", "--periodic", "x", "--unroll", "-o", output});
+    EXPECT_GT(report["check"]["boundary_simplices"].get<int>(), 0) << report;
+    const Mesh mesh = read_mesh(output);
+    EXPECT_TRUE(mesh.periods.empty());
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    EXPECT_EQ(mesh.vertex_attributes[0].name, "original");
+  }
+}
+
+TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
+  const std::string output = path("none.vtkhdf");
+  expect_refused({"--periodic", "w", "-o", output}, "--periodic w names no axis; expected one of x, y, z, or all");
+  expect_refused({"--periodic", "x,x", "-o", output}, "twice");
+  expect_refused({"--periodic", "x=20", "-o", output}, "expected more than 29");
+  expect_refused({"--periodic", "x=much", "-o", output}, "--periodic");
+  expect_refused({"--periodic", "x", "--close", "-o", output}, "close with periodic axes");
+  expect_refused({"--periodic", "x", "--stream", "-o", output}, "--periodic x with --stream");
+  expect_refused({"--periodic", "x", "--facets", "-o", output}, "--periodic x with --facets");
+  expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");
+  expect_refused({"--unroll", "-o", output}, "--unroll without --periodic");
+  const std::string saved = path("ball.vtkhdf");
+  (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x", "-o", saved});
+  const RunResult run = run_tegl({"simplify", saved, "--ratio", "0.5", "-o", path("few.vtkhdf")});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("a wrapped contour"));
+}
+
+TEST_F(PeriodicCommand, SlicesOfASavedContourAreWrappedToo) {
+  const std::string saved = path("ball.vtkhdf");
+  (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x", "-o", saved});
+  (void)run_json({"slice", saved, "--at", "z=9.5", "-o", path("circle.vtkhdf")});
+  const Mesh circle = read_mesh(path("circle.vtkhdf"));
+  EXPECT_EQ(circle.periods.size(), 5u);
+  EXPECT_EQ(check(to_contour<2>(circle)).boundary_simplices, 0u);
+  const RunResult run = run_tegl({"slice", saved, "--at", "x=1", "-o", path("none.ply")});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("across one of its periods"));
+}
+
+}  // namespace
+}  // namespace tegl::test

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Delaunay triangulations of scattered points, also in degenerate position, and contours of them.
+#include "tegl/delaunay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "errors.hpp"
+#include "invariants.hpp"
+#include "tegl/measure.hpp"
+
+namespace tegl {
+namespace {
+
+using namespace test;
+
+template <int N>
+using Points = std::vector<std::array<double, N>>;
+
+template <int N>
+Points<N> random_points(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+  Points<N> points(count);
+  for (auto& point : points)
+    for (double& x : point) x = anywhere(random);
+  return points;
+}
+
+template <int N>
+Points<N> grid(std::size_t samples) {
+  Points<N> points;
+  std::array<std::size_t, N> index{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(std::pow(samples, N) + 0.5); ++i) {
+    auto& point = points.emplace_back();
+    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(index[a]) / static_cast<double>(samples - 1) * 2 - 1;
+    for (int a = 0; a < N && ++index[a] == samples; ++a) index[a] = 0;
+  }
+  return points;
+}
+
+/// Sets noise that is low near the border, and expects a closed manifold.
+template <int N>
+void expect_closed_noise(const Points<N>& points, const std::string& name) {
+  if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
+  SCOPED_TRACE(name + " in " + std::to_string(N) + "D");
+  Complex<N> complex = delaunay<N>(points);
+  std::mt19937 random(5);
+  std::vector<double> values;
+  for (const auto& point : points) {
+    double most = 0.0;
+    for (const double x : point) most = std::max(most, std::abs(x));
+    values.push_back(most < 0.75 ? std::uniform_real_distribution<double>()(random) : 0.0);
+  }
+  complex.set_values(values);
+  const auto contour = extract<double>(complex, 0.5);
+  EXPECT_GT(contour.simplices.size(), 20u);
+  const MeshReport report = check(contour);
+  EXPECT_EQ(report.boundary_simplices, 0u);
+  EXPECT_EQ(report.nonmanifold_simplices, 0u);
+  EXPECT_EQ(report.bad_links, 0u);
+  EXPECT_EQ(report.orientation_conflicts, 0u);
+}
+
+TEST(Delaunay, NoiseOnRandomPointsHasAClosedOrientedManifold) {
+  expect_closed_noise<2>(random_points<2>(2000, 1), "random");
+  expect_closed_noise<3>(random_points<3>(3000, 2), "random");
+  expect_closed_noise<4>(random_points<4>(1500, 3), "random");
+}
+
+TEST(Delaunay, GridsWhosePointsAreOnCommonSpheresAreTriangulated) {
+  expect_closed_noise<2>(grid<2>(21), "grid");
+  expect_closed_noise<3>(grid<3>(11), "grid");
+  expect_closed_noise<4>(grid<4>(7), "grid");
+}
+
+TEST(Delaunay, TheContentOfABallIsRight) {
+  if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
+  const Points<3> points = random_points<3>(20000, 4);
+  Complex<3> complex = delaunay<3>(points);
+  std::vector<double> values;
+  for (const auto& p : points) values.push_back(0.7 - std::hypot(p[0], p[1], p[2]));
+  complex.set_values(values);
+  const auto sphere = extract<double>(complex, 0.0);
+  EXPECT_EQ(expect_closed_manifold(sphere).euler, 2);
+  EXPECT_NEAR(measure(sphere).content.value(), 4.0 / 3.0 * std::numbers::pi * 0.343, 0.02);
+}
+
+TEST(Delaunay, BadPointsAreNamed) {
+  if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
+  Points<3> points = random_points<3>(50, 6);
+  expect_error(ErrorCode::InvalidArgument, "3 points in 3D; expected at least 4",
+               [&] { (void)delaunay<3>(std::span(points).first(3)); });
+  points[17] = points[5];
+  expect_error(ErrorCode::InvalidArgument, "points 5 and 17 are equal", [&] { (void)delaunay<3>(points); });
+  points[17][1] = std::numeric_limits<double>::quiet_NaN();
+  expect_error(ErrorCode::InvalidArgument, "point 17 has the coordinate nan", [&] { (void)delaunay<3>(points); });
+  Points<3> flat = random_points<3>(50, 7);
+  for (auto& p : flat) p[2] = 0.25;
+  expect_error(ErrorCode::InvalidArgument, "50 points that lie in a plane", [&] { (void)delaunay<3>(flat); });
+  Points<2> line;
+  for (int i = 0; i < 9; ++i) line.push_back({double(i), 2.0 * i});
+  expect_error(ErrorCode::InvalidArgument, "in a line", [&] { (void)delaunay<2>(line); });
+  Points<2> close = random_points<2>(50, 8);
+  close.push_back({close[3][0] + 1e-15, close[3][1]});
+  expect_error(ErrorCode::InvalidArgument, "so close to other points", [&] { (void)delaunay<2>(close); });
+}
+
+}  // namespace
+}  // namespace tegl
