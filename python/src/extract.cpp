@@ -9,6 +9,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/periodic.hpp"
 #include "tegl/slice.hpp"
@@ -170,6 +171,36 @@ std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const st
   });
 }
 
+template <class Real>
+AnyContour lattice_contour_of(const AnyImage& image, Lattice lattice, double level, const ExtractOptions& options) {
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
+    if constexpr (N <= 4) {
+      return {extract<Real>(lattice_complex(view, lattice), level, options), level};
+    } else {
+      throw_dimension("lattices", N, "2 to 4 dimensions");
+    }
+  });
+}
+
+std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std::string& name, double level,
+                                                bool is_double, const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
+  const auto lattice = named<Lattice>("lattice", name,
+                                      {{"triangular", Lattice::triangular},
+                                       {"fcc", Lattice::fcc},
+                                       {"bcc", Lattice::bcc},
+                                       {"d4", Lattice::d4},
+                                       {"fcc_in_time", Lattice::fcc_in_time}});
+  return call.run([&] {
+    auto result = std::make_unique<AnyContour>(is_double ? lattice_contour_of<double>(image, lattice, level, options)
+                                                         : lattice_contour_of<float>(image, lattice, level, options));
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
+}
+
 std::pair<std::unique_ptr<AnyContour>, py::array> unroll_any(const AnyContour& contour) {
   Buffer<Index> originals;
   auto result = std::make_unique<AnyContour>(std::visit(
@@ -238,6 +269,8 @@ void bind_extract(py::module_& m) {
         py::arg("progress"), doc::extract);
   m.def("extract_periodic", &extract_periodic_any, py::arg("image"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
+  m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
+        py::arg("double"), py::arg("options"), py::arg("progress"), doc::lattice_complex);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
   m.def("count", &count_any, py::arg("image"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),

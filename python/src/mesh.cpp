@@ -8,6 +8,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/complex.hpp"
+#include "tegl/delaunay.hpp"
 
 namespace tegl::python {
 
@@ -83,9 +84,26 @@ std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& typ
   });
 }
 
+/// The Delaunay cells of points, #C x (N + 1).
+py::array delaunay_cells(const Doubles& points) {
+  const auto cells = [&]<int N>(std::integral_constant<int, N>) {
+    const std::vector<Index> corners = [&] {
+      py::gil_scoped_release release;
+      return delaunay_corners<N>(points_of<N>(points));
+    }();
+    return py::array_t<Index>({static_cast<py::ssize_t>(corners.size()) / (N + 1), py::ssize_t{N + 1}}, corners.data());
+  };
+  const py::ssize_t dim = points.ndim() == 2 ? points.shape(1) : 0;
+  if (dim == 2) return cells(std::integral_constant<int, 2>());
+  if (dim == 3) return cells(std::integral_constant<int, 3>());
+  if (dim == 4) return cells(std::integral_constant<int, 4>());
+  throw Error(ErrorCode::UnsupportedData, fmt::format("points have {} coordinates; expected 2 to 4", dim));
+}
+
 }  // namespace
 
 void bind_mesh(py::module_& m) {
+  m.def("delaunay", &delaunay_cells, py::arg("points"), doc::delaunay);
   m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
         py::arg("times"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract);
 }

@@ -23,7 +23,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
-            periodic=None) -> Contour:
+            periodic=None, lattice: _kinds.Lattice | None = None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
@@ -75,6 +75,12 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
         across the seam, and `Contour.unroll` makes one for pictures. See docs/other-tilings.md.
 
+    lattice
+        Samples on a staggered lattice: the odd layers of the last library axis (of C-ordered arrays, the first axis) are
+        shifted by half a step along the other axes. "triangular" (2D), "fcc" or "bcc" (3D), "d4" (4D), or "fcc_in_time"
+        (4D: fcc in the last three axes, over time). `spacing` along the layers is 0.866, 0.707 or 0.5 of the others if the
+        lattice is to be regular. See docs/other-tilings.md.
+
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
     """
@@ -86,7 +92,12 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     is_double = _arguments.is_double(dtype, prepared)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     with prepared.terms():
-        if periodic is None:
+        if lattice is not None:
+            if periodic is not None:
+                raise ValueError(f"lattice {lattice!r} with periodic; expected one of the two")
+            core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
+                                         progress)
+        elif periodic is None:
             core = _tegl.extract(prepared.image, level, is_double, options, progress)
         else:
             axes, periods = _arguments.periodic_axes(periodic, prepared)

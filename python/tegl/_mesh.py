@@ -16,7 +16,7 @@ from ._contour import Contour
 _TYPES = {
     "triangle": (5, 3), "pixel": (8, 4), "quad": (9, 4), "quadrilateral": (9, 4), "tetra": (10, 4),
     "tetrahedron": (10, 4), "voxel": (11, 8), "hexahedron": (12, 8), "wedge": (13, 6), "pyramid": (14, 5),
-    "simplex4": (100, 5),
+    "simplex4": (100, 5), "octahedron": (101, 6), "cell16": (102, 8),
 }
 #: (dimension, corners) -> the type of cells that are given without one
 _BY_CORNERS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hexahedron", (3, 6): "wedge",
@@ -63,6 +63,28 @@ def contour_mesh(points, cells, values, level: float, *, times=None, triangulati
     if not allow_empty and not len(core.simplices):
         _require_level(values, level)
     return Contour._of(core, False)
+
+
+@_arguments.documents("delaunay")
+def contour_points(points, values, level: float, *, triangulation: _kinds.Triangulation = "compact",
+                   direction: _kinds.Direction = "descent", epsilon: float = 0.0, dtype=np.float32,
+                   allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
+    """The contour {value = level} of scattered points in 2D to 4D, with linear interpolation in their Delaunay cells.
+
+    points
+        #P x N coordinates; different points, not all in a line, plane or hyperplane.
+    values
+        A number for each point. NaN is a missing value.
+
+    The other arguments are those of `tegl.contour_mesh`.
+    """
+    places = _arguments.real("points", points).astype(np.float64)
+    if places.ndim != 2 or not 2 <= places.shape[1] <= 4:
+        raise ValueError(f"points have the shape {places.shape}; expected (#P, N) with N = 2 to 4")
+    name = {2: "triangle", 3: "tetra", 4: "simplex4"}[places.shape[1]]
+    return contour_mesh(places, {name: _tegl.delaunay(places)}, values, level, triangulation=triangulation,
+                        direction=direction, epsilon=epsilon, dtype=dtype, allow_empty=allow_empty, threads=threads,
+                        progress=progress)
 
 
 def _mask_of(array) -> np.ndarray | None:

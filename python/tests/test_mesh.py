@@ -165,3 +165,27 @@ def test_bad_arguments_are_errors_that_name_them(change, error, text):
     with pytest.raises(error) as raised:
         tegl.contour_mesh(**arguments)
     assert text in str(raised.value)
+
+
+def test_contours_of_lattices_and_of_scattered_points():
+    layers, n = 30, 22
+    k, j, i = np.meshgrid(np.arange(layers), np.arange(n), np.arange(n), indexing="ij")
+    for lattice, step in (("fcc", 0.5**0.5), ("bcc", 0.5)):
+        z, y, x = (k - layers / 2) * step, j + 0.5 * (k % 2) - 11, i + 0.5 * (k % 2) - 11
+        ball = 6.0 - np.sqrt(x**2 + y**2 + z**2)
+        surface = tegl.contour(ball, 0.0, lattice=lattice, spacing=[step, 1.0, 1.0])
+        assert surface.check().is_closed and surface.check().euler == 2
+        assert surface.measure().content == pytest.approx(4 / 3 * np.pi * 216, rel=0.05)
+    with pytest.raises(ValueError, match="expected one of the two"):
+        tegl.contour(ball, 0.0, lattice="fcc", periodic=0)
+    with pytest.raises(ValueError, match="lattice"):
+        tegl.contour(ball, 0.0, lattice="hexagonal")
+    with pytest.raises(ValueError, match="expected 4 dimensions"):
+        tegl.contour(ball, 0.0, lattice="d4")
+    points = np.random.default_rng(1).uniform(-1, 1, (3000, 3))
+    surface = tegl.contour_points(points, 0.7 - np.linalg.norm(points, axis=1), 0.0)
+    assert surface.check().is_closed and surface.check().euler == 2
+    with pytest.raises(ValueError, match="are equal"):
+        tegl.contour_points(points[[0, 1, 2, 3, 4, 0]], np.zeros(6), 0.0)
+    with pytest.raises(ValueError, match="shape"):
+        tegl.contour_points(points[0], np.zeros(3), 0.0)

@@ -80,7 +80,7 @@ class ContourCommand final : public Command {
                 "one image with one more axis",
                 Files::image) {
     options_.add_to(app(), true);
-    options_.add_periodic_to(app());
+    options_.add_tiling_to(app());
     app().add_flag("--unroll", unroll_,
                    "with --periodic, .vtkhdf: double the vertices on the seam, for pictures; other formats always do");
     app()
@@ -120,7 +120,7 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
     const std::vector<double> point = picked_point();
     ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
-    require_periodic_options();
+    require_tiling_options();
     require_inputs();
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
@@ -174,16 +174,16 @@ class ContourCommand final : public Command {
     return results;
   }
 
-  void require_periodic_options() const {
-    if (unroll_ && options_.periodic().empty())
+  void require_tiling_options() const {
+    if (unroll_ && options_.tiling().periodic.empty())
       throw Error(ErrorCode::InvalidArgument, "--unroll without --periodic; expected both");
-    if (is_streamed()) options_.refuse_periodic(stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
-    if (!index_.empty()) options_.refuse_periodic("--index");
-    if (facets_) options_.refuse_periodic("--facets");
-    if (app().count("--pick") > 0) options_.refuse_periodic("--pick");
-    if (one_file_) options_.refuse_periodic("--one-file");
-    if (options_.polygon_triangulation()) options_.refuse_periodic("a triangulation of polygons");
-    if (attributes_.wanted()) options_.refuse_periodic("--attribute");
+    if (is_streamed()) options_.refuse_tiling(stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
+    if (!index_.empty()) options_.refuse_tiling("--index");
+    if (facets_) options_.refuse_tiling("--facets");
+    if (app().count("--pick") > 0) options_.refuse_tiling("--pick");
+    if (one_file_) options_.refuse_tiling("--one-file");
+    if (options_.polygon_triangulation()) options_.refuse_tiling("a triangulation of polygons");
+    if (attributes_.wanted()) options_.refuse_tiling("--attribute");
   }
 
   void require_one_file_of_several(std::size_t isovalues) const {
@@ -276,7 +276,7 @@ class ContourCommand final : public Command {
               image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
     else
       result.mesh =
-          extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, options_.periodic());
+          extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, options_.tiling());
   }
 
   /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
@@ -304,7 +304,7 @@ class ContourCommand final : public Command {
   /// possible.
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
-    const bool needs_memory = !options_.periodic().empty() || !index_.empty() || facets_ || one_file_ ||
+    const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
                               app().count("--pick") > 0 || options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");

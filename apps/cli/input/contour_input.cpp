@@ -149,7 +149,7 @@ ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& n
     : Command(program, name, description,
               "an image (with --iso), or a contour saved by 'tegl contour' (.vtkhdf, .ply, .glb ...)", files) {
   options_.add_to(app(), false);
-  options_.add_periodic_to(app());
+  options_.add_tiling_to(app());
   add_image_options();
   add_quiet();
 }
@@ -173,6 +173,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   // an image to be contoured
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();
+  const Tiling tiling = options_.tiling();
   ReadImageResult input = read(bar.stage("read"));
   result.file = inputs();
   result.variable = input.info.variable;
@@ -188,7 +189,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
         options_.add_shape_normals(extraction.contour);
         return AnyContour(widened(std::move(extraction.contour)));
       },
-      options_.periodic());
+      tiling);
   if (result.size().simplices == 0) remark(remark_without_contour(input.image, *result.isovalue));
   result.seconds.add(*result.stats);
   if (keep_image) result.image = std::move(input);

@@ -68,19 +68,38 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
   app.add_flag("--allow-empty", allow_empty_, "a value outside of the data gives an empty result, not an error");
 }
 
-void ExtractionOptions::add_periodic_to(CLI::App& app) {
+void ExtractionOptions::add_tiling_to(CLI::App& app) {
   options_.push_back(app.add_option("--periodic", periodic_,
                                     "axes that are periodic, by name, as in lon or x,y,z; or all; the period is the "
                                     "number of samples x the step, or as in lon=360")
                          ->delimiter(',')
                          ->allow_extra_args(false)
                          ->type_name("AXES"));
+  options_.push_back(app.add_option("--lattice", lattice_,
+                                    "samples on a staggered lattice: odd layers are shifted by half a step along the "
+                                    "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D)")
+                         ->check(CLI::IsMember({"triangular", "fcc", "bcc", "d4", "fcc_in_time"})));
 }
 
-void ExtractionOptions::refuse_periodic(const std::string& with) const {
+Tiling ExtractionOptions::tiling() const {
+  if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
+  Tiling tiling{periodic_, std::nullopt};
+  for (const Lattice lattice : {Lattice::triangular, Lattice::fcc, Lattice::bcc, Lattice::d4, Lattice::fcc_in_time})
+    if (name_of(lattice) == lattice_) tiling.lattice = lattice;
+  return tiling;
+}
+
+void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
   if (!periodic_.empty())
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--periodic {} with {}; expected one of the two", fmt::join(periodic_, ","), with));
+                fmt::format("--periodic {} with {}; expected one of the two", fmt::join(periodic_, ","), other));
+}
+
+void ExtractionOptions::refuse_tiling(const std::string& with) const {
+  refuse_periodic_with(with);
+  if (!lattice_.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--lattice {} with {}; expected one of the two", lattice_, with));
 }
 
 std::vector<std::string> ExtractionOptions::given() const {

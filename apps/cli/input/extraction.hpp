@@ -17,10 +17,18 @@
 #include "output/result.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io/images.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/periodic.hpp"
 #include "tegl/polygons.hpp"
 
 namespace tegl::cli {
+
+/// The cells between samples, if they are not those of a plain grid.
+struct Tiling {
+  std::vector<std::string> periodic = {};  ///< the axes of --periodic
+  std::optional<Lattice> lattice = {};     ///< of --lattice
+  [[nodiscard]] bool is_plain() const { return periodic.empty() && !lattice; }
+};
 
 /// The options --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads,
 /// --precision, and --allow-empty, which saved contours allow too.
@@ -30,12 +38,12 @@ class ExtractionOptions {
   /// polygons. This object must outlive the parse.
   void add_to(CLI::App& app, bool of_images_alone);
 
-  /// Adds --periodic to a command.
-  void add_periodic_to(CLI::App& app);
-  /// The axes of --periodic; none without it. Throws InvalidArgument for options that do not go with it.
-  [[nodiscard]] const std::vector<std::string>& periodic() const { return periodic_; }
-  /// Throws InvalidArgument with --periodic. `with`: another option or a command.
-  void refuse_periodic(const std::string& with) const;
+  /// Adds --periodic and --lattice to a command.
+  void add_tiling_to(CLI::App& app);
+  /// The values of --periodic and --lattice. Throws InvalidArgument if both are given.
+  [[nodiscard]] Tiling tiling() const;
+  /// Throws InvalidArgument with --periodic or --lattice. `with`: another option or a command.
+  void refuse_tiling(const std::string& with) const;
 
   /// The names of the options that were given.
   [[nodiscard]] std::vector<std::string> given() const;
@@ -65,9 +73,12 @@ class ExtractionOptions {
   void add_shape_normals(Contour<N, Real>& contour) const;
 
  private:
+  void refuse_periodic_with(const std::string& other) const;
+
   std::vector<CLI::Option*> options_;
   std::vector<std::string> isos_;
   std::vector<std::string> periodic_;
+  std::string lattice_;
   std::string triangulation_ = "compact";
   std::string ambiguity_ = "low";
   std::string direction_ = "descent";
@@ -115,13 +126,18 @@ Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& outpu
 }
 
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
-/// Extraction<N, double>. `periodic`: ExtractionOptions::periodic.
+/// Extraction<N, double>.
 template <class Result, class Use>
 Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOptions& options, bool single_precision,
-                       const Use& use, const std::vector<std::string>& periodic = {}) {
+                       const Use& use, const Tiling& tiling = {}) {
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> Result {
-    if (!periodic.empty()) {
-      const AxisPeriods<N> periods = periods_of(owned.grid, periodic);
+    if (tiling.lattice) {
+      const Complex<N> complex = lattice_complex(owned.view(), *tiling.lattice);
+      if (single_precision) return use(extract_with_stats<float>(complex, isovalue, options));
+      return use(extract_with_stats<double>(complex, isovalue, options));
+    }
+    if (!tiling.periodic.empty()) {
+      const AxisPeriods<N> periods = periods_of(owned.grid, tiling.periodic);
       if (single_precision) return use(extract_periodic_with_stats<float>(owned.view(), periods, isovalue, options));
       return use(extract_periodic_with_stats<double>(owned.view(), periods, isovalue, options));
     }

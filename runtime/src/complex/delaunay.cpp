@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -88,16 +89,50 @@ class Qhull {
   qhT qh_{};
 };
 
-/// The corners of the simplices of the lower hull, all with the same orientation: that of the hull, which is known
-/// also for simplices without volume.
+/// The points on the paraboloid over their box, one dimension higher. Heights are raised a little by the points'
+/// numbers, so that no more than N + 2 of them are in a hyperplane. Points themselves do not move, and a hull of
+/// simplices is conforming whatever the heights. (Qhull's own way, triangulated merged facets, is not conforming in
+/// 4D.)
+///
+/// Based on: H. Edelsbrunner and E. P. Muecke, Simulation of simplicity, 1990 (degenerate input as a limit of generic
+/// input); here with heights large enough for floating point.
+template <int N>
+std::vector<double> lifted(std::span<const std::array<double, N>> points) {
+  constexpr double kRaise = 1e-9;
+  std::array<double, N> middle{};
+  double radius = 0.0;
+  for (int a = 0; a < N; ++a) {
+    const auto [least, most] =
+        std::minmax_element(points.begin(), points.end(), [a](const auto& p, const auto& q) { return p[a] < q[a]; });
+    const double half = 0.5 * ((*most)[a] - (*least)[a]);
+    middle[a] = (*least)[a] + half;
+    radius = std::max(radius, half);
+  }
+  std::vector<double> coordinates;
+  coordinates.reserve(points.size() * (N + 1));
+  std::mt19937_64 random(1);  // the same for the same number of points
+  for (const std::array<double, N>& point : points) {
+    double height = kRaise * static_cast<double>(random() >> 11) * 0x1p-53;
+    for (int a = 0; a < N; ++a) {
+      const double x = radius > 0.0 ? (point[a] - middle[a]) / radius : 0.0;
+      coordinates.push_back(x);
+      height += x * x;
+    }
+    coordinates.push_back(height);
+  }
+  return coordinates;
+}
+
+/// The corners of the simplices of the lower hull, all with the same orientation: that of the hull.
 template <int N>
 std::vector<Index> lower_simplices(qhT& state) {
+  constexpr double kVertical = -1e-10;  // facets over the border of the points
   qhT* const qh = &state;
   std::vector<Index> corners;
   facetT* facet = nullptr;
   vertexT *vertex = nullptr, **vertexp = nullptr;
   FORALLfacets {
-    if (facet->upperdelaunay != 0U) continue;
+    if (!(facet->normal[N] < kVertical)) continue;
     std::array<Index, N + 1> simplex{};
     std::size_t count = 0;
     FOREACHvertex_(facet->vertices) {
@@ -109,6 +144,25 @@ std::vector<Index> lower_simplices(qhT& state) {
     corners.insert(corners.end(), simplex.begin(), simplex.end());
   }
   return corners;
+}
+
+/// Throws unless each face is in at most two simplices: otherwise rounding made the hull inconsistent.
+template <int N>
+void require_conforming(const std::vector<Index>& corners) {
+  std::vector<std::array<Index, N>> faces;
+  for (std::size_t c = 0; c < corners.size(); c += N + 1)
+    for (std::size_t omitted = 0; omitted <= N; ++omitted) {
+      std::array<Index, N>& face = faces.emplace_back();
+      for (std::size_t i = 0, n = 0; i <= N; ++i)
+        if (i != omitted) face[n++] = corners[c + i];
+      std::sort(face.begin(), face.end());
+    }
+  std::sort(faces.begin(), faces.end());
+  for (std::size_t i = 2; i < faces.size(); ++i)
+    if (faces[i] == faces[i - 2])
+      refuse(
+          fmt::format("points near point {} are so degenerate that rounding makes cells overlap; expected other points",
+                      faces[i][0]));
 }
 #endif
 
@@ -139,23 +193,12 @@ bool has_delaunay() noexcept {
 }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> Complex<N> delaunay(std::span<const std::array<double, N>> points) {
+requires DimensionBetween<N, 2, 4> std::vector<Index> delaunay_corners(std::span<const std::array<double, N>> points) {
 #ifdef TEGL_HAS_QHULL
   check_points<N>(points);
-  std::vector<double> coordinates;
-  coordinates.reserve(points.size() * N);
-  // relative to the middle, so that squares of coordinates lose few digits
-  std::array<double, N> middle{};
-  for (int a = 0; a < N; ++a) {
-    const auto [least, most] =
-        std::minmax_element(points.begin(), points.end(), [a](const auto& p, const auto& q) { return p[a] < q[a]; });
-    middle[a] = (*least)[a] + 0.5 * ((*most)[a] - (*least)[a]);
-  }
-  for (const std::array<double, N>& point : points)
-    for (int a = 0; a < N; ++a) coordinates.push_back(point[a] - middle[a]);
+  std::vector<double> coordinates = lifted<N>(points);
   Qhull qhull;
-  // d: Delaunay; Qbb: scaled last coordinate; Qt: triangulated facets; Qz: a point at infinity, for points on a sphere
-  const int exit = qhull.run(N, coordinates, "qhull d Qbb Qt Qz Q12");
+  const int exit = qhull.run(N + 1, coordinates, "qhull Qt Q12");
   if (exit == qh_ERRsingular)
     refuse(fmt::format("{} points that lie in a {}; expected points in {} dimensions", points.size(),
                        N == 2   ? "line"
@@ -164,15 +207,25 @@ requires DimensionBetween<N, 2, 4> Complex<N> delaunay(std::span<const std::arra
                        N));
   if (exit != 0)
     throw Error(ErrorCode::UnsupportedData, fmt::format("Qhull: {}; expected other points", qhull.message()));
-  const std::vector<Index> corners = lower_simplices<N>(qhull.state());
+  std::vector<Index> corners = lower_simplices<N>(qhull.state());
   require_all_points(points.size(), corners);
-  return detail::ComplexAccess::oriented<N>({points.begin(), points.end()}, simplex_type(N), corners);
+  require_conforming<N>(corners);
+  return corners;
 #else
   (void)points;
   throw Error(ErrorCode::UnsupportedData, "this build of tegl has no Qhull; expected one with libqhull-dev");
 #endif
 }
 
+template <int N>
+requires DimensionBetween<N, 2, 4> Complex<N> delaunay(std::span<const std::array<double, N>> points) {
+  const std::vector<Index> corners = delaunay_corners<N>(points);
+  return detail::ComplexAccess::oriented<N>({points.begin(), points.end()}, simplex_type(N), corners);
+}
+
+template std::vector<Index> delaunay_corners<2>(std::span<const std::array<double, 2>>);
+template std::vector<Index> delaunay_corners<3>(std::span<const std::array<double, 3>>);
+template std::vector<Index> delaunay_corners<4>(std::span<const std::array<double, 4>>);
 template Complex<2> delaunay<2>(std::span<const std::array<double, 2>>);
 template Complex<3> delaunay<3>(std::span<const std::array<double, 3>>);
 template Complex<4> delaunay<4>(std::span<const std::array<double, 4>>);

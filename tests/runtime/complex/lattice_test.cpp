@@ -26,7 +26,7 @@ using namespace test;
 
 /// An image on a lattice with its isotropic steps, around the origin, within about [-1, 1]^N.
 template <int N, class F>
-OwnedImage<double, N> lattice_image(Lattice lattice, std::size_t samples, const F& f) {
+OwnedImage<double, N> lattice_image(Lattice lattice, std::size_t samples, F f) {
   const double step = 2.2 / static_cast<double>(samples - 1);
   const int layers = lattice == Lattice::fcc_in_time ? 2 : N - 1;
   OwnedImage<double, N> image;
@@ -170,9 +170,9 @@ double ball(const std::array<double, N>& x) {
 
 TEST(Lattice, SpheresAndToriHaveTheirEulerCharacteristic) {
   for (const Lattice lattice : {Lattice::fcc, Lattice::bcc}) {
-    auto sphere = lattice_image<3>(lattice, 16, [](const auto& x, auto&, auto&) { return ball<3>(x); });
+    auto sphere = lattice_image<3>(lattice, 16, [](const auto& x, const auto&, const auto&) { return ball<3>(x); });
     EXPECT_EQ(2, expect_closed_manifold(extract(lattice_complex(sphere.view(), lattice), 0.0)).euler);
-    auto torus = lattice_image<3>(lattice, 24, [](const auto& x, auto&, auto&) {
+    auto torus = lattice_image<3>(lattice, 24, [](const auto& x, const auto&, const auto&) {
       return 0.22 - std::hypot(std::hypot(x[0] + 0.011, x[1] - 0.013) - 0.55, x[2] + 0.017);
     });
     EXPECT_EQ(0, expect_closed_manifold(extract(lattice_complex(torus.view(), lattice), 0.0)).euler);
@@ -183,7 +183,7 @@ template <int N>
 void expect_order_two(Lattice lattice, std::size_t coarse, std::size_t fine, double content) {
   SCOPED_TRACE(std::string(name_of(lattice)));
   const auto error = [&](std::size_t samples) {
-    auto image = lattice_image<N>(lattice, samples, [](const auto& x, auto&, auto&) { return ball<N>(x); });
+    auto image = lattice_image<N>(lattice, samples, [](const auto& x, const auto&, const auto&) { return ball<N>(x); });
     return std::abs(measure(extract<double>(lattice_complex(image.view(), lattice), 0.0)).content.value() - content);
   };
   const double ratio = static_cast<double>(fine - 1) / static_cast<double>(coarse - 1);
@@ -199,7 +199,7 @@ TEST(Lattice, TheContentOfABallConvergesWithOrderTwo) {
 }
 
 TEST(Lattice, BadGridsAreRefused) {
-  auto image = lattice_image<3>(Lattice::fcc, 6, [](const auto&, auto&, auto&) { return 0.0; });
+  auto image = lattice_image<3>(Lattice::fcc, 6, [](const auto&, const auto&, const auto&) { return 0.0; });
   expect_error(ErrorCode::InvalidArgument, "lattice d4 of a 3D image; expected 4 dimensions",
                [&] { (void)lattice_complex(image.view(), Lattice::d4); });
   image.grid.axes[0] = Axis::rectilinear({0.0, 1.0, 2.0, 4.0, 5.0, 6.0});
