@@ -251,7 +251,6 @@ class SliceCommand final : public Command {
     // check and write
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
-      results[i].output = outputs_[i];
       results[i].compression = compress_.compression();
       if (!no_check_) check_result(results[i], options_.threads(), bar);
     }
@@ -289,6 +288,7 @@ class SliceCommand final : public Command {
     std::vector<ContourResult> results;
     for (Cut& cut : resolve(std::move(cuts), space, options_.allows_empty()))
       results.emplace_back().cut = std::move(cut);
+    for (std::size_t i = 0; i < results.size(); ++i) results[i].output = outputs_[i];
     return results;
   }
 

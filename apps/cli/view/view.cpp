@@ -21,6 +21,7 @@
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
 #include "tegl/io/text.hpp"
+#include "tegl/periodic.hpp"
 #include "view/view_page.hpp"
 
 namespace tegl::cli {
@@ -162,6 +163,7 @@ class ViewCommand final : public ContourInputCommand {
       here.thinned = thin(contour, view_limit(), {threads(), bar.stage("components")});
       std::optional<PageTracks> tracks;
       if constexpr (N == 4) tracks = page_tracks(contour, first, last, tracks_, {threads(), bar.stage("track")});
+      if (!contour.periods.empty()) contour = unroll(contour).contour;  // simplices keep their numbers
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };
     Json layer = std::visit([&](auto& contour) { return add(contour); }, input.contour);
