@@ -12,7 +12,7 @@ namespace tegl::io_detail {
 inline constexpr std::array<unsigned char, 4> kCellTypes = {1, 3, 5, 10};
 
 /// Names of point and field arrays.
-inline constexpr const char* kTimes = "t";  ///< in 4-space
+inline constexpr const char* kTimes = "t";            ///< in 4-space
 inline constexpr const char* kIsovalue = "isovalue";  ///< of the field data
 inline constexpr const char* kPeriods = "periods";    ///< of the field data
 inline constexpr const char* kNormals = "Normals";

@@ -4,10 +4,10 @@
 // and others, and their prisms over an interval of time. table_contract.hpp has the tables of the cells of images.
 //
 // Corners. Corner 0 is the origin. A pyramid over a base of m corners has the base's corners first, its apex last; a
-// prism has the base's corners, then the same at the upper end: corner v + m is above corner v. A double pyramid has the base's corners, then the two
-// apexes, so corners 2 a and 2 a + 1 of an octahedron and of a 16-cell are opposite. So a quadrilateral and
-// a hexahedron have the numbering of cubes (bit i of v is coordinate i). A signature has bit v set iff corner v is
-// high.
+// prism has the base's corners, then the same at the upper end: corner v + m is above corner v. A double pyramid has
+// the base's corners, then the two apexes, so corners 2 a and 2 a + 1 of an octahedron and of a 16-cell are opposite.
+// So a quadrilateral and a hexahedron have the numbering of cubes (bit i of v is coordinate i). A signature has bit v
+// set iff corner v is high.
 //
 // Local vertices of simplices, one byte each:
 //   [0, E)        the contour's point on edge e (CellTable::edges)
