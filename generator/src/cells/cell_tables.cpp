@@ -114,16 +114,28 @@ class CertifiedCell {
   const tile::TileFacets* facets_ = nullptr;
 };
 
+/// The default search, with fewer random positions for contours with very many pairs: at most 2^22
+/// tests of pairs, but at least 64 positions of both kinds.
+SearchPlan plan_for(std::size_t pairs) {
+  SearchPlan plan;
+  while (plan.uniform > 64 && pairs * (plan.uniform + plan.near_ends) > std::size_t{1} << 22) {
+    plan.uniform /= 2;
+    plan.near_ends /= 2;
+  }
+  return plan;
+}
+
 /// Adds the evidence that the contour of `entries` signatures is embedded. Throws if it is not.
 void add_evidence(const Cell& cell, const CellEmbedding& embedding, const CellContour& contour, Signature signature,
                   std::uint64_t entries, CellTables& table) {
   const std::vector<SimplexPair> unproved = embedding.unproved_pairs(contour);
-  switch (embedding.of(contour, signature, unproved)) {
+  const SearchPlan plan = plan_for(unproved.size());
+  switch (embedding.of(contour, signature, unproved, plan)) {
     case Evidence::proved:
       table.proved += entries;
       break;
     case Evidence::searched:
-      table.searched.push_back({signature, entries, unproved.size()});
+      table.searched.push_back({signature, entries, unproved.size(), plan.uniform});
       break;
     case Evidence::absent:
       throw Error(ErrorCode::CertificateFailed,

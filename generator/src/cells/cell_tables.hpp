@@ -38,6 +38,7 @@ struct CellTables {
   struct Searched {
     Signature signature;           ///< of the list
     std::uint64_t entries, pairs;  ///< signatures that have it; unproved pairs of simplices
+    std::uint32_t random;          ///< random positions of each of the two kinds (SearchPlan)
   };
   std::uint64_t proved = 0;             ///< signatures whose contour is proved to be embedded
   std::vector<Searched> searched = {};  ///< the others

@@ -42,8 +42,11 @@ std::string search_text(const CellTables& table) {
       plan.seed, plan.uniform, plan.near_ends, plan.descents, plan.steps);
   const char* separator = "";
   for (const CellTables::Searched& s : table.searched) {
-    fmt::format_to(Appender(text), "{}{{\"signature\": {}, \"entries\": {}, \"unproved_pairs\": {}}}", separator,
+    fmt::format_to(Appender(text), "{}{{\"signature\": {}, \"entries\": {}, \"unproved_pairs\": {}", separator,
                    s.signature, s.entries, s.pairs);
+    if (s.random != plan.uniform)
+      fmt::format_to(Appender(text), ", \"uniform\": {}, \"near_ends\": {}", s.random, s.random);
+    text += '}';
     separator = ", ";
   }
   return text + "]}";
