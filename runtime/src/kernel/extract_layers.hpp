@@ -16,9 +16,9 @@
 #include <span>
 #include <vector>
 
+#include "ambiguity/assembled_tiles.hpp"
 #include "image/bitplanes.hpp"
 #include "image/sample_source.hpp"
-#include "kernel/assembled_tiles.hpp"
 #include "kernel/vertex_numbers.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/table_contract.hpp"
