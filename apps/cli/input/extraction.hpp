@@ -23,7 +23,7 @@
 
 namespace tegl::cli {
 
-/// The cells between samples, if they are not those of a plain grid.
+/// The cells between samples, if the grid is periodic or a lattice.
 struct Tiling {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   std::optional<Lattice> lattice = {};     ///< of --lattice

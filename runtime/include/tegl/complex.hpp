@@ -79,7 +79,7 @@ class Complex {
   /// counted from 0.
   Complex(std::vector<Point> points, CellType type, std::span<const Index> corners);
   /// Cells of several types. `types`: one per cell; `corners`: the corners of all cells, one cell after the other.
-  /// The errors are those of the other constructor.
+  /// Errors: as the other constructor.
   Complex(std::vector<Point> points, std::span<const CellType> types, std::span<const Index> corners);
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }   ///< #P x N
