@@ -7,6 +7,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::python {
 
@@ -102,18 +103,6 @@ AnyContour contour_of(int dim, const py::array& vertices, const Rows<Index>& sim
               fmt::format("vertices and simplices have rows of {} numbers; expected 2 to 5", dim));
 }
 
-/// `numbers`: for each period `vector`, `dual` and `start`.
-template <int N>
-void set_periods(const std::vector<double>& numbers, std::vector<Period<N>>& periods) {
-  auto at = numbers.begin();
-  for (std::size_t p = 0; p < numbers.size() / (2 * N + 1); ++p) {
-    Period<N>& period = periods.emplace_back();
-    for (double& x : period.vector) x = *at++;
-    for (double& x : period.dual) x = *at++;
-    period.start = *at++;
-  }
-}
-
 std::unique_ptr<AnyContour> from_arrays(const py::array& vertices, const Rows<Index>& simplices,
                                         const std::optional<py::array>& normals,
                                         const std::vector<std::string>& axis_names,
@@ -127,7 +116,7 @@ std::unique_ptr<AnyContour> from_arrays(const py::array& vertices, const Rows<In
                                                        : contour_of<float>(dim, vertices, simplices, normals));
   result->isovalue = isovalue;
   std::visit(
-      [&](auto& contour) {
+      [&]<int N, class Real>(Contour<N, Real>& contour) {
         for (std::size_t a = 0; a < contour.axis_names.size(); ++a) {
           if (a < axis_names.size()) contour.axis_names[a] = axis_names[a];
           if (a < axis_units.size()) contour.axis_units[a] = axis_units[a];
@@ -135,7 +124,7 @@ std::unique_ptr<AnyContour> from_arrays(const py::array& vertices, const Rows<In
         contour.direction = named<GradientDirection>("direction", direction, gradient_directions());
         contour.vertex_attributes = to_attributes(vertex_attributes, contour.vertices.size(), "vertices");
         contour.simplex_attributes = to_attributes(simplex_attributes, contour.simplices.size(), "simplices");
-        set_periods(periods, contour.periods);
+        contour.periods = periods_of_numbers<N>(periods);
       },
       result->contour);
   return result;
@@ -169,15 +158,7 @@ void bind_contour(py::module_& m) {
   const auto direction = [](const auto& c, const py::object&) {
     return c.direction == GradientDirection::descent ? "descent" : "ascent";
   };
-  const auto periods = [](const auto& c, const py::object&) {
-    std::vector<double> numbers;
-    for (const auto& period : c.periods) {
-      numbers.insert(numbers.end(), period.vector.begin(), period.vector.end());
-      numbers.insert(numbers.end(), period.dual.begin(), period.dual.end());
-      numbers.push_back(period.start);
-    }
-    return numbers;
-  };
+  const auto periods = [](const auto& c, const py::object&) { return period_numbers(c.periods); };
   const auto of_vertices = [](const auto& c, const py::object& self) {
     return attribute_arrays(c.vertex_attributes, self);
   };

@@ -36,7 +36,7 @@ std::uint64_t corners_of(const Tile& tile, std::uint64_t mask) {
   return corners;
 }
 
-/// ContourPlaces of a mesh cell's vertices (cell_contract.hpp: "Positions of added vertices"), rounded down to the
+/// Places of a mesh cell's vertices (cell_contract.hpp: "Positions of added vertices"), rounded down to the
 /// grid.
 class CellPlaces : public ContourPlaces {
  public:
@@ -108,10 +108,10 @@ std::vector<CornerRay> rays_to_corners(const Tile& tile) {
 }
 
 /// True if a hyperplane through corners of a 4-cell has the supports `copy` and the cell's centre on one side, `other`
-/// on the other one, and vertices of one of them at most.
-bool are_divided(const Tile& tile, std::span<const std::uint64_t> copy, std::span<const std::uint64_t> other) {
-  const std::vector<CornerRay> points = rays_to_corners(tile);  // the centre is the origin
-  for (std::uint64_t through = 0; through <= tile.full(); ++through) {
+/// on the other one, and vertices of one of them at most. `points`: the corners, the centre is the origin.
+bool are_divided(std::span<const std::array<std::int64_t, 4>> points, std::span<const std::uint64_t> copy,
+                 std::span<const std::uint64_t> other) {
+  for (std::uint64_t through = 0; through < std::uint64_t{1} << points.size(); ++through) {
     if (std::popcount(through) != 4) continue;
     std::array<CornerRay, 3> directions{};
     const CornerRay& base = points[static_cast<std::size_t>(std::countr_zero(through))];
@@ -146,7 +146,8 @@ bool are_divided(const Tile& tile, std::span<const std::uint64_t> copy, std::spa
 
 }  // namespace
 
-CellEmbedding::CellEmbedding(const Cell& cell) : tile_(with_edges_of_faces(cell.tile)), proof_(tile_) {}
+CellEmbedding::CellEmbedding(const Cell& cell)
+    : tile_(with_edges_of_faces(cell.tile)), rays_(rays_to_corners(tile_)), proof_(tile_) {}
 
 std::uint64_t CellEmbedding::support_of(const CellContour& contour, std::uint8_t vertex) const {
   const std::uint32_t edges = tile_.edge_count();
@@ -200,7 +201,6 @@ int CellEmbedding::orientation_in(std::size_t face, const std::array<std::uint64
   std::uint64_t all = 0;
   for (const std::uint64_t support : supports) all |= support;
   if ((corners_of(tile_, all) & ~tile_.faces[face].corners()) != 0) return 0;
-  const std::vector<CornerRay> rays = rays_to_corners(tile_);
   const std::uint64_t edges = all >> tile_.corner_count();
   int sign = 0;
   std::uint64_t at_second = 0;  // each subset of the edges
@@ -213,7 +213,7 @@ int CellEmbedding::orientation_in(std::size_t face, const std::array<std::uint64
           const std::size_t e = v - tile_.corner_count();
           v = tile_.edges[e][at_second >> e & 1u];
         }
-        for (std::size_t k = 0; k < 4; ++k) rows[i][k] += rays[v][k];
+        for (std::size_t k = 0; k < 4; ++k) rows[i][k] += rays_[v][k];
       }
     const std::int64_t det = cofactor_determinant(rows);
     const int own = det > 0 ? 1 : det < 0 ? -1 : 0;
@@ -244,8 +244,8 @@ bool CellEmbedding::is_proved_copy(const CellContour& contour, const std::vector
   return (all & tile_.full()) != tile_.full();
 }
 
-/// Adds the pairs that EmbeddingProof does not prove to be apart. Its vertices have numbers below 64, so only those of
-/// the two parts get numbers.
+/// Adds the pairs that EmbeddingProof does not prove to be apart. Its vertices have numbers below 64, so only
+/// vertices of the two parts get numbers.
 void CellEmbedding::add_meeting(const CellContour& contour, const Part& part, const Part& other,
                                 std::vector<SimplexPair>& pairs) const {
   EmbeddingProof::Means means;
@@ -301,7 +301,7 @@ std::vector<SimplexPair> CellEmbedding::unproved_pairs(const CellContour& contou
       const Part& other = parts[g];
       if (!is_copy && other.kind != Kind::copy)
         add_meeting(contour, part, other, result);
-      else if (!are_divided(tile_, supports_of(is_copy ? part : other), supports_of(is_copy ? other : part)))
+      else if (!are_divided(rays_, supports_of(is_copy ? part : other), supports_of(is_copy ? other : part)))
         for (const LocalSimplex& a : part.simplices)
           for (const LocalSimplex& b : other.simplices) result.emplace_back(a, b);
     }

@@ -4,6 +4,7 @@
 // as for the cells of images (filling/embedding_evidence.hpp), for cells with faces of any shapes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -43,6 +44,8 @@ class CellEmbedding {
                    std::vector<SimplexPair>& pairs) const;
 
   Tile tile_;  ///< with the edges of faces
+  std::vector<std::array<std::int64_t, 4>>
+      rays_;  ///< from the centre to the corners, in units in which they are integers
   EmbeddingProof proof_;
 };
 

@@ -8,7 +8,6 @@
 #include "base/fnv.hpp"
 #include "cells/cell_tables.hpp"
 #include "filling/position_search.hpp"
-
 #include "tables/emit_arrays.hpp"
 #include "tables/emit_text.hpp"
 
@@ -37,8 +36,7 @@ std::string search_text(const CellTables& table) {
   const SearchPlan plan;
   std::string text = fmt::format(
       ", \"search\": {{\"seed\": {}, \"middle\": 1, \"uniform\": {}, \"near_ends\": {}, \"descents\": {}, \"steps\": "
-      "{}, "
-      "\"intersections\": 0, \"classes\": [",
+      "{}, \"intersections\": 0, \"classes\": [",
       plan.seed, plan.uniform, plan.near_ends, plan.descents, plan.steps);
   const char* separator = "";
   for (const CellTables::Searched& s : table.searched) {

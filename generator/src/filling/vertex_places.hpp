@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// ContourPlaces of all vertices of a tile's contour for given points on its edges, as the runtime computes them (table
+// Places of all vertices of a tile's contour for given points on its edges, as the runtime computes them (table
 // contract: "Positions"), in integers: the same on all machines.
 #pragma once
 

@@ -30,7 +30,7 @@ enum class Lattice : std::uint8_t {
 /// (triangular), sqrt(2) / 2 (fcc), 1 / 2 (bcc, d4). Other steps give a stretched lattice.
 [[nodiscard]] double layer_step(Lattice lattice) noexcept;
 
-/// The cells between the samples of an image on a lattice, with their values; point numbers are those of the samples,
+/// The cells between the samples of an image on a lattice, with their values; points are numbered as samples,
 /// axis 0 fastest. `extract` of it is the contour of the image. Cells that would need samples outside of the image are
 /// left out, so its sides are uneven; at the first and last layer, octahedra are cut to pyramids. Errors:
 /// InvalidArgument (a lattice of another dimension, uneven steps along a shifted axis, fewer than 2 layers), TooLarge

@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
@@ -30,6 +31,31 @@ template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] AxisPeriods<N> longitude_periods(const Grid<N>& grid);
 
+/// Periods as numbers, as files store them: for each `vector`, `dual` and `start`.
+template <int N>
+[[nodiscard]] std::vector<double> period_numbers(const std::vector<Period<N>>& periods) {
+  std::vector<double> numbers;
+  for (const Period<N>& period : periods) {
+    numbers.insert(numbers.end(), period.vector.begin(), period.vector.end());
+    numbers.insert(numbers.end(), period.dual.begin(), period.dual.end());
+    numbers.push_back(period.start);
+  }
+  return numbers;
+}
+
+/// The periods with these numbers, 2 N + 1 for each; what remains is ignored.
+template <int N>
+[[nodiscard]] std::vector<Period<N>> periods_of_numbers(std::span<const double> numbers) {
+  std::vector<Period<N>> periods(numbers.size() / (2 * N + 1));
+  auto at = numbers.begin();
+  for (Period<N>& period : periods) {
+    for (double& x : period.vector) x = *at++;
+    for (double& x : period.dual) x = *at++;
+    period.start = *at++;
+  }
+  return periods;
+}
+
 /// As `extract_periodic`, with counts and times.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
@@ -43,10 +69,10 @@ requires DimensionBetween<N, 2, 4>
 /// contour for pictures and for all other functions.
 ///
 /// At missing values the contour is made a manifold across the seam, too. The result does not depend on the number of
-/// threads. Errors: those of `extract`; InvalidArgument for a period that is not positive and finite, is at most the
+/// threads. Errors: as `extract`; InvalidArgument for a period that is not positive and finite, is at most the
 /// distance between the first and the last sample, or has fewer than three samples, and for options that this function
-/// does not have: close, normals (tegl/normals.hpp has geometric ones), Ambiguity::custom. Time: that of `extract` and
-/// of merging, O(V + S). If only the last axis is periodic, samples are not copied; otherwise a few layers at a time.
+/// does not have: close, normals (tegl/normals.hpp has geometric ones), Ambiguity::custom. Time: as `extract`, and
+/// O(V + S) for merging. If only the last axis is periodic, samples are not copied; otherwise a few layers at a time.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_periodic(const Image<T, N>& image, const AxisPeriods<N>& periods,

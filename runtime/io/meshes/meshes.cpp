@@ -23,6 +23,7 @@
 #include "meshes/stl_writer.hpp"
 #include "meshes/vtkhdf.hpp"
 #include "process/separate_reading.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl {
 
@@ -142,30 +143,6 @@ MeshArray<double> as_doubles(Rows&& rows) {
   }
 }
 
-/// Periods as in Mesh.
-template <int N>
-std::vector<double> numbers_of(const std::vector<Period<N>>& periods) {
-  std::vector<double> numbers;
-  for (const Period<N>& period : periods) {
-    numbers.insert(numbers.end(), period.vector.begin(), period.vector.end());
-    numbers.insert(numbers.end(), period.dual.begin(), period.dual.end());
-    numbers.push_back(period.start);
-  }
-  return numbers;
-}
-
-template <int N>
-std::vector<Period<N>> periods_of(const std::vector<double>& numbers) {
-  std::vector<Period<N>> periods(numbers.size() / (2 * N + 1));
-  auto at = numbers.begin();
-  for (Period<N>& period : periods) {
-    for (double& x : period.vector) x = *at++;
-    for (double& x : period.dual) x = *at++;
-    period.start = *at++;
-  }
-  return periods;
-}
-
 /// The mesh of a contour, which is a temporary (its memory is taken over) or not.
 template <class AnyContour>
 Mesh mesh_of(AnyContour&& contour) {
@@ -180,7 +157,7 @@ Mesh mesh_of(AnyContour&& contour) {
   mesh.single_precision = std::is_same_v<typename Vertex::value_type, float>;
   mesh.axis_names = as_vector(contour.axis_names);
   mesh.axis_units = as_vector(contour.axis_units);
-  mesh.periods = numbers_of<kDim>(contour.periods);
+  mesh.periods = period_numbers(contour.periods);
   mesh.vertex_attributes = std::forward<AnyContour>(contour).vertex_attributes;
   mesh.simplex_attributes = std::forward<AnyContour>(contour).simplex_attributes;
   return mesh;
@@ -225,7 +202,7 @@ Contour<N, double> contour_of(AnyMesh&& mesh) {
     contour.axis_names[static_cast<std::size_t>(a)] = axis_text(mesh.axis_names, a);
     contour.axis_units[static_cast<std::size_t>(a)] = axis_text(mesh.axis_units, a);
   }
-  if (mesh.space_dim == N) contour.periods = periods_of<N>(mesh.periods);
+  if (mesh.space_dim == N) contour.periods = periods_of_numbers<N>(mesh.periods);
   contour.vertex_attributes = std::forward<AnyMesh>(mesh).vertex_attributes;
   contour.simplex_attributes = std::forward<AnyMesh>(mesh).simplex_attributes;
   return contour;
@@ -258,7 +235,7 @@ requires DimensionBetween<N, 2, 4> MeshView::MeshView(const Contour<N, Real>& co
       axis_units(contour.axis_units),
       vertex_attributes(contour.vertex_attributes),
       simplex_attributes(contour.simplex_attributes),
-      periods(numbers_of<N>(contour.periods)),
+      periods(period_numbers(contour.periods)),
       single_precision(std::is_same_v<Real, float>) {}
 
 template <int N, Coordinate Real>

@@ -187,7 +187,6 @@ class Reader {
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
   }
 
-  /// Reads the field array `isovalue`, if it is one finite number.
   /// The finite numbers of a field array with at most `most` of them; none if there is no such array.
   [[nodiscard]] std::vector<double> field_numbers(const char* name, std::uint64_t most) const {
     if (!file_.has(group_.id(), "FieldData")) return {};
@@ -202,6 +201,7 @@ class Reader {
     return numbers;
   }
 
+  /// Reads the field array `isovalue`, if it is one finite number.
   void read_isovalue() {
     if (const std::vector<double> numbers = field_numbers(kIsovalue, 1); numbers.size() == 1)
       mesh_.isovalue = numbers.front();

@@ -24,6 +24,9 @@ struct ClosedStar {
   /// Whether each of these triangles is in two tetrahedra, which induce opposite orientations on it, or, on request, in
   /// one. If not, or if the star is large, nothing else is set.
   bool is_settled = false;
+
+  /// The vertex at the centre, minus the edges, plus the triangles, minus the tetrahedra.
+  [[nodiscard]] std::int32_t euler_above() const noexcept { return 1 - int{edges} + int{triangles} - int{tetrahedra}; }
 };
 
 /// More about stars, on request. Then boundary triangles are allowed.

@@ -161,7 +161,7 @@ IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_
           data.euler_above[v] = 0;
           if (star.empty()) continue;
           if (const ClosedStar& here = closed[i - from]; N == 4 && here.is_settled) {
-            data.euler_above[v] = 1 - int{here.edges} + int{here.triangles} - int{here.tetrahedra};
+            data.euler_above[v] = here.euler_above();
             add_edges(data, v, to, std::span<const Index>(found.edges).subspan(edge, here.edges));
             edge += here.edges;
             if (here.boundary > 0) irregular[block].push_back({v, here.boundary, 0, 0, here.boundary});

@@ -74,11 +74,6 @@ std::vector<Index> first_items(std::span<const Index> labels, Index count) {
   return first;
 }
 
-/// The vertex at the centre, minus the edges, plus the triangles, minus the tetrahedra.
-std::int64_t euler_above(const ClosedStar& star) {
-  return 1 - std::int64_t{star.edges} + std::int64_t{star.triangles} - std::int64_t{star.tetrahedra};
-}
-
 /// Calls add(found, item) for each item with a label below `count`, in parallel by block. Then calls merge(found of a
 /// block, label) in order.
 template <class Found, class Make, class Add, class Merge>
@@ -201,7 +196,7 @@ std::vector<FaceCounts> count_faces(
           if (part.empty() || part.back().first != label) part.emplace_back(label, FaceCounts{});
           FaceCounts& counts = part.back().second;
           if (N == 4 && closed[v - from].is_settled)
-            counts.euler += euler_above(closed[v - from]);
+            counts.euler += closed[v - from].euler_above();
           else
             counts += faces.visit(static_cast<Index>(v), star, [&](const auto& ridge) { on_open(block, ridge); });
         }

@@ -27,12 +27,16 @@ std::string label_of(const Axis& axis, int a) {
 
 double length_of(const Axis& axis) { return std::abs(axis[axis.size() - 1] - axis[0]); }
 
+void require_samples(const Axis& axis, int a) {
+  if (axis.size() < 3)
+    refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", label_of(axis, a), axis.size()));
+}
+
 void check_period(const Axis& axis, int a, double period) {
   if (!std::isfinite(period) || period < 0.0)
     refuse(fmt::format("the period of {} is {}; expected a positive number, or 0 if it is not periodic",
                        label_of(axis, a), period));
-  if (axis.size() < 3)
-    refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", label_of(axis, a), axis.size()));
+  require_samples(axis, a);
   if (!(period > length_of(axis)))
     refuse(fmt::format("the period of {} is {}; expected more than {}, the distance between its first and last sample",
                        label_of(axis, a), period, length_of(axis)));
@@ -58,8 +62,7 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> sample_periods(const Grid<N>& 
   for (const int a : axes) {
     if (a < 0 || a >= N) refuse(fmt::format("axis {} is periodic; expected 0 to {}", a, N - 1));
     const Axis& axis = grid.axes[static_cast<std::size_t>(a)];
-    if (axis.size() < 3)
-      refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", label_of(axis, a), axis.size()));
+    require_samples(axis, a);
     const auto size = static_cast<double>(axis.size());
     periods[static_cast<std::size_t>(a)] =
         axis.is_uniform() ? size * std::abs(axis.step()) : length_of(axis) * size / (size - 1);

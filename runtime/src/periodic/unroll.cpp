@@ -9,7 +9,7 @@
 
 #include "base/periods.hpp"
 #include "kernel/contour_output.hpp"
-#include "tegl/error.hpp"
+#include "mesh/validate.hpp"
 #include "tegl/periodic.hpp"
 
 namespace tegl {
@@ -52,24 +52,12 @@ void append_copies(std::vector<Attribute>& attributes, std::span<const Index> co
   }
 }
 
-template <int N, class Real>
-void require_rows(const Contour<N, Real>& contour) {
-  const std::size_t vertices = contour.vertices.size();
-  for (const auto& simplex : contour.simplices)
-    for (const Index v : simplex)
-      if (v >= vertices)
-        throw Error(ErrorCode::InvalidArgument, "vertex number " + std::to_string(v) + "; expected less than " +
-                                                    std::to_string(vertices) + ", the number of vertices");
-  for (const Attribute& attribute : contour.vertex_attributes)
-    if (attribute.values.size() != vertices * static_cast<std::size_t>(attribute.width))
-      throw Error(ErrorCode::InvalidArgument, "attribute " + attribute.name + " does not fit the number of vertices");
-}
-
 }  // namespace
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Unrolled<N, Real> unroll(const Contour<N, Real>& contour) {
-  require_rows(contour);
+  detail::require_vertices(contour);
+  detail::require_attributes(contour);
   Unrolled<N, Real> result{contour, {}};
   Contour<N, Real>& unrolled = result.contour;
   unrolled.periods.clear();
