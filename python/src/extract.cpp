@@ -229,10 +229,10 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, double 
 template <class Real>
 AnyContour cut_of(const AnyImage& image, double level, int axis, double at, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
-    if constexpr (N == 3 || N == 4) {
+    if constexpr (N >= 3) {
       return {slice_image<Real>(view, level, Hyperplane<N>::across(axis, at), options), level};
     } else {
-      throw Error(ErrorCode::UnsupportedData, fmt::format("a cut of a {}D image; expected 3 or 4 dimensions", N));
+      throw Error(ErrorCode::UnsupportedData, fmt::format("a cut of a {}D image; expected 3 to 5 dimensions", N));
     }
   });
 }

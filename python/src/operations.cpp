@@ -26,7 +26,7 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
   return call.run([&] {
     return std::visit(
         [&]<int N, class Real>(const Contour<N, Real>& c) -> std::vector<AnyContour> {
-          if constexpr (N == 3 || N == 4) {
+          if constexpr (N >= 3) {
             const auto direction = to_array<N>("the normal", normal);
             std::vector<Hyperplane<N>> hyperplanes;
             for (const double offset : offsets) hyperplanes.push_back({direction, offset});
@@ -34,7 +34,7 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
             for (auto& cut : slice_stack(c, hyperplanes, options)) result.push_back({std::move(cut), contour.isovalue});
             return result;
           } else {
-            throw_dimension("a cut", N, "3 or 4 dimensions");
+            throw_dimension("a cut", N, "3 to 5 dimensions");
           }
         },
         contour.contour);

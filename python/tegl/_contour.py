@@ -236,7 +236,7 @@ class Contour:
         return self._cut(at, axis, normal, offset, allow_empty, threads, progress, coordinate)
 
     def _cut(self, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
-        is_checked = not _arguments.as_bool("allow_empty", allow_empty) and self.ndim in (3, 4)
+        is_checked = not _arguments.as_bool("allow_empty", allow_empty) and self.ndim >= 3
         is_list = _results.is_list
         if normal is not None:
             if at is not None or axis is not None or offset is None or more:

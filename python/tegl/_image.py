@@ -202,7 +202,7 @@ def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, pro
     wanted = [_arguments.number_on_axis(place, unit) for place in given]
     kind = np.float64 if is_double else np.float32
 
-    extent = prepared.extent if prepared.ndim in (3, 4) else None  # for others the library raises the error
+    extent = prepared.extent if prepared.ndim >= 3 else None  # for others the library raises the error
     if not _arguments.as_bool("allow_empty", allow_empty):
         _outside.require_places(extent, number, wanted, given, kind, prepared.names[number], unit, "image")
 

@@ -97,15 +97,30 @@ def test_what_is_no_cut_is_said(balls, arguments, text):
 
 def test_dimensions_that_there_are_not_are_said():
     flat, five = tegl.contour(ball(2), 0.0), tegl.contour(ball(5, 5), 0.0)
-    for contour, call in ((flat, lambda c: c.slice(1)), (five, lambda c: c.slice(1)), (five, lambda c: c.track()),
-                          (five, lambda c: c.simplify(ratio=0.5)), (five, lambda c: c.to_vtk()),
-                          (five, lambda c: c.save("five.vtkhdf")), (flat, lambda c: tegl.measure(c, at=1))):
+    for contour, call in ((flat, lambda c: c.slice(1)), (five, lambda c: c.track()), (five, lambda c: c.simplify(ratio=0.5)),
+                          (five, lambda c: c.to_vtk()), (five, lambda c: c.save("five.vtkhdf")), (flat, lambda c: tegl.measure(c, at=1))):
         with pytest.raises(ValueError, match=f"{contour.ndim}D contour; expected"):
             call(contour)
     with pytest.raises(ValueError, match="expected 2 to 4"):
         tegl.Index(ball(5, 4))
-    with pytest.raises(ValueError, match="3 or 4"):
+    with pytest.raises(ValueError, match="3 to 5"):
         tegl.slice(ball(2), 0.0, at=1)
+
+
+def test_five_dimensions_are_cut_to_four_three_and_two():
+    array = ball(5, 7)
+    contour = tegl.contour(array, 0.0)
+    four = contour.slice(3.2)
+    assert four.ndim == 4 and four.check().is_closed and four.check().is_manifold
+    three = four.slice(2.9)
+    assert three.ndim == 3 and three.check().euler == 2
+    direct = tegl.slice(array, 0.0, at=3.2)
+    assert np.array_equal(np.sort(direct.vertices, axis=0), np.sort(four.vertices, axis=0))
+    assert len(direct.simplices) == len(four.simplices)
+    tilted = contour.slice(normal=(1, 1, 0, 0, 0), offset=6.3)
+    assert tilted.ndim == 4 and tilted.check().is_closed and len(four.track().tracks) == 1
+    with pytest.raises(ValueError, match="expected a place between"):
+        contour.slice(9)
 
 
 # Checks, components, measures.

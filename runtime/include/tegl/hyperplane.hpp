@@ -14,7 +14,7 @@ namespace tegl {
 
 /// The points x with <normal, x> = offset. The normal may have any non-zero length; its side is "above".
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 struct Hyperplane {
   Vector<N> normal = unit_vector<N>(N - 1);  ///< of any non-zero length
   double offset = 0.0;                       ///< its signed distance from 0, times the length of the normal
@@ -30,7 +30,7 @@ struct Hyperplane {
 /// or to its opposite if that is closer. For a hyperplane across a coordinate axis, the frame is therefore exactly the
 /// other axes. The frame changes continuously with the normal while k stays the same.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 struct HyperplaneFrame {
   std::array<Vector<N>, N - 1> axes = {};  ///< unit vectors
   Vector<N> origin = {};                   ///< the point of the hyperplane nearest to 0
@@ -61,17 +61,17 @@ struct HyperplaneFrame {
 };
 
 /// The frame of a hyperplane. Lengths and angles are those of the coordinates as given. If axes have different units
-/// (mm and s), call `scale_axes` first to define how they compare. N = 2, 3, 4. Throws InvalidArgument if the normal is
+/// (mm and s), call `scale_axes` first to define how they compare. N = 2 to 5. Throws InvalidArgument if the normal is
 /// 0 or not finite, or the offset is not finite.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
 
 /// The contour with the coordinates along each axis multiplied by a positive factor. Normals become those of the scaled
 /// contour; names, units, attributes and simplices are unchanged. Pass the contour by std::move to scale it without a
-/// copy. N = 2, 3, 4. Throws InvalidArgument for other factors. O(#V).
+/// copy. N = 2 to 5. Throws InvalidArgument for other factors. O(#V).
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, Real> scale_axes(Contour<N, Real> contour, const std::type_identity_t<Vector<N>>& factors);
 
 }  // namespace tegl

@@ -16,7 +16,7 @@
 
 namespace tegl {
 
-/// Cuts of an N-dimensional contour (N = 3, 4) by parallel hyperplanes; by default those of constant time.
+/// Cuts of an N-dimensional contour (N = 3, 4, 5) by parallel hyperplanes; by default those of constant time.
 ///
 /// Each cut equals that of `slice` bit by bit, in time that depends on the size of the cut and not of the contour: an
 /// interval tree holds the height range of every simplex. Building takes O(s log s) time for s simplices. Memory: 16
@@ -29,7 +29,7 @@ namespace tegl {
 /// P. Cignoni et al., Speeding up isosurface extraction using interval trees, 1997; M. Liversage, thesis, 1994,
 /// 10.2.11.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 class Scrubber {
  public:
   /// All cuts are parallel to `hyperplane`: they have its normal, and `cut` takes their offset. Throws InvalidArgument

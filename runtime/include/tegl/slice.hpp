@@ -15,11 +15,11 @@
 
 namespace tegl {
 
-/// Cuts an N-dimensional contour (N = 3, 4) by a hyperplane. `slice(contour, Hyperplane<4>::across(3, t))` is the
+/// Cuts an N-dimensional contour (N = 3, 4, 5) by a hyperplane. `slice(contour, Hyperplane<4>::across(3, t))` is the
 /// surface at time t.
 ///
-/// The result has one dimension less, in the coordinates of `frame_of(hyperplane)`: triangles for N = 4, segments for
-/// N = 3. Across an axis these are the other axes: across x, a 4D contour gives a surface in y, z and t. "Above" is the
+/// The result has one dimension less, in the coordinates of `frame_of(hyperplane)`: segments for N = 3, triangles for
+/// N = 4, tetrahedra for N = 5. Across an axis these are the other axes: across x, a 4D contour gives a surface in y, z and t. "Above" is the
 /// side of the hyperplane's normal. The cut faces the same side, low or high, as the contour, in the frame's
 /// coordinates, also if the frame is left-handed. Direction, and names and units of axes that are axes of the frame,
 /// are kept; other names and units are empty. Normals, if the contour has any, are interpolated like the vertices,
@@ -46,7 +46,9 @@ namespace tegl {
 /// them out of the layer.) Conditions: the normal points in the axis's positive direction, Real has numbers between the
 /// coordinates of the layers, and a user's estimator returns the same for a face of the image and for this face of the
 /// layer. If samples are missing, the contour has only the part of the layer that belongs to tiles, and it may be
-/// triangulated differently.
+/// triangulated differently. For N = 5, it holds if no sample equals the isovalue, and for compact contours without
+/// `close` whose ambiguities are resolved from the data; others have the layer's topology, but other simplices, as 5D
+/// cells fill their 4D faces in their own way.
 ///
 /// Across other axes, at a sample's coordinate, the cut is the contour of that layer if no sample equals the
 /// isovalue. If samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the
@@ -54,13 +56,14 @@ namespace tegl {
 /// contour does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer
 /// or lie along samples of the isovalue. `slice_image` reads the image and gives the layer's contour.
 ///
-/// Quadrilaterals are split by the shorter diagonal. The order of the result depends only on the order of the contour.
+/// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the contour's
+/// vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
 /// attributes or normals of another number), Cancelled. If the hyperplane is beyond the contour, the cut is empty.
 /// O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. The result does not depend on
 /// the number of threads. Thread-safe.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,
                                          const WorkOptions& work = {});
 
@@ -69,13 +72,13 @@ requires DimensionBetween<N, 3, 4>
 /// threads. Errors: as `slice`; Cancelled. O(#S log k + #V) for k hyperplanes of one normal, plus the cost of the
 /// cuts; 8 #V bytes plus the memory of all cuts.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 [[nodiscard]] std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {});
 /// The same for a list: `slice_stack(contour, {Hyperplane<4>::across(3, 1.0), Hyperplane<4>::across(3, 2.0)})`.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 [[nodiscard]] std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::initializer_list<Hyperplane<N>>> hyperplanes,
     const WorkOptions& work = {}) {
@@ -84,7 +87,7 @@ requires DimensionBetween<N, 3, 4>
 
 /// As `slice_image`, with counts and times of the extraction.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Extraction<N - 1, Real> slice_image_with_stats(const Image<T, N>& image, double isovalue,
                                                              const std::type_identity_t<Hyperplane<N>>& hyperplane,
                                                              const ExtractOptions& options = {});
@@ -96,7 +99,7 @@ requires DimensionBetween<N, 3, 4>
 ///
 /// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
 /// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
-/// from it (N = 3, 4). Elsewhere it equals slice(extract<Real>(image, isovalue, options), hyperplane) bit by bit
+/// from it (N = 3, 4; for N = 5 it is the cut of the whole contour). Elsewhere it equals slice(extract<Real>(image, isovalue, options), hyperplane) bit by bit
 /// (normals again up to rounding), up to the numbering; if values are missing at some layers only, up to the
 /// triangulation of the same surface. `options.close` closes the cut at the borders of the other axes, as in the cut of
 /// the closed contour.
@@ -106,7 +109,7 @@ requires DimensionBetween<N, 3, 4>
 /// the world map mixes the axis with others, so that its layers are not across it. Cost: that of extracting one or two
 /// slabs, independent of the length of the axis; for oblique hyperplanes, that of `extract` and `slice`.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
                                                const std::type_identity_t<Hyperplane<N>>& hyperplane,
                                                const ExtractOptions& options = {}) {
@@ -123,7 +126,7 @@ struct LayerRange {
 /// the samples of other layers need not be in memory. Errors: InvalidArgument if there is no such axis, if
 /// `at` is outside of the image, or if the world map mixes the axis with others. O(n) time for an axis of n samples.
 template <Coordinate Real = float, int N>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 [[nodiscard]] LayerRange layers_of_cut(const Grid<N>& grid, int axis, double at, const ExtractOptions& options = {});
 
 }  // namespace tegl

@@ -21,6 +21,8 @@
 // The cut points around an on vertex u are then merged into u. The result is a manifold if these points span a disc
 // (contracting discs to points does not change a surface: R. L. Moore, Concerning upper semi-continuous collections of
 // continua, 1925). It is pinched if h is a critical value at u. Such points are kept separate, each at the place of u.
+// In the cut of a 5D contour the points around u span a solid, and contracting it may also spoil the links of points
+// beside it. All links are tested; vertices at or beside one that is no sphere or disc are left apart.
 //
 // Why the cut at a layer of the image is the contour M of that layer. The on vertices are the vertices of M (except for
 // samples equal to the isovalue). If there are tiles below, each face of M is a face of one simplex from below. The cut
@@ -53,49 +55,11 @@
 #include "base/periods.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
+#include "cut/simplex_cut.hpp"
 #include "cut/slice_piece.hpp"
 
 namespace tegl::detail {
 namespace {
-
-/// The positions of a simplex's vertices with those in `high` (bit j: vertex j) first, by an even permutation.
-template <int N>
-constexpr std::array<std::uint8_t, N> high_first(unsigned high) {
-  std::array<std::uint8_t, N> sorted{};
-  for (int j = 0; j < N; ++j) sorted[j] = static_cast<std::uint8_t>(j);
-  const auto is_first = [&](int i) { return ((high >> sorted[i]) & 1u) != 0; };
-  bool odd = false;
-  for (int i = 1; i < N; ++i)
-    for (int j = i; j > 0 && is_first(j) && !is_first(j - 1); --j) {
-      std::swap(sorted[j], sorted[j - 1]);
-      odd = !odd;
-    }
-  // With at least three vertices, one side has two of them; exchanging them makes the permutation even.
-  const int high_count = std::popcount(high);
-  if (odd && high_count >= 2) std::swap(sorted[0], sorted[1]);
-  if (odd && high_count < 2) std::swap(sorted[N - 2], sorted[N - 1]);
-  return sorted;
-}
-template <int N>
-constexpr auto kHighFirst = [] {
-  std::array<std::array<std::uint8_t, N>, 1u << N> all{};
-  for (unsigned high = 0; high < all.size(); ++high) all[high] = high_first<N>(high);
-  return all;
-}();
-
-/// The pairs (above, below) of positions, in the order of `high_first`, whose edges carry the cut points, with the
-/// orientation derived at the top of this file.
-using Pairs = std::array<std::pair<int, int>, 4>;
-template <int N>
-std::pair<Pairs, int> cut_pairs(int high_count) {
-  if constexpr (N == 3)
-    return high_count == 1 ? std::pair{Pairs{{{0, 2}, {0, 1}}}, 2} : std::pair{Pairs{{{0, 2}, {1, 2}}}, 2};
-  if constexpr (N == 4) {
-    if (high_count == 1) return {Pairs{{{0, 1}, {0, 2}, {0, 3}}}, 3};
-    if (high_count == 2) return {Pairs{{{0, 2}, {0, 3}, {1, 3}, {1, 2}}}, 4};
-    return {Pairs{{{0, 3}, {1, 3}, {2, 3}}}, 3};
-  }
-}
 
 /// An (N-2)-face that lies in the hyperplane, as seen from one of its simplices.
 template <int N>
@@ -296,19 +260,6 @@ class Cutter {
     return (kAll & ~(unsigned{sides_[i].below} | sides_[i].on)) | on_high(i);
   }
 
-  /// The piece between the `high` vertices of a simplex and the others.
-  [[nodiscard]] Piece make_piece(Index simplex, unsigned high) const {
-    const auto& vertices = contour_.simplices[simplex];
-    const auto& order = kHighFirst<N>[high];
-    const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
-    Piece piece;
-    piece.simplex = simplex;
-    piece.count = count;
-    for (int i = 0; i < count; ++i)
-      piece.points[i] = edge_point(vertices[order[pairs[i].second]], vertices[order[pairs[i].first]]);
-    return piece;
-  }
-
   /// The pieces of all simplices. Points around on vertices are merged, except around the vertices in `apart`.
   /// Collapsed pieces are omitted.
   [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
@@ -319,9 +270,10 @@ class Cutter {
       for (std::size_t i = from; i < to; ++i) {
         const unsigned above = high(i);
         if (above == 0 || above == kAll) continue;
-        const Piece piece = make_piece(touching_[i], above);
-        const Piece merged = sides_[i].on == 0 ? piece : merged_piece(piece, is_merged);
-        if (merged.count >= N - 1) parts[block].push_back(merged);
+        visit_pieces<N>(contour_.simplices[touching_[i]], touching_[i], above, [&](const Piece& piece) {
+          const Piece merged = sides_[i].on == 0 ? piece : merged_piece(piece, is_merged);
+          if (merged.count >= N - 1) parts[block].push_back(merged);
+        });
       }
     });
     std::vector<Piece> result;
@@ -339,9 +291,12 @@ class Cutter {
     for (int k = 0; k < piece.count; ++k) {
       const std::optional<Index> on = on_end(piece.points[k]);
       const PointKey key = on && is_merged(*on) ? vertex_point(*on) : piece.points[k];
-      // Merged points are adjacent in the cycle, because they share the on vertex.
-      const bool repeats = merged.count > 0 && (merged.points[merged.count - 1] == key ||
-                                                (k == piece.count - 1 && merged.points[0] == key));
+      // Merged points of a polygon are adjacent in the cycle, because they share the on vertex. The points of a
+      // tetrahedron are in no cycle; any two that are merged leave less than four.
+      const auto* const end = merged.points.cbegin() + merged.count;
+      const bool repeats =
+          N == 5 ? std::find(merged.points.cbegin(), end, key) != end
+                 : merged.count > 0 && (*(end - 1) == key || (k == piece.count - 1 && merged.points[0] == key));
       if (!repeats) merged.points[merged.count++] = key;
     }
     return merged;
@@ -365,10 +320,10 @@ class Cutter {
       std::vector<Piece> merged = cut_pieces(apart);
       merged.insert(merged.end(), faces.begin(), faces.end());
       set_pieces(std::move(merged));
-      const std::vector<PointKey> pinched = nonmanifold_points(pieces_, corners_);
+      const std::vector<PointKey> pinched = nonmanifold_points(pieces_, corners_, N - 2);
       if (round == 0 && !pinched.empty()) {
         const std::vector<Piece> unmerged = cut_pieces(std::vector<bool>(on_.size(), true));
-        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, most_, threads_));
+        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, most_, threads_), N - 2);
       }
       if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
     }
@@ -384,8 +339,7 @@ class Cutter {
   bool leave_apart(const std::vector<PointKey>& pinched, const std::vector<PointKey>& excused, bool all,
                    std::vector<bool>& apart) const {
     std::vector<bool> candidates(apart.size(), all && !pinched.empty());
-    for (const PointKey key : pinched)
-      if (is_vertex_point(key)) candidates[on_(upper_end(key))] = true;
+    for (const PointKey key : pinched) mark_merged_near(key, candidates);
     for (const PointKey key : excused)
       if (const std::optional<Index> on = on_end(key)) candidates[on_(*on)] = false;
     bool changed = false;
@@ -395,6 +349,18 @@ class Cutter {
       changed = true;
     }
     return changed;
+  }
+
+  /// Marks the on vertex of a merged point. Contracting discs never pinches a surface anywhere else; contracted solids
+  /// may, so in a cut of tetrahedra the merged points next to another pinched point are marked.
+  void mark_merged_near(PointKey key, std::vector<bool>& marks) const {
+    if (is_vertex_point(key)) marks[on_(upper_end(key))] = true;
+    if (N < 5 || is_vertex_point(key)) return;
+    const auto first = std::lower_bound(corners_.begin(), corners_.end(), key,
+                                        [](const Corner& corner, PointKey k) { return corner.key < k; });
+    for (auto corner = first; corner != corners_.end() && corner->key == key; ++corner)
+      for (const PointKey near : pieces_[corner->at / 4].points)
+        if (is_vertex_point(near)) marks[on_(upper_end(near))] = true;
   }
 
   /// Removes faces at vertices that are apart and still pinched: only faces meet there. Returns whether any were
@@ -456,9 +422,10 @@ class Cutter {
       const auto& simplex = contour_.simplices[on_faces[i].simplex];
       if (j - i != 1 || !(height(simplex[on_faces[i].omitted]) > level_)) continue;
       if (!family_.is_along_last_axis() && may_lie_in_another_side(on_faces[i], reach)) continue;
-      Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
-      for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
-      faces.push_back(face);
+      visit_pieces<N>(simplex, on_faces[i].simplex, 1u << on_faces[i].omitted, [&](Piece face) {
+        for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
+        faces.push_back(face);
+      });
     }
     return faces;
   }
@@ -556,6 +523,8 @@ class Cutter {
     for (const Piece& piece : pieces_) {
       if constexpr (N == 3) {
         add(piece, {0, 1});
+      } else if constexpr (N == 5) {
+        add(piece, {0, 1, 2, 3});
       } else if (piece.count == 3) {
         add(piece, {0, 1, 2});
       } else if (splits_from_first(result, piece)) {
@@ -630,6 +599,10 @@ template Contour<2, double> cut_simplices(const Contour<3, double>&, const Hyper
 template Contour<3, float> cut_simplices(const Contour<4, float>&, const HyperplaneFamily<4>&, double,
                                          std::span<const Index>, unsigned);
 template Contour<3, double> cut_simplices(const Contour<4, double>&, const HyperplaneFamily<4>&, double,
+                                          std::span<const Index>, unsigned);
+template Contour<4, float> cut_simplices(const Contour<5, float>&, const HyperplaneFamily<5>&, double,
+                                         std::span<const Index>, unsigned);
+template Contour<4, double> cut_simplices(const Contour<5, double>&, const HyperplaneFamily<5>&, double,
                                           std::span<const Index>, unsigned);
 
 }  // namespace tegl::detail

@@ -14,13 +14,13 @@
 namespace tegl {
 
 template <int N>
-requires DimensionBetween<N, 2, 4> Hyperplane<N> Hyperplane<N>::across(int axis, double at) {
+requires DimensionBetween<N, 2, 5> Hyperplane<N> Hyperplane<N>::across(int axis, double at) {
   detail::require_cut_axis<N>(axis);
   return {unit_vector<N>(axis), at};
 }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
+requires DimensionBetween<N, 2, 5> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
   using Column = Eigen::Matrix<double, N, 1>;
   const Column normal = as_eigen(hyperplane.normal);
   double most = normal.cwiseAbs().maxCoeff();
@@ -55,7 +55,7 @@ requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> scale_axes(Contour<N, Real> contour,
+requires DimensionBetween<N, 2, 5> Contour<N, Real> scale_axes(Contour<N, Real> contour,
                                                                const std::type_identity_t<Vector<N>>& factors) {
   for (int a = 0; a < N; ++a)
     if (!(factors[a] > 0.0) || !std::isfinite(factors[a]))
@@ -80,10 +80,13 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> scale_axes(Contour<N, Real> 
 template struct Hyperplane<2>;
 template struct Hyperplane<3>;
 template struct Hyperplane<4>;
+template struct Hyperplane<5>;
 template HyperplaneFrame<2> frame_of(const Hyperplane<2>&);
 template HyperplaneFrame<3> frame_of(const Hyperplane<3>&);
 template HyperplaneFrame<4> frame_of(const Hyperplane<4>&);
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) template Contour<N, Real> scale_axes(Contour<N, Real>, const Vector<N>&);
+template HyperplaneFrame<5> frame_of(const Hyperplane<5>&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \
+  template Contour<N, Real> scale_axes(Contour<N, Real>, const Vector<N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

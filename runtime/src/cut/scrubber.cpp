@@ -106,7 +106,7 @@ std::vector<Range> place_ranges(const Contour<N, Real>& contour, unsigned thread
 }  // namespace
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour,
+requires DimensionBetween<N, 3, 5> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour,
                                                                const Hyperplane<N>& hyperplane, const WorkOptions& work)
     : contour_(&contour), normal_(hyperplane.normal) {
   const detail::HyperplaneFamily<N> family(normal_);
@@ -144,12 +144,12 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::uint32_t Scrubber<N, Real>::place(double height)
+requires DimensionBetween<N, 3, 5> std::uint32_t Scrubber<N, Real>::place(double height)
 const noexcept { return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(0.0, height - lowest_))); }
 
 /// Appends the simplices of a node whose ranges contain the place `at`.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4>
+requires DimensionBetween<N, 3, 5>
 void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vector<Index>& found) const {
   const auto node = std::lower_bound(nodes_.begin(), nodes_.end() - 1, middle,
                                      [](const Node& n, std::uint32_t m) { return n.middle < m; });
@@ -166,7 +166,7 @@ void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vecto
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::vector<Index> Scrubber<N, Real>::touching(double offset)
+requires DimensionBetween<N, 3, 5> std::vector<Index> Scrubber<N, Real>::touching(double offset)
 const {
   const detail::HyperplaneFamily<N> family(normal_);
   const double level = family.template level<Real>(offset);
@@ -193,14 +193,14 @@ const {
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> Scrubber<N, Real>::cut(double offset)
+requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> Scrubber<N, Real>::cut(double offset)
 const {
   const detail::HyperplaneFamily<N> family(normal_);
   return detail::cut_simplices(*contour_, family, family.template level<Real>(offset), touching(offset));
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::size_t Scrubber<N, Real>::memory()
+requires DimensionBetween<N, 3, 5> std::size_t Scrubber<N, Real>::memory()
 const noexcept {
   return nodes_.capacity() * sizeof(Node) + (by_least_.capacity() + by_most_.capacity()) * sizeof(Entry);
 }
@@ -209,5 +209,7 @@ template class Scrubber<3, float>;
 template class Scrubber<3, double>;
 template class Scrubber<4, float>;
 template class Scrubber<4, double>;
+template class Scrubber<5, float>;
+template class Scrubber<5, double>;
 
 }  // namespace tegl

@@ -164,7 +164,7 @@ constexpr const char* kCancelledSlice = "cuts cancelled";
 }  // namespace
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
+requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
                                                               const Hyperplane<N>& hyperplane,
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
@@ -178,7 +178,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, R
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work) {
   std::vector<Parallels<N>> groups;
@@ -218,6 +218,8 @@ TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)
 TEGL_INSTANTIATE_SLICE(4, double)
+TEGL_INSTANTIATE_SLICE(5, float)
+TEGL_INSTANTIATE_SLICE(5, double)
 #undef TEGL_INSTANTIATE_SLICE
 
 }  // namespace tegl

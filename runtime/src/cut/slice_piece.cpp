@@ -39,8 +39,43 @@ class Links {
     return parts == 1;
   }
 
+  /// Whether the link of a point in tetrahedra is a sphere or a disc. Each tetrahedron has a triangle in the link. If
+  /// each edge is in one or two triangles and the triangles are connected across edges, then it is one iff the Euler
+  /// characteristic is 2 without a border, or 1 with one (see mesh/star_search.hpp).
+  bool is_sphere_or_disc(std::span<const Corner> corners) {
+    edges_.clear();
+    ends_.clear();
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Piece& piece = pieces_[corners[c].at / 4];
+      const std::size_t here = corners[c].at % 4;
+      for (std::size_t i = 1; i < 4; ++i) {
+        const PointKey a = piece.points[(here + i) % 4];
+        const PointKey b = piece.points[(here + (i == 3 ? 1 : i + 1)) % 4];
+        edges_.push_back({std::minmax(a, b), c});
+        ends_.emplace_back(a, 0);
+      }
+    }
+    std::sort(ends_.begin(), ends_.end());
+    const auto vertices = std::unique(ends_.begin(), ends_.end()) - ends_.begin();
+    std::sort(edges_.begin(), edges_.end());
+    sets_.reset(corners.size());
+    std::size_t parts = corners.size();
+    std::ptrdiff_t inner = 0;
+    for (std::size_t i = 1; i < edges_.size(); ++i) {
+      if (edges_[i].first != edges_[i - 1].first) continue;
+      if (i >= 2 && edges_[i].first == edges_[i - 2].first) return false;  // a triangle in three tetrahedra
+      parts -= sets_.join(edges_[i].second, edges_[i - 1].second);
+      ++inner;
+    }
+    const auto triangles = static_cast<std::ptrdiff_t>(corners.size());
+    const std::ptrdiff_t edges = 3 * triangles - inner;
+    const bool has_border = edges != inner;
+    return parts == 1 && vertices - edges + triangles == (has_border ? 1 : 2);
+  }
+
  private:
   std::span<const Piece> pieces_;
+  std::vector<std::pair<std::pair<PointKey, PointKey>, std::size_t>> edges_;  ///< with their triangles
   std::vector<std::pair<PointKey, std::size_t>> ends_;
   BasicDisjointSets<std::size_t> sets_;
 };
@@ -71,13 +106,15 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most, 
   return corners;
 }
 
-std::vector<PointKey> nonmanifold_points(std::span<const Piece> pieces, std::span<const Corner> corners) {
+std::vector<PointKey> nonmanifold_points(std::span<const Piece> pieces, std::span<const Corner> corners, int dim) {
   std::vector<PointKey> result;
-  const bool of_segments = !pieces.empty() && pieces[0].count == 2;
   Links links(pieces);
+  const auto is_manifold = [&](std::span<const Corner> of_point) {
+    return dim == 1 ? of_point.size() <= 2 : dim == 2 ? links.is_fan(of_point) : links.is_sphere_or_disc(of_point);
+  };
   for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
     for (j = i + 1; j < corners.size() && corners[j].key == corners[i].key;) ++j;
-    if (of_segments ? j - i > 2 : !links.is_fan(corners.subspan(i, j - i))) result.push_back(corners[i].key);
+    if (!is_manifold(corners.subspan(i, j - i))) result.push_back(corners[i].key);
   }
   return result;
 }

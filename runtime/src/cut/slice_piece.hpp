@@ -23,7 +23,8 @@ constexpr Index lower_end(PointKey key) { return static_cast<Index>(key >> 32); 
 constexpr Index upper_end(PointKey key) { return static_cast<Index>(key & 0xffffffffu); }
 constexpr bool is_vertex_point(PointKey key) { return lower_end(key) == upper_end(key); }
 
-/// Cut of one simplex: two points (N = 3), or three or four in cyclic order (N = 4).
+/// Cut of one simplex: two points (N = 3), three or four in cyclic order (N = 4), or the four of a tetrahedron (N = 5),
+/// of which a simplex may have several.
 struct Piece {
   std::array<PointKey, 4> points;
   int count = 0;
@@ -40,9 +41,10 @@ struct Corner {
 /// for c pieces.
 std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most, unsigned threads);
 
-/// The keys, ascending, of the points at which the pieces do not form one fan (polygons) or one path (segments), or
-/// that have an edge in more than two polygons. `corners`: of these pieces. O(c) for c pieces if few meet at each
-/// point.
-std::vector<PointKey> nonmanifold_points(std::span<const Piece> pieces, std::span<const Corner> corners);
+/// The keys, ascending, of the points at which the pieces do not form one path (segments, `dim` 1) or one fan
+/// (polygons, 2), or at which the link of the tetrahedra (3) is neither a sphere nor a disc; also those that have an
+/// edge in more than two polygons, or a triangle in more than two tetrahedra. `corners`: of these pieces. O(c) for c
+/// pieces if few meet at each point.
+std::vector<PointKey> nonmanifold_points(std::span<const Piece> pieces, std::span<const Corner> corners, int dim);
 
 }  // namespace tegl::detail

@@ -77,18 +77,35 @@ Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, 
   return {slice(extracted.contour, at_layer ? Hyperplane<N>::across(axis, at) : hyperplane), extracted.stats};
 }
 
+/// The cut of a 5D image across an axis. What is extracted in a slab is in the hyperplane, or beside it, what it is in
+/// the whole contour, caps included.
+template <class Real, Value T, int N>
+Extraction<N - 1, Real> slice_slabs(const Image<T, N>& image, double isovalue, const Hyperplane<N>& hyperplane,
+                                    int axis, const ExtractOptions& options) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const double at = std::clamp(hyperplane.offset / hyperplane.normal[axis], -kMost, kMost);
+  const LayerRange slabs = layers_around<N, Real>(image.grid(), axis, at);
+  const LayerRange layers = with_neighbours(slabs, image.size(axis), options);
+  const auto part =
+      extract_with_stats<Real>(image.part(axis, layers.first, layers.end - layers.first), isovalue, options);
+  return {slice(part.contour, hyperplane), part.stats};
+}
+
 }  // namespace tegl::detail
 
 namespace tegl {
 
 template <Coordinate Real, Value T, int N>
-requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stats(
+requires DimensionBetween<N, 3, 5> Extraction<N - 1, Real> slice_image_with_stats(
     const Image<T, N>& image, double isovalue, const std::type_identity_t<Hyperplane<N>>& hyperplane,
     const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   (void)frame_of(hyperplane);  // throws before the work if the hyperplane is none
   const int axis = detail::axis_of_normal(hyperplane);
-  if (axis >= 0) return detail::slice_layers<Real>(image, isovalue, hyperplane, axis, options);
+  if constexpr (N == 5)
+    if (axis >= 0) return detail::slice_slabs<Real>(image, isovalue, hyperplane, axis, options);
+  if constexpr (N < 5)
+    if (axis >= 0) return detail::slice_layers<Real>(image, isovalue, hyperplane, axis, options);
   auto whole = extract_with_stats<Real>(image, isovalue, options);
   return {slice(whole.contour, hyperplane), whole.stats};
 }
@@ -102,4 +119,6 @@ requires DimensionBetween<N, 3, 4> Extraction<N - 1, Real> slice_image_with_stat
   TEGL_INSTANTIATE_SLICE(T, 3, float)   \
   TEGL_INSTANTIATE_SLICE(T, 3, double)  \
   TEGL_INSTANTIATE_SLICE(T, 4, float)   \
-  TEGL_INSTANTIATE_SLICE(T, 4, double)
+  TEGL_INSTANTIATE_SLICE(T, 4, double)  \
+  TEGL_INSTANTIATE_SLICE(T, 5, float)   \
+  TEGL_INSTANTIATE_SLICE(T, 5, double)
