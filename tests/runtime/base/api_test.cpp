@@ -93,10 +93,10 @@ static_assert(only_in<2, 5>([]<int N>() {
 static_assert(only_in<2, 5>([]<int N>() {
   return requires { typename Extraction<N>; };
 }));
-static_assert(only_in<2, 4>([]<int N>() {
+static_assert(only_in<2, 5>([]<int N>() {
   return requires { typename Hyperplane<N>; };
 }));
-static_assert(only_in<2, 4>([]<int N>() {
+static_assert(only_in<2, 5>([]<int N>() {
   return requires { typename HyperplaneFrame<N>; };
 }));
 static_assert(only_in<2, 4>([]<int N>() {
@@ -120,7 +120,7 @@ static_assert(only_in<2, 4>([]<int N>() {
 static_assert(only_in<2, 4>([]<int N>() {
   return requires { typename ContourFile<N, float>; };
 }));
-static_assert(only_in<3, 4>([]<int N>() {
+static_assert(only_in<3, 5>([]<int N>() {
   return requires { typename Scrubber<N, float>; };
 }));
 
@@ -228,14 +228,14 @@ consteval bool of_2_to_5_only(Test test) {
   }
   (std::make_integer_sequence<int, 4>(), test);
 }
-static_assert(of_2_to_5_only<3, 4>([]<int N>() { return Sliced<Contour<N>>; }));
-static_assert(of_2_to_5_only<3, 4>([]<int N>() { return SlicedOften<Contour<N>>; }));
-static_assert(of_2_to_5_only<3, 4>([]<int N>() { return ImageSliced<Image<float, N>>; }));
+static_assert(of_2_to_5_only<3, 5>([]<int N>() { return Sliced<Contour<N>>; }));
+static_assert(of_2_to_5_only<3, 5>([]<int N>() { return SlicedOften<Contour<N>>; }));
+static_assert(of_2_to_5_only<3, 5>([]<int N>() { return ImageSliced<Image<float, N>>; }));
 static_assert(of_2_to_5_only<3, 5>([]<int N>() { return CutsMeasured<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Tracked<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Simplified<Contour<N>, N>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Scaled<Contour<N>>; }));
-static_assert(of_2_to_5_only<2, 4>([]<int N>() { return AxesScaled<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 5>([]<int N>() { return AxesScaled<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Compared<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return FlatNormals<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return GeometricNormals<Contour<N>>; }));
