@@ -167,9 +167,9 @@ TEST(SliceFive, OfABallHasSecondOrder) {
     const double radius = std::sqrt(1.0 - 0.09);
     const double exact = 2 * M_PI * M_PI * radius * radius * radius;
     errors[static_cast<std::size_t>(level)] = std::abs(test::measure(cut) - exact);
-    if (level == 1) EXPECT_LT(errors[1], 0.05 * exact);
     expect_closed_manifold(cut);
   }
+  EXPECT_LT(errors[1], 0.7);  // of 17.1
   EXPECT_GT(errors[0] / errors[1], 3.2);
 }
 
