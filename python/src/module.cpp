@@ -92,7 +92,15 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
                                        {"decider", Ambiguity::decider}});
   result.direction = named<GradientDirection>("direction", text("direction"), gradient_directions());
   const std::string normals = text("normals");
-  result.normals = normals == "gradient" ? Normals::differences : normals == "sobel" ? Normals::sobel : Normals::none;
+  result.normals = normals == "gradient"   ? Normals::differences
+                   : normals == "sobel"    ? Normals::sobel
+                   : normals == "prewitt"  ? Normals::prewitt
+                   : normals == "context"  ? Normals::context
+                   : normals == "forward"  ? Normals::forward
+                   : normals == "backward" ? Normals::backward
+                   : normals == "kernel"   ? Normals::kernel
+                                           : Normals::none;
+  result.kernel.weights = py::cast<std::vector<double>>(arguments["kernel"]);
   result.close = py::cast<bool>(arguments["close"]);
   result.epsilon = py::cast<double>(arguments["epsilon"]);
   result.work.threads = py::cast<unsigned>(arguments["threads"]);

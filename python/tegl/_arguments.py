@@ -126,6 +126,19 @@ class Prepared:
         """Numbers of the array's axes, in the library's order."""
         return list(per_axis)[::-1] if self.is_reversed else list(per_axis)
 
+    def library_options(self, options: dict) -> dict:
+        """Options of `extract_options` with the gradient kernel as the library's list of weights."""
+        if options["normals"] != "kernel":
+            return {**options, "kernel": []}
+        kernel, n = real("normals", options["kernel"]).astype(np.float64), self.ndim
+        if kernel.shape == (3,) * n:
+            kernel = np.stack([kernel.swapaxes(0, axis) for axis in range(n)])
+        if kernel.shape != (n,) + (3,) * n:
+            raise ValueError(f"normals is a kernel of the shape {kernel.shape}; expected {(3,) * n}, the derivative along the "
+                             f"first axis, or {(n,) + (3,) * n}, along each axis")
+        order: typing.Literal["C", "F"] = "C" if self.is_reversed else "F"  # axis 0 of the library is the fastest
+        return {**options, "kernel": [w for one in self.turned(kernel) for w in one.ravel(order=order).tolist()]}
+
     def library_axis(self, axis: int | str) -> int:
         number = axis_number(axis, self.names, self.ndim)
         return self.ndim - 1 - number if self.is_reversed else number
@@ -522,6 +535,8 @@ def normals_kind(normals: object, gradient: object) -> str:
     kinds = typing.get_args(_kinds.Normals)
     if isinstance(normals, str) and normals in kinds:
         kind = normals
+    elif isinstance(normals, (np.ndarray, list, tuple)):
+        kind = "kernel"
     elif isinstance(normals, (bool, np.bool_)):
         kind = "gradient" if normals else ""
     else:
@@ -529,7 +544,7 @@ def normals_kind(normals: object, gradient: object) -> str:
             f"normals is {normals!r}; expected True, False or one of {', '.join(map(repr, kinds))}")
     if gradient != "sobel":
         return kind
-    if kind in ("geometric", "flat"):
+    if kind not in ("", "gradient", "sobel"):
         raise ValueError(f"normals is {kind!r} and gradient 'sobel'; expected normals from gradients, True or 'gradient'")
     return "sobel" if kind else ""
 
@@ -547,5 +562,5 @@ def extract_options(*, triangulation="compact", ambiguity="low", direction="desc
         raise ValueError(f"gradient is {gradient!r}; expected one of {', '.join(map(repr, gradients))}")
     return {"triangulation": as_text("triangulation", triangulation), "ambiguity": as_text("ambiguity", ambiguity),
             "direction": as_text("direction", direction), "close": as_bool("close", close),
-            "epsilon": as_number("epsilon", epsilon), "normals": normals_kind(normals, gradient),
+            "epsilon": as_number("epsilon", epsilon), "normals": normals_kind(normals, gradient), "kernel": normals,
             "threads": threads_of(threads)}

@@ -21,7 +21,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
             time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
-            epsilon: float = 0.0, normals: bool | _kinds.Normals = False, gradient: _kinds.Gradient = "differences",
+            epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
             periodic=None, lattice: _kinds.Lattice | None = None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
@@ -57,9 +57,11 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     epsilon
         Minimum distance of vertices from samples, as a fraction of an edge: above 0, it avoids flat simplices.
     normals, gradient
-        Whether to compute normals: True or "gradient" (from the gradients of the values), "sobel" (from gradients by the
-        Sobel kernel; also True with gradient="sobel"), "geometric" (from the simplices around each vertex) or "flat" (of
-        simplices: the attribute `normal` in `simplex_attributes`). See docs/normals.md.
+        Whether to compute normals: True or "gradient" (from the gradients of the values), "sobel" or "prewitt" (from
+        gradients by these kernels, for noise; "sobel" is also True with gradient="sobel"), "context" (from the samples on
+        the same side of jumps, for several materials; adds the attribute `normal_uncertainty`), "forward" or "backward"
+        (differences), a kernel as an array of the shape (3, ..., 3) or (N, 3, ..., 3), "geometric" (from the simplices around
+        each vertex) or "flat" (of simplices: the attribute `normal` in `simplex_attributes`). See docs/normals.md.
     dtype
         Type of the vertices: float32 or float64.
     allow_empty
@@ -91,6 +93,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     is_double = _arguments.is_double(dtype, prepared)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    options = prepared.library_options(options)
     with prepared.terms():
         if lattice is not None:
             if periodic is not None:
@@ -196,7 +199,7 @@ def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, pro
     is_double = _arguments.is_double(more.pop("dtype", np.float32), prepared)
     time_axis = 0 if prepared.is_reversed else prepared.ndim - 1
     number, places = _results.named_axis(prepared.names, prepared.ndim, time_axis, at, axis, more)
-    options = _arguments.extract_options(threads=threads, **more)
+    options = prepared.library_options(_arguments.extract_options(threads=threads, **more))
     unit = prepared.units[number]
     given = list(places) if _results.is_list(places) else [places]
     wanted = [_arguments.number_on_axis(place, unit) for place in given]

@@ -79,7 +79,8 @@ class Index:
     def contour(self, level: float, *, dtype=np.float32, allow_empty: bool = False, progress: Progress | None = None,
                 **options: typing.Any) -> Contour:
         """What `tegl.contour` of the array gives, byte by byte. Options as there: triangulation, normals, ..."""
-        is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)
+        is_double, chosen = _arguments.is_double(dtype, self._prepared), self._prepared.library_options(
+            _arguments.extract_options(**options))
         level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
         with self._prepared.terms():
             core = self._core.contour(level, is_double, chosen, progress)
@@ -114,7 +115,8 @@ class Index:
         The search starts at the point and does not use the index. With `return_report`: (contour, PickReport).
         """
         numbers = _arguments.as_numbers("point", point, "its coordinates along the array's axes")
-        is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)
+        is_double, chosen = _arguments.is_double(dtype, self._prepared), self._prepared.library_options(
+            _arguments.extract_options(**options))
         level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
         is_reported = _arguments.as_bool("return_report", return_report)
         with self._prepared.terms():

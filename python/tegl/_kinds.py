@@ -6,9 +6,9 @@ import typing
 Triangulation = typing.Literal["compact", "barycentric"]
 Ambiguity = typing.Literal["low", "high", "mean", "saddle", "squares", "decider"]
 Direction = typing.Literal["descent", "ascent"]
-#: Of vertices along the array's gradient, by differences or by the Sobel kernel, or from the simplices around them; or of
-#: simplices.
-Normals = typing.Literal["gradient", "sobel", "geometric", "flat"]
+#: Of vertices along the array's gradient, by differences, by a kernel or by context, or from the simplices around them;
+#: or of simplices.
+Normals = typing.Literal["gradient", "sobel", "prewitt", "context", "forward", "backward", "geometric", "flat"]
 Gradient = typing.Literal["differences", "sobel"]
 SimplifyMethod = typing.Literal["quadric", "facets", "vertices", "fast"]
 SimplifyBorder = typing.Literal["fixed", "within"]

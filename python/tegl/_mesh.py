@@ -49,6 +49,7 @@ def contour_mesh(points, cells, values, level: float, *, times=None, triangulati
     """
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
                                          epsilon=epsilon, threads=threads)
+    options["kernel"] = []
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     _require_unmasked("points", points)
     _require_unmasked("times", times)

@@ -40,7 +40,8 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     prepared = _arguments.prepare(data[::step, ::step, ::step])
     # Samples at the level are high in tegl and low in scikit-image.
     above = np.nextafter(level, np.inf)
-    options = _arguments.extract_options(ambiguity="saddle" if method == "lewiner" else "low", normals=True)
+    options = prepared.library_options(
+        _arguments.extract_options(ambiguity="saddle" if method == "lewiner" else "low", normals=True))
     cubes = None if mask is None else _arguments.booleans(mask)[::step, ::step, ::step].T
     if cubes is None or cubes[1:, 1:, 1:].all():
         core = _tegl.extract(prepared.image, above, False, options, None)

@@ -109,7 +109,12 @@ def contour(**arguments):
     (lambda: contour(close=None), TypeError, "close is None; expected True or False"),
     (lambda: contour(allow_empty="no"), TypeError, "allow_empty is 'no'; expected True or False"),
     (lambda: contour(normals="no"), ValueError,
-     "normals is 'no'; expected True, False or one of 'gradient', 'sobel', 'geometric', 'flat'"),
+     "normals is 'no'; expected True, False or one of 'gradient', 'sobel', 'prewitt', 'context', 'forward', 'backward', "
+     "'geometric', 'flat'"),
+    (lambda: contour(normals=np.zeros((3, 3, 3))), ValueError, "kernel whose differences along axis"),
+    (lambda: contour(normals=np.ones((3, 3, 3))), ValueError, "kernel with the weights 1, 1, 1 on a line along axis"),
+    (lambda: contour(normals=np.zeros((3, 3))), ValueError, "kernel of the shape"),
+    (lambda: contour(normals=["a"]), TypeError, "expected real numbers"),
     (lambda: contour(normals=1), TypeError, "normals is 1; expected True, False or one of 'gradient', "),
     (lambda: contour(normals=None), TypeError, "normals is None; expected True, False or one of 'gradient', "),
     (lambda: contour(normals="flat", gradient="sobel"), ValueError, "normals is 'flat' and gradient 'sobel'; expected"),

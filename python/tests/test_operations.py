@@ -279,6 +279,23 @@ def test_normals_are_of_the_kind_that_is_named(ndim, time_axis):
         assert np.array_equal(tegl.contour(array, 0.0, **more, **options).normals, sobel)
     index = tegl.Index(array, spacing=options["spacing"], time_axis=time_axis)
     assert np.array_equal(index.contour(0.0, normals="sobel", dtype=np.float64).normals, sobel)
+    prewitt = tegl.contour(array, 0.0, normals="prewitt", **options)
+    kernel = np.broadcast_to(np.arange(-1, 2).reshape((3,) + (1,) * (ndim - 1)), (3,) * ndim)
+    assert np.allclose(tegl.contour(array, 0.0, normals=kernel, **options).normals, prewitt.normals, atol=1e-12)
+    forward = np.zeros((ndim,) + (3,) * ndim)  # a kernel for each axis of the array
+    middle = (1,) * ndim
+    for axis in range(ndim):
+        forward[(axis,) + middle], forward[(axis,) + middle[:axis] + (2,) + middle[axis + 1:]] = -1, 1
+    one_sided = tegl.contour(array, 0.0, normals="forward", **options)
+    assert np.allclose(tegl.contour(array, 0.0, normals=forward, **options).normals, one_sided.normals, atol=1e-12)
+    assert not np.allclose(one_sided.normals, tegl.contour(array, 0.0, normals="backward", **options).normals, atol=1e-3)
+    by_context = tegl.contour(array, 0.0, normals="context", **options)
+    uncertainty = by_context.vertex_attributes["normal_uncertainty"]
+    assert len(uncertainty) == len(by_context.vertices) and 0 <= uncertainty.min() and uncertainty.max() < 0.5
+    assert (by_context.normals * gradient.normals).sum(axis=1).min() > 0.99
+    from_index = index.contour(0.0, normals="context", dtype=np.float64)
+    assert np.array_equal(from_index.normals, by_context.normals)
+    assert np.array_equal(from_index.vertex_attributes["normal_uncertainty"], uncertainty)
 
     # From the contour's own shape: across the simplices, towards what is low.
     flat = tegl.contour(array, 0.0, normals="flat", **options)

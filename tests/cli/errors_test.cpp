@@ -386,7 +386,8 @@ TEST_F(Errors, AnOldOutputSurvivesAFailure) {
 TEST_F(Errors, KindsOfNormalsThatThereAreNotAreNamed) {
   const RunResult run = run_tegl({"contour", "image.nc", "--normals", "wrong", "--iso", "0", "-o", path("a.ply")});
   EXPECT_EQ(run.exit, 2);
-  EXPECT_THAT(run.err, HasSubstr("--normals wrong: expected gradient, sobel, geometric or flat"));
+  EXPECT_THAT(run.err, HasSubstr("--normals wrong: expected gradient, sobel, prewitt, context, forward, "
+                                 "backward, geometric or flat"));
 }
 
 TEST_F(Errors, NamesOfFilesThatLookLikeOptionsAreRefused) {

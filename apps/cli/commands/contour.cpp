@@ -398,7 +398,7 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}, which is for simplices; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
-                              attributes_.wanted() ? "none" : "--normals gradient or sobel"));
+                              attributes_.wanted() ? "none" : "normals from the gradient"));
     for (const std::string& output : outputs) {
       require_facets_output(output, files());
       compress_.require_known(output, true);
@@ -446,7 +446,7 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("{} with a streamed contour, which is never in memory as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
-                              attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
+                              attributes_.wanted() ? "an image that fits into memory" : "normals from the gradient"));
     // open, extract and write in one pass
     OpenLayersResult input = open();
     for (ContourResult& result : results) {

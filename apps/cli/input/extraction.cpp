@@ -45,10 +45,13 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
           ->check(CLI::IsMember({"low", "high", "mean", "saddle", "squares", "decider"}))
           ->capture_default_str(),
       app.add_flag("--close", close_, "close the contour at the image's border"),
-      app.add_flag("--normals{gradient}", normals_,
-                   "normals: from the image's gradient (gradient, or sobel for noisy images) or from the contour, at "
-                   "vertices (geometric) or simplices (flat); gradient if no value is given")
-          ->check(CLI::IsMember({"gradient", "sobel", "geometric", "flat"})),
+      app.add_flag(
+             "--normals{gradient}", normals_,
+             "normals: from the image's gradient (gradient; sobel or prewitt for noisy images; context for images "
+             "of several materials; forward, backward) or from the contour, at vertices (geometric) or simplices "
+             "(flat); gradient if no value is given")
+          ->check(
+              CLI::IsMember({"gradient", "sobel", "prewitt", "context", "forward", "backward", "geometric", "flat"})),
       app.add_option("--gradient-direction", direction_, "the contour faces lower (descent) or higher values (ascent)")
           ->check(CLI::IsMember({"descent", "ascent"}))
           ->capture_default_str(),
@@ -156,9 +159,13 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
                                                 : Ambiguity::decider;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
-  options.normals = normals_ == "gradient" ? Normals::differences
-                    : normals_ == "sobel"  ? Normals::sobel
-                                           : Normals::none;
+  options.normals = normals_ == "gradient"   ? Normals::differences
+                    : normals_ == "sobel"    ? Normals::sobel
+                    : normals_ == "prewitt"  ? Normals::prewitt
+                    : normals_ == "context"  ? Normals::context
+                    : normals_ == "forward"  ? Normals::forward
+                    : normals_ == "backward" ? Normals::backward
+                                             : Normals::none;
   options.work.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {

@@ -113,7 +113,8 @@ ExitCode run(Command& command, const Streams& streams) {
 }
 
 std::string unknown_normals(std::string_view kind) {
-  return fmt::format("--normals {}: expected gradient, sobel, geometric or flat", kind);
+  return fmt::format("--normals {}: expected gradient, sobel, prewitt, context, forward, backward, geometric or flat",
+                     kind);
 }
 
 /// Handles a command line that CLI11 refused, or a request for help. `normals_of`: the argument after --normals, if it
@@ -148,7 +149,8 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
 }
 
-constexpr std::array<std::string_view, 4> kNormals = {"gradient", "sobel", "geometric", "flat"};
+constexpr std::array<std::string_view, 8> kNormals = {"gradient", "sobel",    "prewitt",   "context",
+                                                      "forward",  "backward", "geometric", "flat"};
 
 /// The arguments in reverse order, as CLI11 expects them. A kind of normals after --normals is joined to it, because
 /// CLI11 would take any next argument as the value of an option with an optional value.

@@ -18,10 +18,23 @@
 
 namespace tegl {
 
-/// Whether normals are computed from the image, and how the gradient at a sample is computed for them. differences: the
-/// mean of the forward and the backward difference quotient. sobel: a mean of these over the sample's own line and the
-/// neighbouring lines of samples, weighted by nearness (docs/normals.md); damps noise and takes ten times as long.
-enum class Normals { none, differences, sobel };
+/// Whether normals are computed from the image, and how the gradient at a sample is computed for them
+/// (docs/normals.md). differences: the mean of the forward and the backward difference quotient. forward, backward: one
+/// of them; at the border the other one. sobel: a mean of differences over the sample's own line and the neighbouring
+/// lines of samples, weighted by nearness; damps noise and takes ten times as long. prewitt: the same with equal
+/// weights. kernel: the same with weights of the caller (GradientKernel). context: a linear function that fits those
+/// neighbours that belong to the same side of jumps and kinks of the values; for images of several materials.
+enum class Normals { none, differences, sobel, prewitt, forward, backward, context, kernel };
+
+/// A kernel for the derivative along axis 0: 3^N weights of the sample and its neighbours, with index
+/// sum_a (1 + offset_a) 3^a. For the derivative along axis a, axes 0 and a are exchanged. Or N 3^N weights: one kernel
+/// for each axis, one after the other. On each line along the axis of the derivative the three weights must sum to 0:
+/// so the kernel is a sum of differences of neighbours, each of which is divided by its own distance. The result is
+/// divided by the sum of the differences' weights, so that a linear function has its exact slope; this sum must not be
+/// 0. Source: M. Liversage, thesis, 1994, 8.2.13 to 8.2.15.
+struct GradientKernel {
+  std::vector<double> weights;
+};
 
 /// Options of all functions that extract contours: in memory, streamed, counted, as facets, slices or components.
 struct ExtractOptions {
@@ -39,8 +52,10 @@ struct ExtractOptions {
   /// Vertex normals: along the image's gradient, on the side of `direction`; of length 1, or 0 if the gradient is zero.
   /// At the image border and next to missing values, gradients are one-sided differences. They are interpolated between
   /// samples, linearly along edges. Normals have the precision of the vertex type. If a 4D contour is separated next to
-  /// missing values, a vertex added midway between two others gets the mean of their normals, of length 1.
+  /// missing values, a vertex added midway between two others gets the mean of their normals, of length 1. With
+  /// Normals::context, `extract` of 2D to 4D images adds the vertex attribute "normal_uncertainty" (tegl/normals.hpp).
   Normals normals = Normals::none;
+  GradientKernel kernel = {};  ///< for Normals::kernel; ignored otherwise
   /// Number of threads and progress. More threads than the machine has count as all of the machine. The progress
   /// callback is called only by the thread that called the extraction, at least once for each slab (the tiles between
   /// two layers of the last axis) and several times within large slabs. Fractions never decrease. The number of calls

@@ -40,14 +40,26 @@ requires DimensionBetween<N, 2, 4>
 /// The normal of every vertex from an image, #V x N, as `extract` computes it with the same kind. Works for
 /// any contour in the image's world coordinates, such as a loaded or a simplified one. The gradients at the samples of
 /// the vertex's cell are interpolated multilinearly, on the side of the contour's `direction`, and scaled to length 1.
-/// 0 if the gradient is zero and outside of the grid (by more than a thousandth of a step). N = 2, 3, 4.
-/// Errors: InvalidArgument (Normals::none); Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994,
-/// sections 8.2.6 to 8.2.15.
+/// 0 if the gradient is zero and outside of the grid (by more than a thousandth of a step). With Normals::context,
+/// vertices on edges of the grid have the gradients at both ends as seen along the edge. N = 2, 3, 4.
+/// Errors: InvalidArgument (Normals::none, a wrong kernel); Cancelled. O(#V 4^N) time, O(#V 6^N) with kernels.
+/// Thread-safe. Source: M. Liversage, thesis, 1994, sections 8.2.6 to 8.2.16.
 template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Buffer<typename Contour<N, Real>::Vertex> gradient_normals(const Image<T, N>& image,
                                                                          const Contour<N, Real>& contour,
                                                                          Normals kind = Normals::differences,
-                                                                         const WorkOptions& work = {});
+                                                                         const WorkOptions& work = {},
+                                                                         const GradientKernel& kernel = {});
+
+/// How uncertain the normal by Normals::context is at every vertex, #V numbers between 0 and 1: the part of the values'
+/// variation within the vertex's context that a linear function does not explain, residual / (residual + slope), as
+/// weighted root mean squares over a sample and its neighbours. 0: the values are linear; about 0.1 on smooth surfaces
+/// with a radius of a few steps; near 1: noise, or no gradient. 1 outside of the grid. N = 2, 3, 4. Errors: Cancelled.
+/// O(#V 6^N) time. Thread-safe.
+template <Value T, int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Buffer<double> normal_uncertainty(const Image<T, N>& image, const Contour<N, Real>& contour,
+                                                const WorkOptions& work = {});
 
 }  // namespace tegl

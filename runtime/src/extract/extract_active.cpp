@@ -6,6 +6,7 @@
 
 #include "base/stopwatch.hpp"
 #include "image/row_source.hpp"
+#include "extract/uncertainty.hpp"
 #include "kernel/extract_in_memory.hpp"
 #include "kernel/tile_selection.hpp"
 #include "search/index_file.hpp"
@@ -50,6 +51,7 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options, plan);
   result.stats.find_seconds += seconds;
+  detail::add_uncertainty(image, options, result.contour);
   return result;
 }
 

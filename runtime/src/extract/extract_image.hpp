@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/progress.hpp"
+#include "extract/uncertainty.hpp"
 #include "image/transposed_layers.hpp"
 #include "kernel/extract_in_memory.hpp"
 #include "kernel/stream.hpp"
@@ -21,10 +22,14 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const 
       detail::TurnedLayers<T, N> layers(image, options.work.threads);
       detail::LayerRing<T, N> ring(layers);
       detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
-      return detail::extract_in_memory<N, Real>(source, image.grid(), options);
+      auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options);
+      detail::add_uncertainty(image, options, result.contour);
+      return result;
     }
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  return detail::extract_in_memory<N, Real>(source, image.grid(), options);
+  auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options);
+  detail::add_uncertainty(image, options, result.contour);
+  return result;
 }
 
 template <Coordinate Real, Value T, int N>

@@ -16,6 +16,7 @@
 
 #include "ambiguity/moved_estimator.hpp"
 #include "extract/layers_of_cut.hpp"
+#include "extract/uncertainty.hpp"
 #include "image/row_source.hpp"
 #include "kernel/extract_in_memory.hpp"
 #include "tegl/slice.hpp"
@@ -72,7 +73,8 @@ Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, 
   ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
   plan.keeps_off_layers = at_layer;
   if (!is_last) plan.part = {axis, layers.first};
-  const auto extracted = extract_in_memory<N, Real>(source, slab.grid(), options, plan);
+  auto extracted = extract_in_memory<N, Real>(source, slab.grid(), options, plan);
+  add_uncertainty(image, options, extracted.contour);
   // At a layer, the limit from below is the layer's contour, whichever way the normal points.
   return {slice(extracted.contour, at_layer ? Hyperplane<N>::across(axis, at) : hyperplane), extracted.stats};
 }

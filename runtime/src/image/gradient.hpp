@@ -74,6 +74,13 @@ inline double derivative(double backward, double value, double forward, const St
   return 0.0;  // both finite, their sum is not: too steep for a derivative
 }
 
+/// 3^k.
+constexpr std::size_t power_of_3(int k) noexcept { return k == 0 ? 1 : 3 * power_of_3(k - 1); }
+
+/// Values of a sample and its neighbours: 3^N, index sum_a (1 + offset_a) 3^a. NaN outside the image.
+template <int N>
+using ValuesAround = std::array<double, power_of_3(N)>;
+
 /// Number of values from which the gradients at both ends of an edge are computed. Place 4 a + (0 ... 3): backward and
 /// forward neighbour of the first end along axis a, then of the second end; an end without a neighbour is used itself.
 /// Along the edge's own axis, the forward neighbour of the first end is the second end, and vice versa.

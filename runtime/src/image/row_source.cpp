@@ -10,7 +10,6 @@
 
 #include "image/edge_alphas.hpp"
 #include "image/edge_stencil.hpp"
-#include "image/sobel.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
@@ -293,14 +292,11 @@ std::array<double, N> RowSource<T, N>::gradient(const Index& index,
 }
 
 template <Value T, int N>
-std::array<double, N> RowSource<T, N>::sobel(const Index& index, const std::array<AxisSteps, N>& steps) const noexcept {
-  std::array<StepWeights, N> weights;
+ValuesAround<N> RowSource<T, N>::values_around(const Index& index,
+                                               const std::array<AxisSteps, N>& steps) const noexcept {
   std::array<std::array<bool, 3>, N> exists;
-  for (int a = 0; a < N; ++a) {
-    weights[a] = steps[a].at(index[a]);
-    exists[a] = {steps[a].has_backward(index[a]), true, steps[a].has_forward(index[a])};
-  }
-  Neighbourhood<N> values;
+  for (int a = 0; a < N; ++a) exists[a] = {steps[a].has_backward(index[a]), true, steps[a].has_forward(index[a])};
+  ValuesAround<N> values;
   for (std::size_t row_number = 0; row_number < values.size() / 3; ++row_number) {
     Index at = index;
     bool inside = true;
@@ -315,7 +311,7 @@ std::array<double, N> RowSource<T, N>::sobel(const Index& index, const std::arra
           inside && exists[0][i] ? static_cast<double>(samples[(static_cast<std::ptrdiff_t>(i) - 1) * strides()[0]])
                                  : std::numeric_limits<double>::quiet_NaN();
   }
-  return sobel_gradient<N>(values, weights);
+  return values;
 }
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N) \

@@ -35,8 +35,8 @@ class RowSource : public SampleSource<N> {
   [[nodiscard]] AroundEdges<N, float> around_edges_in_float() const noexcept final;
   [[nodiscard]] std::array<double, N> gradient(const Index& index,
                                                const std::array<AxisSteps, N>& steps) const noexcept final;
-  [[nodiscard]] std::array<double, N> sobel(const Index& index,
-                                            const std::array<AxisSteps, N>& steps) const noexcept final;
+  [[nodiscard]] ValuesAround<N> values_around(const Index& index,
+                                              const std::array<AxisSteps, N>& steps) const noexcept final;
 
  protected:
   /// `steps`: strides of all axes except the last. Rows have `row_size` samples. `last_axis`, `first_layer` and

@@ -152,9 +152,9 @@ class SampleGradients {
   /// Gradient at one sample by differences to its neighbours along the axes.
   [[nodiscard]] virtual std::array<double, N> gradient(const SampleIndex<N>& index,
                                                        const std::array<AxisSteps, N>& steps) const noexcept = 0;
-  /// Gradient at one sample by the Sobel kernel.
-  [[nodiscard]] virtual std::array<double, N> sobel(const SampleIndex<N>& index,
-                                                    const std::array<AxisSteps, N>& steps) const noexcept = 0;
+  /// Values of a sample and its neighbours.
+  [[nodiscard]] virtual ValuesAround<N> values_around(const SampleIndex<N>& index,
+                                                      const std::array<AxisSteps, N>& steps) const noexcept = 0;
 
  protected:
   SampleGradients(Axis last_axis, std::size_t first_layer)

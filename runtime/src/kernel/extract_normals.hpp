@@ -14,6 +14,8 @@
 
 #include <Eigen/LU>
 
+#include "image/context_gradient.hpp"
+#include "image/line_kernel.hpp"
 #include "image/sample_source.hpp"
 #include "kernel/edge_normals.hpp"
 #include "tegl/eigen.hpp"
@@ -47,10 +49,12 @@ class NormalWriter {
   using Index = std::array<std::size_t, N>;
   using Vertex = std::array<Real, N>;
 
-  /// `source` must outlive the writer.
-  NormalWriter(const SampleGradients<N>& source, const Grid<N>& grid, GradientDirection direction, Normals kind)
+  /// `source` must outlive the writer. Throws InvalidArgument for a wrong kernel.
+  NormalWriter(const SampleGradients<N>& source, const Grid<N>& grid, GradientDirection direction, Normals kind,
+               const GradientKernel& kernel)
       : source_(source),
         kind_(kind),
+        kernel_(line_kernel_of<N>(kind, kernel)),
         steps_(steps_of(source, grid)),
         sizes_(grid.sizes()),
         mapped_(grid.has_world_map()),
@@ -83,6 +87,21 @@ class NormalWriter {
       if (around_edges_in_float_ != nullptr)
         return edges_by(around_edges_in_float_, start, axis, edges, alphas, scratch.of<float>(), out, start_of);
     edges_by(around_edges_, start, axis, edges, alphas, scratch.of<double>(), out, start_of);
+  }
+
+  /// Normal on the edge along `axis` from the sample `index`, at the share `alpha` of it, for any values.
+  [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha) const noexcept {
+    std::array<double, N> gradient = gradient_at(index, {axis, 1});
+    ++index[axis];
+    const std::array<double, N> there = gradient_at(index, {axis, -1});
+    // Not a + alpha * (b - a), as the difference may overflow.
+    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
+    return normal(gradient);
+  }
+
+  /// Uncertainty of the context's gradient at one end of an edge, or at a sample.
+  [[nodiscard]] double uncertainty_at(const Index& index, EdgeFrom edge) const noexcept {
+    return context_at(index, edge).uncertainty;
   }
 
   /// Normal at a position in a cell; parameters as in Placement::in_cell.
@@ -166,18 +185,18 @@ class NormalWriter {
     }
   }
 
-  [[nodiscard]] std::array<double, N> gradient_at(const Index& index) const noexcept {
-    return kind_ == Normals::sobel ? source_.sobel(index, steps_) : source_.gradient(index, steps_);
+  [[nodiscard]] std::array<StepWeights, N> steps_at(const Index& index) const noexcept {
+    std::array<StepWeights, N> result;
+    for (int a = 0; a < N; ++a) result[a] = steps_[a].at(index[a]);
+    return result;
   }
-
-  /// One normal on an edge, for any values.
-  [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha) const noexcept {
-    std::array<double, N> gradient = gradient_at(index);
-    ++index[axis];
-    const std::array<double, N> there = gradient_at(index);
-    // Not a + alpha * (b - a), as the difference may overflow.
-    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
-    return normal(gradient);
+  [[nodiscard]] ContextGradient<N> context_at(const Index& index, EdgeFrom edge) const noexcept {
+    return ContextFit<N>(source_.values_around(index, steps_), steps_at(index)).fit(edge);
+  }
+  [[nodiscard]] std::array<double, N> gradient_at(const Index& index, EdgeFrom edge = {}) const noexcept {
+    if (kind_ == Normals::differences) return source_.gradient(index, steps_);
+    if (kind_ == Normals::context) return context_at(index, edge).gradient;
+    return kernel_gradient<N>(kernel_, source_.values_around(index, steps_), steps_at(index));
   }
 
   /// Unit normal of a gradient; 0 if the gradient is zero.
@@ -226,6 +245,7 @@ class NormalWriter {
 
   const SampleGradients<N>& source_;
   Normals kind_;
+  LineKernel<N> kernel_;  ///< of kinds with a kernel
   std::array<AxisSteps, N> steps_;
   Index sizes_;
   bool mapped_;

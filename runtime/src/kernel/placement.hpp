@@ -46,7 +46,7 @@ class Placement {
   /// Null if no normals were requested.
   [[nodiscard]] const NormalWriter<N, Real>* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
   void want_normals(const SampleGradients<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
-    normals_.emplace(source, grid, options.direction, options.normals);
+    normals_.emplace(source, grid, options.direction, options.normals, options.kernel);
   }
 
   [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "image/locate.hpp"
 #include "image/row_source.hpp"
@@ -107,10 +108,34 @@ std::vector<PointOf<N>> sum_normals(const detail::SimplexView<N>& contour, Norma
   return sums;
 }
 
+/// The edge of the grid that a vertex lies on.
+struct GridEdge {
+  int axis = -1;  ///< -1: none
+  double alpha = 0.0;
+};
+
+/// Moves a vertex that lies on an edge, up to the rounding of `Real`, to it: `place` gets the edge's first sample.
+template <int N, class Real>
+GridEdge edge_of(detail::CellPlace<N>& place) noexcept {
+  constexpr double kRounding = std::is_same_v<Real, float> ? 1e-4 : 1e-9;
+  GridEdge edge;
+  for (int a = 0; a < N; ++a) {
+    const double share = place.share[a];
+    if (share > kRounding && share < 1.0 - kRounding) {
+      if (edge.axis >= 0) return {};
+      edge = {a, share};
+    } else if (share > 0.5) {
+      ++place.base[a];
+      place.share[a] = 0.0;
+    }
+  }
+  return edge;
+}
+
 /// Gradients at all vertices, as normals. Compiled once for all value types.
 template <int N, class Real>
 void interpolate_gradients(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid,
-                           const Contour<N, Real>& contour, const WorkOptions& work,
+                           const Contour<N, Real>& contour, const WorkOptions& work, bool depends_on_edges,
                            Buffer<typename Contour<N, Real>::Vertex>& normals) {
   const detail::GridLocator<N> locator(grid);
   detail::for_each_item(normals.size(), work.threads, work.progress, [&](std::size_t v) {
@@ -118,8 +143,45 @@ void interpolate_gradients(const detail::NormalWriter<N, Real>& writer, const Gr
     for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
     detail::CellPlace<N> place;
     normals[v] = {};
-    if (locator.find(point, place))
-      normals[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
+    if (!locator.find(point, place)) return;
+    if (depends_on_edges) {
+      detail::CellPlace<N> moved = place;
+      if (const GridEdge edge = edge_of<N, Real>(moved); edge.axis >= 0) {
+        normals[v] = writer.on_edge(moved.base, edge.axis, edge.alpha);
+        return;
+      }
+    }
+    normals[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
+  });
+}
+
+/// The uncertainty at all vertices, interpolated as the gradients are.
+template <int N, class Real>
+void find_uncertainty(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid, const Contour<N, Real>& contour,
+                      const WorkOptions& work, Buffer<double>& result) {
+  const detail::GridLocator<N> locator(grid);
+  detail::for_each_item(result.size(), work.threads, work.progress, [&](std::size_t v) {
+    detail::CellPlace<N> place;
+    if (!locator.find(detail::widened_point<N>(contour.vertices[v]), place)) return;
+    detail::CellPlace<N> moved = place;
+    if (const GridEdge edge = edge_of<N, Real>(moved); edge.axis >= 0) {
+      auto there = moved.base;
+      ++there[edge.axis];
+      result[v] = (1.0 - edge.alpha) * writer.uncertainty_at(moved.base, {edge.axis, 1}) +
+                  edge.alpha * writer.uncertainty_at(there, {edge.axis, -1});
+      return;
+    }
+    result[v] = 0.0;
+    for (unsigned corner = 0; corner < 1u << N; ++corner) {
+      double weight = 1.0;
+      auto index = place.base;
+      for (int a = 0; a < N; ++a) {
+        const bool is_upper = (corner >> a & 1u) != 0;
+        weight *= is_upper ? place.share[a] : 1.0 - place.share[a];
+        index[a] += is_upper ? 1 : 0;
+      }
+      if (weight > 0.0) result[v] += weight * writer.uncertainty_at(index, {});
+    }
   });
 }
 
@@ -149,13 +211,25 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
 
 template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
-    const Image<T, N>& image, const Contour<N, Real>& contour, Normals kind, const WorkOptions& work) {
+    const Image<T, N>& image, const Contour<N, Real>& contour, Normals kind, const WorkOptions& work,
+    const GradientKernel& kernel) {
   if (kind == Normals::none)
-    throw Error(ErrorCode::InvalidArgument, "Normals::none for gradient_normals; expected differences or sobel");
+    throw Error(ErrorCode::InvalidArgument, "Normals::none for gradient_normals; expected another kind");
   const detail::ImageSource<T, N> source(image, 0.0, 0.0);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.vertices.size());
-  interpolate_gradients(detail::NormalWriter<N, Real>(source, image.grid(), contour.direction, kind), image.grid(),
-                        contour, work, result);
+  interpolate_gradients(detail::NormalWriter<N, Real>(source, image.grid(), contour.direction, kind, kernel),
+                        image.grid(), contour, work, kind == Normals::context, result);
+  return result;
+}
+
+template <Value T, int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> Buffer<double> normal_uncertainty(const Image<T, N>& image,
+                                                                     const Contour<N, Real>& contour,
+                                                                     const WorkOptions& work) {
+  const detail::ImageSource<T, N> source(image, 0.0, 0.0);
+  Buffer<double> result(contour.vertices.size(), 1.0);
+  find_uncertainty(detail::NormalWriter<N, Real>(source, image.grid(), contour.direction, Normals::context, {}),
+                   image.grid(), contour, work, result);
   return result;
 }
 
@@ -165,9 +239,11 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gra
                                                                        const WorkOptions&);
 #include "base/instantiate.hpp"
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                            \
-  template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&, \
-                                                                         Normals, const WorkOptions&);
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                              \
+  template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(                               \
+      const Image<T, N>&, const Contour<N, Real>&, Normals, const WorkOptions&, const GradientKernel&); \
+  template Buffer<double> normal_uncertainty<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&,   \
+                                                         const WorkOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl
