@@ -44,7 +44,7 @@ GradientKernel kernel_of(const Weight& weight) {
   return kernel;
 }
 
-ExtractOptions with(Normals kind, GradientKernel kernel = {}) {
+ExtractOptions options_of(Normals kind, GradientKernel kernel = {}) {
   ExtractOptions options;
   options.normals = kind;
   options.kernel = std::move(kernel);
@@ -63,7 +63,7 @@ template <int N>
 void expect_kernels_as_named_kinds(const std::array<std::size_t, N>& sizes) {
   const auto image = noise<float, N>(sizes, 3);
   const auto normals_by = [&](Normals kind, GradientKernel kernel = {}) {
-    return extract<double>(image.view(), 0.5, with(kind, std::move(kernel)));
+    return extract<double>(image.view(), 0.5, options_of(kind, std::move(kernel)));
   };
   const auto sobel = kernel_of<N>([](int away) { return 7.0 / (1 + away); });
   EXPECT_LT(largest_difference(normals_by(Normals::kernel, sobel), normals_by(Normals::sobel)), 1e-9);
@@ -103,7 +103,7 @@ TEST(GradientKernels, AreTheSumOfTheirWeightsTimesTheValues) {
     kernel.weights.insert(kernel.weights.end(), weights.begin(), weights.end());
   }
   const auto image = noise<double, 2>({9, 9}, 5);
-  const auto contour = extract<double>(image.view(), 0.5, with(Normals::kernel, kernel));
+  const auto contour = extract<double>(image.view(), 0.5, options_of(Normals::kernel, kernel));
   const auto gradient = [&](std::size_t x, std::size_t y) {
     std::array<double, 2> sum{}, size{};
     for (std::size_t a = 0; a < 2; ++a)
@@ -134,7 +134,7 @@ TEST(GradientKernels, AreTheSumOfTheirWeightsTimesTheValues) {
 void expect_refused(GradientKernel kernel, const std::string& text) {
   const auto image = noise<float, 3>(4, 1);
   try {
-    (void)extract(image.view(), 0.5, with(Normals::kernel, std::move(kernel)));
+    (void)extract(image.view(), 0.5, options_of(Normals::kernel, std::move(kernel)));
     FAIL() << text;
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
@@ -183,7 +183,7 @@ void expect_exact_slopes(double missing) {
                              Normals::backward}) {
     // On a single line, both neighbours may be missing.
     if (missing > 0.0 && (kind == Normals::forward || kind == Normals::backward)) continue;
-    const auto contour = extract<double>(image.view(), isovalue, with(kind));
+    const auto contour = extract<double>(image.view(), isovalue, options_of(kind));
     ASSERT_GT(contour.normals.size(), 5u);
     for (const auto& normal : contour.normals)
       for (int a = 0; a < N; ++a) EXPECT_NEAR(normal[a], expected[a], 1e-6) << static_cast<int>(kind);
@@ -242,7 +242,7 @@ struct AngleErrors {
 
 AngleErrors angle_errors(const TwoMaterials& phantom, Normals kind, double step = 1.0) {
   const auto image = phantom.image(step);
-  const auto contour = extract<float>(image.view(), 0.0, with(kind));
+  const auto contour = extract<float>(image.view(), 0.0, options_of(kind));
   AngleErrors sum;
   std::size_t near = 0, far = 0;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
@@ -298,7 +298,7 @@ TEST(NormalsByContext, OfAStepAreThoseOfTheStep) {
   const auto image = sample_field<float, 3>(grid, [&](const Point<3>& x) {
     return std::tanh((12.0 - std::hypot(x[0], x[1], x[2])) / 0.7) + 0.1 * std::sqrt(12.0) * (unit_random(bits) - 0.5);
   });
-  const auto contour = extract<float>(image.view(), 0.0, with(Normals::context));
+  const auto contour = extract<float>(image.view(), 0.0, options_of(Normals::context));
   double sum = 0.0;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
     double along = 0.0, radius = 0.0;
@@ -316,13 +316,13 @@ TEST(NormalsByContext, OfAStepAreThoseOfTheStep) {
 TEST(NormalsByContext, TellTheirUncertainty) {
   const TwoMaterials phantom{.noise = 0.05};
   const auto image = phantom.image(1.0);
-  const auto contour = extract<float>(image.view(), 0.0, with(Normals::context));
+  const auto contour = extract<float>(image.view(), 0.0, options_of(Normals::context));
   ASSERT_EQ(contour.vertex_attributes.size(), 1u);
   EXPECT_EQ(contour.vertex_attributes[0].name, "normal_uncertainty");
   EXPECT_EQ(contour.vertex_attributes[0].values, normal_uncertainty(image.view(), contour));
   const auto mean_of = [&](const TwoMaterials& with_noise) {
     const auto noisy = with_noise.image(1.0);
-    const auto u = extract<float>(noisy.view(), 0.0, with(Normals::context)).vertex_attributes[0].values;
+    const auto u = extract<float>(noisy.view(), 0.0, options_of(Normals::context)).vertex_attributes[0].values;
     double sum = 0.0;
     for (const double x : u) {
       EXPECT_GE(x, 0.0);
@@ -341,8 +341,8 @@ TEST(NormalsByContext, TellTheirUncertainty) {
 template <int N, class Real>
 void expect_context_as_extracted(const Grid<N>& grid, double tolerance) {
   const auto image = noise<float, N>(grid, 5);
-  const auto contour = extract<Real>(image.view(), 0.5, with(Normals::context));
-  ExtractOptions many = with(Normals::context);
+  const auto contour = extract<Real>(image.view(), 0.5, options_of(Normals::context));
+  ExtractOptions many = options_of(Normals::context);
   many.work.threads = 3;
   const auto again = extract<Real>(image.view(), 0.5, many);
   EXPECT_EQ(again.normals, contour.normals);
@@ -366,8 +366,8 @@ TEST(NormalsByContext, AreTheSameFromTheContourAndFromTheExtraction) {
 TEST(NormalsByContext, OfCutsFromTheImageAreThoseOfTheCut) {
   const auto image = noise<float, 4>({6, 5, 5, 4}, 8);
   const auto at = Hyperplane<4>::across(3, 1.4);
-  const auto cut = slice(extract<float>(image.view(), 0.5, with(Normals::context)), at);
-  const auto direct = slice_image(image.view(), 0.5, at, with(Normals::context));
+  const auto cut = slice(extract<float>(image.view(), 0.5, options_of(Normals::context)), at);
+  const auto direct = slice_image(image.view(), 0.5, at, options_of(Normals::context));
   ASSERT_EQ(cut.normals.size(), direct.normals.size());
   ASSERT_EQ(direct.vertex_attributes.size(), 1u);
   double sum = 0, direct_sum = 0;

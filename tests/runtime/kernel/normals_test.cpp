@@ -29,7 +29,7 @@ ExtractOptions with_normals(ExtractOptions options = {}, Normals kind = Normals:
 }
 
 template <int N, class Real>
-double length(const std::array<Real, N>& v) {
+double norm_of(const std::array<Real, N>& v) {
   double square = 0;
   for (const Real x : v) square += static_cast<double>(x) * static_cast<double>(x);
   return std::sqrt(square);
@@ -37,7 +37,7 @@ double length(const std::array<Real, N>& v) {
 
 /// An uneven, reversed, sheared grid.
 template <int N>
-Grid<N> odd_grid() {
+Grid<N> reversed_grid() {
   std::array<std::size_t, N> sizes;
   for (int a = 0; a < N; ++a) sizes[a] = static_cast<std::size_t>(7 + a);
   Grid<N> grid = Grid<N>::unit(sizes);
@@ -62,7 +62,7 @@ struct Plane {
 
 template <int N>
 void expect_normals_of_a_plane() {
-  const Grid<N> grid = odd_grid<N>();
+  const Grid<N> grid = reversed_grid<N>();
   const auto image = sample_field<double, N>(grid, Plane<N>{});
   Eigen::Matrix<double, N, 1> slope;
   for (int a = 0; a < N; ++a) {
@@ -99,11 +99,11 @@ void expect_normals_of_a_sphere() {
     SCOPED_TRACE(describe(options));
     const auto contour = extract<float>(image.view(), 0.0, with_normals(options));
     for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
-      ASSERT_NEAR((length<N, float>(contour.normals[v])), 1.0, 1e-5);
+      ASSERT_NEAR((norm_of<N, float>(contour.normals[v])), 1.0, 1e-5);
       double along = 0;
       for (int a = 0; a < N; ++a)
         along += static_cast<double>(contour.normals[v][a]) * static_cast<double>(contour.vertices[v][a]);
-      ASSERT_GT((along / length<N, float>(contour.vertices[v])), 0.995) << "outwards, where values are low";
+      ASSERT_GT((along / norm_of<N, float>(contour.vertices[v])), 0.995) << "outwards, where values are low";
     }
   }
 }
@@ -152,7 +152,7 @@ void expect_normals_everywhere(const std::array<std::size_t, N>& sizes) {
       EXPECT_EQ(contour.simplices, bare.simplices);
       ASSERT_EQ(contour.normals.size(), contour.vertices.size());
       for (const auto& normal : contour.normals) {
-        const double size = length<N, float>(normal);
+        const double size = norm_of<N, float>(normal);
         ASSERT_TRUE(size == 0.0 || std::abs(size - 1.0) < 1e-5) << size;
       }
       options.work.threads = 3;
@@ -171,7 +171,7 @@ TEST(Normals, AreZeroWhereTheGradientVanishes) {
   const auto contour =
       extract<float>(Image<std::uint8_t, 2>(values.data(), Grid<2>::unit({4, 2})), 0.5, with_normals());
   std::size_t zeros = 0;
-  for (const auto& normal : contour.normals) zeros += (length<2, float>(normal)) == 0.0 ? 1 : 0;
+  for (const auto& normal : contour.normals) zeros += (norm_of<2, float>(normal)) == 0.0 ? 1 : 0;
   EXPECT_EQ(zeros, 2u);
 }
 
@@ -230,7 +230,7 @@ void expect_plain_normals(const OwnedImage<T, N>& image, double isovalue, double
     const auto there = plain_gradient<T, N>(image.view(), high);
     std::array<double, N> expected;
     for (int a = 0; a < N; ++a) expected[a] = -(here[a] + alpha * (there[a] - here[a]));
-    const double size = length<N, double>(expected);
+    const double size = norm_of<N, double>(expected);
     for (int a = 0; a < N; ++a)
       ASSERT_NEAR(contour.normals[v][a], size > 0 ? expected[a] / size : 0.0, tolerance) << "vertex " << v;
   }
@@ -327,7 +327,7 @@ TEST(Normals, OfSteepAndFlatFieldsHaveLengthOne) {
     for (float& value : image.values) value *= scale;
     const auto contour = extract<float>(image.view(), 0.5 * static_cast<double>(scale), with_normals());
     ASSERT_GT(contour.normals.size(), 100u);
-    for (const auto& normal : contour.normals) ASSERT_NEAR((length<3, float>(normal)), 1.0, 1e-5) << scale;
+    for (const auto& normal : contour.normals) ASSERT_NEAR((norm_of<3, float>(normal)), 1.0, 1e-5) << scale;
   }
 }
 
@@ -342,7 +342,7 @@ TEST(Normals, OfTheLargestNumbersAreNumbers) {
     const auto contour = extract<double>(image.view(), 0.5, with_normals());
     ASSERT_GT(contour.normals.size(), 100u);
     for (const auto& normal : contour.normals) {
-      const double size = length<3, double>(normal);
+      const double size = norm_of<3, double>(normal);
       ASSERT_TRUE(size == 0.0 || std::abs(size - 1.0) < 1e-12) << size;
     }
   }
@@ -364,7 +364,7 @@ void expect_normals_of_the_steepest(const std::array<std::size_t, N>& sizes) {
       const auto by_gradients = gradient_normals(image.view(), contour, kind);
       for (std::size_t v = 0; v < contour.normals.size(); ++v)
         for (const auto& normal : {contour.normals[v], by_gradients[v]}) {
-          const double size = length<N, double>(normal);
+          const double size = norm_of<N, double>(normal);
           ASSERT_TRUE(size == 0.0 || std::abs(size - 1.0) < 1e-12) << "vertex " << v << ": " << size;
         }
     }
@@ -426,7 +426,7 @@ void expect_normals_of_cuts(const std::array<std::size_t, N>& sizes) {
     const auto direct = slice_image(image.view(), 0.5, Hyperplane<N>::across(N - 1, at), options);
     ASSERT_EQ(direct.normals.size(), direct.vertices.size());
     EXPECT_EQ(by_place(direct), by_place(cut)) << "at " << at;
-    for (const auto& normal : cut.normals) ASSERT_NEAR((length<N - 1, float>(normal)), 1.0, 1e-5);
+    for (const auto& normal : cut.normals) ASSERT_NEAR((norm_of<N - 1, float>(normal)), 1.0, 1e-5);
   }
 }
 
@@ -443,7 +443,7 @@ TEST(Normals, OfACutOfASphereAreRadial) {
     double along = 0;
     for (int a = 0; a < 3; ++a)
       along += static_cast<double>(cut.normals[v][a]) * static_cast<double>(cut.vertices[v][a]);
-    ASSERT_GT((along / length<3, float>(cut.vertices[v])), 0.99);
+    ASSERT_GT((along / norm_of<3, float>(cut.vertices[v])), 0.99);
   }
 }
 
