@@ -125,7 +125,9 @@ class ContextFit {
     scale += 3.0 * *middle;
     for (std::size_t i = 0; i < count_; ++i) {
       const double ratio = scale > 0.0 ? distances[i] / scale : distances[i] > 0.0 ? 1e6 : 0.0;
-      found_[i].weight = found_[i].nearness / std::pow(1.0 + ratio * ratio, 8);
+      const double distant = 1.0 + ratio * ratio;
+      const double to_4th = distant * distant * distant * distant;
+      found_[i].weight = found_[i].nearness / (to_4th * to_4th);
     }
   }
 
