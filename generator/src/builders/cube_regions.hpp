@@ -28,8 +28,7 @@ struct CubeRegions : RegionVertices {
   std::vector<Region> regions;
   std::vector<Tetrahedron> tetrahedra;  ///< oriented so that they induce the list's triangles
   std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near, or
-                                        ///< kFirstDouble << j: on the ray of own vertex j, or
-                                        ///< kNear | corner | edge: near the corner, on the way to the edge's point
+                                        ///< kFirstDouble << j: on the ray of own vertex j
 };
 
 /// `is_cap`: to close contours at the image border; then only the high sides. In squares, polygons are fans (CubeSide),

@@ -24,32 +24,14 @@ using Position = std::array<double, 3>;
 
 constexpr Set one(unsigned v) { return Set{1} << v; }
 
-/// A vertex on the segment from a corner to a point of the contour, as close to the corner as necessary. So a volume
-/// with it has the sign that it has with the corner; if that volume is always zero, the one that it has with the other
-/// end.
-struct NearCorner {
-  RegionProof::Points corner = 0, towards = 0;
-
-  /// Stands for vertex j of this kind in sets of points.
-  static constexpr RegionProof::Points bit(std::size_t j) {
-    return RegionProof::Points{1} << (RegionProof::kPoints + j);
-  }
-};
-
 /// Points spread over the cube, for one position of the contour's vertices.
 class Samples {
  public:
   static constexpr std::size_t kCount = 192;
   using Bits = std::bitset<kCount>;
 
-  Samples(const RegionFrame& frame, std::span<const Triangle> surface, std::span<const NearCorner> near) {
+  Samples(const RegionFrame& frame, std::span<const Triangle> surface) {
     for (unsigned v = 0; v < RegionFrame::kEnd; ++v) place_[v] = mean(frame.points[v]);
-    for (std::size_t j = 0; j < near.size(); ++j) {
-      constexpr double kShare = 0.03;
-      const Position corner = mean(near[j].corner), towards = mean(near[j].towards);
-      for (std::size_t a = 0; a < 3; ++a)
-        place_[RegionVertices::kFirstCentre + j][a] = corner[a] + kShare * (towards[a] - corner[a]);
-    }
     for (std::size_t i = 0; i < kCount; ++i)  // a lattice of rank 1
       for (std::size_t a = 0; a < 3; ++a) {
         const double x = static_cast<double>(i + 1) * kSteps[a];
@@ -124,23 +106,15 @@ class Samples {
 
 class Search {
  public:
-  Search(const RegionProof& proof, const RegionFrame& frame, std::span<const Triangle> surface,
-         std::span<const NearCorner> near = {})
+  Search(const RegionProof& proof, const RegionFrame& frame, std::span<const Triangle> surface)
       : proof_(proof),
         frame_(frame),
-        points_of_(frame.points),
-        near_(near),
-        samples_(frame, surface, near),
+        samples_(frame, surface),
         state_(kMost * kMost * kMost, kUnused),
         visible_(2 * state_.size()) {
     Set all = 0;
     for (const Triangle& t : surface) all |= set_of(t);
     for (; all != 0; all &= all - 1) vertices_.push_back(static_cast<Vertex>(std::countr_zero(all)));
-    for (std::size_t j = 0; j < near_.size(); ++j) {
-      vertices_.push_back(static_cast<Vertex>(RegionVertices::kFirstCentre + j));
-      points_of_[vertices_.back()] = NearCorner::bit(j);
-      result_.centres.push_back(static_cast<std::uint32_t>(RegionVertices::kNear | near_[j].corner | near_[j].towards));
-    }
     if (vertices_.size() > kMost) return;
     for (std::size_t i = 0; i < vertices_.size(); ++i) local_[vertices_[i]] = i;
     for (const Triangle& t : surface) {
@@ -149,7 +123,7 @@ class Search {
       put(t);
     }
     left_ = samples_.region;
-    for (const Vertex v : vertices_) points_ |= points_of_[v];
+    for (const Vertex v : vertices_) points_ |= frame_.points[v];
   }
 
   /// `most`: tetrahedra taken away before the centre; without a centre, any number.
@@ -167,6 +141,9 @@ class Search {
   static constexpr std::uint8_t kUnused = 0, kOpen = 1, kOpenReversed = 2, kClosed = 3;
 
   static Set set_of(const Triangle& t) { return one(t[0]) | one(t[1]) | one(t[2]); }
+  [[nodiscard]] RegionProof::Sign sign(RegionProof::Points apex, const Triangle& t) const {
+    return proof_.sign(apex, frame_.points[t[0]], frame_.points[t[1]], frame_.points[t[2]]);
+  }
 
   /// Number of a triangle's set, and whether its order is an odd permutation of the ascending one.
   [[nodiscard]] std::pair<std::size_t, bool> number(const Triangle& t) const {
@@ -196,31 +173,10 @@ class Search {
   [[nodiscard]] bool is_allowed(const Triangle& t, Vertex apex) const {
     const Set all = set_of(t) | one(apex);
     if ((one(apex) & set_of(t)) != 0 || (all & ~frame_.on_contour) == 0) return false;
-    if (sign(points_of_[apex], points_of_[t[0]], points_of_[t[1]], points_of_[t[2]]) != RegionProof::Sign::positive)
-      return false;
+    if (sign(frame_.points[apex], t) != RegionProof::Sign::positive) return false;
     for (unsigned i = 0; i < 3; ++i)
       if (!may_have(one(apex) | one(t[i])) || !may_have(one(apex) | one(t[i]) | one(t[(i + 1) % 3]))) return false;
     return true;
-  }
-
-  [[nodiscard]] RegionProof::Sign sign(RegionProof::Points a, RegionProof::Points b, RegionProof::Points c,
-                                       RegionProof::Points d) const {
-    std::array<RegionProof::Points, 4> at = {a, b, c, d};
-    const auto sign_at = [&] { return proof_.sign(at[0], at[1], at[2], at[3]); };
-    std::array<RegionProof::Points*, 2> replaced{};
-    for (std::size_t j = 0; j < near_.size(); ++j)
-      for (RegionProof::Points& point : at)
-        if (point == NearCorner::bit(j)) replaced[j] = &point, point = near_[j].corner;
-    const auto of_corners = sign_at();
-    if (of_corners != RegionProof::Sign::zero) return of_corners;
-    unsigned signs = 0;
-    for (std::size_t j = 0; j < near_.size(); ++j) {
-      if (replaced[j] == nullptr) continue;
-      *replaced[j] = near_[j].towards;
-      signs |= static_cast<unsigned>(sign_at());
-      *replaced[j] = near_[j].corner;
-    }
-    return static_cast<RegionProof::Sign>(signs);
   }
 
   static std::array<Triangle, 3> other_faces(const Triangle& t, Vertex apex) {
@@ -264,7 +220,7 @@ class Search {
     constexpr RegionProof::Points kCentre = RegionProof::Points{1} << RegionProof::kCentre;
     for (RegionProof::Points rest = (points_ & RegionProof::kShared) | kCentre; rest != 0; rest &= rest - 1) {
       const RegionProof::Points point = rest & (0 - rest);
-      const auto of_point = sign(point, points_of_[t[0]], points_of_[t[1]], points_of_[t[2]]);
+      const auto of_point = sign(point, t);
       if (of_point == RegionProof::Sign::positive) result.positive |= point;
       if (of_point == RegionProof::Sign::positive || of_point == RegionProof::Sign::zero) result.not_negative |= point;
     }
@@ -296,8 +252,7 @@ class Search {
   /// Whether the triangles of the front that do not contain a vertex are visible from it.
   [[nodiscard]] bool is_seen_from(unsigned v) const {
     return std::all_of(front_.begin(), front_.end(), [&](const Triangle& t) {
-      return (set_of(t) & one(v)) != 0 ||
-             sign(points_of_[v], points_of_[t[0]], points_of_[t[1]], points_of_[t[2]]) == RegionProof::Sign::positive;
+      return (set_of(t) & one(v)) != 0 || sign(frame_.points[v], t) == RegionProof::Sign::positive;
     });
   }
 
@@ -390,8 +345,6 @@ class Search {
 
   const RegionProof& proof_;
   const RegionFrame& frame_;
-  std::array<RegionProof::Points, RegionFrame::kEnd> points_of_;  ///< by vertex
-  std::span<const NearCorner> near_;
   Samples samples_;
   std::vector<Vertex> vertices_;
   std::array<std::size_t, RegionFrame::kEnd> local_{};
@@ -409,37 +362,6 @@ class Search {
   unsigned most_ = 0, nodes_ = 0;
 };
 
-/// All vertices near the corners of a region. None if the contour has own vertices: the positions on their rays are not
-/// known where the distance from the corners is chosen (border_caps.cpp).
-std::vector<NearCorner> near_corners(const RegionFrame& frame, std::span<const Triangle> surface) {
-  Set all = 0;
-  for (const Triangle& t : surface) all |= one(t[0]) | one(t[1]) | one(t[2]);
-  std::vector<NearCorner> result;
-  if (all >> RegionVertices::kFirstOwn != 0) return result;
-  for (Set corners = all & 0xffu; corners != 0; corners &= corners - 1)
-    for (Set rest = all & RegionProof::kShared & ~Set{0xff}; rest != 0; rest &= rest - 1) {
-      const NearCorner near{corners & (0 - corners), rest & (0 - rest)};
-      if (std::none_of(frame.squares.begin(), frame.squares.end(),
-                       [&](Set q) { return ((near.corner | near.towards) & ~q) == 0; }))
-        result.push_back(near);
-    }
-  return result;
-}
-
-std::optional<RegionDivision> divide_with_near_corners(const RegionProof& proof, const RegionFrame& frame,
-                                                       std::span<const Triangle> surface) {
-  const std::vector<NearCorner> all = near_corners(frame, surface);
-  for (const NearCorner& near : all)
-    if (auto found = Search(proof, frame, surface, std::span(&near, 1)).run(false, 0)) return found;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const std::array<NearCorner, 2> both = {all[i], all[j]};
-      if (both[0].corner == both[1].corner) continue;
-      if (auto found = Search(proof, frame, surface, both).run(false, 0)) return found;
-    }
-  return std::nullopt;
-}
-
 }  // namespace
 
 RegionFrame::RegionFrame() {
@@ -455,7 +377,7 @@ std::optional<RegionDivision> divide_region(const RegionProof& proof, const Regi
   constexpr unsigned kMostBefore = 4;
   for (unsigned most = 0; most <= kMostBefore; ++most)
     if (auto found = search.run(true, most)) return found;
-  return frame.is_cap ? divide_with_near_corners(proof, frame, surface) : std::nullopt;
+  return std::nullopt;
 }
 
 }  // namespace tegl::gen

@@ -16,7 +16,6 @@ struct RegionVertices {
   static constexpr unsigned kFirstCentre = kFirstOwn + kMostOwn;  ///< vertices that the region adds
   static constexpr unsigned kVertices = 32;                       ///< maximum
   static constexpr std::uint32_t kFirstDouble = 1u << 20;         ///< bit of masks of centres
-  static constexpr std::uint32_t kNear = 1u << 24;                ///< bit of masks of vertices near a corner
   using Tetrahedron = std::array<std::uint8_t, 4>;
 };
 

@@ -115,8 +115,7 @@ constexpr std::uint8_t kNoVertex = 255;
 
 /// Adds a division of a region of a cube, whose own vertices start at `own_base`.
 void append(const RegionDivision& division, std::uint32_t own_base, TileRegions& to) {
-  if (division.centres.size() > 1 || (division.centres.size() == 1 && division.centres[0] >= RegionVertices::kNear))
-    throw std::logic_error("a region of a table has a vertex that is not a mean");
+  if (division.centres.size() > 1) throw std::logic_error("a region of a table has more than one vertex of its own");
   const auto centre = static_cast<std::uint8_t>(own_base + to.own_masks.size());
   to.own_masks.insert(to.own_masks.end(), division.centres.begin(), division.centres.end());
   for (LocalSimplex tetrahedron : division.tetrahedra) {

@@ -292,8 +292,8 @@ at its apex, and no ball can fill it. A **solid torus** can, because its boundar
 The tile's centre counts as low. Therefore the contour in the tile is a copy of the *high side* of the boundary, moved inwards: the
 part of the boundary sphere that contains the high corners. In these classes the high side is a solid torus. Every filling here is
 proved to be one: it is a manifold (its certificate) and collapses to a circle. The barycentric triangulation copies the
-triangulation of the side, with the inner vertices half way to the tile's centre (*side vertices*). The compact one fills the same
-torus with fewer tetrahedra.
+triangulation of the side. Its inner vertices (*side vertices*) lie on rays from the tile's centre, where the multilinear
+interpolant has the isovalue. The compact one fills the same torus with fewer tetrahedra.
 
 Each picture shows five cuts. The fourth axis is the time t, from the cube at t = 0 to the cube at t = 1. Each cut shows
 the corners at the nearer end of the time axis, and the compact triangulation. The contour's high side is orange, its low side blue.

@@ -42,48 +42,6 @@ TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask)
   return sum.point;
 }
 
-/// Six times the volume of a tetrahedron, with its sign.
-double six_volumes(const std::array<TilePoint<3>, 4>& p) noexcept {
-  const auto to = [&](unsigned j, unsigned axis) { return p[j][axis] - p[0][axis]; };
-  return to(1, 0) * (to(2, 1) * to(3, 2) - to(2, 2) * to(3, 1)) -
-         to(1, 1) * (to(2, 0) * to(3, 2) - to(2, 2) * to(3, 0)) +
-         to(1, 2) * (to(2, 0) * to(3, 1) - to(2, 1) * to(3, 0));
-}
-
-/// The places of a region's vertices near corners (CubeRegions::kNear). They are close enough to the corners if all
-/// tetrahedra of the region, which is a high side, are negatively oriented. If samples equal the isovalue, there may be
-/// no such place.
-template <unsigned Axes>
-void near_places(const EdgePlaces<4, Axes>& places, const CubeRegions& regions, const CubeRegions::Region& region,
-                 std::span<TilePoint<3>> result) {
-  const auto masks = regions.centres(region);
-  const auto place_of = [&](unsigned v) {
-    return v < 8                        ? corner_point<3>(v)
-           : v < CubeRegions::kFirstOwn ? places(v - 8)
-                                        : result[v - CubeRegions::kFirstCentre];
-  };
-  const auto place_at = [&](double share) {
-    for (std::size_t j = 0; j < masks.size(); ++j) {
-      const TilePoint<3> corner = corner_point<3>(static_cast<unsigned>(std::countr_zero(masks[j])));
-      const TilePoint<3> towards = places(static_cast<unsigned>(std::countr_zero(masks[j] >> 8)));
-      for (std::size_t a = 0; a < 3; ++a) result[j][a] = corner[a] + share * (towards[a] - corner[a]);
-    }
-  };
-  const auto is_oriented = [&](const CubeRegions::Tetrahedron& t) {
-    return six_volumes({place_of(t[0]), place_of(t[1]), place_of(t[2]), place_of(t[3])}) < 0;
-  };
-  const auto tetrahedra = regions.tetrahedra(region);
-  constexpr double kLeast = 1.0 / (std::uint64_t{1} << 40);
-  bool was_oriented = false;  // at twice the share: then no tetrahedron is nearly flat
-  for (double share = 0.5; share > kLeast; share *= 0.5) {
-    place_at(share);
-    const bool oriented = std::all_of(tetrahedra.begin(), tetrahedra.end(), is_oriented);
-    if (was_oriented && oriented) return;
-    was_oriented = oriented;
-  }
-  place_at(0.25);
-}
-
 }  // namespace
 
 template <int N, class Real>
@@ -306,14 +264,10 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   const Regions& regions = Regions::of_caps(estimator_->triangulation());
   for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
     const std::span<const std::uint32_t> masks = regions.centres(region);
-    std::array<TilePoint<3>, Regions::kVertices - Regions::kFirstCentre> near;
-    const bool is_near = !masks.empty() && masks[0] >= Regions::kNear;
-    if (is_near) near_places<kAxes>(places, regions, region, std::span(near).first(masks.size()));
     for (std::size_t j = 0; j < masks.size(); ++j) {
       ids[Regions::kFirstCentre + j] = static_cast<Index>(vertices_.size());
-      add_vertex<kAxes>(index, is_near       ? near[j]
-                               : barycentric ? centre_place<kAxes>(places, masks[j])
-                                             : region_place<N, kAxes>(places, masks[j]));
+      add_vertex<kAxes>(index,
+                        barycentric ? centre_place<kAxes>(places, masks[j]) : region_place<N, kAxes>(places, masks[j]));
     }
     for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region)) {
       Simplex simplex;

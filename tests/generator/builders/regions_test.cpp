@@ -55,13 +55,11 @@ class RandomPositions {
     return result;
   }
 
-  /// The centres of a region. Those near corners have the given share of the way to a point of the contour.
-  void add_centres(Positions& positions, std::span<const std::uint32_t> masks, double near) const {
+  static void add_centres(Positions& positions, std::span<const std::uint32_t> masks) {
     for (std::size_t j = 0; j < masks.size(); ++j)
-      positions[kFirstCentre + j] =
-          masks[j] >= CubeRegions::kNear          ? between(positions, masks[j] ^ CubeRegions::kNear, near)
-          : masks[j] >= CubeRegions::kFirstDouble ? positions[std::countr_zero(masks[j])]
-                                                  : mean(positions, masks[j], masks[j] >> 8 != 0 ? 0.01 : 0.0);
+      positions[kFirstCentre + j] = masks[j] >= CubeRegions::kFirstDouble
+                                        ? positions[std::countr_zero(masks[j])]
+                                        : mean(positions, masks[j], masks[j] >> 8 != 0 ? 0.01 : 0.0);
   }
 
  private:
@@ -72,13 +70,6 @@ class RandomPositions {
     double sum = 0;
     for (unsigned v = 0; v < 8; ++v) sum += (corners >> v & 1u) != 0 ? static_cast<double>(v >> axis & 1u) : 0.0;
     return sum / std::popcount(corners & 0xffu);
-  }
-  /// From the corner to the edge of a mask.
-  static Position between(const Positions& of, std::uint32_t mask, double share) {
-    Position result = of[std::countr_zero(mask)];
-    const Position& towards = of[std::countr_zero(mask & ~0xffu)];
-    for (std::size_t i = 0; i < 3; ++i) result[i] += share * (towards[i] - result[i]);
-    return result;
   }
   static Position mean(const Positions& of, std::uint32_t mask, double step) {
     Position sum{};
@@ -99,20 +90,18 @@ class RandomPositions {
   std::mt19937_64 random_{1994};
 };
 
-/// "" if all tetrahedra of a region have its side's orientation; else the fault. `near`: for
-/// RandomPositions::add_centres.
+/// "" if all tetrahedra of a region have its side's orientation; else the fault.
 std::string fault_of_region(const CubeRegions& regions, const CubeRegions::Region& region, bool high,
-                            Positions positions, double near) {
-  RandomPositions().add_centres(positions, std::span(regions.centres).subspan(region.first_centre, region.centre_count),
-                                near);
-  const double least = near == 0.0 ? 1e-15 : 0.0;
+                            Positions positions) {
+  RandomPositions::add_centres(positions, std::span(regions.centres).subspan(region.first_centre, region.centre_count));
+  constexpr double kLeast = 1e-15;
   for (std::size_t t = 0; t < region.tetrahedron_count; ++t) {
     const auto& [a, b, c, d] = regions.tetrahedra[region.first_tetrahedron + t];
     const bool is_wall = region.centre_count == 1 && positions[a] == positions[kFirstCentre] &&
                          (positions[b] == positions[a] || positions[c] == positions[a] || positions[d] == positions[a]);
     if (is_wall) continue;  // parallel to the rays
     const double volume = six_volumes(positions[a], positions[b], positions[c], positions[d]);
-    if (high ? volume >= -least : volume <= least)
+    if (high ? volume >= -kLeast : volume <= kLeast)
       return fmt::format("{} side: tetrahedron ({} {} {} {}) has six times the volume {}", high ? "high" : "low", a, b,
                          c, d, volume);
   }
@@ -125,11 +114,8 @@ std::string fault_of_side(const CubeLists& lists, const CubeRegions& regions, st
   const std::size_t side = 2 * list + (high ? 1 : 0);
   for (std::size_t r = regions.first_region[side]; r < regions.first_region[side + 1]; ++r) {
     const CubeRegions::Region& region = regions.regions[r];
-    const bool is_near = region.centre_count != 0 && regions.centres[region.first_centre] >= CubeRegions::kNear;
-    std::string fault = fault_of_region(regions, region, high, positions, is_near ? 0.5 : 0.0);
-    for (double near = 0.25; is_near && near > 1e-12 && !fault.empty(); near *= 0.5)  // close enough
-      fault = fault_of_region(regions, region, high, positions, near);
-    if (!fault.empty()) return fmt::format("list {} of signature {}, {}", list, lists.lists[list].signature, fault);
+    if (const std::string fault = fault_of_region(regions, region, high, positions); !fault.empty())
+      return fmt::format("list {} of signature {}, {}", list, lists.lists[list].signature, fault);
   }
   return "";
 }
