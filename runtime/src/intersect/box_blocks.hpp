@@ -27,6 +27,7 @@ template <int N>
 class BoxBlocks {
  public:
   static constexpr std::size_t kBlock = 8;
+  class NearBlocks;
 
   BoxBlocks(const SimplexPlanes<N>& simplices, unsigned threads, const Progress& progress);
 
@@ -37,8 +38,12 @@ class BoxBlocks {
     const std::size_t first = block * kBlock;
     return std::span(order_).subspan(first, std::min(kBlock, order_.size() - first));
   }
-  /// Replaces `near` by the blocks from `block` on whose boxes meet its box. Ascending.
-  void find_near(std::size_t block, std::vector<Index>& near) const;
+  /// Replaces `near` by the blocks from `block` on whose boxes meet its box.
+  void find_near(std::size_t block, NearBlocks& near) const;
+  /// Calls visit(simplex) for the simplices whose boxes meet that of simplex `k` of `block`, in the blocks `near` it.
+  /// In `block` itself, only for those after `k`.
+  template <class Visit>
+  void visit_meeting(std::size_t block, std::size_t k, const NearBlocks& near, const Visit& visit) const;
   /// Calls visit(simplex) for all simplices whose boxes meet that of these corners.
   template <class Visit>
   void visit_near(const CornersN<N>& corners, const Visit& visit) const {
@@ -59,12 +64,6 @@ class BoxBlocks {
   }
   /// All simplices, in Morton order.
   [[nodiscard]] std::span<const Index> order() const noexcept { return order_; }
-  /// Bit i: the box of simplex i of block `near` meets that of simplex `k` of `block`. For near == block only i > k.
-  [[nodiscard]] unsigned meeting(std::size_t block, std::size_t k, std::size_t near) const noexcept {
-    unsigned bits = levels_[0][near].meeting(levels_[0][block].box(k));
-    if (near == block) bits &= ~0u << (k + 1);
-    return bits;
-  }
 
  private:
   /// Bounds are rounded outwards.
@@ -263,10 +262,45 @@ void BoxBlocks<N>::visit_blocks(const Bounds& bounds, std::size_t first, const V
   }
 }
 
+/// Some blocks with their boxes, eight at a time.
 template <int N>
-void BoxBlocks<N>::find_near(std::size_t block, std::vector<Index>& near) const {
+class BoxBlocks<N>::NearBlocks {
+ private:
+  friend class BoxBlocks;
+  void clear() noexcept {
+    blocks_.clear();
+    boxes_.clear();
+  }
+  void add(std::size_t block, const Bounds& bounds) {
+    if (blocks_.size() % kBlock == 0) boxes_.emplace_back();
+    boxes_.back().set(blocks_.size() % kBlock, bounds);
+    blocks_.push_back(block);
+  }
+
+  std::vector<std::size_t> blocks_;  ///< ascending
+  std::vector<Eight> boxes_;
+};
+
+template <int N>
+void BoxBlocks<N>::find_near(std::size_t block, NearBlocks& near) const {
   near.clear();
-  visit_blocks(levels_[0][block].whole(), block, [&](std::size_t found) { near.push_back(static_cast<Index>(found)); });
+  visit_blocks(levels_[0][block].whole(), block, [&](std::size_t found) {
+    near.add(found, levels_.size() > 1 ? levels_[1][found / kBlock].box(found % kBlock) : levels_[0][found].whole());
+  });
+}
+
+template <int N>
+template <class Visit>
+void BoxBlocks<N>::visit_meeting(std::size_t block, std::size_t k, const NearBlocks& near, const Visit& visit) const {
+  const Bounds bounds = levels_[0][block].box(k);
+  for (std::size_t i = 0; i < near.boxes_.size(); ++i)
+    for (unsigned blocks = near.boxes_[i].meeting(bounds); blocks != 0; blocks &= blocks - 1) {
+      const std::size_t other = near.blocks_[i * kBlock + static_cast<std::size_t>(std::countr_zero(blocks))];
+      unsigned bits = levels_[0][other].meeting(bounds);
+      if (other == block) bits &= ~0u << (k + 1);
+      for (; bits != 0; bits &= bits - 1)
+        visit(order_[other * kBlock + static_cast<std::size_t>(std::countr_zero(bits))]);
+    }
 }
 
 }  // namespace tegl::detail

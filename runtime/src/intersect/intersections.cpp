@@ -65,9 +65,7 @@ class PairFinder {
     for (std::size_t k = 0; k < here.size(); ++k) {
       load_embedded_vertices(here[k]);
       test_.load(here[k]);
-      for (const Index near : near_)
-        for (unsigned bits = boxes_.meeting(block, k, near); bits != 0; bits &= bits - 1)
-          test(here[k], boxes_.simplices(near)[static_cast<std::size_t>(std::countr_zero(bits))]);
+      boxes_.visit_meeting(block, k, near_, [&](Index t) { test(here[k], t); });
     }
   }
   /// The pairs since it was last cleared.
@@ -105,7 +103,7 @@ class PairFinder {
   const BoxBlocks<N>& boxes_;
   PairTest<N> test_;
   std::array<Index, N> embedded_vertices_{};
-  std::vector<Index> near_;
+  typename BoxBlocks<N>::NearBlocks near_;
   FoundPairs<N> found_;
   SimplexSet& intersecting_;
 };

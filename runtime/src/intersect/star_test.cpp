@@ -42,25 +42,27 @@ bool StarTest<N>::number_link(Index v, std::span<const Index> star) {
 /// Condition 1. The faces of an oriented edge (p, q) are q - p; those of a triangle its three oriented edges.
 template <int N>
 bool StarTest<N>::is_closed() {
+  const auto visit_faces = [&](const auto& visit) {
+    for (const auto& row : link_rows_) {
+      if constexpr (N == 3) {
+        visit(row[0], -1);
+        visit(row[1], 1);
+      } else if constexpr (N == 4) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          const std::size_t p = row[i], q = row[(i + 1) % 3];
+          visit(std::min(p, q) * kMostLink + std::max(p, q), p < q ? 1 : -1);
+        }
+      }
+    }
+  };
   std::size_t unbalanced = 0;
-  const auto add = [&](std::size_t entry, int sign) {
+  visit_faces([&](std::size_t entry, int sign) {
     std::int16_t& balance = balance_[entry];
     unbalanced -= balance != 0 ? 1 : 0;
     balance = static_cast<std::int16_t>(balance + sign);
     unbalanced += balance != 0 ? 1 : 0;
-  };
-  for (const auto& row : link_rows_) {
-    if constexpr (N == 3) {
-      add(row[0], -1);
-      add(row[1], 1);
-    } else if constexpr (N == 4) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t p = row[i], q = row[(i + 1) % 3];
-        add(std::min(p, q) * kMostLink + std::max(p, q), p < q ? 1 : -1);
-      }
-    }
-  }
-  if (unbalanced != 0) std::fill(balance_.begin(), balance_.end(), std::int16_t{0});
+  });
+  if (unbalanced != 0) visit_faces([&](std::size_t entry, int) { balance_[entry] = 0; });
   return unbalanced == 0;
 }
 
