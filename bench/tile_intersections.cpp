@@ -25,6 +25,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -37,6 +38,7 @@
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
+#include "tile_pairs.hpp"
 #include "timing.hpp"
 #include "usage.hpp"
 
@@ -180,6 +182,7 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
   std::mt19937_64 bits(seeds);
   const ExtractOptions extraction = settings.extraction();
   const Grid<N> grid = unit_grid<N>(2);
+  [[maybe_unused]] std::conditional_t<(N < 5), bench::TilePairs<N>, int> all_pairs{};
   Counts counts;
   for (std::uint64_t tile = first; tile < end; ++tile) {
     // middle positions have no other freedom than the signature: all in turn
@@ -200,7 +203,7 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
       pairs = found.pairs.size();
       flat = found.flat;
       counts.exact += found.exact;
-    } else {
+    } else if (!all_pairs.is_embedded(contour)) {
       IntersectionOptions<N> options;
       options.work.threads = 1;
       const Intersections<N> found = find_intersections(contour, options);
