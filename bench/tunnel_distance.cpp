@@ -2,21 +2,27 @@
 //
 // tunnel_distance: the distance of contours from the zeros of the multilinear interpolant, in random cells whose
 // contour has copies of corners inside the cell (tunnels in 3D, copied sides in 4D), with the copies at their levels
-// and half way to the centre; and in one cube, of the usual triangulation of a tunnel by chords. Writes CSV.
+// and half way to the centre; and in cubes with a tunnel, also of its triangulation by chords, as an ordinary table has
+// it. Writes CSV.
 //
 //     tunnel_distance --tiles 20000
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string_view>
+#include <vector>
 
 #include "arguments.hpp"
 #include "run_program.hpp"
+#include "support/distance_oracle.hpp"
 #include "support/interpolant_distance.hpp"
 #include "tegl/extract.hpp"
+#include "tunnel_chords.hpp"
 #include "usage.hpp"
 
 namespace {
@@ -32,6 +38,10 @@ struct Settings {
 double height(bool is_log_uniform, std::mt19937_64& bits) {
   const double share = 1.0 - static_cast<double>(bits() >> 11) * 0x1p-53;
   return is_log_uniform ? std::pow(1000.0, share - 1.0) : share;
+}
+
+const char* name_of(Ambiguity ambiguity) {
+  return ambiguity == Ambiguity::mean ? "mean" : ambiguity == Ambiguity::saddle ? "saddle" : "low";
 }
 
 template <int N>
@@ -60,14 +70,117 @@ void measure(const Settings& settings, Triangulation triangulation, Ambiguity am
     add_distances(function, moved, 4, places, half_way);
   }
   std::printf("%d,%s,%s,%s,%llu,%.4f,%.4f,%.3f,%.3f,%.3f,%llu,%llu\n", N,
-              triangulation == Triangulation::compact ? "compact" : "barycentric",
-              ambiguity == Ambiguity::mean     ? "mean"
-              : ambiguity == Ambiguity::saddle ? "saddle"
-                                               : "low",
+              triangulation == Triangulation::compact ? "compact" : "barycentric", name_of(ambiguity),
               is_log_uniform ? "log-uniform" : "uniform", static_cast<unsigned long long>(cells),
               half_way.root_mean_square(), at_levels.root_mean_square(),
               1.0 - at_levels.root_mean_square() / half_way.root_mean_square(), half_way.maximum, at_levels.maximum,
               static_cast<unsigned long long>(half_way.unknown), static_cast<unsigned long long>(at_levels.unknown));
+}
+
+/// The interpolant's contour in a cube, in a grid of smaller cubes.
+bench::CubeContour fine_contour(const CellFunction<3>& function) {
+  constexpr std::size_t kSamples = 17;
+  const std::array<std::size_t, 3> sizes = {kSamples, kSamples, kSamples};
+  std::vector<double> samples;
+  for (std::size_t z = 0; z < kSamples; ++z)
+    for (std::size_t y = 0; y < kSamples; ++y)
+      for (std::size_t x = 0; x < kSamples; ++x) {
+        std::array<double, 3> at = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}, gradient;
+        for (double& coordinate : at) coordinate /= kSamples - 1;
+        samples.push_back(function(at, gradient));
+      }
+  ExtractOptions options;
+  options.ambiguity = Ambiguity::saddle;
+  options.work.threads = 1;
+  auto contour = extract<double>(Image<double, 3>(samples.data(), Grid<3>::unit(sizes)), 0.0, options);
+  for (auto& vertex : contour.vertices)
+    for (double& x : vertex) x /= kSamples - 1;
+  return contour;
+}
+
+/// Adds the distances of random points of one contour from another one.
+void add_distances(const bench::CubeContour& from, const bench::CubeContour& to, int count, std::mt19937_64& bits,
+                   InterpolantDistance& distances) {
+  const auto corners_of = [](const bench::CubeContour& contour, const bench::CubeTriangle& triangle) {
+    return std::array{contour.vertices[triangle[0]], contour.vertices[triangle[1]], contour.vertices[triangle[2]]};
+  };
+  double size = 0;
+  for (const auto& triangle : from.simplices) size += gram_measure<3>(corners_of(from, triangle));
+  for (const auto& triangle : from.simplices) {
+    // as many points as its share of the whole, rounded at random
+    const auto corners = corners_of(from, triangle);
+    const double share = count * gram_measure<3>(corners) / size;
+    for (double left = share - unit_random(bits); left > 0; left -= 1) {
+      double s = unit_random(bits), t = unit_random(bits);
+      if (s + t > 1) s = 1 - s, t = 1 - t;
+      std::array<double, 3> point;
+      for (std::size_t a = 0; a < 3; ++a)
+        point[a] = corners[0][a] + s * (corners[1][a] - corners[0][a]) + t * (corners[2][a] - corners[0][a]);
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& other : to.simplices)
+        least = std::min(least, distance_to_simplex_by_faces<3>(point, corners_of(to, other)));
+      distances.add(least, 1.0);
+    }
+  }
+}
+
+/// Means over cells of the width of waists.
+struct Waists {
+  double interpolant = 0, chords = 0, tegl = 0;  ///< sums
+  std::uint64_t cells = 0;
+
+  void add(const bench::CubeContour& contour, const bench::CubeContour& by_chords, const bench::CubeContour& fine) {
+    const auto tunnel_of = [](const bench::CubeContour& of) -> std::optional<bench::CubePiece> {
+      const auto pieces = bench::pieces_of(of);
+      if (pieces.size() != 1 || !pieces[0].is_tunnel()) return std::nullopt;
+      return pieces[0];
+    };
+    const auto coarse_tunnel = tunnel_of(contour), fine_tunnel = tunnel_of(fine);
+    if (!coarse_tunnel || !fine_tunnel) return;
+    const auto axis = bench::axis_between(contour, coarse_tunnel->polygons);
+    const auto fine_axis = bench::axis_between(fine, fine_tunnel->polygons);
+    if (!axis || !fine_axis) return;
+    ++cells;
+    interpolant += bench::waist_of(fine, *fine_axis);
+    tegl += bench::waist_of(contour, *axis);
+    chords += bench::waist_of(by_chords, *axis);
+  }
+};
+
+/// Cubes with a tunnel: by chords, and tegl's.
+void measure_tunnels(const Settings& settings, Ambiguity ambiguity, bool is_log_uniform) {
+  constexpr int kPoints = 100;
+  std::mt19937_64 bits(settings.seed), places(settings.seed + 1);
+  ExtractOptions options;
+  options.ambiguity = ambiguity;
+  options.work.threads = 1;
+  InterpolantDistance chords_to, tegl_to, to_chords, to_tegl;
+  Waists waists;
+  std::uint64_t cells = 0;
+  for (std::uint64_t tile = 0; tile < settings.tiles; ++tile) {
+    CellFunction<3>::Values values;
+    const std::uint64_t signature = bits();
+    for (std::size_t v = 0; v < values.size(); ++v)
+      values[v] = ((signature >> v & 1u) != 0 ? 1.0 : -1.0) * height(is_log_uniform, bits);
+    const auto contour = extract<double>(Image<double, 3>(values.data(), Grid<3>::unit({2, 2, 2})), 0.0, options);
+    const auto chords = bench::with_chords(contour);
+    if (!chords) continue;
+    ++cells;
+    const CellFunction<3> function(values);
+    test::add_distances(function, *chords, 20, places, chords_to);
+    test::add_distances(function, contour, 20, places, tegl_to);
+    const auto fine = fine_contour(function);
+    add_distances(fine, *chords, kPoints, places, to_chords);
+    add_distances(fine, contour, kPoints, places, to_tegl);
+    waists.add(contour, *chords, fine);
+  }
+  const double measured = static_cast<double>(waists.cells);
+  std::printf("%s,%s,%llu,%.4f,%.4f,%.3f,%.3f,%.4f,%.4f,%.3f,%.3f,%llu,%.3f,%.3f,%.3f\n", name_of(ambiguity),
+              is_log_uniform ? "log-uniform" : "uniform", static_cast<unsigned long long>(cells),
+              chords_to.root_mean_square(), tegl_to.root_mean_square(), chords_to.maximum, tegl_to.maximum,
+              to_chords.root_mean_square(), to_tegl.root_mean_square(), to_chords.maximum, to_tegl.maximum,
+              static_cast<unsigned long long>(waists.cells), waists.interpolant / measured, waists.chords / measured,
+              waists.tegl / measured);
 }
 
 /// The cube of docs/embedding.md: its tunnel by chords between points on edges, which are given by their ends, and
@@ -131,6 +244,12 @@ int run(int argc, char** argv) {
       }
   for (const bool is_log_uniform : {false, true})
     measure<4>(settings, Triangulation::barycentric, Ambiguity::low, is_log_uniform);
+  std::printf(
+      "\ncubes with a tunnel,heights,cells,rms to interpolant by chords,by tegl,maximum by chords,by tegl,"
+      "rms from interpolant by chords,by tegl,maximum by chords,by tegl,"
+      "cells with a waist,waist of interpolant,by chords,by tegl\n");
+  for (const auto ambiguity : {Ambiguity::mean, Ambiguity::saddle})
+    for (const bool is_log_uniform : {false, true}) measure_tunnels(settings, ambiguity, is_log_uniform);
   measure_chords(settings);
   return 0;
 }
