@@ -8,12 +8,13 @@ if(PkgConfig_FOUND)
   pkg_search_module(TEGL_HDF5 QUIET hdf5 hdf5-serial)
 endif()
 find_package(ZLIB QUIET)
+find_package(EXPAT QUIET)
 find_package(nlohmann_json QUIET)
 
 # What is missing, each with the Debian package that has it.
 set(tegl_io_missing "")
 foreach(need "netCDF_FOUND|netCDF|libnetcdf-dev" "PkgConfig_FOUND|pkg-config|pkg-config"
-    "TEGL_HDF5_FOUND|HDF5 (by pkg-config)|libhdf5-dev" "ZLIB_FOUND|zlib|zlib1g-dev"
+    "TEGL_HDF5_FOUND|HDF5 (by pkg-config)|libhdf5-dev" "ZLIB_FOUND|zlib|zlib1g-dev" "EXPAT_FOUND|Expat|libexpat1-dev"
     "nlohmann_json_FOUND|nlohmann_json|nlohmann-json3-dev")
   string(REPLACE "|" ";" need "${need}")
   list(POP_FRONT need found name package)

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "tegl/io/active_tiles.hpp"
+#include "tegl/io/cell_meshes.hpp"
 #include "tegl/io/contour_file.hpp"
 #include "tegl/io/elements.hpp"
 #include "tegl/io/facets.hpp"

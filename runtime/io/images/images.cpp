@@ -14,12 +14,15 @@
 #include "base/raw_image.hpp"
 #include "base/sample_reader.hpp"
 #include "dicom/dicom.hpp"
+#include "images/members.hpp"
 #include "images/metaimage.hpp"
 #include "images/netcdf.hpp"
 #include "images/nifti.hpp"
 #include "images/npy.hpp"
 #include "images/nrrd.hpp"
+#include "images/vtk_image.hpp"
 #include "process/separate_reading.hpp"
+#include "vtk/pvd.hpp"
 
 namespace tegl {
 
@@ -29,32 +32,20 @@ namespace {
 
 using namespace io_detail;
 
-enum class Format { Nifti, Nrrd, MetaImage, NetCdf, Npy, Npz };
+enum class Format { Nifti, Nrrd, MetaImage, NetCdf, Npy, Npz, Vtk, Pvd };
 
 struct Extension {
   std::string_view text;
   Format format;
 };
 
-constexpr std::array<Extension, 19> kExtensions = {{{".nii", Format::Nifti},
-                                                    {".nii.gz", Format::Nifti},
-                                                    {".hdr", Format::Nifti},
-                                                    {".hdr.gz", Format::Nifti},
-                                                    {".img", Format::Nifti},
-                                                    {".img.gz", Format::Nifti},
-                                                    {".nrrd", Format::Nrrd},
-                                                    {".nhdr", Format::Nrrd},
-                                                    {".mha", Format::MetaImage},
-                                                    {".mhd", Format::MetaImage},
-                                                    {".nc", Format::NetCdf},
-                                                    {".nc.gz", Format::NetCdf},
-                                                    {".cdf", Format::NetCdf},
-                                                    {".cdf.gz", Format::NetCdf},
-                                                    {".nc4", Format::NetCdf},
-                                                    {".nc4.gz", Format::NetCdf},
-                                                    {".netcdf", Format::NetCdf},
-                                                    {".npy", Format::Npy},
-                                                    {".npz", Format::Npz}}};
+constexpr std::array<Extension, 24> kExtensions = {
+    {{".nii", Format::Nifti},     {".nii.gz", Format::Nifti},  {".hdr", Format::Nifti},  {".hdr.gz", Format::Nifti},
+     {".img", Format::Nifti},     {".img.gz", Format::Nifti},  {".nrrd", Format::Nrrd},  {".nhdr", Format::Nrrd},
+     {".mha", Format::MetaImage}, {".mhd", Format::MetaImage}, {".nc", Format::NetCdf},  {".nc.gz", Format::NetCdf},
+     {".cdf", Format::NetCdf},    {".cdf.gz", Format::NetCdf}, {".nc4", Format::NetCdf}, {".nc4.gz", Format::NetCdf},
+     {".netcdf", Format::NetCdf}, {".npy", Format::Npy},       {".npz", Format::Npz},    {".vti", Format::Vtk},
+     {".vtr", Format::Vtk},       {".vts", Format::Vtk},       {".vtu", Format::Vtk},    {".pvd", Format::Pvd}}};
 
 /// By extension; a file with an unknown extension, by its first bytes.
 Format format_of(const fs::path& path) {
@@ -64,13 +55,14 @@ Format format_of(const fs::path& path) {
   const auto prefix = read_prefix(path, 348);
   const std::string_view start(reinterpret_cast<const char*>(prefix.data()), prefix.size());
   if (start.starts_with("NRRD000")) return Format::Nrrd;
+  if (start.starts_with("<VTKFile")) return Format::Vtk;
   if (start.starts_with("\x93NUMPY")) return Format::Npy;
   if (start.starts_with("CDF") || start.starts_with("\x89HDF")) return Format::NetCdf;
   if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;
   fail(ErrorCode::UnsupportedFormat, path,
        "unknown image format, by its name and first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
-       ".nhdr), MetaImage (.mha, .mhd), NumPy (.npy, .npz), netCDF (.nc, .cdf, .nc4, also gzipped) or DICOM (.dcm, a "
-       "folder)",
+       ".nhdr), MetaImage (.mha, .mhd), NumPy (.npy, .npz), netCDF (.nc, .cdf, .nc4, also gzipped), VTK (.vti, .vtr, "
+       ".pvd) or DICOM (.dcm, a folder)",
        shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
 }
 
@@ -165,17 +157,40 @@ RawLayers open_dicom_with(const fs::path& path, const ReadImageOptions& options)
   return open_dicom(std::span(&path, 1), options.variable, options.work.progress);
 }
 
+/// The images of a collection, over time.
+RawLayers open_pvd_layers(const fs::path& path, const ReadImageOptions& options) {
+  SeriesOptions series;
+  std::vector<fs::path> files;
+  for (PvdStep& step : read_pvd(path, options.allow_outside_paths)) {
+    files.push_back(std::move(step.file));
+    series.coordinates.push_back(step.time);
+  }
+  series.work = options.work;
+  const auto read = [options](const fs::path& file, Extent extent, const Progress& progress) {
+    ReadImageOptions own = options;
+    own.work.progress = progress;
+    return read_any(file, extent, own);
+  };
+  if (files.size() == 1) return open_any_layers(files[0], options);
+  return open_members(files, series, read).layers;
+}
+
+RawImage all_layers(RawLayers&& layers, Extent extent) {
+  const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
+  ValueArray values = layers.read(0, count);
+  return {std::move(layers.grid), std::move(values), std::move(layers.info)};
+}
+
 }  // namespace
 
 RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImageOptions& options) {
   if (is_dicom(path)) {
-    RawLayers layers = open_dicom_with(path, options);
-    const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
-    ValueArray values = layers.read(0, count);
-    return {std::move(layers.grid), std::move(values), std::move(layers.info)};
+    return all_layers(open_dicom_with(path, options), extent);
   }
   require_readable_file(path);
   const Format format = format_of(path);
+  if (format == Format::Vtk) return read_vtk_image(path, extent, options);
+  if (format == Format::Pvd) return all_layers(open_pvd_layers(path, options), extent);
   RawImage image = format == Format::NetCdf
                        ? read_netcdf(path, extent, options)
                        : read_stored(open_stored(path, format, options), extent, options.work.progress);
@@ -188,6 +203,8 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   require_readable_file(path);
   const Format format = format_of(path);
   if (format == Format::NetCdf) return open_netcdf_layers(path, options);
+  if (format == Format::Vtk) return open_vtk_layers(path, options);
+  if (format == Format::Pvd) return open_pvd_layers(path, options);
   StoredImage stored = open_stored(path, format, options);
   drop_trailing_axes(stored.grid, stored.info);
   return open_stored_layers(std::move(stored), path);
@@ -219,6 +236,8 @@ std::vector<ImageVariable> list_image_variables(const fs::path& path, const Read
   require_readable_file(path);
   const Format format = format_of(path);
   if (format == Format::NetCdf) return list_netcdf(path, options.allow_outside_paths);
+  if (format == Format::Vtk) return list_vtk_image(path);
+  if (format == Format::Pvd) return list_vtk_image(read_pvd(path, options.allow_outside_paths).front().file);
   return format == Format::Npz ? list_npz(path) : std::vector<ImageVariable>();
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Implements file series as one image: checks that the files match, computes coordinates along the new axis, and reads
-// the values file by file.
+// Implements file series as one image: options, and the choice of readers. The files are combined in members.cpp.
 #include "tegl/io/series.hpp"
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "dicom/dicom.hpp"
 #include "images/images.hpp"
 #include "images/layers.hpp"
+#include "images/members.hpp"
 #include "process/separate_reading.hpp"
 
 namespace tegl {
@@ -27,15 +27,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using namespace io_detail;
-
-/// The header of one file of the series.
-struct Member {
-  fs::path path;
-  RawGrid grid;
-  ImageInfo info;
-  std::size_t type = 0;  ///< index of ValueArray
-  double at = 0;         ///< coordinate along the new axis
-};
 
 ReadImageOptions member_options(const SeriesOptions& options, const Progress& progress) {
   return {.variable = options.variable,
@@ -53,169 +44,6 @@ RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& o
   return image;
 }
 
-std::vector<std::size_t> sizes_of(const RawGrid& grid) {
-  std::vector<std::size_t> sizes;
-  for (const Axis& axis : grid.axes) sizes.push_back(axis.size());
-  return sizes;
-}
-
-const char* name_of_type(std::size_t type) {
-  ValueArray array;
-  const auto search = [&]<std::size_t... I>(std::index_sequence<I...>) {
-    ((I == type ? (void)(array = ValueArray(std::in_place_index<I>)) : void()), ...);
-  };
-  search(std::make_index_sequence<std::variant_size_v<ValueArray>>());
-  return type_name(array);
-}
-
-/// Throws unless `member` has the same grid as `first`, within the tolerance.
-void require_same_grid(const Member& member, const Member& first) {
-  if (sizes_of(member.grid) != sizes_of(first.grid))
-    fail(ErrorCode::UnsupportedData, member.path, "has {} samples; expected {}, as {}",
-         shape_text(sizes_of(member.grid)), shape_text(sizes_of(first.grid)), first.path.string());
-  constexpr double kTolerance = 1e-3;  // of a step; allows for rounding by writers
-  // axes: unit and coordinates
-  for (std::size_t a = 0; a < first.grid.axes.size(); ++a) {
-    const Axis& axis = member.grid.axes[a];
-    const Axis& expected = first.grid.axes[a];
-    const std::string label = expected.name.empty() ? fmt::format("{}", a) : "'" + expected.name + "'";
-    if (axis.unit != expected.unit)
-      fail(ErrorCode::UnsupportedData, member.path, "has the axis {} in '{}'; expected '{}', as {}", label, axis.unit,
-           expected.unit, first.path.string());
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      const double step = expected.size() < 2 ? expected.step()
-                          : i == 0            ? expected[1] - expected[0]
-                                              : expected[i] - expected[i - 1];
-      if (std::abs(axis[i] - expected[i]) <= kTolerance * std::abs(step)) continue;
-      if (i == 0)
-        fail(ErrorCode::UnsupportedData, member.path, "has the origin {} along axis {}; expected {}, as {}", axis[0],
-             label, expected[0], first.path.string());
-      fail(ErrorCode::UnsupportedData, member.path,
-           "has other steps along axis {}: sample {} lies at {}; expected {}, as {}", label, i, axis[i], expected[i],
-           first.path.string());
-    }
-  }
-  // World map: maximum displacement of the farthest corner, in steps of the finest axis.
-  double least = std::abs(first.grid.axes[0].step());
-  double extent = 1;
-  for (const Axis& axis : first.grid.axes) {
-    least = std::min(least, std::abs(axis.step()));
-    extent = std::max(extent, static_cast<double>(axis.size()) * std::abs(axis.step()));
-  }
-  const bool turned = ((member.grid.linear - first.grid.linear).array().abs() * extent > kTolerance * least).any();
-  const bool shifted = ((member.grid.offset - first.grid.offset).array().abs() > kTolerance * least).any();
-  if (turned || shifted)
-    fail(ErrorCode::UnsupportedData, member.path, "has another {} in space than {}; expected the same",
-         turned ? "orientation" : "origin", first.path.string());
-}
-
-void require_same(const Member& member, const Member& first) {
-  if (member.type != first.type)
-    fail(ErrorCode::UnsupportedData, member.path, "has values of type {}; expected {}, as {}",
-         name_of_type(member.type), name_of_type(first.type), first.path.string());
-  if (member.info.value_unit != first.info.value_unit)
-    fail(ErrorCode::UnsupportedData, member.path, "has values in '{}'; expected '{}', as {}", member.info.value_unit,
-         first.info.value_unit, first.path.string());
-  if (member.info.world_frame != first.info.world_frame)
-    fail(ErrorCode::UnsupportedData, member.path, "is in the frame '{}'; expected '{}', as {}", member.info.world_frame,
-         first.info.world_frame, first.path.string());
-  require_same_grid(member, first);
-}
-
-/// The coordinates of the files along the first removed axis in which they differ; empty if there is none. `found` gets
-/// its direction if all files agree.
-std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAxis& found) {
-  const std::vector<SingleAxis>& singles = members.front().grid.single;
-  for (std::size_t s = 0; s < singles.size(); ++s) {
-    const std::string& unit = singles[s].axis.unit;
-    std::vector<double> coordinates;
-    for (const Member& member : members) {
-      if (member.grid.single.size() != singles.size()) return {};
-      const Axis& axis = member.grid.single[s].axis;
-      // Files may each have their own reference time, with coordinate 0.
-      const std::optional<double> at = convert_time(axis[0], axis.unit, unit);
-      if (!at)
-        fail(ErrorCode::UnsupportedData, member.path,
-             "lies along '{}' in '{}'; expected '{}', as {}, a unit that converts to it, or explicit coordinates",
-             axis.name, axis.unit, unit, members.front().path.string());
-      coordinates.push_back(*at);
-    }
-    if (std::all_of(coordinates.begin(), coordinates.end(), [&](double c) { return c == coordinates[0]; })) continue;
-    found = singles[s];
-    for (const Member& member : members)
-      if (member.grid.single[s].direction != found.direction) found.direction = AxisDirection::unknown;
-    return coordinates;
-  }
-  return {};
-}
-
-/// The source of the members' coordinates.
-enum class Says { header, step, caller };
-
-void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder order) {
-  const bool descending = members[1].at < members[0].at;
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    const Member& member = members[i];
-    if (!std::isfinite(member.at))
-      fail(ErrorCode::InvalidArgument, member.path, "lies at {} along the new axis; expected a finite number",
-           member.at);
-    if (i == 0 || (descending ? member.at < members[i - 1].at : member.at > members[i - 1].at)) continue;
-    if (order == SeriesOrder::by_name && says == Says::caller)
-      fail(ErrorCode::InvalidArgument, member.path,
-           "lies at {} by the given coordinates, after {} at {} by the order of their names; expected coordinates that "
-           "strictly ascend or descend in that order",
-           member.at, members[i - 1].path.string(), members[i - 1].at);
-    fail(says == Says::header ? ErrorCode::UnsupportedData : ErrorCode::InvalidArgument, member.path,
-         "lies at {} along the new axis{}, after {} at {}; expected strictly {} coordinates{}", member.at,
-         says == Says::header ? " by its header" : "", members[i - 1].path.string(), members[i - 1].at,
-         descending ? "descending" : "ascending", says == Says::header ? ", or files in their order" : "");
-  }
-}
-
-/// Converts the members' coordinates to the requested unit, and returns its name: for instance days to hours since the
-/// same day.
-std::string converted(std::vector<Member>& members, const std::string& own, const std::string& asked) {
-  if (own == asked) return own;
-  const std::string since = split_time_unit(own).since;
-  const TimeUnit wanted = split_time_unit(asked);
-  const std::string unit = wanted.since.empty() && !since.empty() ? asked + " since " + since : asked;
-  if ((!wanted.since.empty() && wanted.since != since) || !convert_time(0, own, unit))
-    fail(ErrorCode::InvalidArgument, members.front().path,
-         "has coordinates in '{}' by its header, which do not convert to '{}'; expected the header's unit or, for "
-         "times, one of ms, s, min, h, d and weeks",
-         own, asked);
-  for (Member& member : members) member.at = *convert_time(member.at, own, unit);
-  return unit;
-}
-
-/// Makes the new axis: sets the coordinate of each member, and sorts the members by it if requested.
-SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
-  SingleAxis found;
-  const bool by_coordinate = options.order == SeriesOrder::coordinate;
-  Says says = options.coordinates.empty() ? Says::step : Says::caller;
-  if (says == Says::step) {
-    const auto own = options.step ? std::vector<double>() : own_coordinates(members, found);
-    if (own.empty() && by_coordinate)
-      fail(ErrorCode::UnsupportedData, members.front().path,
-           "has no coordinate along a further axis, or all files have the same; expected different coordinates, to "
-           "order the files by them");
-    if (!own.empty()) says = Says::header;
-    for (std::size_t i = 0; i < members.size(); ++i)
-      members[i].at = own.empty() ? static_cast<double>(i) * options.step.value_or(1.0) : own[i];
-  }
-  if (by_coordinate)
-    std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.at < b.at; });
-  require_monotone(members, says, options.order);
-  if (!options.unit.empty())
-    found.axis.unit = found.axis.unit.empty() ? options.unit : converted(members, found.axis.unit, options.unit);
-  std::vector<double> coordinates;
-  for (const Member& member : members) coordinates.push_back(member.at);
-  Axis axis = axis_of(coordinates);
-  axis.name = found.axis.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.axis.name;
-  axis.unit = found.axis.unit;
-  return {std::move(axis), found.direction};
-}
-
 void require_sound(std::span<const fs::path> files, const SeriesOptions& options) {
   if (files.empty()) throw Error(ErrorCode::InvalidArgument, "no files; expected at least one");
   if (!options.coordinates.empty() && options.step)
@@ -229,75 +57,6 @@ void require_sound(std::span<const fs::path> files, const SeriesOptions& options
                             std::numeric_limits<double>::min()));
 }
 
-/// Reads and compares the headers of all files, in their order. Given coordinates stay with their files.
-std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOptions& options) {
-  std::vector<std::size_t> order(files.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (options.order == SeriesOrder::by_name)
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return natural_less(files[a].native(), files[b].native()); });
-  std::vector<Member> members;
-  for (const std::size_t i : order) {
-    const fs::path& path = files[i];
-    tick(options.work.progress, 0.0, path);
-    RawImage header = read_member(path, Extent::header, options, {});
-    members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index(),
-                       options.coordinates.empty() ? 0.0 : options.coordinates[i]});
-    const std::size_t axes = members.back().grid.axes.size();
-    if (axes != 2 && axes != 3)
-      fail(ErrorCode::UnsupportedData, path, "has {} axes and is one of several files; expected 2 or 3 axes per file",
-           axes);
-    require_same(members.back(), members.front());
-  }
-  return members;
-}
-
-/// Appends the values of a file.
-void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::path& path) {
-  std::visit(
-      [&]<class T>(ValueVector<T>& values) {
-        const auto* const added = std::get_if<ValueVector<T>>(&from);
-        if (added == nullptr || added->size() != expected)
-          fail(ErrorCode::MalformedFile, path, "has changed since its header was read");
-        values.insert(values.end(), added->begin(), added->end());
-      },
-      to);
-}
-
-/// Opens the series with one file per layer.
-LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options) {
-  // headers, coordinates and grid
-  std::vector<Member> members = read_headers(files, options);
-  auto [last, direction] = make_axis(members, options);
-  RawLayers result;
-  const RawGrid& first = members.front().grid;
-  result.grid = with_last_axis(first, std::move(last));
-  result.info = members.front().info;
-  if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
-  std::vector<fs::path> paths;
-  for (const Member& member : members) paths.push_back(member.path);
-  // reader of layers
-  const auto sizes = sizes_of(first);
-  const std::size_t layer =
-      std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });
-  result.read = [paths, layer, type = members.front().type, own = options](std::size_t begin, std::size_t count) {
-    ValueArray values = array_of_type(name_of_type(type));
-    expect_memory(kBytesPerValue * count * layer);
-    std::visit([&](auto& all) { all.reserve(count * layer); }, values);
-    for (std::size_t i = begin; i < begin + count; ++i) {
-      Progress progress;
-      if (own.work.progress)
-        progress = [&](double share) {
-          return own.work.progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
-        };
-      append(values, read_member(paths[i], Extent::whole, own, progress).values, layer, paths[i]);
-      tick(progress, 1.0, paths[i]);
-    }
-    return values;
-  };
-  return {std::move(result), std::move(paths)};
-}
-
 RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
   if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
     fail(ErrorCode::InvalidArgument, files[0],
@@ -309,7 +68,10 @@ RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions&
 }
 
 LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions& options) {
-  if (options.raw || !are_dicom_files(files)) return open_members(files, options);
+  if (options.raw || !are_dicom_files(files))
+    return open_members(files, options, [options](const fs::path& path, Extent extent, const Progress& progress) {
+      return read_member(path, extent, options, progress);
+    });
   return {open_dicom_files(files, options), {files.begin(), files.end()}};
 }
 

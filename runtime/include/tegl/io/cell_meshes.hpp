@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Meshes of cells in VTK's XML files, with values at their points: .vtu, .vts, and series of them over time (.pvd).
+// Link with tegl::io; the rules for threads in tegl/io.hpp apply.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "tegl/complex.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl {
+
+/// A mesh of cells with one array of values at its points, at one or several times.
+struct CellMesh {
+  int dim = 3;                                    ///< of the cells, and number of coordinates: 2 or 3
+  std::vector<double> points = {};                ///< #P x dim, or #T x #P x dim if the points move
+  bool points_move = false;                       ///< whether the points differ between times
+  std::vector<CellType> types = {};               ///< one per cell
+  std::vector<Index> corners = {};                ///< the corners of all cells, one cell after the other
+  std::vector<double> times = {};                 ///< #T ascending times; empty for one file that is not in a series
+  std::vector<double> values = {};                ///< max(1, #T) x #P; NaN: missing
+  std::string variable = {};                      ///< name of the values
+  std::vector<std::string> axis_names = {};       ///< of the coordinates: x, y, z
+  std::vector<std::string> remarks = {};          ///< cells that were left out
+  std::vector<std::filesystem::path> files = {};  ///< in the order of the times
+};
+
+/// Options of read_cell_mesh.
+struct CellMeshOptions {
+  /// The array; NAME:K is component K of a vector and NAME:magnitude its length. Empty: the only one of one component.
+  std::string variable = {};
+  /// Values of cells become values of points: the mean of the cells at the point, as by vtkCellDataToPointData.
+  bool cells_to_points = false;
+  std::vector<double> times = {};    ///< one per file, ascending; empty: those in the files, else 0, 1, 2, ...
+  bool allow_outside_paths = false;  ///< a .pvd file may name files outside of its folder
+  WorkOptions work = {};             ///< progress; files are read by one thread
+};
+
+/// Whether a file is a mesh of cells: by extension (.vtu, .vts); a .pvd file by the files that it names. Errors: those
+/// of reading a .pvd file.
+[[nodiscard]] bool is_cell_mesh_file(const std::filesystem::path& path, bool allow_outside_paths = false);
+
+/// Reads a mesh, or several files as one mesh over time. A .pvd file must be the only one.
+///
+/// Cells: those of CellType in 2D or 3D, triangle strips (as triangles) and polygons of 3 or 4 corners. If there are 3D
+/// cells, others are left out; so are vertices and lines. Structured grids become quadrilaterals or hexahedra. 2D
+/// meshes must lie in a plane across an axis, whose coordinate is dropped. Cells that are hidden or duplicates by
+/// vtkGhostType are left out. Points of several pieces at one place become one.
+///
+/// Errors, naming the file: FileNotFound; MalformedFile (damaged, or numbers that contradict each other);
+/// UnsupportedFormat (a compressor other than zlib); UnsupportedData (polyhedra, curved cells and other types; no cells
+/// of 2 or 3 dimensions; values of cells without cells_to_points; files of a series that do not match);
+/// VariableNotFound; InvalidArgument (times); TooLarge; Cancelled.
+[[nodiscard]] CellMesh read_cell_mesh(std::span<const std::filesystem::path> files,
+                                      const CellMeshOptions& options = {});
+
+/// A complex of 2, 3 or 4 dimensions.
+using AnyComplex = std::variant<Complex<2>, Complex<3>, Complex<4>>;
+
+/// The mesh as a complex; with two times or more, in space and time. Errors: those of Complex and in_time.
+[[nodiscard]] AnyComplex to_complex(const CellMesh& mesh);
+
+/// An array of a file.
+struct CellMeshArray {
+  std::string name = {};      ///< its name
+  bool on_cells = false;      ///< values of cells, not of points
+  int components = 1;         ///< numbers for each point or cell
+  std::string type = {};      ///< "float", "int32", ...
+  std::uint64_t missing = 0;  ///< how many numbers are NaN
+  double min = 0;             ///< smallest number; NaN if there is none
+  double max = 0;             ///< largest number; NaN if there is none
+};
+
+/// The contents of a file.
+struct CellMeshInfo {
+  std::string type = {};                                          ///< "UnstructuredGrid" or "StructuredGrid"
+  std::uint64_t points = 0;                                       ///< number of points
+  std::vector<std::pair<std::string, std::uint64_t>> cells = {};  ///< number of cells by the name of their type
+  std::array<std::array<double, 2>, 3> bounds = {};               ///< of the points, by axis
+  std::vector<CellMeshArray> arrays = {};                         ///< of points, then of cells
+  std::vector<double> times = {};                                 ///< of a .pvd file
+};
+
+/// Describes a file; of a .pvd file, its first one. Reads all its arrays. Errors: those of read_cell_mesh.
+[[nodiscard]] CellMeshInfo describe_cell_mesh(const std::filesystem::path& path, const CellMeshOptions& options = {});
+
+}  // namespace tegl

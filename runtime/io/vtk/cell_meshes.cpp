@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements read_cell_mesh: chooses the cells to contour, and combines files over time.
+#include "tegl/io/cell_meshes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/common.hpp"
+#include "base/raw_image.hpp"
+#include "vtk/pvd.hpp"
+#include "vtk/vtk_cells.hpp"
+#include "vtk/vtk_variables.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// The mesh of one file, with three coordinates.
+struct FileMesh {
+  int dim = 3;
+  std::vector<double> points;  ///< #P x 3
+  std::vector<CellType> types;
+  std::vector<Index> corners;
+  std::vector<double> values;  ///< #P
+  std::optional<double> time;
+  std::string variable;
+  std::vector<std::string> remarks;
+};
+
+/// Adds a cell as one or several of the types of Complex. Throws for other types.
+void add_cell(std::uint8_t type, std::span<const Index> own, std::size_t number, FileMesh& mesh, const fs::path& path) {
+  const auto add = [&](CellType as, std::span<const Index> corners) {
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      if (std::find(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(i), corners[i]) !=
+          corners.begin() + static_cast<std::ptrdiff_t>(i))
+        fail(ErrorCode::UnsupportedData, path, "cell {} ({}) has the corner {} twice; expected different corners",
+             number, name_of_type(type), corners[i]);
+    mesh.types.push_back(as);
+    mesh.corners.insert(mesh.corners.end(), corners.begin(), corners.end());
+  };
+  constexpr std::uint8_t kStrip = 6, kPolygon = 7;
+  if (type == kStrip) {
+    for (std::size_t i = 0; i + 3 <= own.size(); ++i) add(CellType::triangle, own.subspan(i, 3));
+  } else if (type == kPolygon && (own.size() == 3 || own.size() == 4)) {
+    add(own.size() == 3 ? CellType::triangle : CellType::quadrilateral, own);
+  } else if (name_of(static_cast<CellType>(type)) == "unknown" || type >= 100) {
+    fail(ErrorCode::UnsupportedData, path, "cell {} is a {} (VTK's type {}) of {} corners; expected {}", number,
+         name_of_type(type), type, own.size(),
+         mesh.dim == 2 ? "triangles and quadrilaterals" : "tetrahedra, hexahedra, wedges and pyramids");
+  } else {
+    if (own.size() != corner_count(static_cast<CellType>(type)))
+      fail(ErrorCode::MalformedFile, path, "cell {} ({}) has {} corners; expected {}", number, name_of_type(type),
+           own.size(), corner_count(static_cast<CellType>(type)));
+    add(static_cast<CellType>(type), own);
+  }
+}
+
+/// Keeps the cells of the largest dimension; `kept` gets their numbers.
+void add_cells(const StoredCells& stored, FileMesh& mesh, std::vector<std::size_t>& kept, const fs::path& path) {
+  mesh.dim = 0;
+  for (std::size_t c = 0; c < stored.types.size(); ++c) {
+    const int dim = dimension_of(stored.types[c]);
+    if (dim < 0)
+      fail(ErrorCode::UnsupportedData, path, "cell {} has VTK's type {}, which is unknown", c, stored.types[c]);
+    mesh.dim = std::max(mesh.dim, dim);
+  }
+  if (mesh.dim < 2)
+    fail(ErrorCode::UnsupportedData, path, "{} cells, none of 2 or 3 dimensions; expected cells with a contour",
+         stored.types.size());
+  std::size_t others = 0, hidden = 0;
+  std::vector<Index> own;
+  for (std::size_t c = 0; c < stored.types.size(); ++c) {
+    if (dimension_of(stored.types[c]) != mesh.dim) {
+      ++others;
+      continue;
+    }
+    if (!stored.is_hidden.empty() && stored.is_hidden[c]) {
+      ++hidden;
+      continue;
+    }
+    own.clear();
+    for (std::uint64_t i = c == 0 ? 0 : stored.ends[c - 1]; i < stored.ends[c]; ++i) {
+      const auto corner = static_cast<Index>(stored.corners[static_cast<std::size_t>(i)]);
+      own.push_back(stored.same_point.empty() ? corner : stored.same_point[corner]);
+    }
+    add_cell(stored.types[c], own, c, mesh, path);
+    kept.push_back(c);
+  }
+  if (others > 0)
+    mesh.remarks.push_back(fmt::format("{} cells of fewer than {} dimensions are left out", others, mesh.dim));
+  if (hidden > 0) mesh.remarks.push_back(fmt::format("{} cells are left out: hidden by vtkGhostType", hidden));
+}
+
+/// The mean, at each point, of the values of the cells that have it.
+std::vector<double> means_at_points(const std::vector<double>& of_cells, const StoredCells& stored,
+                                    const std::vector<std::size_t>& kept) {
+  std::vector<double> sums(static_cast<std::size_t>(stored.point_count()), 0.0);
+  std::vector<std::uint32_t> counts(sums.size(), 0);
+  for (const std::size_t c : kept)
+    for (std::uint64_t i = c == 0 ? 0 : stored.ends[c - 1]; i < stored.ends[c]; ++i) {
+      const auto corner = static_cast<std::size_t>(stored.corners[static_cast<std::size_t>(i)]);
+      const std::size_t point = stored.same_point.empty() ? corner : stored.same_point[corner];
+      sums[point] += of_cells[c];
+      ++counts[point];
+    }
+  for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = counts[p] == 0 ? kMissing : sums[p] / counts[p];
+  return sums;
+}
+
+FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
+  require_readable_file(path);
+  const VtkFile file(path, progress);
+  FileMesh mesh;
+  const StoredCells stored = read_cells(file, progress);
+  const VtkVariable variable = choose_variable(file, variables_of(file), options.variable);
+  if (variable.on_cells && !options.cells_to_points)
+    fail(ErrorCode::UnsupportedData, path,
+         "array '{}' has values of cells; expected values of points, or the option to make point values of them by the "
+         "mean of the cells at each point: cells_to_points (--cells-to-points)",
+         variable.name);
+  std::vector<std::size_t> kept;
+  add_cells(stored, mesh, kept, path);
+  const ValueArray values =
+      chosen_part(read_cell_values(file, variable.parent(), variable.name, variable.components, progress), variable);
+  mesh.values = std::visit([](const auto& all) { return std::vector<double>(all.begin(), all.end()); }, values);
+  if (variable.on_cells) mesh.values = means_at_points(mesh.values, stored, kept);
+  mesh.points = stored.points;
+  mesh.time = file.time();
+  mesh.variable = options.variable.empty() ? variable.name : options.variable;
+  return mesh;
+}
+
+/// The axes of the coordinates: three, or two of a 2D mesh in a plane across the third.
+std::vector<std::size_t> axes_of(const FileMesh& mesh, const fs::path& path) {
+  if (mesh.dim == 3) return {0, 1, 2};
+  std::array<double, 3> least{}, most{};
+  least.fill(std::numeric_limits<double>::infinity());
+  most.fill(-std::numeric_limits<double>::infinity());
+  for (const Index corner : mesh.corners)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double x = mesh.points[3 * std::size_t{corner} + a];
+      least[a] = std::min(least[a], x);
+      most[a] = std::max(most[a], x);
+    }
+  for (const std::size_t a : {2U, 1U, 0U})
+    if (!(most[a] > least[a])) {
+      std::vector<std::size_t> axes = {0, 1, 2};
+      axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(a));
+      return axes;
+    }
+  fail(ErrorCode::UnsupportedData, path,
+       "cells of 2 dimensions on a surface in space (x from {} to {}, y from {} to {}, z from {} to {}); expected them "
+       "in "
+       "a plane where x, y or z is constant",
+       least[0], most[0], least[1], most[1], least[2], most[2]);
+}
+
+void append_points(const FileMesh& one, const std::vector<std::size_t>& axes, std::vector<double>& to) {
+  for (std::size_t p = 0; p < one.points.size(); p += 3)
+    for (const std::size_t a : axes) to.push_back(one.points[p + a]);
+}
+
+/// The times of files; empty for a single file without one.
+std::vector<double> times_of(const std::vector<std::optional<double>>& own, const CellMeshOptions& options,
+                             const std::vector<fs::path>& files) {
+  std::vector<double> times = options.times;
+  if (times.empty() && own.size() == 1) return {};
+  if (!times.empty() && times.size() != own.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} times for {} files; expected one for each", times.size(), own.size()));
+  const bool is_known = std::all_of(own.begin(), own.end(), [](const auto& time) { return time.has_value(); });
+  if (times.empty())
+    for (std::size_t i = 0; i < own.size(); ++i) times.push_back(is_known ? *own[i] : static_cast<double>(i));
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(times[i] > times[i - 1]))
+      fail(ErrorCode::InvalidArgument, files[i], "lies at the time {}, after {} at {}; expected ascending times",
+           times[i], files[i - 1].string(), times[i - 1]);
+  return times;
+}
+
+template <int N>
+AnyComplex complex_of(const CellMesh& mesh) {
+  std::vector<std::array<double, N>> points(mesh.points.size() / N);
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) points[i / N][i % N] = mesh.points[i];
+  if (mesh.times.size() < 2) {
+    Complex<N> complex(std::move(points), mesh.types, mesh.corners);
+    complex.set_values(mesh.values);
+    return complex;
+  }
+  const std::size_t count = mesh.values.size() / mesh.times.size();
+  std::vector<std::array<double, N>> first(
+      points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
+  const Complex<N> complex(std::move(first), mesh.types, mesh.corners);
+  const std::span<const std::array<double, N>> moving(points);
+  return in_time<N>(complex, mesh.times, mesh.values, mesh.points_move ? moving : moving.first(0));
+}
+
+}  // namespace
+
+bool is_cell_mesh_file(const fs::path& path, bool allow_outside_paths) {
+  const auto is_mesh = [](const fs::path& file) {
+    const std::string name = lower_name(file);
+    return name.ends_with(".vtu") || name.ends_with(".vts");
+  };
+  return is_pvd(path) ? is_mesh(read_pvd(path, allow_outside_paths).front().file) : is_mesh(path);
+}
+
+CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& given_options) {
+  if (given.empty()) throw Error(ErrorCode::InvalidArgument, "no files; expected at least one");
+  CellMeshOptions options = given_options;
+  CellMesh mesh;
+  mesh.files.assign(given.begin(), given.end());
+  if (given.size() == 1 && is_pvd(given[0])) {
+    std::vector<double> times;
+    mesh.files.clear();
+    for (PvdStep& step : read_pvd(given[0], options.allow_outside_paths)) {
+      mesh.files.push_back(std::move(step.file));
+      times.push_back(step.time);
+    }
+    if (options.times.empty() && times.size() > 1) options.times = std::move(times);
+  }
+  std::vector<std::optional<double>> own_times;
+  std::vector<std::size_t> axes;
+  FileMesh first;
+  for (std::size_t i = 0; i < mesh.files.size(); ++i) {
+    const fs::path& path = mesh.files[i];
+    const auto of_all = [&](double fraction) {
+      return options.work.progress((static_cast<double>(i) + fraction) / static_cast<double>(mesh.files.size()));
+    };
+    FileMesh one = read_file(path, options, options.work.progress ? Progress(of_all) : Progress());
+    own_times.push_back(one.time);
+    if (i == 0) {
+      first = std::move(one);
+      axes = axes_of(first, path);
+      append_points(first, axes, mesh.points);
+      mesh.values = first.values;
+      continue;
+    }
+    if (one.types != first.types || one.corners != first.corners || one.points.size() != first.points.size())
+      fail(ErrorCode::UnsupportedData, path,
+           "has other cells than {}: {} cells and {} points, {} and {} there; expected "
+           "the same cells at all times",
+           mesh.files[0].string(), one.types.size(), one.points.size() / 3, first.types.size(),
+           first.points.size() / 3);
+    if (axes_of(one, path) != axes)
+      fail(ErrorCode::UnsupportedData, path, "lies in another plane than {}; expected the same",
+           mesh.files[0].string());
+    if (one.points != first.points && !mesh.points_move) {
+      mesh.points_move = true;
+      const std::vector<double> still = mesh.points;
+      for (std::size_t k = 1; k < i; ++k) mesh.points.insert(mesh.points.end(), still.begin(), still.end());
+    }
+    if (mesh.points_move) append_points(one, axes, mesh.points);
+    mesh.values.insert(mesh.values.end(), one.values.begin(), one.values.end());
+  }
+  mesh.dim = first.dim;
+  mesh.types = std::move(first.types);
+  mesh.corners = std::move(first.corners);
+  mesh.variable = std::move(first.variable);
+  mesh.remarks = std::move(first.remarks);
+  for (const std::size_t a : axes) mesh.axis_names.emplace_back(1, "xyz"[a]);
+  mesh.times = times_of(own_times, options, mesh.files);
+  return mesh;
+}
+
+AnyComplex to_complex(const CellMesh& mesh) { return mesh.dim == 2 ? complex_of<2>(mesh) : complex_of<3>(mesh); }
+
+CellMeshInfo describe_cell_mesh(const fs::path& given, const CellMeshOptions& options) {
+  CellMeshInfo info;
+  fs::path path = given;
+  if (is_pvd(given)) {
+    const auto steps = read_pvd(given, options.allow_outside_paths);
+    for (const PvdStep& step : steps) info.times.push_back(step.time);
+    path = steps.front().file;
+  }
+  require_readable_file(path);
+  const VtkFile file(path, options.work.progress);
+  const StoredCells stored = read_cells(file, options.work.progress);
+  info.type = file.type();
+  info.points = stored.point_count();
+  std::map<std::uint8_t, std::uint64_t> counts;
+  for (const std::uint8_t type : stored.types) ++counts[type];
+  for (const auto& [type, count] : counts) info.cells.emplace_back(name_of_type(type), count);
+  for (std::size_t a = 0; a < 3; ++a) {
+    info.bounds[a] = {kMissing, kMissing};
+    for (std::size_t i = a; i < stored.points.size(); i += 3)
+      info.bounds[a] = {std::fmin(info.bounds[a][0], stored.points[i]), std::fmax(info.bounds[a][1], stored.points[i])};
+  }
+  for (const VtkVariable& variable : variables_of(file)) {
+    CellMeshArray array{variable.name,
+                        variable.on_cells,
+                        static_cast<int>(std::min<std::uint64_t>(variable.components, std::numeric_limits<int>::max())),
+                        std::string(variable.type),
+                        0,
+                        kMissing,
+                        kMissing};
+    const auto add = [&](const auto& values) {
+      for (const auto value : values) {
+        const auto number = static_cast<double>(value);
+        array.missing += std::isnan(number) ? 1 : 0;
+        array.min = std::fmin(array.min, number);
+        array.max = std::fmax(array.max, number);
+      }
+    };
+    std::visit(add,
+               read_cell_values(file, variable.parent(), variable.name, variable.components, options.work.progress));
+    info.arrays.push_back(std::move(array));
+  }
+  return info;
+}
+
+}  // namespace tegl

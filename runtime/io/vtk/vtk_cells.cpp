@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Reads points and cells of VTK's UnstructuredGrid and StructuredGrid.
+#include "vtk/vtk_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "base/common.hpp"
+#include "base/raw_image.hpp"
+#include "vtk/structured.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+struct TypeOfVtk {
+  std::uint8_t number;
+  int dimension;
+  std::string_view name;
+};
+
+/// The types of vtkCellType.h.
+constexpr std::array<TypeOfVtk, 41> kTypesOfVtk = {{{0, 0, "empty cell"},
+                                                    {1, 0, "vertex"},
+                                                    {2, 0, "poly-vertex"},
+                                                    {3, 1, "line"},
+                                                    {4, 1, "poly-line"},
+                                                    {5, 2, "triangle"},
+                                                    {6, 2, "triangle strip"},
+                                                    {7, 2, "polygon"},
+                                                    {8, 2, "pixel"},
+                                                    {9, 2, "quadrilateral"},
+                                                    {10, 3, "tetrahedron"},
+                                                    {11, 3, "voxel"},
+                                                    {12, 3, "hexahedron"},
+                                                    {13, 3, "wedge"},
+                                                    {14, 3, "pyramid"},
+                                                    {15, 3, "pentagonal prism"},
+                                                    {16, 3, "hexagonal prism"},
+                                                    {21, 1, "quadratic edge"},
+                                                    {22, 2, "quadratic triangle"},
+                                                    {23, 2, "quadratic quadrilateral"},
+                                                    {24, 3, "quadratic tetrahedron"},
+                                                    {25, 3, "quadratic hexahedron"},
+                                                    {26, 3, "quadratic wedge"},
+                                                    {27, 3, "quadratic pyramid"},
+                                                    {28, 2, "biquadratic quadrilateral"},
+                                                    {29, 3, "triquadratic hexahedron"},
+                                                    {30, 2, "quadratic linear quadrilateral"},
+                                                    {31, 3, "quadratic linear wedge"},
+                                                    {32, 3, "biquadratic quadratic wedge"},
+                                                    {33, 3, "biquadratic quadratic hexahedron"},
+                                                    {34, 2, "biquadratic triangle"},
+                                                    {35, 1, "cubic line"},
+                                                    {36, 2, "quadratic polygon"},
+                                                    {41, 3, "convex point set"},
+                                                    {42, 3, "polyhedron"},
+                                                    {68, 1, "Lagrange curve"},
+                                                    {69, 2, "Lagrange triangle"},
+                                                    {70, 2, "Lagrange quadrilateral"},
+                                                    {71, 3, "Lagrange tetrahedron"},
+                                                    {72, 3, "Lagrange hexahedron"},
+                                                    {73, 3, "Lagrange wedge"}}};
+
+const TypeOfVtk* find_type(std::uint8_t number) {
+  const auto found = std::find_if(kTypesOfVtk.begin(), kTypesOfVtk.end(),
+                                  [&](const TypeOfVtk& type) { return type.number == number; });
+  return found == kTypesOfVtk.end() ? nullptr : found;
+}
+
+void require_count(std::uint64_t count, const char* what, const VtkFile& file) {
+  if (count >= std::numeric_limits<Index>::max())
+    fail(ErrorCode::TooLarge, file.path(), "{} {}; expected fewer than {}", count, what,
+         std::numeric_limits<Index>::max());
+}
+
+void append_points(const std::vector<double>& own, StoredCells& all, const VtkFile& file) {
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (!std::isfinite(own[i]))
+      fail(ErrorCode::MalformedFile, file.path(), "point {} has the coordinate {}; expected finite ones",
+           all.point_count() + i / 3, own[i]);
+  all.points.insert(all.points.end(), own.begin(), own.end());
+  require_count(all.point_count(), "points", file);
+}
+
+VtkArray points_array(const VtkFile& file, const XmlElement& piece) {
+  const VtkArray array = file.array(piece, "Points", "");
+  if (array.components != 3)
+    fail(ErrorCode::MalformedFile, file.path(), "points of {} components; expected 3", array.components);
+  return array;
+}
+
+/// Appends a piece of an UnstructuredGrid.
+void append_piece(const VtkFile& file, const XmlElement& piece, StoredCells& all) {
+  const std::uint64_t points = file.whole_number(piece, "NumberOfPoints");
+  const std::uint64_t cells = file.whole_number(piece, "NumberOfCells");
+  require_count(points, "points", file);
+  require_count(cells, "cells", file);
+  const auto first_point = static_cast<std::int64_t>(all.point_count());
+  const std::uint64_t first_corner = all.corners.size(), first_cell = all.types.size();
+  if (points > 0) append_points(file.read_doubles(points_array(file, piece), 3 * points), all, file);
+  if (cells == 0) return;
+  const auto types = file.read_integers(file.array(piece, "Cells", "types"), cells);
+  const auto ends = file.read_integers(file.array(piece, "Cells", "offsets"), cells);
+  const auto corners = file.read_integers(file.array(piece, "Cells", "connectivity"), std::nullopt);
+  const auto count = static_cast<std::int64_t>(corners.size());
+  for (std::size_t c = 0; c < types.size(); ++c) {
+    const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
+    if (ends[c] < begin || ends[c] > count)
+      fail(ErrorCode::MalformedFile, file.path(), "cell {} has the corners {} to {} of {}; expected ascending offsets",
+           first_cell + c, begin, ends[c], count);
+    if (types[c] < 0 || types[c] > 255)
+      fail(ErrorCode::MalformedFile, file.path(), "cell {} has the type {}; expected 0 to 255", first_cell + c,
+           types[c]);
+    for (std::int64_t i = begin; i < ends[c]; ++i)
+      if (const std::int64_t corner = corners[static_cast<std::size_t>(i)];
+          corner < 0 || corner >= static_cast<std::int64_t>(points))
+        fail(ErrorCode::MalformedFile, file.path(), "cell {} has the corner {}; expected 0 to {}, the last point",
+             first_cell + c, corner, static_cast<std::int64_t>(points) - 1);
+    all.types.push_back(static_cast<std::uint8_t>(types[c]));
+    all.ends.push_back(first_corner + static_cast<std::uint64_t>(ends[c]));
+  }
+  for (std::int64_t i = 0; i < ends.back(); ++i)
+    all.corners.push_back(first_point + corners[static_cast<std::size_t>(i)]);
+  require_count(all.types.size(), "cells", file);
+}
+
+/// Finds the points of later pieces that lie where a point of an earlier piece lies.
+void find_same_points(StoredCells& all, const std::vector<std::uint64_t>& piece_ends) {
+  std::vector<Index> order(all.same_point);
+  const auto at = [&](Index p) { return std::span(all.points).subspan(3 * std::size_t{p}, 3); };
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const auto left = at(a), right = at(b);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (left[i] != right[i]) return left[i] < right[i];
+    return a < b;
+  });
+  const auto piece_of = [&](Index p) { return std::upper_bound(piece_ends.begin(), piece_ends.end(), p); };
+  Index first = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || !std::ranges::equal(at(order[i]), at(first))) first = order[i];
+    if (piece_of(order[i]) != piece_of(first)) all.same_point[order[i]] = first;
+  }
+}
+
+/// The cells of a structured grid: hexahedra, or quadrilaterals if one axis has one point.
+void add_structured_cells(const VtkFile& file, StoredCells& all) {
+  const auto sizes = whole_extent(file).sizes(false);
+  std::vector<std::size_t> axes;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (sizes[a] > 1) axes.push_back(a);
+  if (axes.size() < 2)
+    fail(ErrorCode::UnsupportedData, file.path(), "a structured grid of {} points; expected at least 2 along two axes",
+         shape_text(sizes));
+  const std::array<std::int64_t, 3> steps = {1, static_cast<std::int64_t>(sizes[0]),
+                                             static_cast<std::int64_t>(sizes[0] * sizes[1])};
+  const std::int64_t u = steps[axes[0]], v = steps[axes[1]], w = axes.size() == 3 ? steps[axes[2]] : 0;
+  const auto cells = whole_extent(file).sizes(true);
+  require_count(cells[0] * cells[1] * cells[2], "cells", file);
+  for (std::uint64_t z = 0; z < cells[2]; ++z)
+    for (std::uint64_t y = 0; y < cells[1]; ++y)
+      for (std::uint64_t x = 0; x < cells[0]; ++x) {
+        const std::int64_t p = static_cast<std::int64_t>((z * sizes[1] + y) * sizes[0] + x);
+        for (const std::int64_t layer : {p, p + w}) {
+          for (const std::int64_t corner : {layer, layer + u, layer + u + v, layer + v}) all.corners.push_back(corner);
+          if (w == 0) break;
+        }
+        all.types.push_back(static_cast<std::uint8_t>(w == 0 ? CellType::quadrilateral : CellType::hexahedron));
+        all.ends.push_back(all.corners.size());
+      }
+}
+
+/// Marks the cells that are hidden or belong to another piece.
+void find_hidden(const VtkFile& file, StoredCells& all) {
+  for (const VtkArray& array : file.arrays(file.pieces().front()->child("CellData"))) {
+    if (array.name != "vtkGhostType" || array.components != 1) continue;
+    constexpr int kHidden = 1 | 32;  // vtkDataSetAttributes: DUPLICATECELL, HIDDENCELL
+    std::visit(
+        [&](const auto& values) {
+          for (const auto value : values) all.is_hidden.push_back((static_cast<int>(value) & kHidden) != 0);
+        },
+        read_cell_values(file, "CellData", "vtkGhostType", 1, {}));
+  }
+}
+
+}  // namespace
+
+int dimension_of(std::uint8_t type) {
+  const TypeOfVtk* const found = find_type(type);
+  return found == nullptr ? -1 : found->dimension;
+}
+
+std::string_view name_of_type(std::uint8_t type) {
+  const TypeOfVtk* const found = find_type(type);
+  return found == nullptr ? "unknown type" : found->name;
+}
+
+StoredCells read_cells(const VtkFile& file, const Progress& progress) {
+  StoredCells all;
+  if (file.type() == "StructuredGrid") {
+    points_array(file, *file.pieces().front());
+    const std::string name = file.array(*file.pieces().front(), "Points", "").name;
+    const ValueArray points = read_structured(file, "Points", name, 3, false, progress);
+    append_points(std::visit([](const auto& v) { return std::vector<double>(v.begin(), v.end()); }, points), all, file);
+    add_structured_cells(file, all);
+  } else if (file.type() == "UnstructuredGrid") {
+    std::vector<std::uint64_t> piece_ends;
+    for (const XmlElement* const piece : file.pieces()) {
+      append_piece(file, *piece, all);
+      piece_ends.push_back(all.point_count());
+      tick(progress, 0.5, file.path());
+    }
+    all.same_point.resize(static_cast<std::size_t>(all.point_count()));
+    std::iota(all.same_point.begin(), all.same_point.end(), Index{0});
+    if (piece_ends.size() > 1) find_same_points(all, piece_ends);
+  } else {
+    fail(ErrorCode::UnsupportedData, file.path(), "holds {}; expected a mesh: UnstructuredGrid or StructuredGrid",
+         shown(file.type()));
+  }
+  find_hidden(file, all);
+  return all;
+}
+
+ValueArray read_cell_values(const VtkFile& file, std::string_view parent, const std::string& name,
+                            std::uint64_t components, const Progress& progress) {
+  const bool of_cells = parent == "CellData";
+  if (file.type() == "StructuredGrid") return read_structured(file, parent, name, components, of_cells, progress);
+  ValueArray all;
+  bool is_first = true;
+  for (const XmlElement* const piece : file.pieces()) {
+    const std::uint64_t count = file.whole_number(*piece, of_cells ? "NumberOfCells" : "NumberOfPoints");
+    if (count == 0) continue;
+    require_count(count, of_cells ? "cells" : "points", file);
+    const VtkArray array = file.array(*piece, parent, name);
+    if (array.components != components)
+      fail(ErrorCode::MalformedFile, file.path(), "array {} has {} components; expected {}", shown(array.name),
+           array.components, components);
+    ValueArray own = file.read(array, count * components, progress);
+    if (std::exchange(is_first, false)) {
+      all = std::move(own);
+      continue;
+    }
+    if (own.index() != all.index())
+      fail(ErrorCode::MalformedFile, file.path(), "array '{}' has the type {} in one piece and {} in another", name,
+           type_name(all), type_name(own));
+    std::visit(
+        [&]<class T>(ValueVector<T>& to) {
+          const auto& from = std::get<ValueVector<T>>(own);
+          to.insert(to.end(), from.begin(), from.end());
+        },
+        all);
+  }
+  return all;
+}
+
+}  // namespace tegl::io_detail
