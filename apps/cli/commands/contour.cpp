@@ -20,6 +20,7 @@
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
 #include "input/extraction.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/io/active_tiles.hpp"
@@ -41,6 +42,7 @@ constexpr const char* kContourExamples =
     "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
     "  tegl contour head.nii.gz --iso 60 --triangulation halving-chord -o head.ply\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
+    "  tegl contour cavity.pvd --var p --iso 0 -o p.vtkhdf               (a mesh over time)\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
 
@@ -74,11 +76,12 @@ void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
 class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
-      : Command(program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D, 3D or 4D",
-                "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM (a "
-                "folder); several files form "
-                "one image with one more axis",
-                Files::image) {
+      : Command(
+            program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D, 3D or 4D",
+            "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, .pvd) "
+            "or "
+            "DICOM (a folder); or a mesh (.vtu, .vts, .pvd); several files form one image or mesh with one more axis",
+            Files::image) {
     options_.add_to(app(), true);
     options_.add_tiling_to(app());
     app().add_flag("--unroll", unroll_,
@@ -126,13 +129,16 @@ class ContourCommand final : public Command {
     const std::vector<std::string> outputs =
         one_file_ ? std::vector(isovalues.size(), output_) : isovalue_outputs(output_, isovalues);
     if (!one_file_) require_different_outputs(outputs);
+    if (are_cell_meshes(files(), images())) refuse_options_of_images(file(), options_, images(), given_for_images());
     if (facets_) return run_facets(streams, isovalues, outputs, options);
     require_files(outputs);
 
     // extract and write
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results = planned_results(isovalues, outputs, point);
-    if (is_streamed())
+    if (are_cell_meshes(files(), images()))
+      contour_mesh(options, bar, results);
+    else if (is_streamed())
       stream(options, bar, results);
     else
       contour(options, bar, results);
@@ -244,6 +250,43 @@ class ContourCommand final : public Command {
       }
     } else {
       by_index(input.image, options, bar, results, finished);
+    }
+    if (one_file_) results = {merged(results, bar, written)};
+    written.keep();
+  }
+
+  /// Options of this command that need an image.
+  [[nodiscard]] std::vector<std::string> given_for_images() const {
+    std::vector<std::string> given;
+    for (const char* const name : {"--facets", "--stream", "--index", "--pick"})
+      if (app().count(name) > 0) given.emplace_back(name);
+    return given;
+  }
+
+  void contour_mesh(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
+    Stopwatch watch;
+    const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), results.size() > 1);
+    for (const std::string& text : input.mesh.remarks) remark(text);
+    require_output_holds(results.front().output, input.space_dim() - 1);
+    for (ContourResult& result : results) {
+      result.input = inputs();
+      result.variable = input.mesh.variable;
+      result.image_dim = input.space_dim();
+      require_mesh_contour(input.mesh, *result.isovalue, options_.allows_empty());
+    }
+    results.front().seconds.read = watch.lap();
+    WrittenFiles written;
+    for (ContourResult& result : results) {
+      options.work.progress = bar.stage("contour");
+      result.mesh = extract_mesh_and_use<Mesh>(
+          input, *result.isovalue, options, options_.single_precision(), [&](auto extraction) {
+            result.stats = extraction.stats;
+            return with_additions(std::move(extraction.contour), options.work.threads, bar);
+          });
+      result.seconds.add(*result.stats);
+      if (one_file_) continue;
+      check_and_write(result, bar, written);
+      leave_the_sizes(result);
     }
     if (one_file_) results = {merged(results, bar, written)};
     written.keep();

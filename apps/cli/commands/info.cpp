@@ -10,7 +10,9 @@
 #include "base/progress.hpp"
 #include "base/statistics.hpp"
 #include "commands/index.hpp"
+#include "commands/mesh_info.hpp"
 #include "input/commands.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/periodic.hpp"
@@ -321,10 +323,11 @@ Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& vari
 class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
-      : Command(program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
-                "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM (a "
-                "folder); or an index (.tindex)",
-                Files::image) {
+      : Command(
+            program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
+            "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, .pvd) "
+            "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd) or an index (.tindex)",
+            Files::image) {
     add_image_options();
     app().footer(kInfoExamples);
   }
@@ -339,6 +342,7 @@ class InfoCommand final : public Command {
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }
+    if (are_cell_meshes(files(), images())) return describe_mesh(streams);
     // several variables: a list to choose from
     if (images().variable().empty() && !images().has_fixed()) {
       const std::vector<ImageVariable> variables = images().variables(files());
@@ -366,6 +370,16 @@ class InfoCommand final : public Command {
     bar.clear();
     streams.out.write(json() ? dump(to_json(description, inputs()))
                              : to_text(streams.out, description, inputs().text()));
+    return ExitCode::Ok;
+  }
+
+ private:
+  ExitCode describe_mesh(const Streams& streams) {
+    if (const auto given = images().given(); !given.empty() || files().size() > 1)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a mesh; expected it without {}", file(),
+                                                          given.empty() ? "other files" : given.front()));
+    const CellMeshInfo info = describe_cell_mesh(file(), images().cell_mesh_options(1, {}));
+    streams.out.write(json() ? dump(mesh_json(info, inputs())) : mesh_text(streams.out, info, file()));
     return ExitCode::Ok;
   }
 };

@@ -13,6 +13,7 @@
 
 #include "base/empty_result.hpp"
 #include "base/numbers.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -154,6 +155,34 @@ ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& n
   add_quiet();
 }
 
+ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
+  ContourInput result;
+  Stopwatch watch;
+  result.isovalue = options_.isovalue();
+  refuse_options_of_images(file(), options_, images());
+  ExtractOptions options = options_.library_options();
+  const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), false);
+  for (const std::string& text : input.mesh.remarks) remark(text);
+  result.file = inputs();
+  result.variable = input.mesh.variable;
+  require_mesh_contour(input.mesh, *result.isovalue, allows_empty());
+  result.single_precision = options_.single_precision();
+  if (input.mesh.times.size() > 1) {
+    result.last_axis.emplace();
+    result.last_axis->name = "t";
+  }
+  result.seconds.read = watch.lap();
+  options.work.progress = bar.stage("contour");
+  result.contour = extract_mesh_and_use<AnyContour>(input, *result.isovalue, options, options_.single_precision(),
+                                                    [&](auto extraction) {
+                                                      result.stats = extraction.stats;
+                                                      options_.add_shape_normals(extraction.contour);
+                                                      return AnyContour(widened(std::move(extraction.contour)));
+                                                    });
+  result.seconds.add(*result.stats);
+  return result;
+}
+
 ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) {
   require_inputs();
   ContourInput result;
@@ -170,6 +199,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     result.seconds.read = watch.lap();
     return result;
   }
+  if (are_cell_meshes(files(), images())) return read_mesh_contour(bar);
   // an image to be contoured
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();

@@ -99,6 +99,9 @@ class ContourInputCommand : public Command {
   [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false);
 
  private:
+  /// Reads FILE as a mesh of cells, and contours it.
+  [[nodiscard]] ContourInput read_mesh_contour(ProgressBar& bar);
+
   ExtractionOptions options_;
 };
 

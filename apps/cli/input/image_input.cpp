@@ -85,8 +85,10 @@ std::string with_option_names(std::string message) {
 
 void ImageOptions::add_to(CLI::App& app) {
   options_ = {
-      app.add_option("--var", variable_,
-                     "netCDF: the variable to read; .npz: the array; needed if the file has several")
+      app.add_option(
+             "--var", variable_,
+             "netCDF: the variable to read; .npz, VTK: the array; needed if the file has several. VTK: NAME:K is "
+             "component K of a vector, NAME:magnitude its length")
           ->type_name("NAME"),
       app.add_option("--series", series_,
                      "DICOM: the series to read, by its UID, its description or its number in the list of 'tegl info'; "
@@ -113,6 +115,9 @@ void ImageOptions::add_to(CLI::App& app) {
           ->type_name("DIM=INDEX"),
   };
   options_[1]->excludes(options_[0]);
+  options_.push_back(
+      app.add_flag("--cells-to-points", cells_to_points_,
+                   "meshes: values of cells become values of points, by the mean of the cells at a point"));
   add_raw_to(app);
 }
 
@@ -245,6 +250,21 @@ OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const
   SeriesOptions options = series_options(files);
   options.separate_process = separate_process();
   return remembered(with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); }));
+}
+
+CellMeshOptions ImageOptions::cell_mesh_options(std::size_t files, const Progress& progress) const {
+  CellMeshOptions options;
+  options.variable = variable_;
+  options.cells_to_points = cells_to_points_;
+  options.allow_outside_paths = allow_outside_paths_;
+  options.work.progress = progress;
+  if (!times_.empty() && !time_step_.empty())
+    throw Error(ErrorCode::InvalidArgument, "--times and --time-step; expected one of the two");
+  if (!times_.empty()) options.times = parse_numbers("--times", times_);
+  if (!time_step_.empty())
+    for (std::size_t i = 0; i < files; ++i)
+      options.times.push_back(static_cast<double>(i) * parse_finite("--time-step", time_step_));
+  return options;
 }
 
 std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "output/result.hpp"
+#include "tegl/io/cell_meshes.hpp"
 #include "tegl/io/series.hpp"
 
 namespace tegl::cli {
@@ -36,6 +37,9 @@ class ImageOptions {
 
   /// Opens the files as one image to be read layer by layer.
   [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
+
+  /// The options to read FILE as a mesh: --var, --times, --time-step, --cells-to-points.
+  [[nodiscard]] CellMeshOptions cell_mesh_options(std::size_t files, const Progress& progress) const;
 
   /// The variables of the files, as from list_image_variables; empty for raw files.
   [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;
@@ -73,6 +77,7 @@ class ImageOptions {
   bool raw_big_endian_ = false;
   bool allow_outside_paths_ = false;
   bool in_process_ = false;
+  bool cells_to_points_ = false;
   std::vector<std::string> fixed_;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Reads meshes of cells, and refuses options that are for images.
+#include "input/mesh_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+namespace tegl::cli {
+
+bool are_cell_meshes(const std::vector<std::string>& files, const ImageOptions& images) {
+  return !images.raw() && is_cell_mesh_file(files.front(), images.allow_outside_paths());
+}
+
+void refuse_options_of_images(const std::string& file, const ExtractionOptions& extraction, const ImageOptions& images,
+                              const std::vector<std::string>& others) {
+  std::vector<std::string> refused = others;
+  for (const std::string& option : images.given())
+    if (option != "--var" && option != "--times" && option != "--time-step" && option != "--cells-to-points")
+      refused.push_back(option);
+  if (!refused.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} with {}, which is a mesh; expected it with an image", refused.front(), file));
+  const ExtractOptions options = extraction.library_options(true);
+  const auto fail = [&](const char* option, const char* expected) {
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
+  };
+  if (options.close) fail("--close", "a contour that is open at the border of the mesh");
+  if (options.normals != Normals::none) fail("--normals gradient or sobel", "--normals geometric or flat");
+  if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
+    fail("--ambiguity from the data", "low or high");
+  if (extraction.polygon_triangulation()) fail("--triangulation of polygons", "compact or barycentric");
+}
+
+MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
+                          bool several) {
+  const CellMeshOptions options = images.cell_mesh_options(files.size(), progress);
+  MeshInput input{read_cell_mesh(std::vector<std::filesystem::path>(files.begin(), files.end()), options),
+                  [&] { return AnyComplex(Complex<2>({}, std::span<const CellType>(), {})); }()};
+  input.complex = to_complex(input.mesh);
+  if (several) std::visit([](auto& complex) { complex.find_edges(); }, input.complex);
+  return input;
+}
+
+void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty) {
+  if (allow_empty) return;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  ValueRange range{kNone, kNone};
+  for (const double value : mesh.values) {
+    range.min = std::fmin(range.min, value);
+    range.max = std::fmax(range.max, value);
+  }
+  if (!(range.min < isovalue && isovalue <= range.max)) throw outside_error(isovalue, range, "");
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// FILE as a mesh of cells (.vtu, .vts, and .pvd of them), for the commands that contour images.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "input/extraction.hpp"
+#include "input/image_input.hpp"
+#include "tegl/io/cell_meshes.hpp"
+
+namespace tegl::cli {
+
+/// Whether the files are meshes of cells, by the first one.
+bool are_cell_meshes(const std::vector<std::string>& files, const ImageOptions& images);
+
+/// Throws InvalidArgument, with the option's name, for options that are for images only: of the extraction, of reading,
+/// and `others` that were given.
+void refuse_options_of_images(const std::string& file, const ExtractionOptions& extraction, const ImageOptions& images,
+                              const std::vector<std::string>& others = {});
+
+/// A mesh to be contoured.
+struct MeshInput {
+  CellMesh mesh;
+  AnyComplex complex;
+  [[nodiscard]] int space_dim() const { return static_cast<int>(complex.index()) + 2; }
+};
+
+/// Reads the files and makes a complex of them, with its edges if there are `several` isovalues.
+MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
+                          bool several);
+
+/// Throws EmptyResult unless the values have both sides of the isovalue, or `allow_empty`. Returns a remark for a value
+/// on one side: empty.
+void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty);
+
+/// Extracts the contour and passes it to `use`, as Extraction<N, float> or Extraction<N, double>.
+template <class Result, class Use>
+Result extract_mesh_and_use(const MeshInput& input, double isovalue, const ExtractOptions& options,
+                            bool single_precision, const Use& use) {
+  const auto named = [&]<int N, class Real>(Extraction<N, Real> extraction) -> Result {
+    auto& names = extraction.contour.axis_names;
+    for (std::size_t a = 0; a < N; ++a)
+      names[a] = a < input.mesh.axis_names.size() ? input.mesh.axis_names[a] : std::string("t");
+    return use(std::move(extraction));
+  };
+  const auto of_complex = [&](const auto& complex) -> Result {
+    if (single_precision) return named(extract_with_stats<float>(complex, isovalue, options));
+    return named(extract_with_stats<double>(complex, isovalue, options));
+  };
+  return std::visit(of_complex, input.complex);
+}
+
+}  // namespace tegl::cli
