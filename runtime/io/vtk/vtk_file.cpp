@@ -180,7 +180,8 @@ void VtkFile::inflate_blocks(EncodedBytes& bytes, const VtkArray& array, std::op
       fail(ErrorCode::MalformedFile, path_, "{} has compressed blocks of {} bytes or more; the file has {}",
            named(array), std::max(sum, stored.back()), bytes.at_most());
   }
-  if (blocks > 0 && size > (sum + 1) * kMostInflation)
+  checked_bytes(std::array{blocks, size}, 1, path_);
+  if (blocks > 1 && size > (sum + 1) * kMostInflation)
     fail(ErrorCode::MalformedFile, path_, "{} has blocks of {} bytes, compressed to {}; expected at most {}",
          named(array), size, sum, (sum + 1) * kMostInflation);
   const std::uint64_t total = blocks == 0 ? 0 : (blocks - 1) * size + (last > 0 ? last : size);
