@@ -6,6 +6,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "io/images/series_request.hpp"
+#include "tegl/io/cell_meshes.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/meshes.hpp"
 #include "tegl/io/series.hpp"
@@ -88,6 +89,12 @@ py::list directions_of(const ImageInfo& info) {
   return result;
 }
 
+/// Remarks become warnings of the caller.
+void warn_of(const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks)
+    if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 2) != 0) throw py::error_already_set();
+}
+
 py::dict read_any(const std::vector<std::string>& paths, const std::string& variable,
                   const std::optional<std::vector<double>>& times, std::optional<double> time_step,
                   const std::optional<std::string>& time_unit, const std::optional<std::string>& sort,
@@ -110,8 +117,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
     options.separate_process = separate_process;
     return read_with_hint(files, options);
   });
-  for (const std::string& remark : read.info.remarks)
-    if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 2) != 0) throw py::error_already_set();
+  warn_of(read.info.remarks);
   py::dict result;
   std::visit([&](auto& images) { std::visit([&](auto& image) { put_image(result, image); }, images); }, read.image);
   put(result, "format", read.info.format);
@@ -121,6 +127,47 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   put(result, "value_name", read.info.value_name);
   put(result, "world_frame", read.info.world_frame);
   result["axis_directions"] = directions_of(read.info);
+  return result;
+}
+
+/// An array of the library's memory.
+template <class T>
+py::array owned_array(std::vector<T>&& values, const std::vector<py::ssize_t>& shape) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  const T* const data = kept->data();
+  const py::capsule owner(kept.release(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
+  return py::array(py::dtype::of<T>(), shape, data, owner);
+}
+
+py::dict read_mesh_of_cells(const std::vector<std::string>& paths, const std::string& variable, bool cells_to_points,
+                            const std::vector<double>& times, bool allow_outside_paths, const py::object& progress) {
+  Call call(progress);
+  const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
+  CellMeshOptions options;
+  options.variable = variable;
+  options.cells_to_points = cells_to_points;
+  options.times = times;
+  options.allow_outside_paths = allow_outside_paths;
+  options.work.progress = call.progress();
+  CellMesh mesh = call.run([&] { return read_cell_mesh(files, options); });
+  warn_of(mesh.remarks);
+  const auto dim = static_cast<py::ssize_t>(mesh.dim);
+  const auto steps = static_cast<py::ssize_t>(mesh.times.size());
+  const auto layers = static_cast<py::ssize_t>(std::max<std::size_t>(1, mesh.times.size()));
+  const auto count = static_cast<py::ssize_t>(mesh.values.size()) / layers;
+  std::vector<std::uint8_t> types;
+  for (const CellType type : mesh.types) types.push_back(static_cast<std::uint8_t>(type));
+  const auto cells = static_cast<py::ssize_t>(types.size()), corners = static_cast<py::ssize_t>(mesh.corners.size());
+  py::dict result;
+  result["points"] = mesh.points_move ? owned_array(std::move(mesh.points), {steps, count, dim})
+                                      : owned_array(std::move(mesh.points), {count, dim});
+  result["types"] = owned_array(std::move(types), {cells});
+  result["corners"] = owned_array(std::move(mesh.corners), {corners});
+  result["values"] =
+      steps > 0 ? owned_array(std::move(mesh.values), {steps, count}) : owned_array(std::move(mesh.values), {count});
+  result["times"] = owned_array(std::move(mesh.times), {steps});
+  put(result, "variable", mesh.variable);
+  put(result, "axis_names", mesh.axis_names);
   return result;
 }
 
@@ -175,6 +222,8 @@ void bind_files(py::module_& m) {
   m.def("read_series", &read_any, py::arg("paths"), py::arg("variable"), py::arg("times"), py::arg("time_step"),
         py::arg("time_unit"), py::arg("sort"), py::arg("fixed"), py::arg("allow_outside_paths"),
         py::arg("separate_process"), py::arg("progress"), doc::read_series);
+  m.def("read_cell_mesh", &read_mesh_of_cells, py::arg("paths"), py::arg("variable"), py::arg("cells_to_points"),
+        py::arg("times"), py::arg("allow_outside_paths"), py::arg("progress"), doc::read_cell_mesh);
   m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
   m.def("load_contour", &load_any, py::arg("path"), py::arg("allow_outside_paths"), py::arg("separate_process"),
         py::arg("progress"), doc::read_mesh);

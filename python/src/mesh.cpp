@@ -37,12 +37,18 @@ struct MeshArguments {
   std::span<const double> values, times;
   double level;
   bool is_double;
+  std::vector<std::string> axis_names;
 };
 
 template <int N>
 AnyContour contour_of(const Complex<N>& complex, const MeshArguments& mesh, const ExtractOptions& options) {
-  if (mesh.is_double) return {extract<double>(complex, mesh.level, options), mesh.level};
-  return {extract<float>(complex, mesh.level, options), mesh.level};
+  const auto named = [&](auto contour) -> AnyContour {
+    for (std::size_t a = 0; a < std::min(mesh.axis_names.size(), contour.axis_names.size()); ++a)
+      contour.axis_names[a] = mesh.axis_names[a];
+    return {std::move(contour), mesh.level};
+  };
+  if (mesh.is_double) return named(extract<double>(complex, mesh.level, options));
+  return named(extract<float>(complex, mesh.level, options));
 }
 
 /// `points`: #P x N, or, if they move, #T x #P x N.
@@ -68,11 +74,13 @@ AnyContour contour_of_mesh(std::vector<std::array<double, N>> points, const Mesh
 }
 
 std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& types, const Numbers& corners,
-                                         const Doubles& values, const Doubles& times, double level, bool is_double,
+                                         const Doubles& values, const Doubles& times,
+                                         const std::vector<std::string>& axis_names, double level, bool is_double,
                                          const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
-  MeshArguments mesh{{}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), level, is_double};
+  MeshArguments mesh{
+      {}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), level, is_double, axis_names};
   for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.types.push_back(static_cast<CellType>(type));
   const py::ssize_t dim = points.ndim() == 0 ? 0 : points.shape(points.ndim() - 1);
   if (dim < 2 || dim > 4)
@@ -105,7 +113,8 @@ py::array delaunay_cells(const Doubles& points) {
 void bind_mesh(py::module_& m) {
   m.def("delaunay", &delaunay_cells, py::arg("points"), doc::delaunay);
   m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
-        py::arg("times"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract);
+        py::arg("times"), py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"),
+        py::arg("progress"), doc::extract);
 }
 
 }  // namespace tegl::python

@@ -19,7 +19,7 @@ from ._contour import (Components, Contour, check, components, elements, interse
                        track)
 from ._image import Image, contour, read, slice
 from ._index import Index, PickReport
-from ._mesh import contour_mesh, contour_points
+from ._mesh import Mesh, contour_mesh, contour_points, read_mesh
 from ._results import Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MeshReport, SimplifyStats
 from ._skimage import marching_cubes
 from ._tegl import Cancelled, __version__
@@ -27,8 +27,8 @@ from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, Tra
 
 __all__ = [
     "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",
-    "Intersections", "Measures", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph",
+    "Intersections", "Measures", "Mesh", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph",
     "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour", "contour_mesh",
-    "contour_points", "elements", "intersections", "load", "marching_cubes", "measure", "read", "simplify", "slice",
+    "contour_points", "elements", "intersections", "load", "marching_cubes", "measure", "read", "read_mesh", "simplify", "slice",
     "track",
 ]

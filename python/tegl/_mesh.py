@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import dataclasses
+import os
 import typing
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -23,21 +25,29 @@ _BY_CORNERS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hex
                (3, 5): "pyramid", (4, 5): "simplex4"}
 
 
-def contour_mesh(points, cells, values, level: float, *, times=None, triangulation: _kinds.Triangulation = "compact",
+def contour_mesh(points, cells=None, values=None, level: float | None = None, *, times=None, triangulation: _kinds.Triangulation = "compact",
                  ambiguity: typing.Literal["low", "high"] = "low", direction: _kinds.Direction = "descent",
                  epsilon: float = 0.0, dtype=np.float32, allow_empty: bool = False, threads: int = 0,
                  progress: Progress | None = None) -> Contour:
     """The contour {value = level} of a mesh with a value at each point. It separates values >= level from the others.
 
+    ::
+
+        tegl.contour_mesh(points, {"tetra": tetrahedra}, values, 0.5)
+        tegl.contour_mesh(meshio.read("part.vtu"), values="temperature", level=300.0)
+
     points
-        #P x N coordinates, N = 2, 3 or 4; with `times`, points that move: #T x #P x N.
+        #P x N coordinates, N = 2, 3 or 4; with `times`, points that move: #T x #P x N. Or a mesh: an object with `points`,
+        `cells` and `point_data`, as from meshio and `tegl.read_mesh`. Its points may have a third coordinate that a 2D
+        mesh does not need; cells of fewer dimensions than others are left out.
     cells
         An array #C x k of numbers of points: triangles or quadrilaterals (N = 2); tetrahedra, pyramids, wedges or
         hexahedra (N = 3; k = 4, 5, 6, 8); 4-simplices. Or several types, in the form of meshio: a mapping or a list of
         pairs of a name and such an array, with the names "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron",
         "pixel" and "voxel". The order of corners is VTK's. Cells must meet in whole faces.
     values
-        #P values; with `times` #T x #P. NaN and masked values are missing: cells there have no contour.
+        #P values; with `times` #T x #P. NaN and masked values are missing: cells there have no contour. For a mesh also
+        the name of an array in its `point_data`; none for the only one.
     times
         Ascending times of the rows of `values`, for N = 2 and 3: the result is the contour in space and time, with the time
         as the last coordinate; `slice`, `track` and `measure` cut it at any time.
@@ -50,6 +60,18 @@ def contour_mesh(points, cells, values, level: float, *, times=None, triangulati
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
                                          epsilon=epsilon, threads=threads)
     options["kernel"] = []
+    if hasattr(points, "points") and hasattr(points, "cells"):
+        if cells is not None:
+            raise TypeError("cells are given twice, by a mesh and alone; expected one of the two")
+        if isinstance(points, Mesh) and times is None and len(points.times):
+            times = points.times
+        axis_names = list(points.axis_names) if isinstance(points, Mesh) else []
+        points, cells, values = _parts_of(points, values)
+    else:
+        axis_names = []
+    for name, given in (("cells", cells), ("values", values), ("level", level)):
+        if given is None:
+            raise TypeError(f"{name} are missing; expected points, cells, values and level, or a mesh and level")
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     _require_unmasked("points", points)
     _require_unmasked("times", times)
@@ -60,10 +82,114 @@ def contour_mesh(points, cells, values, level: float, *, times=None, triangulati
     values = _with_missing(values)
     _check_shapes(points, values, len(numbers))
     types, corners = _cells_of(cells, points.shape[-1])
-    core = _tegl.extract_mesh(points, types, corners, values, numbers, level, _is_double(dtype), options, progress)
+    if axis_names and len(numbers):
+        axis_names.append("t")
+    core = _tegl.extract_mesh(points, types, corners, values, numbers, axis_names, level, _is_double(dtype), options, progress)
     if not allow_empty and not len(core.simplices):
         _require_level(values, level)
     return Contour._of(core, False)
+
+
+@dataclasses.dataclass(frozen=True)
+class Mesh:
+    """A mesh with values at its points, the result of `tegl.read_mesh`."""
+
+    points: np.ndarray  #: #P x N coordinates; #T x #P x N if the points move
+    cells: list[tuple[str, np.ndarray]]  #: names of types, as in meshio, and #C x k numbers of points
+    values: np.ndarray  #: #P values; over time #T x #P
+    times: np.ndarray  #: #T times; empty for a mesh at one time
+    variable: str  #: the name of the values
+    axis_names: tuple[str, ...]  #: of the coordinates
+
+    def __repr__(self) -> str:
+        """One line: sizes, times, values."""
+        cells = ", ".join(f"{len(array)} {name}" for name, array in self.cells) or "no cells"
+        times = f", {len(self.times)} times from {self.times[0]:g} to {self.times[-1]:g}" if len(self.times) else ""
+        return f"<tegl.Mesh {self.variable!r}: {self.points.shape[-2]} points, {cells}{times}>"
+
+    @property
+    def point_data(self) -> dict[str, np.ndarray]:
+        """The values by their name."""
+        return {self.variable: self.values}
+
+    def contour(self, level: float, **options: typing.Any) -> Contour:
+        """The contour of this mesh: see `tegl.contour_mesh`."""
+        return contour_mesh(self, level=level, **options)
+
+
+@_arguments.documents("read_cell_mesh")
+def read_mesh(path: str | os.PathLike | Sequence[str | os.PathLike], variable: str = "", *, times=None,
+              cells_to_points: bool = False, allow_outside_paths: bool = False, progress: Progress | None = None) -> Mesh:
+    """Reads a mesh with values at its points: VTK's XML files (.vtu, .vts, .pvd), or a table of scattered points (.csv).
+
+    ::
+
+        tegl.read_mesh("cavity.pvd", "p").contour(0.0)            # a mesh over time: tetrahedra in space and time
+        tegl.read_mesh(["step0.vtu", "step1.vtu"], times=[0, 0.5])
+        tegl.read_mesh("stations.csv", "temperature").contour(20.0)
+
+    path
+        A file; or a list of files with the same cells, one for each time.
+    variable
+        The array of values, or the column; "NAME:0" is a component of vectors, "NAME:magnitude" their length. Needed if
+        there are several.
+    times
+        For a list: the time of each file. Default: the times in the files, else 0, 1, 2 ...
+    cells_to_points
+        Makes point values of values of cells, by the mean of the cells at a point. Without it they are an error.
+    allow_outside_paths
+        Whether a .pvd file may name files outside of its folder.
+    """
+    several = isinstance(path, (list, tuple))
+    paths = [os.fspath(one) for one in (path if isinstance(path, (list, tuple)) else [path])]
+    if times is not None and not several:
+        raise ValueError("times with one file; expected a list of files")
+    found = _tegl.read_cell_mesh(paths, _arguments.as_text("variable", variable),
+                                 _arguments.as_bool("cells_to_points", cells_to_points),
+                                 [] if times is None else _arguments.as_numbers("times", times),
+                                 _arguments.as_bool("allow_outside_paths", allow_outside_paths), progress)
+    return Mesh(points=found["points"], cells=_blocks_of(found["types"], found["corners"]), values=found["values"],
+                times=found["times"] if len(found["times"]) > 1 else found["times"][:0], variable=found["variable"],
+                axis_names=tuple(found["axis_names"]))
+
+
+def _blocks_of(types: np.ndarray, corners: np.ndarray) -> list[tuple[str, np.ndarray]]:
+    """Runs of cells of one type."""
+    names = {number: (name, count) for name, (number, count) in reversed(_TYPES.items())}
+    starts = np.flatnonzero(np.diff(types.astype(np.int16), prepend=-1))
+    blocks, at = [], 0
+    for first, end in zip(starts, [*starts[1:], len(types)]):
+        name, count = names[int(types[first])]
+        size = int(end - first) * count
+        blocks.append((name, corners[at:at + size].reshape(-1, count)))
+        at += size
+    return blocks
+
+
+def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
+    """Points, cells and values of a mesh like those of meshio. A 2D mesh loses a constant coordinate."""
+    pairs = _pairs_of(mesh.cells) or []
+    known = [(name, block) for name, block in pairs if name in _TYPES]
+    flat = [pair for pair in known if _TYPES[pair[0]][0] in (5, 8, 9)]
+    others = [name for name, _ in pairs if name not in _TYPES and not name.startswith(("vertex", "line"))]
+    if others:
+        raise ValueError(f"cells are of type {others[0]!r}; expected one of {', '.join(map(repr, _TYPES))}")
+    is_flat = len(flat) == len(known)
+    cells = flat if is_flat else [pair for pair in known if _TYPES[pair[0]][0] not in (5, 8, 9)]
+    points = _arguments.real("points", mesh.points)
+    if is_flat and points.ndim and points.shape[-1] == 3:
+        constant = [a for a in (2, 1, 0) if points.size and np.ptp(points[..., a]) == 0]
+        if not constant:
+            raise ValueError("a mesh of 2D cells on a surface in space; expected it in a plane where a coordinate is constant")
+        points = np.delete(points, constant[0], axis=-1)
+    if values is None or isinstance(values, str):
+        data = mesh.point_data
+        if values is None and len(data) != 1:
+            raise ValueError(f"the mesh has the arrays {', '.join(map(repr, data)) or 'none'}; expected the name of one as values")
+        if values is not None and values not in data:
+            raise ValueError(f"values are {values!r}; expected one of {', '.join(map(repr, data)) or 'none'}")
+        values = data[next(iter(data)) if values is None else values]
+    return points, cells, values
 
 
 @_arguments.documents("delaunay")
@@ -126,11 +252,8 @@ def _check_shapes(points: np.ndarray, values: np.ndarray, times: int) -> None:
 
 def _cells_of(cells, ndim: int) -> tuple[np.ndarray, np.ndarray]:
     """Types and corners of all cells."""
-    if isinstance(cells, Mapping):
-        pairs = list(cells.items())
-    elif isinstance(cells, (list, tuple)) and cells and all(_is_pair(block) for block in cells):
-        pairs = [(block[0], block[1]) if isinstance(block, tuple) else (block.type, block.data) for block in cells]
-    else:
+    pairs = _pairs_of(cells)
+    if pairs is None:
         array = _numbers_of("cells", cells)
         name = _BY_CORNERS.get((ndim, array.shape[1]))
         if name is None:
@@ -150,6 +273,15 @@ def _cells_of(cells, ndim: int) -> tuple[np.ndarray, np.ndarray]:
     if not types:
         return np.empty(0, np.uint8), np.empty(0, np.uint32)
     return np.concatenate(types), np.concatenate(corners)
+
+
+def _pairs_of(cells) -> list[tuple[str, typing.Any]] | None:
+    """Pairs of a name and an array; None for other forms."""
+    if isinstance(cells, Mapping):
+        return list(cells.items())
+    if isinstance(cells, (list, tuple)) and cells and all(_is_pair(block) for block in cells):
+        return [(block[0], block[1]) if isinstance(block, tuple) else (block.type, block.data) for block in cells]
+    return None
 
 
 def _is_pair(block) -> bool:

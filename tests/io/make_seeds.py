@@ -220,10 +220,46 @@ def write_meshes(folder):
     (folder / "assimp.mtl").unlink()
 
 
+def write_vtk_xml(folder):
+    """Images, meshes of cells, in all encodings."""
+    def write(writer, data, name, set_mode, compress=False, big=False, wide=False):
+        writer.SetFileName(str(folder / name))
+        writer.SetInputData(data)
+        getattr(writer, set_mode)()
+        writer.SetCompressorTypeToZLib() if compress else writer.SetCompressorTypeToNone()
+        writer.SetByteOrderToBigEndian() if big else writer.SetByteOrderToLittleEndian()
+        writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+        writer.SetEncodeAppendedData("base64" in name)
+        writer.Write()
+
+    image = vtk_image((3, 4, 5), "i2")
+    image.GetPointData().GetScalars().SetName("f")
+    write(vtk.vtkXMLImageDataWriter(), image, "vtk_ascii.vti", "SetDataModeToAscii")
+    write(vtk.vtkXMLImageDataWriter(), image, "vtk_binary_zlib.vti", "SetDataModeToBinary", True, True, True)
+    write(vtk.vtkXMLImageDataWriter(), image, "vtk_raw.vti", "SetDataModeToAppended")
+    grid = vtk.vtkRectilinearGrid()
+    grid.SetDimensions(5, 4, 3)
+    for axis, size in zip("XYZ", (5, 4, 3)):
+        getattr(grid, f"Set{axis}Coordinates")(numpy_support.numpy_to_vtk(numpy.arange(size) ** 1.5, deep=True))
+    grid.GetPointData().AddArray(image.GetPointData().GetScalars())
+    write(vtk.vtkXMLRectilinearGridWriter(), grid, "vtk_base64_zlib.vtr", "SetDataModeToAppended", True)
+    to_structured = vtk.vtkImageToStructuredGrid()
+    to_structured.SetInputData(image)
+    to_structured.Update()
+    write(vtk.vtkXMLStructuredGridWriter(), to_structured.GetOutput(), "vtk_base64.vts", "SetDataModeToAppended", False, True)
+    to_tetrahedra = vtk.vtkDataSetTriangleFilter()
+    to_tetrahedra.SetInputData(image)
+    to_tetrahedra.Update()
+    mesh = to_tetrahedra.GetOutput()
+    write(vtk.vtkXMLUnstructuredGridWriter(), mesh, "vtk_ascii.vtu", "SetDataModeToAscii")
+    write(vtk.vtkXMLUnstructuredGridWriter(), mesh, "vtk_raw_zlib.vtu", "SetDataModeToAppended", True, False, True)
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    for write in (write_nifti, write_nrrd_and_metaimage, write_netcdf, write_hdf5, write_vtkhdf, write_dicom, write_meshes):
+    for write in (write_nifti, write_nrrd_and_metaimage, write_netcdf, write_hdf5, write_vtkhdf, write_dicom, write_meshes,
+                  write_vtk_xml):
         write(folder)
 
 

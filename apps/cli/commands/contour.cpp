@@ -79,8 +79,8 @@ class ContourCommand final : public Command {
       : Command(
             program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D, 3D or 4D",
             "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, .pvd) "
-            "or "
-            "DICOM (a folder); or a mesh (.vtu, .vts, .pvd); several files form one image or mesh with one more axis",
+            "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd) or a table of points (.csv); several files form one "
+            "image or mesh with one more axis",
             Files::image) {
     options_.add_to(app(), true);
     options_.add_tiling_to(app());

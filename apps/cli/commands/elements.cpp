@@ -14,6 +14,7 @@
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/io/elements.hpp"
@@ -97,6 +98,9 @@ class ElementsCommand final : public ContourInputCommand {
     if (per_ == "cell" && find_mesh_file_format(file()) != nullptr)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--per cell with {}, a saved contour, which has no cells; expected an image", file()));
+    if (per_ == "cell" && are_cell_meshes(files(), images()))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--per cell with {}, which is a mesh; expected an image", file()));
     // read and make elements
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, per_ == "cell");

@@ -378,7 +378,9 @@ class InfoCommand final : public Command {
     if (const auto given = images().given(); !given.empty() || files().size() > 1)
       throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a mesh; expected it without {}", file(),
                                                           given.empty() ? "other files" : given.front()));
-    const CellMeshInfo info = describe_cell_mesh(file(), images().cell_mesh_options(1, {}));
+    ProgressBar bar(streams.err, wants_progress());
+    const CellMeshInfo info = describe_cell_mesh(file(), images().cell_mesh_options(1, bar.stage("read")));
+    bar.clear();
     streams.out.write(json() ? dump(mesh_json(info, inputs())) : mesh_text(streams.out, info, file()));
     return ExitCode::Ok;
   }

@@ -134,13 +134,13 @@ class MeasureCommand final : public ContourInputCommand {
     return found;
   }
 
-  /// Throws unless the cut is within the last axis of the image, or within a saved contour, from `first` to `last`,
-  /// which may come from a file with floats.
+  /// Throws unless the cut is within the last axis of the image or mesh, or within a saved contour, from `first` to
+  /// `last`, which may come from a file with floats.
   static void require_within(const Cut& cut, double first, double last, const ContourInput& input) {
     const CutAxis axis = input.last_axis.value_or(CutAxis{input.axis_name(input.space_dim() - 1), first, last});
     const auto single = [](double x) { return static_cast<float>(x); };
     if (single(cut.value) >= single(axis.first) && single(cut.value) <= single(axis.last)) return;
-    throw outside_error(cut, axis, input.last_axis ? "image" : "saved contour");
+    throw outside_error(cut, axis, input.last_axis ? input.last_axis_of : "saved contour");
   }
 
   static std::vector<std::string> units(const ContourInput& input, int count) {

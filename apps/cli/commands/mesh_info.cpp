@@ -21,9 +21,9 @@ Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : 
 std::string mesh_text(const Console& console, const CellMeshInfo& info, const std::string& file) {
   std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: {}", file, info.type)));
   text += report_line("points", grouped(info.points));
-  for (std::size_t a = 0; a < 3; ++a)
-    text += report_line(std::string(1, "xyz"[a]),
-                        fmt::format("{} .. {}", number(info.bounds[a][0]), number(info.bounds[a][1])));
+  for (std::size_t a = 0; a < info.bounds.size(); ++a)
+    text +=
+        report_line(info.axis_names[a], fmt::format("{} .. {}", number(info.bounds[a][0]), number(info.bounds[a][1])));
   bool is_first = true;
   for (const auto& [name, count] : info.cells) {
     text += report_line(is_first ? "cells" : "", fmt::format("{} {}", grouped(count), name));
@@ -48,7 +48,7 @@ std::string mesh_text(const Console& console, const CellMeshInfo& info, const st
 Json mesh_json(const CellMeshInfo& info, const InputFiles& input) {
   Json json;
   json["input"] = input.json();
-  json["format"] = "VTK";
+  json["format"] = info.type == "table of points" ? "CSV" : "VTK";
   json["type"] = info.type;
   json["points"] = info.points;
   Json& bounds = json["bounds"] = Json::array();

@@ -23,6 +23,7 @@
 #include "input/cuts.hpp"
 #include "input/extraction.hpp"
 #include "input/layer_image.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 
@@ -191,7 +192,7 @@ class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
       : Command(program, "slice", "Cut a 4D contour at a time, or by any other hyperplane",
-                "a 4D or 3D image, or a 4D or 3D contour saved by 'tegl contour' (.vtkhdf ...)", Files::image) {
+                "a 4D or 3D image or mesh, or a 4D or 3D contour saved by 'tegl contour' (.vtkhdf ...)", Files::image) {
     app()
         .add_option("--at", at_,
                     "axis and coordinate of the cut, in the unit of the axis: t=7.3, x=2; t=1,2.5 for several; "
@@ -242,8 +243,9 @@ class SliceCommand final : public Command {
     attributes_.require_inputs();
     // cut
     ProgressBar bar(streams.err, wants_progress());
-    std::vector<ContourResult> results =
-        find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
+    std::vector<ContourResult> results = find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar)
+                                         : are_cell_meshes(files(), images())     ? cut_cell_mesh(std::move(cuts), bar)
+                                                                                  : cut_image(std::move(cuts), bar);
     if (attributes_.wanted() && results[0].image_dim == 4)
       add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), results, bar);
     else if (attributes_.wanted())
@@ -449,19 +451,56 @@ class SliceCommand final : public Command {
   void cut_whole(const AnyImage& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.work.progress = bar.stage("contour");
+    cut_extraction(
+        [&](const auto& use) {
+          extract_and_use<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), use);
+        },
+        results, bar);
+  }
+
+  struct Nothing {};
+
+  /// Cuts the contour that `extract` passes to its argument.
+  template <class Extract>
+  void cut_extraction(const Extract& extract, std::vector<ContourResult>& results, ProgressBar& bar) const {
     ExtractStats stats;
-    struct Nothing {};
-    (void)extract_and_use<Nothing>(image, *results[0].isovalue, options, options_.single_precision(),
-                                   [&]<int N, class Real>(Extraction<N, Real>&& extraction) {
-                                     stats = extraction.stats;
-                                     if constexpr (N == 3 || N == 4)
-                                       cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
-                                     return Nothing();
-                                   });
+    extract([&]<int N, class Real>(Extraction<N, Real>&& extraction) {
+      stats = extraction.stats;
+      if constexpr (N == 3 || N == 4) cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
+      return Nothing();
+    });
     for (ContourResult& result : results) {
       result.stats = stats;
       result.seconds.add(stats);
     }
+  }
+
+  /// Cuts the contour of a mesh of cells.
+  std::vector<ContourResult> cut_cell_mesh(std::vector<Cut> cuts, ProgressBar& bar) {
+    const double isovalue = options_.isovalue();
+    refuse_options_of_images(file(), options_, images());
+    Stopwatch watch;
+    const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), false);
+    for (const std::string& text : input.mesh.remarks) remark(text);
+    require_cuts(input.space_dim(), "mesh");
+    const CutSpace space = space_of(input);
+    factors_ = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(std::move(cuts), space);
+    require_mesh_contour(input.mesh, isovalue, options_.allows_empty());
+    const double read_seconds = watch.lap();
+    for (ContourResult& result : results) {
+      result.variable = input.mesh.variable;
+      result.isovalue = isovalue;
+      result.seconds.read = read_seconds;
+    }
+    ExtractOptions options = options_.library_options();
+    options.work.progress = bar.stage("contour");
+    cut_extraction(
+        [&](const auto& use) {
+          extract_mesh_and_use<Nothing>(input, isovalue, options, options_.single_precision(), use);
+        },
+        results, bar);
+    return results;
   }
 
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {

@@ -130,11 +130,8 @@ class TrackCommand final : public ContourInputCommand {
     require_options(options);
     // read
     ProgressBar bar(streams.err, wants_progress());
-    ContourInput input = read_contour(bar, true);
-    if (input.image) {
-      std::tie(options.first, options.last) = ends_of_last_axis(input.image->image);
-      input.image.reset();
-    }
+    ContourInput input = read_contour(bar);
+    std::tie(options.first, options.last) = input.ends;
     for (const std::string& output : outputs_)
       if (!is_track_file(output)) require_output_holds(output, input.space_dim() - 1);
     // track

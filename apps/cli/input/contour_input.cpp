@@ -147,8 +147,10 @@ std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const 
 
 ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
                                          Files files)
-    : Command(program, name, description,
-              "an image (with --iso), or a contour saved by 'tegl contour' (.vtkhdf, .ply, .glb ...)", files) {
+    : Command(
+          program, name, description,
+          "an image or a mesh of cells (with --iso), or a contour saved by 'tegl contour' (.vtkhdf, .ply, .glb ...)",
+          files) {
   options_.add_to(app(), false);
   options_.add_tiling_to(app());
   add_image_options();
@@ -167,10 +169,9 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
   result.variable = input.mesh.variable;
   require_mesh_contour(input.mesh, *result.isovalue, allows_empty());
   result.single_precision = options_.single_precision();
-  if (input.mesh.times.size() > 1) {
-    result.last_axis.emplace();
-    result.last_axis->name = "t";
-  }
+  result.last_axis = space_of(input).axes.back();
+  result.last_axis_of = "mesh";
+  if (input.is_moving()) result.ends = {input.mesh.times.front(), input.mesh.times.back()};
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");
   result.contour = extract_mesh_and_use<AnyContour>(input, *result.isovalue, options, options_.single_precision(),
@@ -209,6 +210,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue, allows_empty());
   result.last_axis = space_of(input.image).axes.back();
+  result.ends = ends_of_last_axis(input.image);
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");

@@ -39,9 +39,13 @@ struct ContourInput {
   std::optional<double> isovalue;        ///< none if a saved contour does not have it
   std::optional<ExtractStats> stats;     ///< none for a saved contour
   std::optional<ReadImageResult> image;  ///< if requested, and FILE is an image
-  std::optional<CutAxis> last_axis;      ///< extent in an image; none for a saved contour
-  bool single_precision = false;         ///< all coordinates have single precision, from --precision float
-  StageSeconds seconds;                  ///< time of reading and contouring
+  std::optional<CutAxis> last_axis;      ///< extent in an image or a mesh of cells; none for a saved contour
+  const char* last_axis_of = "image";    ///< the object that this extent belongs to
+  /// World coordinates of the first and the last sample on the last axis, or the first and the last time of a mesh;
+  /// none for a saved contour, and if an image's world map mixes the axis with others.
+  std::pair<std::optional<double>, std::optional<double>> ends;
+  bool single_precision = false;  ///< all coordinates have single precision, from --precision float
+  StageSeconds seconds;           ///< time of reading and contouring
 
   /// 2, 3 or 4: the dimension of the space that the contour lies in.
   [[nodiscard]] int space_dim() const { return static_cast<int>(contour.index()) + 2; }

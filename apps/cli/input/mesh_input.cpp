@@ -26,6 +26,7 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
   if (!refused.empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected it with an image", refused.front(), file));
+  extraction.refuse_tiling(fmt::format("{}, which is not an image", file));
   const ExtractOptions options = extraction.library_options(true);
   const auto fail = [&](const char* option, const char* expected) {
     throw Error(ErrorCode::InvalidArgument,
@@ -46,6 +47,22 @@ MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOpti
   input.complex = to_complex(input.mesh);
   if (several) std::visit([](auto& complex) { complex.find_edges(); }, input.complex);
   return input;
+}
+
+CutSpace space_of(const MeshInput& input) {
+  CutSpace space{{}, "mesh", {}};
+  const CellMesh& mesh = input.mesh;
+  const auto dim = static_cast<std::size_t>(mesh.dim);
+  for (std::size_t a = 0; a < dim; ++a) {
+    CutAxis& axis = space.axes.emplace_back();
+    axis = {mesh.axis_names[a], std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (std::size_t i = a; i < mesh.points.size(); i += dim) {
+      axis.first = std::min(axis.first, mesh.points[i]);
+      axis.last = std::max(axis.last, mesh.points[i]);
+    }
+  }
+  if (input.is_moving()) space.axes.push_back({"t", mesh.times.front(), mesh.times.back()});
+  return space;
 }
 
 void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty) {

@@ -25,7 +25,11 @@ struct MeshInput {
   CellMesh mesh;
   AnyComplex complex;
   [[nodiscard]] int space_dim() const { return static_cast<int>(complex.index()) + 2; }
+  [[nodiscard]] bool is_moving() const { return mesh.times.size() > 1; }
 };
+
+/// The space of the mesh; the extents of its axes are those of its points, then that of its times.
+CutSpace space_of(const MeshInput& input);
 
 /// Reads the files and makes a complex of them, with its edges if there are `several` isovalues.
 MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,

@@ -146,12 +146,8 @@ class ViewCommand final : public ContourInputCommand {
   Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
     ContourInput input = read_contour(bar, true);
     if (input.size().simplices == 0) throw EmptyResult("the contour is empty; expected one with simplices");
-    std::optional<double> first, last;
     ImageInfo info;
-    if (input.image) {
-      std::tie(first, last) = ends_of_last_axis(input.image->image);
-      info = std::move(input.image->info);
-    }
+    if (input.image) info = std::move(input.image->info);
     input.image.reset();
     const Json down = axes_down(input, info);
     const std::string world = world_of(input, info);
@@ -162,7 +158,8 @@ class ViewCommand final : public ContourInputCommand {
     const auto add = [&]<int N>(Contour<N, double>& contour) {
       here.thinned = thin(contour, view_limit(), {threads(), bar.stage("components")});
       std::optional<PageTracks> tracks;
-      if constexpr (N == 4) tracks = page_tracks(contour, first, last, tracks_, {threads(), bar.stage("track")});
+      if constexpr (N == 4)
+        tracks = page_tracks(contour, input.ends.first, input.ends.second, tracks_, {threads(), bar.stage("track")});
       if (!contour.periods.empty()) contour = unroll(contour).contour;  // simplices keep their numbers
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };

@@ -13,6 +13,8 @@
 
 #include "base/common.hpp"
 #include "base/raw_image.hpp"
+#include "tegl/delaunay.hpp"
+#include "vtk/point_table.hpp"
 #include "vtk/pvd.hpp"
 #include "vtk/vtk_cells.hpp"
 #include "vtk/vtk_variables.hpp"
@@ -27,10 +29,11 @@ using namespace io_detail;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// The mesh of one file, with three coordinates.
+/// The mesh of one file.
 struct FileMesh {
-  int dim = 3;
-  std::vector<double> points;  ///< #P x 3
+  int dim = 3;                          ///< of the cells
+  std::vector<std::string> axis_names;  ///< as many as dimensions
+  std::vector<double> points;           ///< #P x dim
   std::vector<CellType> types;
   std::vector<Index> corners;
   std::vector<double> values;  ///< #P
@@ -53,12 +56,15 @@ void add_cell(std::uint8_t type, std::span<const Index> own, std::size_t number,
   constexpr std::uint8_t kStrip = 6, kPolygon = 7;
   if (type == kStrip) {
     for (std::size_t i = 0; i + 3 <= own.size(); ++i) add(CellType::triangle, own.subspan(i, 3));
-  } else if (type == kPolygon && (own.size() == 3 || own.size() == 4)) {
-    add(own.size() == 3 ? CellType::triangle : CellType::quadrilateral, own);
+  } else if (type == kPolygon && own.size() == 4) {
+    add(CellType::quadrilateral, own);
+  } else if (type == kPolygon && own.size() >= 3) {
+    for (std::size_t i = 1; i + 1 < own.size(); ++i) add(CellType::triangle, std::array{own[0], own[i], own[i + 1]});
   } else if (name_of(static_cast<CellType>(type)) == "unknown" || type >= 100) {
     fail(ErrorCode::UnsupportedData, path, "cell {} is a {} (VTK's type {}) of {} corners; expected {}", number,
          name_of_type(type), type, own.size(),
-         mesh.dim == 2 ? "triangles and quadrilaterals" : "tetrahedra, hexahedra, wedges and pyramids");
+         mesh.dim == 2 ? "triangles, quadrilaterals, pixels, strips of triangles and convex polygons"
+                       : "tetrahedra, hexahedra, voxels, wedges and pyramids");
   } else {
     if (own.size() != corner_count(static_cast<CellType>(type)))
       fail(ErrorCode::MalformedFile, path, "cell {} ({}) has {} corners; expected {}", number, name_of_type(type),
@@ -119,7 +125,64 @@ std::vector<double> means_at_points(const std::vector<double>& of_cells, const S
   return sums;
 }
 
-FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
+/// Keeps the coordinates of a 3D mesh, or two of a 2D mesh in a plane across the third, of #P x 3 `points`.
+void set_points(const std::vector<double>& points, FileMesh& mesh, const fs::path& path) {
+  std::vector<std::size_t> axes = {0, 1, 2};
+  if (mesh.dim == 2) {
+    std::array<double, 3> least{}, most{};
+    least.fill(std::numeric_limits<double>::infinity());
+    most.fill(-std::numeric_limits<double>::infinity());
+    for (const Index corner : mesh.corners)
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double x = points[3 * std::size_t{corner} + a];
+        least[a] = std::min(least[a], x);
+        most[a] = std::max(most[a], x);
+      }
+    std::size_t across = 3;
+    while (across > 0 && most[across - 1] > least[across - 1]) --across;
+    if (across == 0)
+      fail(ErrorCode::UnsupportedData, path,
+           "cells of 2 dimensions on a surface in space (x from {} to {}, y from {} to {}, z from {} to {}); expected "
+           "them in a plane where x, y or z is constant",
+           least[0], most[0], least[1], most[1], least[2], most[2]);
+    axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(across - 1));
+  }
+  for (const std::size_t a : axes) mesh.axis_names.emplace_back(1, "xyz"[a]);
+  for (std::size_t p = 0; p < points.size(); p += 3)
+    for (const std::size_t a : axes) mesh.points.push_back(points[p + a]);
+}
+
+template <int N>
+std::vector<Index> delaunay_of(const std::vector<double>& coordinates) {
+  std::vector<std::array<double, N>> points(coordinates.size() / N);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) points[i / N][i % N] = coordinates[i];
+  return delaunay_corners<N>(points);
+}
+
+/// The Delaunay triangulation of a table's points.
+FileMesh read_table(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
+  PointTable table = read_point_table(path, options.variable, progress);
+  const std::size_t column = choose_column(table, options.variable, path);
+  FileMesh mesh;
+  mesh.dim = static_cast<int>(table.dim());
+  mesh.values = table.column(column);
+  mesh.variable = table.value_names[column];
+  mesh.axis_names = std::move(table.axis_names);
+  mesh.points = std::move(table.coordinates);
+  try {
+    mesh.corners = mesh.dim == 2   ? delaunay_of<2>(mesh.points)
+                   : mesh.dim == 3 ? delaunay_of<3>(mesh.points)
+                                   : delaunay_of<4>(mesh.points);
+  } catch (const Error& error) {
+    fail(error.code(), path, "{}", error.what());
+  }
+  constexpr std::array kTypes = {CellType::triangle, CellType::tetrahedron, CellType::simplex4};
+  mesh.types.assign(mesh.corners.size() / static_cast<std::size_t>(mesh.dim + 1),
+                    kTypes[static_cast<std::size_t>(mesh.dim - 2)]);
+  return mesh;
+}
+
+FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
   require_readable_file(path);
   const VtkFile file(path, progress);
   FileMesh mesh;
@@ -136,40 +199,14 @@ FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const P
       chosen_part(read_cell_values(file, variable.parent(), variable.name, variable.components, progress), variable);
   mesh.values = std::visit([](const auto& all) { return std::vector<double>(all.begin(), all.end()); }, values);
   if (variable.on_cells) mesh.values = means_at_points(mesh.values, stored, kept);
-  mesh.points = stored.points;
+  set_points(stored.points, mesh, path);
   mesh.time = file.time();
   mesh.variable = options.variable.empty() ? variable.name : options.variable;
   return mesh;
 }
 
-/// The axes of the coordinates: three, or two of a 2D mesh in a plane across the third.
-std::vector<std::size_t> axes_of(const FileMesh& mesh, const fs::path& path) {
-  if (mesh.dim == 3) return {0, 1, 2};
-  std::array<double, 3> least{}, most{};
-  least.fill(std::numeric_limits<double>::infinity());
-  most.fill(-std::numeric_limits<double>::infinity());
-  for (const Index corner : mesh.corners)
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double x = mesh.points[3 * std::size_t{corner} + a];
-      least[a] = std::min(least[a], x);
-      most[a] = std::max(most[a], x);
-    }
-  for (const std::size_t a : {2U, 1U, 0U})
-    if (!(most[a] > least[a])) {
-      std::vector<std::size_t> axes = {0, 1, 2};
-      axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(a));
-      return axes;
-    }
-  fail(ErrorCode::UnsupportedData, path,
-       "cells of 2 dimensions on a surface in space (x from {} to {}, y from {} to {}, z from {} to {}); expected them "
-       "in "
-       "a plane where x, y or z is constant",
-       least[0], most[0], least[1], most[1], least[2], most[2]);
-}
-
-void append_points(const FileMesh& one, const std::vector<std::size_t>& axes, std::vector<double>& to) {
-  for (std::size_t p = 0; p < one.points.size(); p += 3)
-    for (const std::size_t a : axes) to.push_back(one.points[p + a]);
+FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
+  return is_point_table(path) ? read_table(path, options, progress) : read_vtk(path, options, progress);
 }
 
 /// The times of files; empty for a single file without one.
@@ -199,12 +236,16 @@ AnyComplex complex_of(const CellMesh& mesh) {
     complex.set_values(mesh.values);
     return complex;
   }
-  const std::size_t count = mesh.values.size() / mesh.times.size();
-  std::vector<std::array<double, N>> first(
-      points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
-  const Complex<N> complex(std::move(first), mesh.types, mesh.corners);
-  const std::span<const std::array<double, N>> moving(points);
-  return in_time<N>(complex, mesh.times, mesh.values, mesh.points_move ? moving : moving.first(0));
+  if constexpr (N < 4) {
+    const std::size_t count = mesh.values.size() / mesh.times.size();
+    std::vector<std::array<double, N>> first(
+        points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
+    const Complex<N> complex(std::move(first), mesh.types, mesh.corners);
+    const std::span<const std::array<double, N>> moving(points);
+    return in_time<N>(complex, mesh.times, mesh.values, mesh.points_move ? moving : moving.first(0));
+  } else {
+    throw Error(ErrorCode::UnsupportedData, "a 4D mesh at several times; expected one in 2 or 3 dimensions");
+  }
 }
 
 }  // namespace
@@ -212,7 +253,7 @@ AnyComplex complex_of(const CellMesh& mesh) {
 bool is_cell_mesh_file(const fs::path& path, bool allow_outside_paths) {
   const auto is_mesh = [](const fs::path& file) {
     const std::string name = lower_name(file);
-    return name.ends_with(".vtu") || name.ends_with(".vts");
+    return name.ends_with(".vtu") || name.ends_with(".vts") || is_point_table(file);
   };
   return is_pvd(path) ? is_mesh(read_pvd(path, allow_outside_paths).front().file) : is_mesh(path);
 }
@@ -232,7 +273,6 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
     if (options.times.empty() && times.size() > 1) options.times = std::move(times);
   }
   std::vector<std::optional<double>> own_times;
-  std::vector<std::size_t> axes;
   FileMesh first;
   for (std::size_t i = 0; i < mesh.files.size(); ++i) {
     const fs::path& path = mesh.files[i];
@@ -243,8 +283,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
     own_times.push_back(one.time);
     if (i == 0) {
       first = std::move(one);
-      axes = axes_of(first, path);
-      append_points(first, axes, mesh.points);
+      mesh.points = first.points;
       mesh.values = first.values;
       continue;
     }
@@ -252,17 +291,19 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
       fail(ErrorCode::UnsupportedData, path,
            "has other cells than {}: {} cells and {} points, {} and {} there; expected "
            "the same cells at all times",
-           mesh.files[0].string(), one.types.size(), one.points.size() / 3, first.types.size(),
-           first.points.size() / 3);
-    if (axes_of(one, path) != axes)
-      fail(ErrorCode::UnsupportedData, path, "lies in another plane than {}; expected the same",
-           mesh.files[0].string());
+           mesh.files[0].string(), one.types.size(), one.points.size() / static_cast<std::size_t>(one.dim),
+           first.types.size(), first.points.size() / static_cast<std::size_t>(first.dim));
+    if (one.axis_names != first.axis_names)
+      fail(ErrorCode::UnsupportedData, path, "has the axes {}, not {} as {}; expected the same",
+           fmt::join(one.axis_names, ", "), fmt::join(first.axis_names, ", "), mesh.files[0].string());
+    if (one.dim == 4)
+      fail(ErrorCode::UnsupportedData, path, "has 4 axes and is one of several files; expected one file");
     if (one.points != first.points && !mesh.points_move) {
       mesh.points_move = true;
       const std::vector<double> still = mesh.points;
       for (std::size_t k = 1; k < i; ++k) mesh.points.insert(mesh.points.end(), still.begin(), still.end());
     }
-    if (mesh.points_move) append_points(one, axes, mesh.points);
+    if (mesh.points_move) mesh.points.insert(mesh.points.end(), one.points.begin(), one.points.end());
     mesh.values.insert(mesh.values.end(), one.values.begin(), one.values.end());
   }
   mesh.dim = first.dim;
@@ -270,14 +311,56 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
   mesh.corners = std::move(first.corners);
   mesh.variable = std::move(first.variable);
   mesh.remarks = std::move(first.remarks);
-  for (const std::size_t a : axes) mesh.axis_names.emplace_back(1, "xyz"[a]);
+  mesh.axis_names = std::move(first.axis_names);
   mesh.times = times_of(own_times, options, mesh.files);
   return mesh;
 }
 
-AnyComplex to_complex(const CellMesh& mesh) { return mesh.dim == 2 ? complex_of<2>(mesh) : complex_of<3>(mesh); }
+AnyComplex to_complex(const CellMesh& mesh) {
+  if (mesh.dim == 4) return complex_of<4>(mesh);
+  return mesh.dim == 2 ? complex_of<2>(mesh) : complex_of<3>(mesh);
+}
+
+namespace {
+
+/// Adds the smallest and the largest value, and the number of missing ones.
+template <class Values>
+void add_range(const Values& values, CellMeshArray& array) {
+  array.min = array.max = kMissing;
+  for (const auto value : values) {
+    const auto number = static_cast<double>(value);
+    array.missing += std::isnan(number) ? 1 : 0;
+    array.min = std::fmin(array.min, number);
+    array.max = std::fmax(array.max, number);
+  }
+}
+
+/// The smallest and the largest coordinate along each axis.
+std::vector<std::array<double, 2>> bounds_of(const std::vector<double>& points, std::size_t dim) {
+  std::vector<std::array<double, 2>> bounds(dim, {kMissing, kMissing});
+  for (std::size_t i = 0; i < points.size(); ++i)
+    bounds[i % dim] = {std::fmin(bounds[i % dim][0], points[i]), std::fmax(bounds[i % dim][1], points[i])};
+  return bounds;
+}
+
+CellMeshInfo describe_table(const fs::path& path, const CellMeshOptions& options) {
+  const PointTable table = read_point_table(path, options.variable, options.work.progress);
+  CellMeshInfo info;
+  info.type = "table of points";
+  info.points = table.lines.size();
+  info.axis_names = table.axis_names;
+  info.bounds = bounds_of(table.coordinates, table.dim());
+  for (std::size_t c = 0; c < table.value_names.size(); ++c) {
+    info.arrays.push_back({.name = table.value_names[c], .type = "double"});
+    add_range(table.column(c), info.arrays.back());
+  }
+  return info;
+}
+
+}  // namespace
 
 CellMeshInfo describe_cell_mesh(const fs::path& given, const CellMeshOptions& options) {
+  if (is_point_table(given)) return describe_table(given, options);
   CellMeshInfo info;
   fs::path path = given;
   if (is_pvd(given)) {
@@ -293,30 +376,16 @@ CellMeshInfo describe_cell_mesh(const fs::path& given, const CellMeshOptions& op
   std::map<std::uint8_t, std::uint64_t> counts;
   for (const std::uint8_t type : stored.types) ++counts[type];
   for (const auto& [type, count] : counts) info.cells.emplace_back(name_of_type(type), count);
-  for (std::size_t a = 0; a < 3; ++a) {
-    info.bounds[a] = {kMissing, kMissing};
-    for (std::size_t i = a; i < stored.points.size(); i += 3)
-      info.bounds[a] = {std::fmin(info.bounds[a][0], stored.points[i]), std::fmax(info.bounds[a][1], stored.points[i])};
-  }
+  info.axis_names = {"x", "y", "z"};
+  info.bounds = bounds_of(stored.points, 3);
   for (const VtkVariable& variable : variables_of(file)) {
-    CellMeshArray array{variable.name,
-                        variable.on_cells,
-                        static_cast<int>(std::min<std::uint64_t>(variable.components, std::numeric_limits<int>::max())),
-                        std::string(variable.type),
-                        0,
-                        kMissing,
-                        kMissing};
-    const auto add = [&](const auto& values) {
-      for (const auto value : values) {
-        const auto number = static_cast<double>(value);
-        array.missing += std::isnan(number) ? 1 : 0;
-        array.min = std::fmin(array.min, number);
-        array.max = std::fmax(array.max, number);
-      }
-    };
-    std::visit(add,
+    constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
+    info.arrays.push_back({.name = variable.name,
+                           .on_cells = variable.on_cells,
+                           .components = static_cast<int>(std::min(variable.components, kMost)),
+                           .type = std::string(variable.type)});
+    std::visit([&](const auto& values) { add_range(values, info.arrays.back()); },
                read_cell_values(file, variable.parent(), variable.name, variable.components, options.work.progress));
-    info.arrays.push_back(std::move(array));
   }
   return info;
 }

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "base/common.hpp"
@@ -26,7 +28,7 @@ struct TypeOfVtk {
 };
 
 /// The types of vtkCellType.h.
-constexpr std::array<TypeOfVtk, 41> kTypesOfVtk = {{{0, 0, "empty cell"},
+constexpr std::array<TypeOfVtk, 64> kTypesOfVtk = {{{0, 0, "empty cell"},
                                                     {1, 0, "vertex"},
                                                     {2, 0, "poly-vertex"},
                                                     {3, 1, "line"},
@@ -59,14 +61,37 @@ constexpr std::array<TypeOfVtk, 41> kTypesOfVtk = {{{0, 0, "empty cell"},
                                                     {34, 2, "biquadratic triangle"},
                                                     {35, 1, "cubic line"},
                                                     {36, 2, "quadratic polygon"},
+                                                    {37, 3, "triquadratic pyramid"},
                                                     {41, 3, "convex point set"},
                                                     {42, 3, "polyhedron"},
+                                                    {51, 1, "parametric curve"},
+                                                    {52, 2, "parametric surface"},
+                                                    {53, 2, "parametric triangle"},
+                                                    {54, 2, "parametric quadrilateral"},
+                                                    {55, 3, "parametric tetrahedron"},
+                                                    {56, 3, "parametric hexahedron"},
+                                                    {60, 1, "higher-order edge"},
+                                                    {61, 2, "higher-order triangle"},
+                                                    {62, 2, "higher-order quadrilateral"},
+                                                    {63, 2, "higher-order polygon"},
+                                                    {64, 3, "higher-order tetrahedron"},
+                                                    {65, 3, "higher-order wedge"},
+                                                    {66, 3, "higher-order pyramid"},
+                                                    {67, 3, "higher-order hexahedron"},
                                                     {68, 1, "Lagrange curve"},
                                                     {69, 2, "Lagrange triangle"},
                                                     {70, 2, "Lagrange quadrilateral"},
                                                     {71, 3, "Lagrange tetrahedron"},
                                                     {72, 3, "Lagrange hexahedron"},
-                                                    {73, 3, "Lagrange wedge"}}};
+                                                    {73, 3, "Lagrange wedge"},
+                                                    {74, 3, "Lagrange pyramid"},
+                                                    {75, 1, "Bezier curve"},
+                                                    {76, 2, "Bezier triangle"},
+                                                    {77, 2, "Bezier quadrilateral"},
+                                                    {78, 3, "Bezier tetrahedron"},
+                                                    {79, 3, "Bezier hexahedron"},
+                                                    {80, 3, "Bezier wedge"},
+                                                    {81, 3, "Bezier pyramid"}}};
 
 const TypeOfVtk* find_type(std::uint8_t number) {
   const auto found = std::find_if(kTypesOfVtk.begin(), kTypesOfVtk.end(),
@@ -176,16 +201,37 @@ void add_structured_cells(const VtkFile& file, StoredCells& all) {
       }
 }
 
+/// The array of ghost types in a piece, if it has one.
+std::optional<VtkArray> ghosts_of(const VtkFile& file, const XmlElement& piece) {
+  for (VtkArray& array : file.arrays(piece.child("CellData"))) {
+    if (array.name != "vtkGhostType") continue;
+    if (array.components == 1 && array.type != "float" && array.type != "double") return std::move(array);
+    fail(ErrorCode::MalformedFile, file.path(), "array 'vtkGhostType' has {} components of type {}; expected UInt8",
+         array.components, array.type);
+  }
+  return std::nullopt;
+}
+
 /// Marks the cells that are hidden or belong to another piece.
 void find_hidden(const VtkFile& file, StoredCells& all) {
-  for (const VtkArray& array : file.arrays(file.pieces().front()->child("CellData"))) {
-    if (array.name != "vtkGhostType" || array.components != 1) continue;
-    constexpr int kHidden = 1 | 32;  // vtkDataSetAttributes: DUPLICATECELL, HIDDENCELL
+  const auto pieces = file.pieces();
+  if (std::none_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return ghosts_of(file, *piece); })) return;
+  const auto append = [&](const ValueArray& ghosts) {
+    constexpr std::uint64_t kHidden = 1 | 32;  // vtkDataSetAttributes: DUPLICATECELL, HIDDENCELL
     std::visit(
-        [&](const auto& values) {
-          for (const auto value : values) all.is_hidden.push_back((static_cast<int>(value) & kHidden) != 0);
+        [&]<class T>(const ValueVector<T>& values) {
+          if constexpr (std::is_integral_v<T>)
+            for (const T value : values) all.is_hidden.push_back((static_cast<std::uint64_t>(value) & kHidden) != 0);
         },
-        read_cell_values(file, "CellData", "vtkGhostType", 1, {}));
+        ghosts);
+  };
+  if (file.type() == "StructuredGrid") return append(read_structured(file, "CellData", "vtkGhostType", 1, true, {}));
+  for (const XmlElement* const piece : pieces) {
+    const std::uint64_t count = file.whole_number(*piece, "NumberOfCells");
+    if (const auto ghosts = ghosts_of(file, *piece); ghosts && count > 0)
+      append(file.read(*ghosts, count));
+    else
+      all.is_hidden.insert(all.is_hidden.end(), static_cast<std::size_t>(count), false);
   }
 }
 

@@ -91,6 +91,12 @@ VtkFile::VtkFile(const fs::path& path, const Progress& progress) : path_(path), 
                : compressor == "vtkLZMADataCompressor" ? "LZMA"
                                                        : compressor));
   // data
+  constexpr std::array<std::string_view, 5> kParallel = {"PImageData", "PRectilinearGrid", "PStructuredGrid",
+                                                         "PUnstructuredGrid", "PPolyData"};
+  if (std::find(kParallel.begin(), kParallel.end(), type_) != kParallel.end() || type_.starts_with("vtk"))
+    fail(ErrorCode::UnsupportedFormat, path,
+         "holds {}, which names other files with the data; expected a file with data, such as one of the pieces",
+         shown(type_));
   data_ = root.child(type_);
   if (data_ == nullptr)
     fail(ErrorCode::MalformedFile, path, "<VTKFile> of type {} without an element of this name", shown(type_));
@@ -235,7 +241,8 @@ void VtkFile::read_bytes_of(const VtkArray& array, std::optional<std::uint64_t> 
 }
 
 template <class T>
-void VtkFile::read_text(const VtkArray& array, std::optional<std::uint64_t> count, ValueVector<T>& to) const {
+void VtkFile::read_text(const VtkArray& array, std::optional<std::uint64_t> count, ValueVector<T>& to,
+                        const Progress& progress) const {
   const Place place = place_of(array);
   EncodedBytes bytes(path_, place.begin, place.end, false);
   // Each number but the last takes two characters or more.
@@ -252,13 +259,19 @@ void VtkFile::read_text(const VtkArray& array, std::optional<std::uint64_t> coun
     word.clear();
   };
   constexpr std::size_t kLongest = 1000;
-  for (std::size_t found = bytes.read(block); found > 0; found = bytes.read(block))
+  const std::uint64_t all = bytes.at_most();
+  for (std::size_t found = bytes.read(block); found > 0; found = bytes.read(block)) {
+    tick(progress, 1.0 - static_cast<double>(bytes.at_most()) / static_cast<double>(all), path_);
     for (const unsigned char c : std::span(block).first(found)) {
       if (c == ' ' || (c >= '\t' && c <= '\r'))
         end_word();
       else if (word.size() < kLongest)
         word += static_cast<char>(c);
+      else
+        fail(ErrorCode::MalformedFile, path_, "number {} of {} has more than {} characters: {}...; expected {}",
+             to.size(), named(array), kLongest, shown(word), expected_numbers<T>(array.type));
     }
+  }
   end_word();
   if (count && to.size() != *count)
     fail(ErrorCode::MalformedFile, path_, "{} has {} numbers; expected {}", named(array), to.size(), *count);
@@ -270,8 +283,9 @@ ValueArray VtkFile::read(const VtkArray& array, std::optional<std::uint64_t> cou
   if (count && *count == 0) return values;
   const bool is_text = place_of(array).is_text;
   try {
-    std::visit([&](auto& to) { is_text ? read_text(array, count, to) : read_bytes_of(array, count, to, progress); },
-               values);
+    std::visit(
+        [&](auto& to) { is_text ? read_text(array, count, to, progress) : read_bytes_of(array, count, to, progress); },
+        values);
   } catch (const std::bad_alloc&) {
     fail(ErrorCode::TooLarge, path_, "{} does not fit into memory", named(array));
   }

@@ -30,7 +30,7 @@ struct VtkArray {
 class VtkFile {
  public:
   /// Reads all elements, no arrays. Errors: FileNotFound; MalformedFile (no XML, no VTKFile, unknown attributes);
-  /// UnsupportedFormat (a compressor other than zlib), Cancelled.
+  /// UnsupportedFormat (a compressor other than zlib; parallel and composite files, which name others), Cancelled.
   explicit VtkFile(const std::filesystem::path& path, const Progress& progress = {});
   VtkFile(const VtkFile&) = delete;
   VtkFile& operator=(const VtkFile&) = delete;
@@ -79,7 +79,8 @@ class VtkFile {
   struct Place;  ///< where the encoded bytes of an array are
   [[nodiscard]] Place place_of(const VtkArray& array) const;
   template <class T>
-  void read_text(const VtkArray& array, std::optional<std::uint64_t> count, ValueVector<T>& to) const;
+  void read_text(const VtkArray& array, std::optional<std::uint64_t> count, ValueVector<T>& to,
+                 const Progress& progress) const;
   template <class T>
   void read_bytes_of(const VtkArray& array, std::optional<std::uint64_t> count, ValueVector<T>& to,
                      const Progress& progress) const;

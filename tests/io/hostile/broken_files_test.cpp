@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Files that are missing, empty, folders, of the wrong kind or truncated, for every format: the error names the file.
+#include <array>
+
 #include "images/netcdf_files.hpp"
 #include "images/nifti_files.hpp"
 #include "io_support.hpp"
@@ -8,9 +10,10 @@
 namespace tegl::test {
 namespace {
 
-const std::vector<std::string> kImageNames = {"a.nii", "a.nii.gz", "a.hdr", "a.nrrd", "a.nhdr", "a.mha",
-                                              "a.mhd", "a.nc",     "a.cdf", "a.nc4",  "a.nc.gz"};
+const std::vector<std::string> kImageNames = {"a.nii", "a.nii.gz", "a.hdr", "a.nrrd",  "a.nhdr", "a.mha", "a.mhd",
+                                              "a.nc",  "a.cdf",    "a.nc4", "a.nc.gz", "a.vti",  "a.vtr", "a.pvd"};
 const std::vector<std::string> kMeshNames = {"a.ply", "a.gltf", "a.glb", "a.vtkhdf", "a.stl", "a.obj"};
+const std::vector<std::string> kCellMeshNames = {"a.vtu", "a.vts", "a.pvd", "a.csv"};
 
 /// Runs a check for every format; `read` reads the given file.
 template <class Check>
@@ -22,6 +25,10 @@ void for_each_format(Check&& check) {
   for (const std::string& name : kMeshNames) {
     SCOPED_TRACE(name);
     check(name, [](const fs::path& path) { read_mesh(path); });
+  }
+  for (const std::string& name : kCellMeshNames) {
+    SCOPED_TRACE(name);
+    check(name, [](const fs::path& path) { read_cell_mesh(std::array{path}); });
   }
 }
 

@@ -56,8 +56,9 @@ std::vector<Seed> seeds_with(const std::vector<std::string>& extensions, std::ve
 
 /// Copies the files to which seeds refer.
 void write_companions(const fs::path& folder) {
-  fs::copy_file(TEGL_SOURCE_DIR "/tests/io/seeds/assimp.bin", folder / "assimp.bin",
-                fs::copy_options::overwrite_existing);
+  for (const char* const name : {"assimp.bin", "vtk_ascii.vti", "vtk_ascii.vtu"})
+    fs::copy_file(fs::path(TEGL_SOURCE_DIR "/tests/io/seeds") / name, folder / name,
+                  fs::copy_options::overwrite_existing);
   write_file(folder / "values.raw", bytes_of(counting<std::int16_t>(120)));
 }
 
@@ -311,6 +312,30 @@ TEST(Fuzz, Npz) {
         {"deflated.npz", zip({{"a.npy", array, true}}, "comment")},
         {"zip64.npz", zip({{"a.npy", array, true, 0, 0, true}, {"text.txt", "text"}})}},
        read_as_image, kImageCommands);
+}
+
+std::string collection_of(const std::string& file) {
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\">\n<Collection>\n<DataSet timestep=\"0\" file=\"" +
+         file + "\"/>\n<DataSet timestep=\"1.5\" part=\"0\" file=\"" + file + "\"/>\n</Collection>\n</VTKFile>\n";
+}
+
+TEST(Fuzz, VtkImages) {
+  fuzz({".vti", ".vtr"}, {{"own.pvd", collection_of("vtk_ascii.vti")}}, read_as_image, kImageCommands);
+}
+
+TEST(Fuzz, CellMeshes) {
+  const std::string table =
+      "# points\nx, y, f, g\n0,0,1,2\n1,0,100,\n0,1,nan,4\n1e0,1.25,60,\"7\"\n-1,0.5,2,3\n0.25,0.75,55,1\n";
+  const auto read = [](const fs::path& path) {
+    CellMeshOptions options;
+    options.variable = "f";
+    read_cell_mesh(std::array{path}, options);
+    describe_cell_mesh(path);
+  };
+  fuzz({".vtu", ".vts"}, {{"own.pvd", collection_of("vtk_ascii.vtu")}, {"own.csv", table}}, read,
+       {{"info", "FILE"},
+        {"contour", "FILE", "--var", "f", "--iso", "50", "-o", "OUT"},
+        {"measure", "FILE", "--var", "f", "--iso", "50"}});
 }
 
 TEST(Fuzz, NetCdfClassic) {

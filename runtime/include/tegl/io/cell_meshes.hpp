@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes of cells in VTK's XML files, with values at their points: .vtu, .vts, and series of them over time (.pvd).
+// Meshes of cells in VTK's XML files, with values at their points: .vtu, .vts, and series of them over time (.pvd); and
+// tables of scattered points (.csv), whose cells are those of the Delaunay triangulation.
 // Link with tegl::io; the rules for threads in tegl/io.hpp apply.
 #pragma once
 
@@ -21,7 +22,7 @@ namespace tegl {
 
 /// A mesh of cells with one array of values at its points, at one or several times.
 struct CellMesh {
-  int dim = 3;                                    ///< of the cells, and number of coordinates: 2 or 3
+  int dim = 3;                                    ///< of the cells, and number of coordinates: 2 or 3; tables: or 4
   std::vector<double> points = {};                ///< #P x dim, or #T x #P x dim if the points move
   bool points_move = false;                       ///< whether the points differ between times
   std::vector<CellType> types = {};               ///< one per cell
@@ -29,7 +30,7 @@ struct CellMesh {
   std::vector<double> times = {};                 ///< #T ascending times; empty for one file that is not in a series
   std::vector<double> values = {};                ///< max(1, #T) x #P; NaN: missing
   std::string variable = {};                      ///< name of the values
-  std::vector<std::string> axis_names = {};       ///< of the coordinates: x, y, z
+  std::vector<std::string> axis_names = {};       ///< of the coordinates: x, y, z, or as in the table
   std::vector<std::string> remarks = {};          ///< cells that were left out
   std::vector<std::filesystem::path> files = {};  ///< in the order of the times
 };
@@ -37,6 +38,7 @@ struct CellMesh {
 /// Options of read_cell_mesh.
 struct CellMeshOptions {
   /// The array; NAME:K is component K of a vector and NAME:magnitude its length. Empty: the only one of one component.
+  /// Tables: the column.
   std::string variable = {};
   /// Values of cells become values of points: the mean of the cells at the point, as by vtkCellDataToPointData.
   bool cells_to_points = false;
@@ -45,21 +47,27 @@ struct CellMeshOptions {
   WorkOptions work = {};             ///< progress; files are read by one thread
 };
 
-/// Whether a file is a mesh of cells: by extension (.vtu, .vts); a .pvd file by the files that it names. Errors: those
-/// of reading a .pvd file.
+/// Whether a file is a mesh of cells: by extension (.vtu, .vts, .csv); a .pvd file by the files that it names. Errors:
+/// those of reading a .pvd file.
 [[nodiscard]] bool is_cell_mesh_file(const std::filesystem::path& path, bool allow_outside_paths = false);
 
 /// Reads a mesh, or several files as one mesh over time. A .pvd file must be the only one.
 ///
-/// Cells: those of CellType in 2D or 3D, triangle strips (as triangles) and polygons of 3 or 4 corners. If there are 3D
-/// cells, others are left out; so are vertices and lines. Structured grids become quadrilaterals or hexahedra. 2D
-/// meshes must lie in a plane across an axis, whose coordinate is dropped. Cells that are hidden or duplicates by
-/// vtkGhostType are left out. Points of several pieces at one place become one.
+/// Cells: those of CellType in 2D or 3D, triangle strips and polygons (as triangles or a quadrilateral; polygons must
+/// be convex). If there are 3D cells, others are left out; so are vertices and lines. Structured grids become
+/// quadrilaterals or hexahedra. 2D meshes must lie in a plane across an axis, whose coordinate is dropped. Cells that
+/// are hidden or duplicates by vtkGhostType are left out. Points of several pieces at one place become one.
 ///
-/// Errors, naming the file: FileNotFound; MalformedFile (damaged, or numbers that contradict each other);
-/// UnsupportedFormat (a compressor other than zlib); UnsupportedData (polyhedra, curved cells and other types; no cells
-/// of 2 or 3 dimensions; values of cells without cells_to_points; files of a series that do not match);
-/// VariableNotFound; InvalidArgument (times); TooLarge; Cancelled.
+/// Tables: a row for each point, with fields separated by commas, semicolons, tabs or blanks; lines that start with '#'
+/// are comments. With a first line of names, the columns x, y, z and t (or time) are the coordinates; without columns
+/// x and y, and without names, the chosen or the last column has the values, and all others are coordinates: 2 to 4. A
+/// value that is empty or "nan" is missing.
+///
+/// Errors, naming the file (and of a table the line): FileNotFound; MalformedFile (damaged, or numbers that contradict
+/// each other; two equal points of a table); UnsupportedFormat (a compressor other than zlib; parallel files, which
+/// name others); UnsupportedData (polyhedra, curved cells and other types; no cells of 2 or 3 dimensions; values of
+/// cells without cells_to_points; files of a series that do not match); VariableNotFound; InvalidArgument (times);
+/// TooLarge; Cancelled.
 [[nodiscard]] CellMesh read_cell_mesh(std::span<const std::filesystem::path> files,
                                       const CellMeshOptions& options = {});
 
@@ -82,10 +90,11 @@ struct CellMeshArray {
 
 /// The contents of a file.
 struct CellMeshInfo {
-  std::string type = {};                                          ///< "UnstructuredGrid" or "StructuredGrid"
-  std::uint64_t points = 0;                                       ///< number of points
+  std::string type = {};     ///< "UnstructuredGrid", "StructuredGrid", "table of points"
+  std::uint64_t points = 0;  ///< number of points
   std::vector<std::pair<std::string, std::uint64_t>> cells = {};  ///< number of cells by the name of their type
-  std::array<std::array<double, 2>, 3> bounds = {};               ///< of the points, by axis
+  std::vector<std::string> axis_names = {};                       ///< x, y, z; of a table, its coordinates
+  std::vector<std::array<double, 2>> bounds = {};                 ///< of the points, by axis
   std::vector<CellMeshArray> arrays = {};                         ///< of points, then of cells
   std::vector<double> times = {};                                 ///< of a .pvd file
 };

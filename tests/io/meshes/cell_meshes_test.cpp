@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Meshes of cells and tables of points: what the reader makes of small files, and the errors of wrong ones. Files that
+// VTK writes are in vtk_writes_test.py, hostile ones in hostile.
+#include <cmath>
+
+#include "io_support.hpp"
+#include "tegl/check.hpp"
+#include "tegl/delaunay.hpp"
+
+namespace tegl::test {
+namespace {
+
+CellMesh read(const fs::path& path, const CellMeshOptions& options = {}) {
+  return read_cell_mesh(std::array{path}, options);
+}
+
+/// A .vtu file as text: an element of each part.
+std::string vtu(const std::string& points, const std::string& corners, const std::string& ends,
+                const std::string& types, const std::string& data, const std::string& sizes = "5 2") {
+  const auto array = [](const std::string& type, const std::string& name, const std::string& numbers) {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">" + numbers + "</DataArray>";
+  };
+  return "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" version=\"0.1\"><UnstructuredGrid><Piece "
+         "NumberOfPoints=\"" +
+         sizes.substr(0, sizes.find(' ')) + "\" NumberOfCells=\"" + sizes.substr(sizes.find(' ') + 1) +
+         "\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
+         "</DataArray></Points><Cells>" + array("Int64", "connectivity", corners) + array("Int64", "offsets", ends) +
+         array("UInt8", "types", types) + "</Cells>" + data + "</Piece></UnstructuredGrid></VTKFile>";
+}
+
+std::string on_points(const std::string& values, const std::string& more = "Name=\"f\"") {
+  return "<PointData><DataArray type=\"Float64\" format=\"ascii\" " + more + ">" + values + "</DataArray></PointData>";
+}
+
+const std::string kPoints = "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1";
+const std::string kCorners = "0 1 2 3 1 2 3 4";
+
+TEST(CellMesh, ReadsTetrahedraAndTheirValues) {
+  TempDir dir;
+  write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 nan")));
+  const CellMesh mesh = read(dir / "a.vtu");
+  EXPECT_EQ(mesh.dim, 3);
+  EXPECT_EQ(mesh.types, std::vector(2, CellType::tetrahedron));
+  EXPECT_THAT(mesh.corners, testing::ElementsAre(0, 1, 2, 3, 1, 2, 3, 4));
+  EXPECT_EQ(mesh.points.size(), 15U);
+  EXPECT_TRUE(std::isnan(mesh.values[4]));
+  EXPECT_EQ(mesh.variable, "f");
+  EXPECT_TRUE(mesh.times.empty());
+  EXPECT_THAT(mesh.axis_names, testing::ElementsAre("x", "y", "z"));
+}
+
+TEST(CellMesh, VectorsHaveComponentsAndAMagnitude) {
+  TempDir dir;
+  write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10",
+                                on_points("0 0 3 4 6 8 9 12 1 0", "Name=\"v\" NumberOfComponents=\"2\"")));
+  CellMeshOptions options;
+  options.variable = "v:1";
+  EXPECT_THAT(read(dir / "a.vtu", options).values, testing::ElementsAre(0, 4, 8, 12, 0));
+  options.variable = "v:magnitude";
+  EXPECT_THAT(read(dir / "a.vtu", options).values, testing::ElementsAre(0, 5, 10, 15, 1));
+  options.variable = "v:2";
+  expect_error(ErrorCode::VariableNotFound, {"no component '2'", "0 to 1", "a.vtu"},
+               [&] { read(dir / "a.vtu", options); });
+  expect_error(ErrorCode::VariableNotFound, {"'v' of 2 components", "v"}, [&] { read(dir / "a.vtu"); });
+}
+
+TEST(CellMesh, CellsOfFewerDimensionsAreLeftOutWithARemark) {
+  TempDir dir;
+  write_file(dir / "a.vtu", vtu(kPoints, "0 1 2 0 1 2 3", "3 7", "5 10", on_points("0 1 2 3 4")));
+  const CellMesh mesh = read(dir / "a.vtu");
+  EXPECT_EQ(mesh.types, std::vector{CellType::tetrahedron});
+  ASSERT_EQ(mesh.remarks.size(), 1U);
+  EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("1 cells of fewer than 3 dimensions"));
+}
+
+struct WrongMesh {
+  std::string bytes;
+  ErrorCode code;
+  std::vector<std::string> parts;
+};
+
+TEST(CellMesh, WrongNumbersAreErrorsThatNameThem) {
+  const std::string data = on_points("0 1 2 3 4");
+  const std::string good = vtu(kPoints, kCorners, "4 8", "10 10", data);
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  const std::vector<WrongMesh> all = {
+      {vtu(kPoints, "0 1 2 3 1 2 3 5", "4 8", "10 10", data),
+       ErrorCode::MalformedFile,
+       {"cell 1", "corner 5", "0 to 4"}},
+      {vtu(kPoints, "0 1 2 3 1 2 3 -1", "4 8", "10 10", data), ErrorCode::MalformedFile, {"cell 1", "corner -1"}},
+      {vtu(kPoints, kCorners, "4 9", "10 10", data), ErrorCode::MalformedFile, {"cell 1", "4 to 9 of 8"}},
+      {vtu(kPoints, kCorners, "8 4", "10 10", data), ErrorCode::MalformedFile, {"ascending offsets"}},
+      {vtu(kPoints, kCorners, "3 8", "10 10", data), ErrorCode::MalformedFile, {"cell 0 (tetrahedron) has 3 corners"}},
+      {vtu(kPoints, "0 1 2 2 1 2 3 4", "4 8", "10 10", data), ErrorCode::UnsupportedData, {"corner 2 twice"}},
+      {vtu(kPoints, kCorners, "4 8", "10 300", data), ErrorCode::MalformedFile, {"number 1", "300", "UInt8"}},
+      {vtu(kPoints, kCorners, "4 8", "10 99", data), ErrorCode::UnsupportedData, {"type 99", "unknown"}},
+      {vtu(kPoints, kCorners, "4 8", "1 1", data), ErrorCode::UnsupportedData, {"none of 2 or 3 dimensions"}},
+      {vtu(kPoints + " 7", kCorners, "4 8", "10 10", data), ErrorCode::MalformedFile, {"16 numbers; expected 15"}},
+      {vtu("0 0 inf 1 0 0 0 1 0 0 0 1 1 1 1", kCorners, "4 8", "10 10", data), ErrorCode::MalformedFile, {"point 0"}},
+      {vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3")),
+       ErrorCode::MalformedFile,
+       {"4 numbers; expected 5"}},
+      {vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 x 3 4")), ErrorCode::MalformedFile, {"number 2", "'x'"}},
+      {vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 " + std::string(2000, '4'))),
+       ErrorCode::MalformedFile,
+       {"number 4", "more than 1000 characters"}},
+      {vtu(kPoints, kCorners, "4 8", "10 10", ""), ErrorCode::VariableNotFound, {"none"}},
+      {replaced("NumberOfPoints=\"5\"", "NumberOfPoints=\"-5\""), ErrorCode::MalformedFile, {"NumberOfPoints", "-5"}},
+      {replaced("NumberOfPoints=\"5\"", "NumberOfPoints=\"99999999999\""), ErrorCode::TooLarge, {"99999999999 points"}},
+      {replaced("NumberOfCells=\"2\"", "NumberOfCells=\"4000000000\""), ErrorCode::MalformedFile, {"4000000000"}},
+      {replaced("type=\"UInt8\"", "type=\"Float32\""), ErrorCode::MalformedFile, {"'types'", "whole numbers"}},
+      {replaced("Name=\"f\"", "Name=\"f\" NumberOfComponents=\"0x\""),
+       ErrorCode::MalformedFile,
+       {"NumberOfComponents"}},
+      {replaced("type=\"Float64\" format=\"ascii\" Name=\"f\"", "type=\"Float128\" format=\"ascii\" Name=\"f\""),
+       ErrorCode::MalformedFile,
+       {"'f'", "Float128"}},
+      {replaced("format=\"ascii\" Name=\"f\"", "format=\"appended\" offset=\"0\" Name=\"f\""),
+       ErrorCode::MalformedFile,
+       {"AppendedData"}},
+      {replaced("format=\"ascii\" Name=\"f\"", "format=\"hex\" Name=\"f\""), ErrorCode::MalformedFile, {"hex"}},
+      {replaced("</Cells>", "</Cell>"), ErrorCode::MalformedFile, {"line 1", "mismatched tag"}},
+      {good.substr(0, 300), ErrorCode::MalformedFile, {"line 1"}},
+      {replaced("type=\"UnstructuredGrid\"", "type=\"PUnstructuredGrid\""),
+       ErrorCode::UnsupportedFormat,
+       {"PUnstructuredGrid", "names other files"}},
+      {replaced("version=\"0.1\"", "compressor=\"vtkLZ4DataCompressor\""), ErrorCode::UnsupportedFormat, {"LZ4"}},
+      {replaced("version=\"0.1\"", "byte_order=\"Middle\""), ErrorCode::MalformedFile, {"byte_order", "Middle"}},
+      {replaced("<Piece", "<Peace"), ErrorCode::MalformedFile, {"line 1"}},
+      {"<html></html>", ErrorCode::MalformedFile, {"html", "VTKFile"}},
+      {"", ErrorCode::MalformedFile, {"empty"}},
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SCOPED_TRACE(i);
+    TempDir dir;
+    write_file(dir / "wrong.vtu", all[i].bytes);
+    std::vector<std::string> parts = all[i].parts;
+    parts.emplace_back("wrong.vtu");
+    expect_error(all[i].code, parts, [&] { read(dir / "wrong.vtu"); });
+    EXPECT_EQ(dir.files(), 1U);
+  }
+}
+
+TEST(CellMesh, GhostTypesAreReadFromAllPiecesAndMustBeWhole) {
+  const auto piece = [](const std::string& ghosts, const std::string& type) {
+    const std::string one = vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4"));
+    const std::size_t begin = one.find("<Piece"), end = one.find("</UnstructuredGrid>");
+    std::string text = one.substr(begin, end - begin);
+    if (!ghosts.empty())
+      text.insert(text.find("</Piece>"), "<CellData><DataArray type=\"" + type +
+                                             "\" Name=\"vtkGhostType\" format=\"ascii\">" + ghosts +
+                                             "</DataArray></CellData>");
+    return text;
+  };
+  const auto file = [](const std::string& pieces) {
+    return "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>" + pieces + "</UnstructuredGrid></VTKFile>";
+  };
+  TempDir dir;
+  // The pieces have the same points, and the second one hides both of its cells.
+  write_file(dir / "a.vtu", file(piece("", "UInt8") + piece("1 32", "UInt8")));
+  const CellMesh mesh = read(dir / "a.vtu");
+  EXPECT_EQ(mesh.types.size(), 2U);
+  ASSERT_EQ(mesh.remarks.size(), 1U);
+  EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("2 cells are left out: hidden"));
+  write_file(dir / "b.vtu", file(piece("0 nan", "Float32")));
+  expect_error(ErrorCode::MalformedFile, {"vtkGhostType", "float", "UInt8"}, [&] { read(dir / "b.vtu"); });
+}
+
+TEST(CellMesh, FilesOfASeriesMustMatch) {
+  TempDir dir;
+  const std::string data = on_points("0 1 2 3 4");
+  write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", data));
+  write_file(dir / "b.vtu", vtu(kPoints, "0 1 2 3 1 2 4 3", "4 8", "10 10", data));
+  const std::vector<fs::path> both = {dir / "a.vtu", dir / "b.vtu"};
+  expect_error(ErrorCode::UnsupportedData, {"b.vtu", "other cells"}, [&] { read_cell_mesh(both); });
+  const std::vector<fs::path> same = {dir / "a.vtu", dir / "a.vtu"};
+  CellMeshOptions options;
+  options.times = {1.0, 0.5};
+  expect_error(ErrorCode::InvalidArgument, {"0.5", "ascending"}, [&] { read_cell_mesh(same, options); });
+  options.times = {0.5, 1.0};
+  EXPECT_EQ(to_complex(read_cell_mesh(same, options)).index(), 2U);  // 4D
+}
+
+TEST(CellMesh, CollectionsNameFilesInTheirFolder) {
+  TempDir dir;
+  write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));
+  const auto collection = [](const std::string& sets) {
+    return "<VTKFile type=\"Collection\"><Collection>" + sets + "</Collection></VTKFile>";
+  };
+  write_file(dir / "a.pvd",
+             collection("<DataSet timestep=\"2\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"a.vtu\"/>"));
+  EXPECT_TRUE(is_cell_mesh_file(dir / "a.pvd"));
+  EXPECT_THAT(read(dir / "a.pvd").times, testing::ElementsAre(1, 2));
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"<DataSet timestep=\"x\" file=\"a.vtu\"/>", "timestep='x'"},
+      {"<DataSet timestep=\"1\" file=\"../a.vtu\"/>", "a.vtu"},
+      {"<DataSet timestep=\"1\" file=\"a.exe\"/>", "a.exe"},
+      {"<DataSet timestep=\"1\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"a.vtu\"/>", "at the time 1"},
+      {"", "without a <DataSet>"}};
+  for (const auto& [sets, part] : wrong) {
+    write_file(dir / "w.pvd", collection(sets));
+    EXPECT_THAT(error_of([&] { read(dir / "w.pvd"); }).what(), testing::HasSubstr(part));
+  }
+}
+
+// --- tables of points
+
+/// Rows of a ball of radius 0.7 in the square or cube from -1 to 1.
+std::string ball_rows(int dim, char separator, std::size_t count) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  std::string rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    double square = 0;
+    for (int a = 0; a < dim; ++a) {
+      const double x = coordinate(random);
+      square += x * x;
+      rows += std::to_string(x) + separator;
+    }
+    rows += std::to_string(0.7 - std::sqrt(square)) + "\n";
+  }
+  return rows;
+}
+
+TEST(PointTable, HasTheDelaunayCellsOfItsPoints) {
+  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
+  TempDir dir;
+  for (int dim = 2; dim <= 4; ++dim) {
+    write_file(dir / "a.csv", ball_rows(dim, ',', dim == 4 ? 150 : 400));
+    const CellMesh mesh = read(dir / "a.csv");
+    EXPECT_EQ(mesh.dim, dim);
+    const AnyComplex complex = to_complex(mesh);
+    std::visit(
+        [&](const auto& any) {
+          const auto contour = extract<double>(any, 0.1);
+          EXPECT_GT(contour.simplices.size(), 10U);
+          EXPECT_TRUE(check(contour).is_manifold());
+        },
+        complex);
+  }
+}
+
+TEST(PointTable, ColumnsHaveNamesInAnyOrder) {
+  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
+  TempDir dir;
+  write_file(
+      dir / "a.csv",
+      "\xef\xbb\xbf# stations\r\n\"p, hPa\";Y;X;name it\r\n\r\n1;0;0;5\r\n2;0;1;nan\r\n3;1;0;\r\n4;1.5;+1;8\r\n");
+  CellMeshOptions options;
+  expect_error(ErrorCode::VariableNotFound, {"p, hPa", "name it"}, [&] { read(dir / "a.csv"); });
+  options.variable = "p, hPa";
+  const CellMesh mesh = read(dir / "a.csv", options);
+  EXPECT_THAT(mesh.axis_names, testing::ElementsAre("X", "Y"));
+  EXPECT_THAT(mesh.points, testing::ElementsAre(0, 0, 1, 0, 0, 1, 1, 1.5));
+  EXPECT_THAT(mesh.values, testing::ElementsAre(1, 2, 3, 4));
+  options.variable = "name it";
+  const CellMesh other = read(dir / "a.csv", options);
+  EXPECT_EQ(other.values[3], 8);
+  EXPECT_TRUE(std::isnan(other.values[1]) && std::isnan(other.values[2]));
+  // without x and y, all columns but one are coordinates
+  write_file(dir / "b.csv", "lon\tlat\tt\n0\t0\t1\n1\t0\t2\n0\t1\t3\n");
+  EXPECT_THAT(read(dir / "b.csv").axis_names, testing::ElementsAre("lon", "lat"));
+  write_file(dir / "c.csv", "0 0  1\n1 0 2\n 0 1 3\n");
+  EXPECT_THAT(read(dir / "c.csv").values, testing::ElementsAre(1, 2, 3));
+}
+
+TEST(PointTable, WrongRowsAreErrorsWithTheirLine) {
+  TempDir dir;
+  const std::vector<WrongMesh> all = {
+      {"x,y,f\n0,0,1\n1,0\n", ErrorCode::MalformedFile, {"line 3 has 2 fields; expected 3"}},
+      {"x,y,f\n0,0,1\n1,zero,2\n", ErrorCode::MalformedFile, {"line 3, column 2", "'zero'"}},
+      {"x,y,f\n0,0,1\n1,,2\n", ErrorCode::MalformedFile, {"line 3, column 2"}},
+      {"x,y,f\n0,inf,1\n", ErrorCode::MalformedFile, {"line 2, column 2", "finite"}},
+      {"x,y,f\n0,0,1\n1,0,two\n", ErrorCode::MalformedFile, {"line 3, column 3", "'two'"}},
+      {"x,y,f\n0,0,1\n1,0,2\n# again\n0,0,3\n", ErrorCode::MalformedFile, {"line 5 has the same point as line 2"}},
+      {"x,y,f\n", ErrorCode::MalformedFile, {"without a row"}},
+      {"x,f\n0,1\n", ErrorCode::UnsupportedData, {"2 columns, 1 of them"}},
+      {"1,2,3,4,5,6\n", ErrorCode::UnsupportedData, {"6 columns, 5 of them"}},
+      {std::string(3 << 20, '1'), ErrorCode::MalformedFile, {"a line of more than"}},
+  };
+  for (const WrongMesh& wrong : all) {
+    write_file(dir / "wrong.csv", wrong.bytes);
+    std::vector<std::string> parts = wrong.parts;
+    parts.emplace_back("wrong.csv");
+    expect_error(wrong.code, parts, [&] { read(dir / "wrong.csv"); });
+  }
+  if (!has_delaunay()) return;
+  write_file(dir / "wrong.csv", "0,0,1\n1,0,2\n2,0,3\n");  // all on a line
+  expect_error(ErrorCode::InvalidArgument, {"wrong.csv"}, [&] { read(dir / "wrong.csv"); });
+}
+
+}  // namespace
+}  // namespace tegl::test
