@@ -309,7 +309,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
          time_step: float | None = None, time_unit: str | None = None, sort: _kinds.SeriesOrder | None = None,
          time_axis: int = 0, fix: Mapping[str, int] | None = None, allow_outside_paths: bool = False,
          separate_process: bool = False, progress: Progress | None = None) -> Image:
-    """Reads an image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF, DICOM. The values are not copied from the library's memory.
+    """Reads an image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF, VTK (.vti, .vtr, .pvd), DICOM. The values are not copied from the library's memory.
 
     ::
 

@@ -189,3 +189,100 @@ def test_contours_of_lattices_and_of_scattered_points():
         tegl.contour_points(points[[0, 1, 2, 3, 4, 0]], np.zeros(6), 0.0)
     with pytest.raises(ValueError, match="shape"):
         tegl.contour_points(points[0], np.zeros(3), 0.0)
+
+
+VTU = """<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">{places}</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">{corners}</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">{ends}</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">{types}</DataArray></Cells>
+<PointData><DataArray type="Float64" Name="f" format="ascii">{values}</DataArray></PointData>
+</Piece></UnstructuredGrid></VTKFile>"""
+
+
+def write_vtu(path, points, voxels, values):
+    def row(numbers):
+        return " ".join(repr(x) for x in np.asarray(numbers).ravel().tolist())
+
+    path.write_text(VTU.format(points=len(points), cells=len(voxels), places=row(points), corners=row(voxels),
+                               ends=row(8 * np.arange(1, len(voxels) + 1)), types=row([11] * len(voxels)), values=row(values)))
+    return path
+
+
+def test_meshes_are_read_from_files(tmp_path):
+    points, cells = grid(9)
+    path = write_vtu(tmp_path / "a.vtu", points, cells, ball(points))
+    mesh = tegl.read_mesh(path)
+    assert np.array_equal(mesh.points, points) and np.array_equal(mesh.values, ball(points))
+    assert [(name, array.shape) for name, array in mesh.cells] == [("voxel", cells.shape)]
+    assert mesh.variable == "f" and mesh.axis_names == ("x", "y", "z") and not len(mesh.times)
+    assert "729 points, 512 voxel" in repr(mesh)
+    expected = tegl.contour_mesh(points, {"voxel": cells}, ball(points), 0.0)
+    contour = mesh.contour(0.0)
+    assert np.array_equal(contour.vertices, expected.vertices) and np.array_equal(contour.simplices, expected.simplices)
+    assert contour.axis_names == ("x", "y", "z")
+
+
+def test_files_over_time_are_one_mesh(tmp_path):
+    points, cells = grid(9)
+    files = [write_vtu(tmp_path / f"{k}.vtu", points * (1 + 0.1 * k), cells, ball(points) - 0.1 * k) for k in range(3)]
+    mesh = tegl.read_mesh(files, "f", times=[0, 0.5, 2])
+    assert mesh.points.shape == (3, 729, 3) and mesh.values.shape == (3, 729) and mesh.times.tolist() == [0, 0.5, 2]
+    contour = mesh.contour(0.0, dtype=np.float64)
+    assert contour.axis_names == ("x", "y", "z", "t")
+    assert contour.slice(0.7).check().is_closed
+    with pytest.raises(ValueError, match="2 times for 3 files"):
+        tegl.read_mesh(files, times=[0, 1])
+    with pytest.raises(ValueError, match="times with one file"):
+        tegl.read_mesh(files[0], times=[0])
+
+
+def test_tables_of_points_are_read(tmp_path):
+    points = np.random.default_rng(3).uniform(-1, 1, (500, 3))
+    table = tmp_path / "points.csv"
+    np.savetxt(table, np.column_stack([points, ball(points), points[:, 0]]), delimiter=",", header="x,y,z,f,g", comments="")
+    mesh = tegl.read_mesh(table, "f")
+    expected = tegl.contour_points(mesh.points, mesh.values, 0.2)
+    assert np.array_equal(mesh.contour(0.2).vertices, expected.vertices)
+    with pytest.raises(ValueError, match="f, g; expected a choice"):
+        tegl.read_mesh(table)
+    table.write_text("x,y,f\n0,0,1\n1,zero,2\n")
+    with pytest.raises(ValueError, match="line 3, column 2"):
+        tegl.read_mesh(table)
+    with pytest.raises(FileNotFoundError):
+        tegl.read_mesh(tmp_path / "none.csv")
+
+
+def test_meshes_like_those_of_meshio():
+    class Block:
+        def __init__(self, kind, data):
+            self.type, self.data = kind, data
+
+    class MeshOfMeshio:
+        pass
+
+    points, cells = grid(9)
+    mesh = MeshOfMeshio()
+    mesh.points, mesh.point_data = points, {"f": ball(points), "g": points[:, 0]}
+    mesh.cells = [Block("vertex", np.array([[0]])), Block("triangle", np.array([[0, 1, 2]])), Block("voxel", cells)]
+    expected = tegl.contour_mesh(points, {"voxel": cells}, ball(points), 0.0)
+    assert np.array_equal(tegl.contour_mesh(mesh, values="f", level=0.0).vertices, expected.vertices)
+    for arguments, error, text in [(dict(level=0.0), ValueError, "'f', 'g'; expected the name"),
+                                   (dict(values="h", level=0.0), ValueError, "'h'; expected one of 'f', 'g'"),
+                                   (dict(values="f"), TypeError, "level are missing"),
+                                   (dict(cells=cells, values="f", level=0.0), TypeError, "twice")]:
+        with pytest.raises(error) as raised:
+            tegl.contour_mesh(mesh, **arguments)
+        assert text in str(raised.value)
+    mesh.cells.append(Block("tetra10", np.array([range(10)])))
+    with pytest.raises(ValueError, match="'tetra10'; expected one of"):
+        tegl.contour_mesh(mesh, values="f", level=0.0)
+    # 2D, with a coordinate that it does not need
+    flat, squares = grid(9, 2)
+    for axis in range(3):
+        mesh.points, mesh.cells = np.insert(flat, axis, 3.0, axis=1), [Block("pixel", squares), Block("line", squares[:, :2])]
+        mesh.point_data = {"f": ball(flat)}
+        assert tegl.contour_mesh(mesh, level=0.0).check().is_closed
+    mesh.points = np.column_stack([flat, flat[:, 0]])
+    with pytest.raises(ValueError, match="on a surface in space"):
+        tegl.contour_mesh(mesh, level=0.0)

@@ -77,7 +77,8 @@ class IndexCommand final : public Command {
  public:
   explicit IndexCommand(CLI::App& program)
       : Command(program, "index", "Build an index of an image's active tiles, for contours at many isovalues",
-                "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM (a folder)",
+                "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, "
+                ".pvd) or DICOM (a folder)",
                 Files::image) {
     std::vector<std::string> names;
     for (const ActiveMethod method : active_methods()) names.emplace_back(name_of(method));

@@ -85,10 +85,10 @@ std::string with_option_names(std::string message) {
 
 void ImageOptions::add_to(CLI::App& app) {
   options_ = {
-      app.add_option(
-             "--var", variable_,
-             "netCDF: the variable to read; .npz, VTK: the array; needed if the file has several. VTK: NAME:K is "
-             "component K of a vector, NAME:magnitude its length")
+      app.add_option("--var", variable_,
+                     "netCDF: the variable to read; .npz, VTK: the array; .csv: the column; needed if the file has "
+                     "several. VTK: NAME:K is "
+                     "component K of a vector, NAME:magnitude its length")
           ->type_name("NAME"),
       app.add_option("--series", series_,
                      "DICOM: the series to read, by its UID, its description or its number in the list of 'tegl info'; "
