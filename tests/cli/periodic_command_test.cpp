@@ -56,6 +56,15 @@ TEST_F(PeriodicCommand, ABallAcrossTheSeamIsOneComponentAlsoFromASavedContour) {
   EXPECT_NEAR(measure["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 125, 15);
 }
 
+TEST_F(PeriodicCommand, CloseAndNormalsWorkAcrossTheSeam) {
+  const std::string output = path("closed.vtkhdf");
+  (void)run_json(
+      {"contour", file_, "--iso", "-8", "--periodic", "x", "--close", "--normals", "-o", output});
+  const Mesh mesh = read_mesh(output);
+  EXPECT_EQ(check(to_contour<3>(mesh)).boundary_simplices, 0u);
+  EXPECT_FALSE(mesh.normals.empty());
+}
+
 TEST_F(PeriodicCommand, OtherFormatsGetTheUnrolledContourWithItsMap) {
   for (const char* const name : {"ball.ply", "ball.vtkhdf"}) {
     const std::string output = path(name);
@@ -74,7 +83,6 @@ TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
   expect_refused({"--periodic", "x,x", "-o", output}, "twice");
   expect_refused({"--periodic", "x=20", "-o", output}, "expected more than 29");
   expect_refused({"--periodic", "x=much", "-o", output}, "--periodic");
-  expect_refused({"--periodic", "x", "--close", "-o", output}, "close with periodic axes");
   expect_refused({"--periodic", "x", "--stream", "-o", output}, "--periodic x with --stream");
   expect_refused({"--periodic", "x", "--facets", "-o", output}, "--periodic x with --facets");
   expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");

@@ -143,8 +143,10 @@ using AroundEdges = std::uint64_t (*)(const SampleGradients<N>& samples, const E
 template <int N>
 class SampleGradients {
  public:
-  /// Steps along the last axis. They may extend beyond the extracted layers of an image.
-  [[nodiscard]] AxisSteps last_steps() const { return AxisSteps(last_axis_, first_layer_); }
+  /// Steps along an axis, on which the extracted samples are `here`. They may extend beyond these.
+  [[nodiscard]] virtual AxisSteps steps(int axis, const Axis& here) const {
+    return axis + 1 < N ? AxisSteps(here) : AxisSteps(last_axis_, first_layer_);
+  }
   /// The function that reads values around edges of these samples.
   [[nodiscard]] virtual AroundEdges<N, double> around_edges() const noexcept = 0;
   /// The function that reads them in float. Null if float does not represent all values exactly.

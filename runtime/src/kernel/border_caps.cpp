@@ -47,7 +47,7 @@ TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask)
 template <int N, class Real>
 Caps<N, Real>::Caps(const EdgeCrossings<N>& source, const RowShape<N>& shape, const TableSet<N>& tables,
                     const Counter<N>& counter, const Placement<N, Real>& placement, const FaceEstimator<N>* estimator,
-                    bool inverted, bool flip, unsigned closed_axes)
+                    bool inverted, bool flip, unsigned closed_axes, unsigned seam_axes)
     : source_(source),
       shape_(shape),
       tables_(tables),
@@ -57,6 +57,7 @@ Caps<N, Real>::Caps(const EdgeCrossings<N>& source, const RowShape<N>& shape, co
       inverted_(inverted),
       flip_(flip),
       closed_axes_(closed_axes),
+      seam_axes_(seam_axes),
       border_(shape.words()),
       valid_(shape.words()) {
   for (EdgePlane& corners : corners_) corners.allocate(shape_.rows(), shape_.words());
@@ -102,9 +103,17 @@ void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const R
     plane.bits[0][first + w] = (inverted_ ? ~high[w] : high[w]) & border[w];
     for (Word rest = plane.bits[0][first + w]; rest != 0; rest &= rest - 1) {
       index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+      if (seam_axes_ != 0 && is_on_seam(index)) seam_corners_.push_back({index, vertices_.size()});
       add_vertex<0>(index, {});
     }
   }
+}
+
+template <int N, class Real>
+bool Caps<N, Real>::is_on_seam(const typename RowShape<N>::Index& index) const noexcept {
+  for (int a = 0; a < N; ++a)
+    if ((seam_axes_ >> a & 1u) != 0 && (index[a] == 0 || index[a] + 1 == shape_.size(a))) return true;
+  return false;
 }
 
 template <int N, class Real>

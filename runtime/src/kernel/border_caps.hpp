@@ -22,10 +22,11 @@ class Caps {
   using Simplex = std::array<std::uint64_t, N>;
 
   /// `inverted`: the layers' bits are inverted. `flip`: orientation opposite to "positive side faces high". Bit a of
-  /// `closed_axes`: the borders across axis a get caps. `estimator`: as in Counter.
+  /// `closed_axes`: the borders across axis a get caps; of `seam_axes`: its corners are listed (seam_corners).
+  /// `estimator`: as in Counter.
   Caps(const EdgeCrossings<N>& source, const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
        const Placement<N, Real>& placement, const FaceEstimator<N>* estimator, bool inverted, bool flip,
-       unsigned closed_axes);
+       unsigned closed_axes, unsigned seam_axes);
 
   /// Adds the cap vertices of layer k, which lies between slabs `below` and `above` (either may be null). Requires that
   /// the layer's contour vertices are numbered.
@@ -40,6 +41,12 @@ class Caps {
   /// Normals of vertices(); empty if none were requested.
   [[nodiscard]] const Buffer<Vertex>& normals() const noexcept { return normals_; }
   [[nodiscard]] const Buffer<Simplex>& simplices() const noexcept { return simplices_; }
+  /// A cap vertex at a sample in the first or last layer across one of `seam_axes`.
+  struct SeamCorner {
+    std::array<std::size_t, N> index;
+    std::uint64_t vertex;  ///< in vertices()
+  };
+  [[nodiscard]] const std::vector<SeamCorner>& seam_corners() const noexcept { return seam_corners_; }
   /// Final number of a simplex's vertex, if cap vertices are numbered from `first` on.
   [[nodiscard]] static std::uint64_t number(std::uint64_t stored, std::uint64_t first) noexcept {
     return (stored & kCapVertex) != 0 ? first + (stored & ~kCapVertex) : stored;
@@ -61,6 +68,7 @@ class Caps {
   template <unsigned Axes>
   void add_vertex(const typename RowShape<N>::Index& index, const std::array<double, std::popcount(Axes)>& place);
   void add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at);
+  [[nodiscard]] bool is_on_seam(const typename RowShape<N>::Index& index) const noexcept;
   template <int Omitted>
   void add_face(const SlabView<N>& view, std::size_t k, unsigned side);
   /// Adds the caps of a row of cells, in the border face at `side` of axis `Omitted`. `face`: the layers that contain
@@ -100,7 +108,8 @@ class Caps {
   const FaceEstimator<N>* estimator_;
   bool inverted_;
   bool flip_;
-  unsigned closed_axes_;
+  unsigned closed_axes_, seam_axes_;
+  std::vector<SeamCorner> seam_corners_;
   std::array<EdgePlane, 2>
       corners_;  ///< by k % 2: the high samples of a layer in the border, which caps have as vertices
   std::vector<Word> border_;

@@ -107,6 +107,7 @@ class ContourOutput {
 struct ExtractPlan {
   std::uint64_t max_vertices = kMaxVertices;
   unsigned closed_axes = ~0u;  ///< bit a: whether options.close closes the borders across axis a
+  unsigned seam_axes = 0;      ///< bit a: the last layer across axis a repeats the first one
   std::size_t batch = 0;       ///< slabs per batch; 0: chosen from the image
   /// Maximum vertices of two consecutive batches: numbers in simplices are distinguished modulo 2^32.
   std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;

@@ -98,7 +98,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (options.close)
       caps_.emplace(source, shape_, tables_, counter_, placement_, estimator_.get(), inverted_,
-                    against_tables(grid, options), plan.closed_axes);
+                    against_tables(grid, options), plan.closed_axes, plan.seam_axes);
     if (!plan.keeps_tiles) counter_.keep_tiles(false);
     counter_.keep_assembled(kMostAssembled / (batch_ * shape_.chunks()));
     for (Layer<N>& layer : layers_) counter_.allocate(layer);

@@ -123,7 +123,7 @@ class NormalWriter {
  private:
   static std::array<AxisSteps, N> steps_of(const SampleGradients<N>& source, const Grid<N>& grid) {
     return [&]<std::size_t... A>(std::index_sequence<A...>) {
-      return std::array<AxisSteps, N>{(A + 1 < N ? AxisSteps(grid.axes[A]) : source.last_steps())...};
+      return std::array<AxisSteps, N>{source.steps(int{A}, grid.axes[A])...};
     }
     (std::make_index_sequence<N>());
   }
@@ -147,8 +147,8 @@ class NormalWriter {
       if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
       // normals
       Word left = write_normals(row);
-      // These edges are at the ends of the row, where weights differ.
-      if (row.row_weights == nullptr) left |= at_ends;
+      // These edges are at the ends of the row, where weights differ, or there are neighbours that were not read.
+      if (row.row_weights == nullptr || steps_[0].has_backward(0)) left |= at_ends;
       for (; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
         row.out[j] = on_edge(start_of(i + j), axis, alphas[i + j]);

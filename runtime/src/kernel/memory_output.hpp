@@ -82,8 +82,6 @@ class MemoryOutput : public ContourOutput<N, Real> {
  protected:
   [[nodiscard]] Contour<N, Real>& contour() const noexcept { return contour_; }
   [[nodiscard]] std::uint64_t max_vertices() const noexcept { return max_vertices_; }
-
- private:
   void add_caps(const Caps<N, Real>& caps, std::uint64_t first) {
     check_vertex_count(first + caps.vertices().size(), max_vertices_);
     contour_.vertices.insert(contour_.vertices.end(), caps.vertices().begin(), caps.vertices().end());
@@ -95,6 +93,7 @@ class MemoryOutput : public ContourOutput<N, Real> {
     }
   }
 
+ private:
   template <class Items>
   void resize(Items& output, std::uint64_t size, const ContourPart& part) {
     const std::uint64_t last = size - output.size();

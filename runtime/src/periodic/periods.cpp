@@ -86,9 +86,6 @@ void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const Ext
     if (periods[a] != 0.0) check_period(grid.axes[a], a, periods[a]);
   if (std::all_of(periods.begin(), periods.end(), [](double period) { return period == 0.0; }))
     refuse("no axis is periodic; expected a period that is not 0");
-  if (options.close) refuse("close with periodic axes; expected close = false");
-  if (options.normals != Normals::none)
-    refuse("normals from the image with periodic axes; expected none: tegl/normals.hpp has geometric ones");
   if (options.ambiguity == Ambiguity::custom)
     refuse("Ambiguity::custom with periodic axes; expected another: a custom estimator may read samples at the border");
 }

@@ -25,7 +25,7 @@ class SeamCells {
   void add_slab(const RowShape<N>& shape, const Slab<N>& slab, bool lists_cubes);
 
   /// Pairs (vertex in a last layer, the same vertex in the first layer); the first number is the larger one.
-  [[nodiscard]] const std::vector<std::pair<Index, Index>>& pairs() const noexcept { return pairs_; }
+  [[nodiscard]] std::vector<std::pair<Index, Index>>& pairs() noexcept { return pairs_; }
 
  private:
   /// A cell with vertices.

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 #include <set>
@@ -199,15 +200,149 @@ TEST(Periodic, SamplesThatEqualTheIsovalueAreMergedByTheirCells) {
   EXPECT_EQ(check(contour).euler, check(shifted).euler);
 }
 
+/// For each axis whether it is periodic, by the bits of `axes`.
+template <int N>
+AxisPeriods<N> periodic_along(unsigned axes) {
+  AxisPeriods<N> periods{};
+  for (int a = 0; a < N; ++a) periods[a] = (axes >> a & 1u) != 0 ? 1.0 : 0.0;
+  return periods;
+}
+
+template <int N>
+void expect_closed_at_borders(const std::array<std::size_t, N>& sizes, double missing) {
+  auto image = torus_image<N>(sizes, noise_of<N>(13));
+  std::mt19937 random(5);
+  for (float& value : image.values)
+    if (std::uniform_real_distribution<double>()(random) < missing) value = std::numeric_limits<float>::quiet_NaN();
+  for (unsigned axes = 1; axes < 1u << N; ++axes)
+    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}) {
+      SCOPED_TRACE(testing::Message() << N << "D, axes " << axes << ", " << static_cast<int>(ambiguity));
+      ExtractOptions options;
+      options.close = true;
+      options.ambiguity = ambiguity;
+      options.normals = Normals::differences;
+      const auto contour = wrapped(image, periodic_along<N>(axes), 0.0, options);
+      const MeshReport report = check(contour);
+      EXPECT_TRUE(missing == 0.0 ? is_closed(report) : is_manifold(report));
+      EXPECT_EQ(report.unused_vertices, 0u);
+      EXPECT_EQ(contour.normals.size(), contour.vertices.size());
+      const ContourSize size = count_periodic(image.view(), periodic_along<N>(axes), 0.0, options);
+      EXPECT_EQ(size.vertices, contour.vertices.size());
+      EXPECT_EQ(size.simplices, contour.simplices.size());
+    }
+}
+
+TEST(Periodic, CloseClosesAtTheBordersOfTheOtherAxes) {
+  for (const double missing : {0.0, 0.1}) {
+    expect_closed_at_borders<2>({7, 66}, missing);
+    expect_closed_at_borders<3>({65, 4, 5}, missing);
+    expect_closed_at_borders<4>({4, 3, 5, 4}, missing);
+  }
+  // a tube along x whose ends meet: closed without caps
+  const auto tube =
+      torus_image<3>({12, 20, 20}, [](const auto& x) { return 0.3 - std::hypot(x[1] - 0.5, x[2] - 0.5); });
+  ExtractOptions options;
+  options.close = true;
+  EXPECT_EQ(wrapped(tube, {1.0, 0.0, 0.0}, 0.0, options).simplices, wrapped(tube, {1.0, 0.0, 0.0}, 0.0).simplices);
+}
+
+/// Vertices, moved along all axes by `shift` modulo 1 and rounded, with their normals.
+template <int N>
+std::map<std::array<std::int64_t, N>, std::array<double, N>> normals_by_place(const Contour<N, double>& contour,
+                                                                              const std::array<double, N>& shift) {
+  std::map<std::array<std::int64_t, N>, std::array<double, N>> result;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    std::array<std::int64_t, N> place;
+    for (int a = 0; a < N; ++a) {
+      const double x = contour.vertices[v][a] + shift[a];
+      place[a] = std::llround(1e7 * (x - std::floor(x + 1e-9)));
+    }
+    result[place] = contour.normals[v];
+  }
+  return result;
+}
+
+template <int N>
+void expect_shifted_normals(const std::array<std::size_t, N>& sizes, Normals normals) {
+  ExtractOptions options;
+  options.normals = normals;
+  const auto contour = wrapped<double>(torus_image<N>(sizes, noise_of<N>(9)), all_periodic<N>(), 0.0, options);
+  const auto shifted = wrapped<double>(torus_image<N>(sizes, noise_of<N>(9), 2), all_periodic<N>(), 0.0, options);
+  std::array<double, N> shift;
+  for (int a = 0; a < N; ++a) shift[a] = 2.0 / static_cast<double>(sizes[a]);
+  const auto expected = normals_by_place<N>(contour, {});
+  std::size_t found = 0;
+  for (const auto& [place, normal] : normals_by_place<N>(shifted, shift)) {
+    const auto at = expected.find(place);
+    if (at == expected.end()) continue;  // rounded to another place
+    ++found;
+    for (int a = 0; a < N; ++a) EXPECT_NEAR(at->second[a], normal[a], 1e-6);
+  }
+  EXPECT_GT(found, expected.size() * 9 / 10);
+}
+
+TEST(Periodic, NormalsUseTheNeighboursAcrossTheSeam) {
+  for (const Normals normals : {Normals::differences, Normals::sobel}) {
+    expect_shifted_normals<2>({70, 11}, normals);
+    expect_shifted_normals<3>({9, 7, 6}, normals);
+    expect_shifted_normals<3>({70, 5, 6}, normals);
+    expect_shifted_normals<4>({4, 5, 3, 5}, normals);
+  }
+  // only the last axis: samples are not copied
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  const auto waves = torus_image<3>({40, 40, 40}, gyroid);
+  for (const AxisPeriods<3>& periods : {AxisPeriods<3>{0.0, 0.0, 1.0}, AxisPeriods<3>{1.0, 0.0, 1.0}}) {
+    const auto contour = wrapped<double>(waves, periods, 0.01, options);
+    for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+      const auto& x = contour.vertices[v];
+      if (x[0] > 0.02 && x[0] < 0.95 && x[1] > 0.02 && x[1] < 0.95) continue;  // of interest: the seam along z only
+      if (periods[0] == 0.0 && (x[0] < 0.03 || x[0] > 0.94)) continue;
+      if (x[1] < 0.03 || x[1] > 0.94) continue;
+      std::array<double, 3> gradient;
+      const auto s = [&](int a) { return std::sin(kTurn * x[a]); };
+      const auto c = [&](int a) { return std::cos(kTurn * x[a]); };
+      gradient = {c(0) * c(1) - s(2) * s(0), c(1) * c(2) - s(0) * s(1), c(2) * c(0) - s(1) * s(2)};
+      const double length =
+          std::sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
+      for (int a = 0; a < 3; ++a) EXPECT_NEAR(contour.normals[v][a], -gradient[a] / length, 0.02);
+    }
+  }
+}
+
+TEST(Periodic, UnevenAxesHaveTheirOwnStepAcrossTheSeam) {
+  // a linear field, apart from the seam, has the same gradient everywhere
+  OwnedImage<float, 2> image;
+  image.grid.axes = {Axis::rectilinear({0.0, 0.1, 0.3, 0.6, 0.7}), Axis::uniform(4, 0.0, 1.0)};
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 5; ++i) image.values.push_back(static_cast<float>(std::cos(kTurn * image.grid.axes[0][i]) + j));
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  const auto contour = wrapped<double>(image, {1.0, 0.0}, 1.2, options);
+  const auto& axis = image.grid.axes[0];
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    if (contour.vertices[v][0] != 0.0) continue;
+    // at x = 0 the neighbours are those at 0.1 and at 0.7 - 1
+    const double ahead = (std::cos(kTurn * axis[1]) - 1.0) / 0.1, behind = (1.0 - std::cos(kTurn * axis[4])) / 0.3;
+    const double slope = 0.5 * (ahead + behind), length = std::hypot(slope, 1.0);
+    EXPECT_NEAR(contour.normals[v][0], -slope / length, 1e-5);
+    EXPECT_NEAR(contour.normals[v][1], -1.0 / length, 1e-5);
+  }
+}
+
 TEST(Periodic, TheBytesDoNotDependOnThreads) {
   const auto image = torus_image<4>({9, 8, 10, 9}, noise_of<4>(5));
-  ExtractOptions one, many;
-  one.work.threads = 1;
-  many.work.threads = 4;
-  const auto first = wrapped(image, all_periodic<4>(), 0.1, one);
-  const auto second = wrapped(image, all_periodic<4>(), 0.1, many);
-  EXPECT_EQ(first.vertices, second.vertices);
-  EXPECT_EQ(first.simplices, second.simplices);
+  for (const bool with_normals : {false, true}) {
+    ExtractOptions one, many;
+    one.work.threads = 1;
+    many.work.threads = 4;
+    if (with_normals) one.normals = many.normals = Normals::differences;
+    const auto first = wrapped(image, all_periodic<4>(), 0.1, one);
+    const auto second = wrapped(image, all_periodic<4>(), 0.1, many);
+    EXPECT_EQ(first.vertices, second.vertices);
+    EXPECT_EQ(first.simplices, second.simplices);
+    EXPECT_EQ(first.normals, second.normals);
+  }
 }
 
 /// A ball of radius 0.3 whose centre moves along x over time, so that it crosses the seam; 4 samples of time.
@@ -308,11 +443,9 @@ TEST(Periodic, BadPeriodsAndOptionsAreRefused) {
   refuses("is -1; expected a positive number", {-1.0, 0.0});
   refuses("is inf", {std::numeric_limits<double>::infinity(), 0.0});
   ExtractOptions options;
-  options.close = true;
-  refuses("close", {1.0, 0.0}, options);
-  options = {};
-  options.normals = Normals::differences;
-  refuses("normals", {1.0, 0.0}, options);
+  options.ambiguity = Ambiguity::custom;
+  options.estimator.choose = [](const AmbiguousFace&) { return tile::Choice::low; };
+  refuses("Ambiguity::custom", {1.0, 0.0}, options);
   const auto contour = wrapped(torus_image<3>({5, 4, 5}, gyroid), all_periodic<3>(), 0.0);
   expect_error(ErrorCode::InvalidArgument, "across one of its periods",
                [&] { (void)slice(contour, Hyperplane<3>::across(0, 0.5)); });
