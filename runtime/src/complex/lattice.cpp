@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "complex/image_points.hpp"
 #include "complex/lattice_cells.hpp"
 #include "tegl/error.hpp"
 
@@ -55,38 +55,15 @@ void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
 /// The places of samples in the world; the odd layers of axis `layers` are shifted along the axes before it.
 template <int N>
 std::vector<std::array<double, N>> points_of(const Grid<N>& grid, int layers) {
-  std::size_t count = 1;
-  for (const Axis& axis : grid.axes) {
-    if (axis.size() == 0 || count > std::numeric_limits<Index>::max() / axis.size())
-      throw Error(ErrorCode::TooLarge, "2^32 samples of a lattice or more; expected fewer");
-    count *= axis.size();
-  }
-  std::vector<std::array<double, N>> points(count);
-  std::array<std::size_t, N> index{};
-  for (std::array<double, N>& point : points) {
+  std::vector<std::array<double, N>> points;
+  points.reserve(detail::count_samples(grid, "a lattice"));
+  detail::for_each_sample<N>(grid.sizes(), [&](const auto& index) {
     std::array<double, N> x;
     for (int a = 0; a < N; ++a) x[a] = grid.axes[a][index[a]];
     for (int a = 0; a < layers && index[layers] % 2 == 1; ++a) x[a] += 0.5 * grid.axes[a].step();
-    for (int row = 0; row < N; ++row) {
-      point[row] = grid.offset[row];
-      for (int a = 0; a < N; ++a) point[row] += grid.linear[row][a] * x[a];
-    }
-    for (int a = 0; a < N && ++index[a] == grid.axes[a].size(); ++a) index[a] = 0;
-  }
+    points.push_back(detail::place_in_world<N>(grid, x));
+  });
   return points;
-}
-
-template <Value T, int N>
-std::vector<double> values_of(const Image<T, N>& image) {
-  std::size_t count = 1;
-  for (int a = 0; a < N; ++a) count *= image.size(a);
-  std::vector<double> values(count);
-  std::array<std::size_t, N> index{};
-  for (double& value : values) {
-    value = static_cast<double>(image(index));
-    for (int a = 0; a < N && ++index[a] == image.size(a); ++a) index[a] = 0;
-  }
-  return values;
 }
 
 template <int N>
@@ -115,7 +92,7 @@ Complex<4> in_time_of(const Image<T, 4>& image) {
   std::vector<double> times;
   for (std::size_t k = 0; k < grid.axes[3].size(); ++k)
     times.push_back(grid.linear[3][3] * grid.axes[3][k] + grid.offset[3]);
-  return in_time<3>(layer, times, values_of(image));
+  return in_time<3>(layer, times, detail::values_of(image));
 }
 
 }  // namespace
@@ -134,7 +111,7 @@ requires DimensionBetween<N, 2, 4> Complex<N> lattice_complex(const Image<T, N>&
   check_grid(image.grid(), lattice, N - 1);
   const detail::LatticeCells cells = detail::cells_of_lattice(lattice, four_sizes(image.grid()));
   Complex<N> complex(points_of(image.grid(), N - 1), cells.types, cells.corners);
-  complex.set_values(values_of(image));
+  complex.set_values(detail::values_of(image));
   return complex;
 }
 
