@@ -16,7 +16,7 @@ constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
 /// Reads an image in a child process and expects an error for which the program's exit code is 4. `held`: bytes of
 /// samples that the file contains.
-void expect_refused(const fs::path& path, const std::vector<std::string>& parts, std::uint64_t held = 0) {
+void expect_image_refused(const fs::path& path, const std::vector<std::string>& parts, std::uint64_t held = 0) {
   SCOPED_TRACE(path.filename());
   const ChildResult result = in_limited_child([&] { read_image(path); });
   EXPECT_EQ(result.signal, 0);
@@ -43,7 +43,7 @@ void expect_all_refused(const std::vector<Hostile>& files) {
   TempDir dir;
   for (const Hostile& file : files) {
     write_file(dir / file.name, file.bytes);
-    expect_refused(dir / file.name, file.parts);
+    expect_image_refused(dir / file.name, file.parts);
   }
 }
 
@@ -264,11 +264,11 @@ TEST(HostileImages, CompressedZerosBeyondTheImageCostNothing) {
   TempDir dir;
   constexpr std::size_t kZeros = std::size_t{64} << 20;
   write_file(dir / "bomb.nc.gz", bomb("CDF\1", kZeros));
-  expect_refused(dir / "bomb.nc.gz", {"no variable"});
+  expect_image_refused(dir / "bomb.nc.gz", {"no variable"});
   write_file(dir / "bomb_hdf.nc.gz", bomb("\x89HDF\r\n\x1a\n", kZeros));
-  expect_refused(dir / "bomb_hdf.nc.gz", {"HDF5 superblock"});
+  expect_image_refused(dir / "bomb_hdf.nc.gz", {"HDF5 superblock"});
   write_file(dir / "bomb_any.nc.gz", bomb("", kZeros));
-  expect_refused(dir / "bomb_any.nc.gz", {"starts with '\\x00"});
+  expect_image_refused(dir / "bomb_any.nc.gz", {"starts with '\\x00"});
   // The images before the zeros can be read.
   write_file(dir / "bomb.nii.gz", bomb(NiftiHeader({2, 2, 2}, 2, 8).bytes(), kZeros));
   write_file(dir / "image.nc.gz", bomb(Classic{}.bytes(), kZeros));
@@ -292,9 +292,9 @@ TEST(HostileImages, HeadersThatPromiseMoreThanTheStreamHasTakeNoMemory) {
   std::string noise(1 << 20, '\0');
   for (char& c : noise) c = static_cast<char>(random());
   write_file(dir / "a.nrrd", nrrd("", "gzip", compressed(noise), "20000 10000"));
-  expect_refused(dir / "a.nrrd", {"1048576 bytes of data after decompression; expected 200000000"}, noise.size());
+  expect_image_refused(dir / "a.nrrd", {"1048576 bytes of data after decompression; expected 200000000"}, noise.size());
   write_file(dir / "a.nii.gz", compressed(NiftiHeader({2000, 1000, 100}, 2, 8).bytes() + noise));
-  expect_refused(dir / "a.nii.gz", {"expected 200000352"}, noise.size());
+  expect_image_refused(dir / "a.nii.gz", {"expected 200000352"}, noise.size());
 }
 
 // ---- files that were found by mutation
@@ -306,7 +306,7 @@ TEST(HostileImages, OfTheSharedFolder) {
   for (const char* name : {"name300.mha", "comment300.mha", "key255.mha", "cds.mha", "text_stop.mha", "text_300.mha",
                            "ascii300.nrrd", "ascii1100.nrrd", "labels1000.nrrd", "labels_open.nrrd", "labels_slow.nrrd",
                            "spacing1e308.nrrd", "var300.nc", "dim300.nc", "name-1.nc", "bomb1g.nc.gz"})
-    expect_refused(folder / name, {});
+    expect_image_refused(folder / name, {});
 }
 
 }  // namespace
