@@ -109,4 +109,40 @@ std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTa
   return blocks;
 }
 
+std::vector<ActiveBlock> blocks_of_cells(const CellGroups& cells, const CellTables& tables,
+                                         std::span<const Index> active, std::span<const double> values, double isovalue,
+                                         const WorkOptions& work) {
+  constexpr std::ptrdiff_t kCells = 4096;  // of a block
+  struct Part {
+    std::size_t group;
+    std::uint64_t before;  // cells in groups before
+    const Index *first, *end;
+  };
+  std::vector<Part> parts;
+  std::uint64_t before = 0;
+  const Index* at = active.data();
+  for (std::size_t g = 0; g < cells.groups.size(); ++g, before += cells.groups[g - 1].size()) {
+    const Index* const end = std::lower_bound(at, active.data() + active.size(), before + cells.groups[g].size(),
+                                              [](Index cell, std::uint64_t bound) { return cell < bound; });
+    for (; at != end; at = parts.back().end)
+      parts.push_back({g, before, at, std::min(end, at + std::min(kCells, end - at))});
+  }
+  std::vector<ActiveBlock> blocks(parts.size());
+  for_each_item(parts.size(), work.threads, work.progress, [&](std::size_t b) {
+    const Part& part = parts[b];
+    const CellGroup& group = cells.groups[part.group];
+    const unsigned full = (1u << group.corner_count) - 1;
+    blocks[b].group = part.group;
+    for (const Index* number = part.first; number != part.end; ++number) {
+      const auto cell = static_cast<Index>(*number - part.before);
+      const Index* const corners = group.cell(cell);
+      unsigned signature = 0;
+      for (std::size_t c = 0; c < group.corner_count; ++c) signature |= (values[corners[c]] >= isovalue ? 1u : 0u) << c;
+      if (signature != 0 && signature != full) blocks[b].cells.push_back({cell, static_cast<std::uint16_t>(signature)});
+    }
+    add_sizes(tables.of_group[part.group], blocks[b]);
+  });
+  return blocks;
+}
+
 }  // namespace tegl::detail

@@ -56,4 +56,10 @@ struct CellTables {
                                                          const PointBits& bits, const ComplexEdges* edges,
                                                          const WorkOptions& work);
 
+/// The active ones of `active` (ascending numbers: by group, then by cell), in the same kind of blocks. There must be
+/// no missing values.
+[[nodiscard]] std::vector<ActiveBlock> blocks_of_cells(const CellGroups& cells, const CellTables& tables,
+                                                       std::span<const Index> active, std::span<const double> values,
+                                                       double isovalue, const WorkOptions& work);
+
 }  // namespace tegl::detail

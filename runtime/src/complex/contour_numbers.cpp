@@ -42,15 +42,19 @@ void check_complex_options(double isovalue, const ExtractOptions& options) {
 
 ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values,
                                double isovalue, const ExtractOptions& options, const Progress& progress,
-                               ExtractStats& stats)
+                               ExtractStats& stats, const std::vector<Index>* active)
     : tables_(tables_of(cells, options)),
       bits_([&] {
+        if (active != nullptr) return PointBits();
         Stopwatch watch;
         PointBits bits = classify_points(values, isovalue, work_of(options, part_of(progress, 0.0, 0.2)));
         watch.add_to(stats.classify_seconds);
         return bits;
       }()),
-      blocks_(find_active_cells(cells, tables_, bits_, edges, work_of(options, part_of(progress, 0.2, 0.5)))),
+      blocks_(active == nullptr
+                  ? find_active_cells(cells, tables_, bits_, edges, work_of(options, part_of(progress, 0.2, 0.5)))
+                  : blocks_of_cells(cells, tables_, *active, values, isovalue,
+                                    work_of(options, part_of(progress, 0.2, 0.5)))),
       crossings_(cells, tables_, blocks_, edges, values.size(), work_of(options, part_of(progress, 0.5, 0.8))),
       shared_(number_shared_points(tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
       first_shared_(sums_before(blocks_, &ActiveBlock::shared)),

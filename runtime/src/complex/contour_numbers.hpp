@@ -19,9 +19,11 @@ void check_complex_options(double isovalue, const ExtractOptions& options);
 /// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells.
 class ContourNumbers {
  public:
-  /// The arguments must outlive this object. Reports progress from 0 to 1. Errors: TooLarge, Cancelled.
+  /// The arguments must outlive this object. Reports progress from 0 to 1. `active`: numbers of the cells that may be
+  /// active; null: any. Errors: TooLarge, Cancelled.
   ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values, double isovalue,
-                 const ExtractOptions& options, const Progress& progress, ExtractStats& stats);
+                 const ExtractOptions& options, const Progress& progress, ExtractStats& stats,
+                 const std::vector<Index>* active = nullptr);
   // crossings_ refers to other members
   ContourNumbers(const ContourNumbers&) = delete;
   ContourNumbers& operator=(const ContourNumbers&) = delete;

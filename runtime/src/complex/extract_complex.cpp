@@ -14,7 +14,9 @@
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
 #include "complex/contour_numbers.hpp"
+#include "complex/edge_alpha.hpp"
 #include "kernel/split_nonmanifold.hpp"
+#include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/error.hpp"
 
@@ -22,15 +24,6 @@ namespace tegl {
 
 namespace detail {
 namespace {
-
-/// Where the isovalue is on an edge: 0 at the first end, 1 at the second. Infinite values are treated as limits: the
-/// vertex is at the finite end, or at the middle between two infinities.
-double alpha_of(double from, double to, double isovalue, double epsilon) noexcept {
-  double alpha = (isovalue - from) / (to - from);
-  if (std::isinf(to - from)) alpha = (isovalue / 2 - from / 2) / (to / 2 - from / 2);
-  if (std::isinf(from) || std::isinf(to)) alpha = !std::isinf(from) ? 0.0 : !std::isinf(to) ? 1.0 : 0.5;
-  return std::clamp(alpha, epsilon, 1.0 - epsilon);
-}
 
 /// Coordinates between two layers of the last axis, as far from both as their type distinguishes; both layers if there
 /// are none between.
@@ -165,11 +158,7 @@ class ComplexWriter {
     const Point &from = complex_.points()[ends[0]], &to = complex_.points()[ends[1]];
     const double alpha = alpha_of(complex_.values()[ends[0]], complex_.values()[ends[1]], isovalue_, epsilon_);
     Vertex& vertex = contour_.vertices[number];
-    for (std::size_t i = 0; i < N; ++i) {
-      const double x = from[i] + alpha * (to[i] - from[i]);
-      vertex[i] =
-          static_cast<Real>(alpha >= 1.0 ? to[i] : std::clamp(x, std::min(from[i], to[i]), std::max(from[i], to[i])));
-    }
+    vertex = point_on_edge<Real>(from, to, alpha);
     if (is_layered_ && from[N - 1] != to[N - 1]) {
       const auto [low, high] = inside_of<Real>(from[N - 1], to[N - 1]);
       vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
@@ -230,6 +219,34 @@ class ComplexWriter {
   Contour<N, Real>& contour_;
 };
 
+/// Extracts the contour from all cells, or from those of `active`.
+template <class Real, int N>
+Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                                  const std::vector<Index>* active) {
+  Extraction<N, Real> result;
+  Contour<N, Real>& contour = result.contour;
+  const Progress& progress = options.work.progress;
+  // number
+  Stopwatch watch;
+  const CellGroups& cells = ComplexAccess::cells(complex);
+  const ContourNumbers numbers(cells, ComplexAccess::edges(complex), complex.values(), isovalue, options,
+                               part_of(progress, 0.0, 0.6), result.stats, active);
+  watch.add_to(result.stats.find_seconds);
+  result.stats.find_seconds -= result.stats.classify_seconds;
+  // write
+  contour.direction = options.direction;
+  contour.vertices.resize(numbers.size().vertices);
+  contour.simplices.resize(numbers.size().simplices);
+  ComplexWriter<N, Real> writer(complex, numbers, isovalue, options, contour);
+  writer.write_edge_points({options.work.threads, part_of(progress, 0.6, 0.7)});
+  writer.write_polygon_centres({options.work.threads, part_of(progress, 0.7, 0.75)});
+  writer.write_cells({options.work.threads, part_of(progress, 0.75, 1.0)});
+  if (const auto touching = numbers.vertices_at_missing(cells); !touching.empty())
+    split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
+  watch.add_to(result.stats.generate_seconds);
+  return result;
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -238,27 +255,26 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
                                                                           const ExtractOptions& options) {
   detail::check_complex_options(isovalue, options);
   detail::check_range<Real>(complex);
-  Extraction<N, Real> result;
-  Contour<N, Real>& contour = result.contour;
-  const Progress& progress = options.work.progress;
-  // number
+  return detail::extract_cells<Real>(complex, isovalue, options, nullptr);
+}
+
+template <Coordinate Real, int N>
+requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex,
+                                                                          const CellIndex& index, double isovalue,
+                                                                          const ExtractOptions& options) {
+  if (index.cell_count() != complex.cell_count() || index.point_count() != complex.points().size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("an index of {} cells and {} points; the complex has {} and {}", index.cell_count(),
+                            index.point_count(), complex.cell_count(), complex.points().size()));
+  if (index.has_missing()) return extract_with_stats<Real>(complex, isovalue, options);
+  detail::check_complex_options(isovalue, options);
+  detail::check_range<Real>(complex);
   detail::Stopwatch watch;
-  const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
-  const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
-                                       options, detail::part_of(progress, 0.0, 0.6), result.stats);
-  watch.add_to(result.stats.find_seconds);
-  result.stats.find_seconds -= result.stats.classify_seconds;
-  // write
-  contour.direction = options.direction;
-  contour.vertices.resize(numbers.size().vertices);
-  contour.simplices.resize(numbers.size().simplices);
-  detail::ComplexWriter<N, Real> writer(complex, numbers, isovalue, options, contour);
-  writer.write_edge_points({options.work.threads, detail::part_of(progress, 0.6, 0.7)});
-  writer.write_polygon_centres({options.work.threads, detail::part_of(progress, 0.7, 0.75)});
-  writer.write_cells({options.work.threads, detail::part_of(progress, 0.75, 1.0)});
-  if (const auto touching = numbers.vertices_at_missing(cells); !touching.empty())
-    detail::split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
-  watch.add_to(result.stats.generate_seconds);
+  const std::vector<Index> active = index.find(isovalue);
+  double seconds = 0;
+  watch.add_to(seconds);
+  Extraction<N, Real> result = detail::extract_cells<Real>(complex, isovalue, options, &active);
+  result.stats.find_seconds += seconds;
   return result;
 }
 
@@ -288,6 +304,10 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
 #define TEGL_INSTANTIATE_COMPLEX(N)                                                                               \
   template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, double, const ExtractOptions&);   \
   template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, double, const ExtractOptions&); \
+  template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, const CellIndex&, double,         \
+                                                             const ExtractOptions&);                              \
+  template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, const CellIndex&, double,       \
+                                                               const ExtractOptions&);                            \
   template ContourSize count<N>(const Complex<N>&, double, const ExtractOptions&);
 TEGL_INSTANTIATE_COMPLEX(2)
 TEGL_INSTANTIATE_COMPLEX(3)

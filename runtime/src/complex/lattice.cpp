@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "complex/image_points.hpp"
 #include "complex/lattice_cells.hpp"
+#include "complex/lattice_grid.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {
@@ -35,44 +34,6 @@ const LatticeFacts& facts_of(Lattice lattice) noexcept {
                        [&](const LatticeFacts& facts) { return facts.lattice == lattice; });
 }
 
-/// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are two layers.
-template <int N>
-void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
-  for (int a = 0; a < layers; ++a) {
-    const Axis& axis = grid.axes[a];
-    const double step = axis.step();
-    for (std::size_t i = 1; i < axis.size(); ++i)
-      if (std::abs(axis[i] - axis[i - 1] - step) > 1e-6 * std::abs(step))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("lattice {}: axis {} has a step of {}; expected {}, that of all others",
-                                name_of(lattice), a, axis[i] - axis[i - 1], step));
-  }
-  if (grid.axes[layers].size() < 2)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("lattice {}: {} layers; expected at least 2", name_of(lattice), grid.axes[layers].size()));
-}
-
-/// The places of samples in the world; the odd layers of axis `layers` are shifted along the axes before it.
-template <int N>
-std::vector<std::array<double, N>> points_of(const Grid<N>& grid, int layers) {
-  std::vector<std::array<double, N>> points;
-  points.reserve(detail::count_samples(grid, "a lattice"));
-  detail::for_each_sample<N>(grid.sizes(), [&](const auto& index) {
-    std::array<double, N> x;
-    for (int a = 0; a < N; ++a) x[a] = grid.axes[a][index[a]];
-    for (int a = 0; a < layers && index[layers] % 2 == 1; ++a) x[a] += 0.5 * grid.axes[a].step();
-    points.push_back(detail::place_in_world<N>(grid, x));
-  });
-  return points;
-}
-
-template <int N>
-std::array<std::size_t, 4> four_sizes(const Grid<N>& grid) {
-  std::array<std::size_t, 4> sizes{1, 1, 1, 1};
-  for (int a = 0; a < N; ++a) sizes[a] = grid.axes[a].size();
-  return sizes;
-}
-
 /// The prisms of the cells of one layer in time.
 template <Value T>
 Complex<4> in_time_of(const Image<T, 4>& image) {
@@ -86,9 +47,9 @@ Complex<4> in_time_of(const Image<T, 4>& image) {
     std::copy_n(grid.linear[row].begin(), 3, space.linear[row].begin());
     space.offset[row] = grid.offset[row];
   }
-  check_grid(space, Lattice::fcc_in_time, 2);
-  const detail::LatticeCells cells = detail::cells_of_lattice(Lattice::fcc, four_sizes(space));
-  const Complex<3> layer(points_of(space, 2), cells.types, cells.corners);
+  detail::check_grid(space, Lattice::fcc_in_time, 2);
+  const detail::LatticeCells cells = detail::cells_of_lattice(Lattice::fcc, detail::four_sizes(space));
+  const Complex<3> layer(detail::points_of(space, 2), cells.types, cells.corners);
   std::vector<double> times;
   for (std::size_t k = 0; k < grid.axes[3].size(); ++k)
     times.push_back(grid.linear[3][3] * grid.axes[3][k] + grid.offset[3]);
@@ -103,14 +64,12 @@ double layer_step(Lattice lattice) noexcept { return facts_of(lattice).layer_ste
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 4> Complex<N> lattice_complex(const Image<T, N>& image, Lattice lattice) {
-  if (dimension(lattice) != N)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("lattice {} of a {}D image; expected {} dimensions",
-                                                        name_of(lattice), N, dimension(lattice)));
+  detail::check_dimension(lattice, N);
   if constexpr (N == 4)
     if (lattice == Lattice::fcc_in_time) return in_time_of(image);
-  check_grid(image.grid(), lattice, N - 1);
-  const detail::LatticeCells cells = detail::cells_of_lattice(lattice, four_sizes(image.grid()));
-  Complex<N> complex(points_of(image.grid(), N - 1), cells.types, cells.corners);
+  detail::check_grid(image.grid(), lattice, N - 1);
+  const detail::LatticeCells cells = detail::cells_of_lattice(lattice, detail::four_sizes(image.grid()));
+  Complex<N> complex(detail::points_of(image.grid(), N - 1), cells.types, cells.corners);
   complex.set_values(detail::values_of(image));
   return complex;
 }

@@ -8,19 +8,21 @@
 // 16-cells, three for each sample; the cells of the face-centred cubic lattice D3 are octahedra and tetrahedra).
 #include "complex/lattice_cells.hpp"
 
+#include <algorithm>
 #include <initializer_list>
 #include <limits>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "complex/cell_groups.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::detail {
 
 namespace {
 
-using Place = std::array<std::ptrdiff_t, 4>;
+using Place = LatticePlace;
 
 /// Collects cells; those with a corner outside of the array are left out.
 class Collector {
@@ -77,7 +79,8 @@ Place middle(Place place, int layer_axis, std::ptrdiff_t up, unsigned axes, std:
   return place;
 }
 
-void add_triangles(Collector& cells) {
+template <class Cells>
+void add_triangles(Cells& cells) {
   cells.for_samples([&](const Place& at) {
     const Place next = moved(at, 0, 1);
     cells.add(CellType::triangle, {at, next, middle(at, 1, 1, 1u, 0)});
@@ -87,7 +90,8 @@ void add_triangles(Collector& cells) {
 
 /// For each square of a layer, an octahedron with the samples above and below its middle, or a pyramid at the first and
 /// last layer; for each edge of a layer, a tetrahedron with the edge of the next layer that crosses above its middle.
-void add_face_centred(Collector& cells) {
+template <class Cells>
+void add_face_centred(Cells& cells) {
   cells.for_samples([&](const Place& at) {
     const Place x = moved(at, 0, 1), y = moved(at, 1, 1), both = moved(x, 1, 1);
     const Place above = middle(at, 2, 1, 3u, 0), below = middle(at, 2, -1, 3u, 0);
@@ -102,7 +106,8 @@ void add_face_centred(Collector& cells) {
 
 /// For each pair of neighbours in the odd layers, at a distance of one step or of two layers, the four tetrahedra with
 /// an edge of the square of even layers between the two.
-void add_body_centred(Collector& cells) {
+template <class Cells>
+void add_body_centred(Cells& cells) {
   const auto add_ring = [&](const Place& from, const Place& to, const std::array<Place, 4>& ring) {
     for (std::size_t i = 0; i < 4; ++i) cells.add(CellType::tetrahedron, {from, to, ring[i], ring[(i + 1) % 4]});
   };
@@ -119,7 +124,8 @@ void add_body_centred(Collector& cells) {
 }
 
 /// For each square of a layer, the 16-cell with the two samples of each adjacent layer beside its middle.
-void add_d4(Collector& cells) {
+template <class Cells>
+void add_d4(Cells& cells) {
   cells.for_samples([&](const Place& at) {
     for (int third = 0; third < 3; ++third) {
       const int a = third == 0 ? 1 : 0, b = third == 2 ? 1 : 2;
@@ -131,24 +137,89 @@ void add_d4(Collector& cells) {
   });
 }
 
+template <class Cells>
+void add_cells(Lattice lattice, Cells& cells) {
+  switch (lattice) {
+    case Lattice::triangular:
+      return add_triangles(cells);
+    case Lattice::bcc:
+      return add_body_centred(cells);
+    case Lattice::d4:
+      return add_d4(cells);
+    default:
+      add_face_centred(cells);
+  }
+}
+
+/// Collects the cells of one sample in the inside, or of one at which there is no octahedron.
+class PatternCollector {
+ public:
+  PatternCollector(Lattice lattice, int parity, bool at_ends, std::vector<PatternCell>& pattern)
+      : layer_axis_(dimension(lattice) - 1), parity_(parity), at_ends_(at_ends), pattern_(pattern) {}
+
+  bool add(CellType type, std::initializer_list<Place> corners) {
+    if (at_ends_ && type == CellType::octahedron) return false;
+    if (at_ends_ != (type == CellType::pyramid)) return true;
+    PatternCell& cell = pattern_.emplace_back(PatternCell{type, parity_, at_ends_, {}});
+    for (Place place : corners) {
+      for (int a = 0; a < 4; ++a) place[a] -= at_[a];
+      cell.corners.push_back(place);
+    }
+    return true;
+  }
+  template <class Work>
+  void for_samples(const Work& work) {
+    at_[layer_axis_] = parity_;
+    work(at_);
+  }
+
+ private:
+  int layer_axis_, parity_;
+  bool at_ends_;
+  Place at_{};
+  std::vector<PatternCell>& pattern_;
+};
+
 }  // namespace
 
 LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes) {
   Collector cells(sizes);
-  switch (lattice) {
-    case Lattice::triangular:
-      add_triangles(cells);
-      break;
-    case Lattice::bcc:
-      add_body_centred(cells);
-      break;
-    case Lattice::d4:
-      add_d4(cells);
-      break;
-    default:
-      add_face_centred(cells);
-  }
+  add_cells(lattice, cells);
   return cells.take();
+}
+
+std::vector<PatternCell> pattern_of_lattice(Lattice lattice) {
+  std::vector<PatternCell> pattern;
+  for (const bool at_ends : {false, true})
+    for (int parity = 0; parity < 2; ++parity) {
+      PatternCollector cells(lattice, parity, at_ends, pattern);
+      add_cells(lattice, cells);
+    }
+  return pattern;
+}
+
+std::array<std::vector<LatticePlace>, 2> neighbours_of_lattice(Lattice lattice) {
+  std::array<std::vector<LatticePlace>, 2> neighbours;
+  const int layer_axis = dimension(lattice) - 1;
+  const auto add = [&](int parity, const LatticePlace& from, const LatticePlace& to) {
+    LatticePlace step;
+    for (int a = 0; a < 4; ++a) step[a] = to[a] - from[a];
+    auto& of = neighbours[static_cast<std::size_t>((parity + from[layer_axis]) & 1)];
+    if (std::find(of.begin(), of.end(), step) == of.end()) of.push_back(step);
+  };
+  for (const PatternCell& cell : pattern_of_lattice(lattice)) {
+    const CellKind& kind = *find_kind(cell.type);
+    std::vector<LatticePlace> corners(cell.corners.size());
+    for (std::size_t i = 0; i < corners.size(); ++i) corners[table_corner(kind, i)] = cell.corners[i];
+    const tables::CellTable& table = table_of(kind.shape);
+    for (std::uint32_t e = 0; e < table.edge_count; ++e) {
+      const LatticePlace &from = corners[table.edges[2 * e]], &to = corners[table.edges[2 * e + 1]];
+      add(cell.parity, from, to);
+      add(cell.parity, to, from);
+    }
+  }
+  for (auto& of : neighbours) std::sort(of.begin(), of.end());
+  return neighbours;
 }
 
 }  // namespace tegl::detail

@@ -21,4 +21,21 @@ struct LatticeCells {
 /// The cells of `lattice` (not fcc_in_time) over an array of these sizes, axis 0 fastest.
 [[nodiscard]] LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes);
 
+/// Indices of a sample, or their differences.
+using LatticePlace = std::array<std::ptrdiff_t, 4>;
+
+/// A cell of each sample in layers of one parity.
+struct PatternCell {
+  CellType type;
+  int parity;                         ///< of the sample's layer: 0 even, 1 odd
+  bool at_ends;                       ///< only of samples in the first and last layer: pyramids of fcc
+  std::vector<LatticePlace> corners;  ///< relative to the sample, in the order of the type
+};
+
+/// The cells of `lattice` (not fcc_in_time) by sample.
+[[nodiscard]] std::vector<PatternCell> pattern_of_lattice(Lattice lattice);
+
+/// The differences to the neighbours of samples in even and in odd layers: 6 (triangular), 12 (fcc), 14 (bcc), 24 (d4).
+[[nodiscard]] std::array<std::vector<LatticePlace>, 2> neighbours_of_lattice(Lattice lattice);
+
 }  // namespace tegl::detail

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <random>
 
+#include "complex/complex_cases.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
 #include "tegl/measure.hpp"
@@ -112,13 +113,6 @@ void expect_topology_of_means(std::size_t samples) {
 TEST(Division, CentresByMeansGiveTheTopologyOfAmbiguityMean) {
   expect_topology_of_means<2>(40);
   expect_topology_of_means<3>(14);
-}
-
-template <int N>
-double ball(const std::array<double, N>& x) {
-  double square = 0.0;
-  for (const double each : x) square += each * each;
-  return 0.7 - std::sqrt(square);
 }
 
 TEST(Division, SpheresAndToriHaveTheirEulerCharacteristic) {

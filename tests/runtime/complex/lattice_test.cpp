@@ -8,15 +8,18 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "complex/complex_cases.hpp"
 #include "complex/lattice_cells.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
+#include "tegl/cell_index.hpp"
 #include "tegl/measure.hpp"
 
 namespace tegl {
@@ -66,16 +69,12 @@ void expect_closed_noise(Lattice lattice, std::size_t samples) {
   SCOPED_TRACE(std::string(name_of(lattice)));
   auto image = lattice_image<N>(lattice, samples, noise<N>(3));
   const Complex<N> complex = lattice_complex(image.view(), lattice);
-  for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
-    for (const Ambiguity a : {Ambiguity::low, Ambiguity::high}) {
-      ExtractOptions options;
-      options.triangulation = t;
-      options.ambiguity = a;
-      const auto contour = extract<double>(complex, 0.5, options);
-      EXPECT_GT(contour.simplices.size(), 100u);
-      expect_closed_manifold(contour);
-      EXPECT_GT(measure(contour).content.value(), 0.0);
-    }
+  for (const ExtractOptions& options : fixed_rules()) {
+    const auto contour = extract<double>(complex, 0.5, options);
+    EXPECT_GT(contour.simplices.size(), 100u);
+    expect_closed_manifold(contour);
+    EXPECT_GT(measure(contour).content.value(), 0.0);
+  }
 }
 
 TEST(Lattice, NoiseHasAClosedOrientedManifold) {
@@ -84,6 +83,138 @@ TEST(Lattice, NoiseHasAClosedOrientedManifold) {
   expect_closed_noise<3>(Lattice::bcc, 14);
   expect_closed_noise<4>(Lattice::d4, 9);
   expect_closed_noise<4>(Lattice::fcc_in_time, 9);
+}
+
+/// Noise up to the border of the array.
+template <int N>
+auto noise_everywhere(unsigned seed) {
+  return [random = std::mt19937(seed)](const auto&, const auto&, const auto&) mutable {
+    return std::uniform_real_distribution<double>()(random);
+  };
+}
+
+template <int N>
+void expect_same_by_rows(Lattice lattice, std::size_t samples) {
+  SCOPED_TRACE(testing::Message() << name_of(lattice) << " " << samples);
+  auto image = lattice_image<N>(lattice, samples, noise_everywhere<N>(7));
+  if (samples % 2 == 0) image.grid.linear[0][1] = 0.3;  // a map into the world
+  if (samples % 3 == 0) image.grid.linear[0][0] = -1.0;
+  const Complex<N> complex = lattice_complex(image.view(), lattice);
+  for (ExtractOptions options : fixed_rules()) {
+    options.epsilon = options.triangulation == Triangulation::compact ? 0.05 : 0.0;
+    const auto expected = extract<double>(complex, 0.5, options);
+    const auto extraction = extract_lattice_with_stats<double>(image.view(), lattice, 0.5, options);
+    const auto& contour = extraction.contour;
+    EXPECT_TRUE(is_oriented_manifold(check(contour)));
+    EXPECT_EQ(contour.simplices.size(), expected.simplices.size());
+    EXPECT_EQ(extraction.stats.tiles, complex.cell_count());
+    auto points = contour.vertices, others = expected.vertices;
+    ASSERT_EQ(points.size(), others.size());
+    std::sort(points.begin(), points.end());
+    std::sort(others.begin(), others.end());
+    for (std::size_t v = 0; v < points.size(); ++v)
+      for (int axis = 0; axis < N; ++axis) ASSERT_NEAR(points[v][axis], others[v][axis], 1e-12);
+    EXPECT_NEAR(measure(contour).size, measure(expected).size, 1e-9);
+    EXPECT_EQ(check(contour).euler, check(expected).euler);
+    ExtractOptions many = options;
+    many.work.threads = 3;
+    EXPECT_EQ(extract_lattice<double>(image.view(), lattice, 0.5, many).simplices, contour.simplices);
+  }
+}
+
+TEST(Lattice, RowsOfBitsGiveTheContourOfTheComplex) {
+  for (const std::size_t samples : {2, 3, 9, 64, 67}) expect_same_by_rows<2>(Lattice::triangular, samples);
+  for (const std::size_t samples : {2, 3, 8, 9}) {
+    expect_same_by_rows<3>(Lattice::fcc, samples);
+    expect_same_by_rows<3>(Lattice::bcc, samples);
+  }
+  // rows of several words
+  auto image = lattice_image<3>(Lattice::fcc, 3, noise_everywhere<3>(1));
+  image.grid.axes[0] = Axis::uniform(131, 0.0, image.grid.axes[1].step());
+  image.values.clear();
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < 131 * 3 * image.grid.axes[2].size(); ++i)
+    image.values.push_back(std::uniform_real_distribution<double>()(random));
+  for (const Lattice lattice : {Lattice::fcc, Lattice::bcc}) {
+    const auto contour = extract_lattice<double>(image.view(), lattice, 0.5);
+    const auto expected = extract<double>(lattice_complex(image.view(), lattice), 0.5);
+    EXPECT_EQ(contour.vertices.size(), expected.vertices.size());
+    EXPECT_EQ(contour.simplices.size(), expected.simplices.size());
+    EXPECT_TRUE(is_oriented_manifold(check(contour)));
+  }
+}
+
+template <int N>
+void expect_linear_normals(Lattice lattice, std::size_t samples, double missing) {
+  SCOPED_TRACE(testing::Message() << name_of(lattice) << ", missing " << missing);
+  const double slopes[] = {0.3, -1.1, 0.7, 0.5};
+  auto image = lattice_image<N>(lattice, samples, [&](const auto& x, const auto&, const auto&) {
+    double sum = 0.05;
+    for (int a = 0; a < N; ++a) sum += slopes[a] * x[a];
+    return sum;
+  });
+  std::mt19937 random(4);
+  for (double& value : image.values)
+    if (std::uniform_real_distribution<double>()(random) < missing) value = std::numeric_limits<double>::quiet_NaN();
+  double length = 0.0;
+  for (int a = 0; a < N; ++a) length = std::hypot(length, slopes[a]);
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  options.direction = GradientDirection::ascent;
+  const auto contour = extract_lattice<double>(image.view(), lattice, 0.0, options);
+  EXPECT_GT(contour.vertices.size(), 10u);
+  ASSERT_EQ(contour.normals.size(), contour.vertices.size());
+  EXPECT_TRUE(is_oriented_manifold(check(contour)));
+  for (const auto& normal : contour.normals)
+    for (int a = 0; a < N; ++a) EXPECT_NEAR(normal[a], slopes[a] / length, 1e-9);
+}
+
+TEST(Lattice, NormalsOfLinearFunctionsAreExact) {
+  for (const double missing : {0.0, 0.02}) {
+    expect_linear_normals<2>(Lattice::triangular, 14, missing);
+    expect_linear_normals<3>(Lattice::fcc, 9, missing);
+    expect_linear_normals<3>(Lattice::bcc, 8, missing);
+    expect_linear_normals<4>(Lattice::d4, 7, missing);
+    expect_linear_normals<4>(Lattice::fcc_in_time, 7, missing);
+  }
+}
+
+TEST(Lattice, GradientsInTheInsideOfFccAreTheSumOverTwelveNeighbours) {
+  auto image = lattice_image<3>(Lattice::fcc, 7, noise_everywhere<3>(2));
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  options.triangulation = Triangulation::compact;
+  const double w = image.grid.axes[0].step();
+  const auto at = [&](const std::array<std::size_t, 3>& i) { return image.view()(i); };
+  const auto x = [&](const std::array<std::size_t, 3>& i) {
+    std::array<double, 3> place;
+    for (int a = 0; a < 3; ++a) place[a] = image.grid.axes[a][i[a]] + (a < 2 && i[2] % 2 == 1 ? w / 2 : 0.0);
+    return place;
+  };
+  // the isovalue is just below the sample (3, 3, 4): vertices beside it have its gradient
+  const std::array<std::size_t, 3> middle{3, 3, 4};
+  std::array<double, 3> gradient{};
+  std::size_t neighbours = 0;
+  for (std::size_t k = 3; k <= 5; ++k)
+    for (std::size_t j = 2; j <= 4; ++j)
+      for (std::size_t i = 2; i <= 4; ++i) {
+        std::array<double, 3> d = x({i, j, k});
+        double square = 0.0;
+        for (int a = 0; a < 3; ++a) square += std::pow(d[a] -= x(middle)[a], 2);
+        if (square < 0.5 * w * w || square > 1.1 * w * w) continue;
+        ++neighbours;
+        for (int a = 0; a < 3; ++a) gradient[a] += (at({i, j, k}) - at(middle)) * d[a] / (4 * w * w);
+      }
+  EXPECT_EQ(neighbours, 12u);
+  const auto contour = extract_lattice<double>(image.view(), Lattice::fcc, at(middle), options);
+  const double length = std::hypot(gradient[0], gradient[1], gradient[2]);
+  std::size_t found = 0;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v)
+    if (contour.vertices[v] == x(middle)) {
+      ++found;
+      for (int a = 0; a < 3; ++a) EXPECT_NEAR(contour.normals[v][a], -gradient[a] / length, 1e-9);
+    }
+  EXPECT_GT(found, 0u);
 }
 
 /// Whether a point is inside of a simplex or, for corners in opposite pairs, a cross-polytope.
@@ -161,13 +292,6 @@ TEST(Lattice, TheCellsOfFccHaveThePapersCounts) {
   EXPECT_EQ(126u * 126u * 242u, 3841992u);
 }
 
-template <int N>
-double ball(const std::array<double, N>& x) {
-  double square = 0.0;
-  for (const double each : x) square += each * each;
-  return 0.7 - std::sqrt(square);
-}
-
 TEST(Lattice, SpheresAndToriHaveTheirEulerCharacteristic) {
   for (const Lattice lattice : {Lattice::fcc, Lattice::bcc}) {
     auto sphere = lattice_image<3>(lattice, 16, [](const auto& x, const auto&, const auto&) { return ball<3>(x); });
@@ -198,6 +322,35 @@ TEST(Lattice, TheContentOfABallConvergesWithOrderTwo) {
   expect_order_two<4>(Lattice::d4, 8, 16, 0.5 * kPi * kPi * 0.2401);
 }
 
+TEST(Lattice, AnIndexOfTheCellsGivesTheSameContours) {
+  auto image = lattice_image<3>(Lattice::fcc, 12, noise_everywhere<3>(8));
+  for (double& value : image.values) value = std::round(20 * value) / 20;  // many equal values
+  Complex<3> complex = lattice_complex(image.view(), Lattice::fcc);
+  const CellIndex index(complex);
+  EXPECT_LE(index.size(), complex.cell_count());
+  EXPECT_GT(index.size(), complex.cell_count() / 2);
+  for (const double isovalue : {-1.0, 0.0, 0.05, 0.3, 0.5, 0.7499999999, 0.95, 1.0, 1.1}) {
+    const auto expected = extract_with_stats<double>(complex, isovalue);
+    const auto found = extract_with_stats<double>(complex, index, isovalue);
+    EXPECT_EQ(found.contour.vertices, expected.contour.vertices);
+    EXPECT_EQ(found.contour.simplices, expected.contour.simplices);
+    EXPECT_EQ(found.stats.active_tiles, expected.stats.active_tiles);
+    EXPECT_GE(index.find(isovalue).size(), expected.stats.active_tiles);
+  }
+  complex.find_edges();
+  EXPECT_EQ(extract<double>(complex, index, 0.5).simplices, extract<double>(complex, 0.5).simplices);
+  // a value is missing: all cells are read
+  auto values = complex.values();
+  values[values.size() / 2] = std::numeric_limits<double>::quiet_NaN();
+  complex.set_values(values);
+  const CellIndex with_missing(complex);
+  EXPECT_TRUE(with_missing.has_missing());
+  EXPECT_EQ(extract<double>(complex, with_missing, 0.5).simplices, extract<double>(complex, 0.5).simplices);
+  auto other = lattice_image<3>(Lattice::fcc, 5, noise_everywhere<3>(8));
+  expect_error(ErrorCode::InvalidArgument, "an index of",
+               [&] { (void)extract(lattice_complex(other.view(), Lattice::fcc), index, 0.5); });
+}
+
 TEST(Lattice, BadGridsAreRefused) {
   auto image = lattice_image<3>(Lattice::fcc, 6, [](const auto&, const auto&, const auto&) { return 0.0; });
   expect_error(ErrorCode::InvalidArgument, "lattice d4 of a 3D image; expected 4 dimensions",
@@ -205,6 +358,10 @@ TEST(Lattice, BadGridsAreRefused) {
   image.grid.axes[0] = Axis::rectilinear({0.0, 1.0, 2.0, 4.0, 5.0, 6.0});
   expect_error(ErrorCode::InvalidArgument, "axis 0 has a step of",
                [&] { (void)lattice_complex(image.view(), Lattice::fcc); });
+  ExtractOptions options;
+  options.normals = Normals::sobel;
+  expect_error(ErrorCode::InvalidArgument, "normals by the Sobel kernel on a lattice; expected differences",
+               [&] { (void)extract_lattice(image.view(), Lattice::fcc, 0.5, options); });
   EXPECT_EQ(name_of(Lattice::bcc), "bcc");
 }
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Builds and searches the interval tree of a complex (see tegl/cell_index.hpp).
+#include "tegl/cell_index.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/progress.hpp"
+#include "complex/cell_groups.hpp"
+
+namespace tegl {
+
+namespace {
+
+/// The largest float that is not above a value, and the smallest that is not below it.
+float rounded_down(double value) noexcept {
+  if (value > double{std::numeric_limits<float>::max()}) return std::numeric_limits<float>::max();
+  const auto near = static_cast<float>(std::max(value, -std::numeric_limits<double>::infinity()));
+  return double{near} <= value ? near : std::nextafter(near, -std::numeric_limits<float>::infinity());
+}
+float rounded_up(double value) noexcept { return -rounded_down(-value); }
+
+}  // namespace
+
+template <int N>
+CellIndex::CellIndex(const Complex<N>& complex, const WorkOptions& work)
+    : all_cells_(complex.cell_count()), points_(complex.points().size()) {
+  std::vector<Range> ranges;
+  Index cell = 0;
+  const std::vector<double>& values = complex.values();
+  for (const detail::CellGroup& group : detail::ComplexAccess::cells(complex).groups)
+    for (std::size_t i = 0; i < group.size(); ++i, ++cell) {
+      if (i % 65536 == 0)
+        detail::tell(work.progress, 0.3 * static_cast<double>(cell) / static_cast<double>(all_cells_));
+      const Index* const corners = group.cell(i);
+      double low = values[corners[0]], high = low;
+      bool is_missing = std::isnan(low);
+      for (std::size_t c = 1; c < group.corner_count; ++c) {
+        const double value = values[corners[c]];
+        is_missing = is_missing || std::isnan(value);
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+      has_missing_ = has_missing_ || is_missing;
+      if (!is_missing && low < high) ranges.push_back({rounded_down(low), rounded_up(high), cell});
+    }
+  cells_ = ranges.size();
+  lows_.reserve(cells_);
+  highs_.reserve(cells_);
+  if (!ranges.empty()) (void)add_node(ranges.data(), ranges.data() + ranges.size());
+  detail::tell(work.progress, 1.0);
+}
+
+std::uint32_t CellIndex::add_node(Range* first, Range* end) {
+  // The maximum of the cell in the middle: its range contains it.
+  Range* const middle = first + (end - first) / 2;
+  std::nth_element(first, middle, end, [](const Range& a, const Range& b) {
+    return a.low / 2 + a.high / 2 < b.low / 2 + b.high / 2 ||
+           (a.low / 2 + a.high / 2 == b.low / 2 + b.high / 2 && a.cell < b.cell);
+  });
+  const float value = middle->high;
+  Range* const inside = std::partition(first, end, [&](const Range& range) { return range.high < value; });
+  Range* const above = std::partition(inside, end, [&](const Range& range) { return range.low < value; });
+  const auto node = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({value, 0, 0, lows_.size(), lows_.size() + static_cast<std::size_t>(above - inside)});
+  const auto begin = static_cast<std::ptrdiff_t>(lows_.size());
+  for (const Range* range = inside; range != above; ++range) {
+    lows_.push_back({range->low, range->cell});
+    highs_.push_back({range->high, range->cell});
+  }
+  std::sort(lows_.begin() + begin, lows_.end(), [](const End& a, const End& b) { return a.value < b.value; });
+  std::sort(highs_.begin() + begin, highs_.end(), [](const End& a, const End& b) { return a.value > b.value; });
+  if (first != inside) {
+    const std::uint32_t child = add_node(first, inside);
+    nodes_[node].below = child;
+  }
+  if (above != end) {
+    const std::uint32_t child = add_node(above, end);
+    nodes_[node].above = child;
+  }
+  return node;
+}
+
+std::vector<Index> CellIndex::find(double isovalue) const {
+  std::vector<Index> cells;
+  if (nodes_.empty()) return cells;
+  // active: minimum < isovalue <= maximum
+  for (std::uint32_t at = 0;;) {
+    const Node& node = nodes_[at];
+    const bool is_below = isovalue <= double{node.value};
+    const std::vector<End>& ends = is_below ? lows_ : highs_;
+    for (std::size_t i = node.first; i < node.end; ++i) {
+      const double value = double{ends[i].value};
+      if (is_below ? value >= isovalue : value < isovalue) break;
+      cells.push_back(ends[i].cell);
+    }
+    at = is_below ? node.below : node.above;
+    if (at == 0) break;
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+template CellIndex::CellIndex(const Complex<2>&, const WorkOptions&);
+template CellIndex::CellIndex(const Complex<3>&, const WorkOptions&);
+template CellIndex::CellIndex(const Complex<4>&, const WorkOptions&);
+
+}  // namespace tegl

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of images on lattices: by rows of bits in 2D and 3D, otherwise as complexes; normals by gradients on the
+// lattice.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "base/stopwatch.hpp"
+#include "base/workers.hpp"
+#include "complex/contour_numbers.hpp"
+#include "complex/edge_alpha.hpp"
+#include "complex/lattice_gradients.hpp"
+#include "complex/lattice_rows.hpp"
+#include "image/row_source.hpp"
+#include "kernel/memory_output.hpp"
+#include "tegl/error.hpp"
+#include "tegl/lattice.hpp"
+
+namespace tegl {
+namespace detail {
+namespace {
+
+/// Whether all samples are within the range of Real, so that vertices are.
+template <class Real, int N>
+bool is_in_range(const Grid<N>& grid) {
+  Vector<N> size{};
+  for (int row = 0; row < N; ++row) {
+    size[row] = std::abs(grid.offset[row]);
+    for (int a = 0; a < N; ++a) {
+      const Axis& axis = grid.axes[a];
+      const double most = std::max(std::abs(axis[0]), std::abs(axis[axis.size() - 1]));
+      size[row] += std::abs(grid.linear[row][a]) * (most + std::abs(axis.size() > 1 ? axis.step() : 0.0));
+    }
+  }
+  return std::all_of(size.begin(), size.end(), [](double x) { return x <= double{std::numeric_limits<Real>::max()}; });
+}
+
+/// Writes a contour that LatticeRows has counted.
+template <int N, class Real>
+class LatticeWriter {
+ public:
+  using Vertex = std::array<Real, N>;
+  using Sample = std::array<std::size_t, N>;
+
+  LatticeWriter(const SampleSource<N>& source, const Grid<N>& grid, const LatticeRows& rows,
+                const LatticeGradients<N>* gradients, const ExtractOptions& options, Contour<N, Real>& contour)
+      : source_(source),
+        grid_(grid),
+        rows_(rows),
+        gradients_(gradients),
+        rows_in_layer_(N == 3 ? grid.axes[1].size() : 1),
+        epsilon_(options.epsilon),
+        is_mapped_(grid.has_world_map()),
+        contour_(contour) {
+    for (int a = 0; a < N; ++a)
+      for (std::size_t i = 0; i < grid.axes[a].size(); ++i) coordinates_[a].push_back(grid.axes[a][i]);
+    for (int a = 0; a + 1 < N; ++a) half_steps_[a] = 0.5 * grid.axes[a].step();
+  }
+
+  void write_edge_points(std::size_t r) const {
+    const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
+    const std::vector<EdgeKind>& kinds = rows_.pattern(k).edges;
+    Index next = rows_.row(r).first;
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      if (!rows_.has_row(j, k, kinds[kind].to)) continue;
+      const auto crossed = rows_.crossed(r, kind);
+      for (std::size_t w = 0; w < rows_.words(); ++w)
+        for (Word rest = crossed.bits[w]; rest != 0; rest &= rest - 1) {
+          const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+          write_edge_point(sample(i, j, k, {}), sample(i, j, k, kinds[kind].to), next++);
+        }
+    }
+  }
+
+  void write_cells(std::size_t r) const {
+    const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
+    const LatticeRows::Row& row = rows_.row(r);
+    if (row.active == 0) return;
+    Index own = row.first_own;
+    auto* simplices = contour_.simplices.data() + row.first_simplex;
+    for (const LatticeCell& cell : rows_.pattern(k).cells) {
+      // the streams of the cell's edges
+      constexpr std::size_t kMostEdges = 12;
+      std::array<LatticeRows::Crossed, kMostEdges> streams{};
+      std::array<Index, kMostEdges> firsts{};
+      for (std::size_t e = 0; e < cell.edges.size(); ++e) {
+        if (!rows_.has_row(j, k, cell.edges[e].at)) continue;  // then there are no cells
+        const std::size_t of = rows_.row_at(j, k, cell.edges[e].at);
+        streams[e] = rows_.crossed(of, cell.edges[e].kind);
+        firsts[e] = rows_.row(of).first;
+      }
+      rows_.for_each_active(j, k, cell, [&](std::size_t i, unsigned signature) {
+        const LatticeCell::Contour& contour = cell.contours[signature];
+        std::array<Index, 32> vertices;
+        for (std::uint32_t crossed = contour.crossed; crossed != 0; crossed &= crossed - 1) {
+          const auto e = static_cast<unsigned>(std::countr_zero(crossed));
+          vertices[e] = firsts[e] + streams[e][i + static_cast<std::size_t>(cell.edges[e].at[0])];
+        }
+        for (std::size_t added = 0; added < contour.own; ++added, ++own) {
+          vertices[cell.edges.size() + added] = own;
+          write_own_point(contour.centres[added], vertices.data(), own);
+        }
+        const std::uint8_t* local = contour.vertices.data();
+        for (std::uint32_t s = 0; s < contour.simplices; ++s, ++simplices, local += N)
+          for (std::size_t v = 0; v < N; ++v) (*simplices)[v] = vertices[local[v]];
+      });
+    }
+  }
+
+ private:
+  static Sample sample(std::size_t i, std::size_t j, std::size_t k, const std::array<std::ptrdiff_t, 3>& to) {
+    Sample index{};
+    index[0] = i + static_cast<std::size_t>(to[0]);
+    if constexpr (N == 3) index[1] = j + static_cast<std::size_t>(to[1]);
+    index[N - 1] = k + static_cast<std::size_t>(to[2]);
+    return index;
+  }
+  [[nodiscard]] std::array<double, N> place(const Sample& index) const {
+    std::array<double, N> x;
+    for (int a = 0; a < N; ++a) x[a] = coordinates_[a][index[a]] + (index[N - 1] % 2 == 1 ? half_steps_[a] : 0.0);
+    return is_mapped_ ? place_in_world<N>(grid_, x) : x;
+  }
+
+  void write_edge_point(const Sample& from, const Sample& to, Index number) const {
+    const double alpha = alpha_of(source_.value(from), source_.value(to), source_.isovalue(), epsilon_);
+    contour_.vertices[number] = point_on_edge<Real>(place(from), place(to), alpha);
+    if (gradients_ != nullptr) contour_.normals[number] = gradients_->template normal<Real>(from, to, alpha);
+  }
+
+  /// The barycentre of points on edges.
+  void write_own_point(std::uint32_t edges, const Index* vertices, Index number) const {
+    std::array<double, N> sum{}, normal{};
+    double count = 0;
+    for (; edges != 0; edges &= edges - 1, ++count) {
+      const Index v = vertices[std::countr_zero(edges)];
+      for (int a = 0; a < N; ++a) {
+        sum[a] += double{contour_.vertices[v][a]};
+        if (gradients_ != nullptr) normal[a] += double{contour_.normals[v][a]};
+      }
+    }
+    for (int a = 0; a < N; ++a) contour_.vertices[number][a] = static_cast<Real>(sum[a] / count);
+    if (gradients_ != nullptr) contour_.normals[number] = LatticeGradients<N>::template unit<Real>(normal);
+  }
+
+  const SampleSource<N>& source_;
+  const Grid<N>& grid_;
+  const LatticeRows& rows_;
+  const LatticeGradients<N>* gradients_;
+  std::size_t rows_in_layer_;
+  double epsilon_;
+  bool is_mapped_;
+  std::array<std::vector<double>, N> coordinates_;
+  std::array<double, N> half_steps_{};
+  Contour<N, Real>& contour_;
+};
+
+/// Extracts by rows of bits. Returns false, and nothing else, if samples are missing.
+template <int N, class Real>
+bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice lattice, const ExtractOptions& options,
+                     Extraction<N, Real>& result) {
+  const Progress& progress = options.work.progress;
+  const unsigned threads = options.work.threads;
+  const std::array<LayerPattern, 2> patterns = make_patterns<N>(lattice, grid, options);
+  const auto sizes = grid.sizes();
+  LatticeRows rows({sizes[0], N == 3 ? sizes[1] : 1, sizes[N - 1]}, patterns);
+  Stopwatch watch;
+  if (rows.template classify<N>(source, {threads, part_of(progress, 0.0, 0.2)})) return false;
+  watch.add_to(result.stats.classify_seconds);
+  rows.count({threads, part_of(progress, 0.2, 0.5)});
+  result.stats.tiles = rows.cells();
+  result.stats.active_tiles = rows.active_cells();
+  watch.add_to(result.stats.find_seconds);
+  result.contour.vertices.resize(rows.vertices());
+  result.contour.simplices.resize(rows.simplices());
+  std::optional<LatticeGradients<N>> gradients;
+  if (options.normals != Normals::none) {
+    gradients.emplace(source, grid, lattice, options.direction);
+    result.contour.normals.resize(rows.vertices());
+  }
+  const LatticeWriter<N, Real> writer(source, grid, rows, gradients ? &*gradients : nullptr, options, result.contour);
+  for_each_item(rows.row_count(), threads, part_of(progress, 0.5, 0.75),
+                [&](std::size_t r) { writer.write_edge_points(r); });
+  for_each_item(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t r) { writer.write_cells(r); });
+  watch.add_to(result.stats.generate_seconds);
+  return true;
+}
+
+/// Adds normals to the contour of a complex: on edges from the gradients at their ends, at other vertices the mean of
+/// those in their simplices.
+template <int N, class Real>
+void add_normals(const Complex<N>& complex, const LatticeGradients<N>& gradients, const Grid<N>& grid, double isovalue,
+                 const ExtractOptions& options, Contour<N, Real>& contour) {
+  const CellGroups& cells = ComplexAccess::cells(complex);
+  ExtractStats stats;
+  const ContourNumbers numbers(cells, ComplexAccess::edges(complex), complex.values(), isovalue, options, {}, stats);
+  const auto sizes = grid.sizes();
+  const auto sample = [&](Index p) {
+    std::array<std::size_t, N> index;
+    for (int a = 0; a < N; p = static_cast<Index>(p / sizes[a]), ++a) index[a] = p % sizes[a];
+    return index;
+  };
+  const auto& ends = numbers.edge_ends();
+  contour.normals.assign(contour.vertices.size(), {});
+  for_each_item(ends.size(), options.work.threads, {}, [&](std::size_t v) {
+    const auto& [from, to] = ends[v];
+    const double alpha = alpha_of(complex.values()[from], complex.values()[to], isovalue, options.epsilon);
+    contour.normals[v] = gradients.template normal<Real>(sample(from), sample(to), alpha);
+  });
+  std::vector<std::array<double, N>> sums(contour.vertices.size() - ends.size());
+  for (const auto& simplex : contour.simplices)
+    for (const Index v : simplex)
+      for (const Index other : simplex)
+        if (v >= ends.size() && other < ends.size())
+          for (int a = 0; a < N; ++a) sums[v - ends.size()][a] += double{contour.normals[other][a]};
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    contour.normals[ends.size() + i] = LatticeGradients<N>::template unit<Real>(sums[i]);
+  // copies of vertices beside missing values
+  std::map<std::array<Real, N>, Index> touching;
+  for (const Index v : numbers.vertices_at_missing(cells)) touching.emplace(contour.vertices[v], v);
+  for (std::size_t v = numbers.size().vertices; v < contour.vertices.size(); ++v)
+    if (const auto found = touching.find(contour.vertices[v]); found != touching.end())
+      contour.normals[v] = contour.normals[found->second];
+}
+
+template <int N>
+void check_lattice_options(double isovalue, ExtractOptions options) {
+  if (options.normals == Normals::sobel)
+    throw Error(ErrorCode::InvalidArgument, "normals by the Sobel kernel on a lattice; expected differences");
+  options.normals = Normals::none;
+  check_complex_options(isovalue, options);
+}
+
+}  // namespace
+}  // namespace detail
+
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_lattice_with_stats(const Image<T, N>& image,
+                                                                                  Lattice lattice, double isovalue,
+                                                                                  const ExtractOptions& options) {
+  detail::check_lattice_options<N>(isovalue, options);
+  detail::check_dimension(lattice, N);
+  const Grid<N>& grid = image.grid();
+  Extraction<N, Real> result;
+  const detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+  if constexpr (N < 4)
+    if (detail::is_in_range<Real>(grid)) {
+      detail::check_grid(grid, lattice, N - 1);
+      (void)detail::count_samples(grid, "a lattice");
+      detail::ImageSource<T, N> samples(image, isovalue, options.epsilon);
+      if (detail::extract_by_rows<N, Real>(samples, grid, lattice, options, result)) {
+        detail::describe(grid, options, result.contour);
+        return result;
+      }
+    }
+  const Complex<N> complex = lattice_complex(image, lattice);
+  ExtractOptions without = options;
+  without.normals = Normals::none;
+  result = extract_with_stats<Real>(complex, isovalue, without);
+  if (options.normals != Normals::none) {
+    const detail::LatticeGradients<N> gradients(source, grid, lattice, options.direction);
+    without.work.progress = {};
+    detail::add_normals<N, Real>(complex, gradients, grid, isovalue, without, result.contour);
+  }
+  detail::describe(grid, options, result.contour);
+  return result;
+}
+
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                 \
+  template Extraction<N, Real> extract_lattice_with_stats<Real, T, N>(const Image<T, N>&, Lattice, double, \
+                                                                      const ExtractOptions&);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

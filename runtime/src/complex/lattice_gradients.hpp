@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Gradients at the samples of a lattice: the best linear function, by least squares, on a sample and its neighbours. In
+// the inside of the face-centred cubic lattice of step w this is the sum of f(x + d) d / (4 w^2) over the twelve
+// neighbours d. At the border and beside missing values it uses the neighbours that are there, and is exact for linear
+// functions as long as these span the space.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "complex/lattice_cells.hpp"
+#include "complex/lattice_grid.hpp"
+#include "image/sample_source.hpp"
+#include "tegl/extract.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+class LatticeGradients {
+ public:
+  using Sample = std::array<std::size_t, N>;
+  using Gradient = std::array<double, N>;
+
+  /// The arguments must outlive this object.
+  LatticeGradients(const CornerValues<N>& values, const Grid<N>& grid, Lattice lattice, GradientDirection direction);
+
+  /// The unit normal at `alpha` between two samples, on the side of the direction; 0 if the gradient is zero.
+  template <class Real>
+  [[nodiscard]] std::array<Real, N> normal(const Sample& from, const Sample& to, double alpha) const {
+    const Gradient a = at(from), b = at(to);
+    Gradient sum;
+    for (int i = 0; i < N; ++i) sum[i] = sign_ * ((1.0 - alpha) * a[i] + alpha * b[i]);
+    return unit<Real>(sum);
+  }
+  template <class Real>
+  static std::array<Real, N> unit(const Gradient& vector) {
+    double length = 0.0;
+    for (const double x : vector) length = std::hypot(length, x);
+    std::array<Real, N> result{};
+    for (int i = 0; i < N && length > 0.0; ++i) result[i] = static_cast<Real>(vector[i] / length);
+    return result;
+  }
+
+  /// The gradient at a sample, in the world.
+  [[nodiscard]] Gradient at(const Sample& index) const;
+
+ private:
+  static Sample moved(Sample index, const LatticePlace& step) {
+    for (int a = 0; a < N; ++a) index[a] += static_cast<std::size_t>(step[a]);  // modulo 2^64
+    return index;
+  }
+  [[nodiscard]] bool exists(const Sample& index) const {
+    for (int a = 0; a < N; ++a)
+      if (index[a] >= sizes_[a]) return false;
+    return true;
+  }
+  /// Whether all neighbours exist, at the distances of the weights.
+  [[nodiscard]] bool is_inside(const Sample& index) const;
+  void find_weights();
+  [[nodiscard]] Gradient by_least_squares(const Sample& index, double here) const;
+
+  const CornerValues<N>& values_;
+  const Grid<N>& grid_;
+  Sample sizes_;
+  int layers_;
+  double sign_;
+  std::array<std::vector<LatticePlace>, 2> neighbours_;
+  std::array<std::vector<Gradient>, 2> weights_;  ///< empty: of an uneven or small grid
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The edges and cells of a staggered lattice by sample, with the streams of bits in which the numbers of a cell's
+// vertices are found.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "complex/cell_contour.hpp"
+#include "complex/lattice_cells.hpp"
+#include "tegl/extract.hpp"
+
+namespace tegl::detail {
+
+/// An edge of a sample: to the sample with these differences of indices (along the row, row, layer).
+struct EdgeKind {
+  /// A cell that has the edge: which one of the patterns, of the sample at the edge's minus `at`.
+  struct Use {
+    std::size_t parity, cell;
+    std::array<std::ptrdiff_t, 3> at;
+  };
+  std::array<std::ptrdiff_t, 3> to;
+  std::vector<Use> uses = {};
+};
+
+/// A cell of the lattice, with what its contour needs.
+struct LatticeCell {
+  /// An edge of the cell: of which sample, relative to the cell's, and which of its kinds.
+  struct Edge {
+    std::array<std::ptrdiff_t, 3> at;
+    std::size_t kind;
+  };
+  /// The contour of a signature: vertices of its simplices, as they are to be written (edges, then own vertices).
+  struct Contour {
+    std::uint32_t crossed = 0;  ///< bit e: edge e
+    std::uint32_t simplices = 0, own = 0;
+    std::vector<std::uint8_t> vertices = {};
+    std::vector<std::uint32_t> centres = {};  ///< by own vertex: the edges whose points it is the mean of
+  };
+  bool at_ends;
+  std::ptrdiff_t least = 0, most = 0;                       ///< differences of corners along the row
+  std::vector<std::array<std::ptrdiff_t, 3>> corners = {};  ///< in the order of the table
+  std::vector<Edge> edges = {};                             ///< in the order of the table
+  std::vector<Contour> contours = {};                       ///< by signature
+};
+
+/// Everything of samples in layers of one parity.
+struct LayerPattern {
+  std::vector<EdgeKind> edges;
+  std::vector<LatticeCell> cells;
+};
+
+/// The patterns of even and odd layers of a 2D or 3D lattice. `grid`: for the orientation of the cells. `options`: all
+/// that decide which simplices there are.
+template <int N>
+[[nodiscard]] std::array<LayerPattern, 2> make_patterns(Lattice lattice, const Grid<N>& grid,
+                                                        const ExtractOptions& options);
+
+}  // namespace tegl::detail

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Rows of samples on a staggered lattice as bits: which samples are high, which edges the contour crosses, which cells
+// are active, and the numbers of the contour's vertices and simplices.
+//
+// A row is a line of samples along axis 0; the samples of odd layers are half a step further. A neighbour in another
+// layer is therefore the same bit of another row, or the bit before or after. So 64 cells are classified at a time, as
+// cubes are, and vertices are numbered by counting bits.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "complex/lattice_pattern.hpp"
+#include "image/sample_source.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl::detail {
+
+/// Population count; faster than std::popcount where the processor has no instruction for it.
+[[nodiscard]] inline std::uint32_t count_bits(Word word) noexcept {
+  word -= word >> 1 & 0x5555555555555555u;
+  word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+  word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<std::uint32_t>(word * 0x0101010101010101u >> 56);
+}
+
+class LatticeRows {
+ public:
+  /// `size`: samples along the row, rows in a layer, layers.
+  LatticeRows(const std::array<std::size_t, 3>& size, const std::array<LayerPattern, 2>& patterns);
+
+  /// Compares the samples of all rows with the isovalue. Returns whether a sample is missing.
+  template <int N>
+  bool classify(const SampleClassifier<N>& samples, const WorkOptions& work);
+  /// Finds crossed edges and active cells, and numbers vertices and simplices. Errors: TooLarge, Cancelled.
+  void count(const WorkOptions& work);
+
+  [[nodiscard]] std::size_t row_count() const noexcept { return size_[1] * size_[2]; }
+  [[nodiscard]] std::uint64_t vertices() const noexcept { return vertices_; }
+  [[nodiscard]] std::uint64_t simplices() const noexcept { return simplices_; }
+  [[nodiscard]] std::uint64_t cells() const noexcept { return cells_; }
+  [[nodiscard]] std::uint64_t active_cells() const noexcept { return active_cells_; }
+  [[nodiscard]] const LayerPattern& pattern(std::size_t layer) const noexcept { return patterns_[layer % 2]; }
+
+  /// Numbers of a row: its vertices on edges come first, then the own vertices of its cells.
+  struct Row {
+    std::uint32_t own = 0, simplices = 0, cells = 0, active = 0;  ///< how many
+    Index first = 0, first_own = 0;
+    std::uint64_t first_simplex = 0;
+  };
+  [[nodiscard]] const Row& row(std::size_t r) const noexcept { return rows_[r]; }
+
+  /// The crossed edges of one kind of a row's samples.
+  struct Crossed {
+    const Word* bits;
+    const std::uint32_t* before;  ///< by word: number of the first vertex, relative to the row's
+    /// The number of the vertex on the edge of sample i, relative to the row's.
+    [[nodiscard]] Index operator[](std::size_t i) const noexcept {
+      const Word below = (Word{1} << (i % kWordBits)) - 1;
+      return before[i / kWordBits] + count_bits(bits[i / kWordBits] & below);
+    }
+  };
+  [[nodiscard]] Crossed crossed(std::size_t r, std::size_t kind) const noexcept {
+    const std::size_t at = (r * kinds_ + kind) * words_;
+    return {crossed_.data() + at, before_.data() + at};
+  }
+  [[nodiscard]] std::size_t words() const noexcept { return words_; }
+
+  /// Whether the row at these differences exists.
+  [[nodiscard]] bool has_row(std::size_t j, std::size_t k, const std::array<std::ptrdiff_t, 3>& to) const noexcept {
+    return static_cast<std::ptrdiff_t>(j) + to[1] >= 0 && j + static_cast<std::size_t>(to[1]) < size_[1] &&
+           static_cast<std::ptrdiff_t>(k) + to[2] >= 0 && k + static_cast<std::size_t>(to[2]) < size_[2];
+  }
+  [[nodiscard]] std::size_t row_at(std::size_t j, std::size_t k,
+                                   const std::array<std::ptrdiff_t, 3>& to) const noexcept {
+    return (k + static_cast<std::size_t>(to[2])) * size_[1] + j + static_cast<std::size_t>(to[1]);
+  }
+
+  /// Calls visit(cell, position along the row, signature) for the active cells of row j of layer k, in order.
+  template <class Visit>
+  void for_each_active(std::size_t j, std::size_t k, const LatticeCell& cell, const Visit& visit) const;
+
+ private:
+  /// The bits of word w for the samples `first` ... `end` - 1.
+  [[nodiscard]] static Word range(std::size_t w, std::ptrdiff_t first, std::ptrdiff_t end) noexcept {
+    const auto from = static_cast<std::ptrdiff_t>(w * kWordBits);
+    const auto low = std::clamp<std::ptrdiff_t>(first - from, 0, kWordBits);
+    const auto high = std::clamp<std::ptrdiff_t>(end - from, 0, kWordBits);
+    const auto below = [](std::ptrdiff_t bits) {
+      return bits == kWordBits ? ~Word{0} : (Word{1} << static_cast<unsigned>(bits)) - 1;
+    };
+    return below(high) & ~below(low);
+  }
+  /// One past the last sample of a row that may have this cell.
+  [[nodiscard]] std::ptrdiff_t last(const LatticeCell& cell) const noexcept {
+    return static_cast<std::ptrdiff_t>(size_[0]) - cell.most;
+  }
+  /// The bits of word w of a row, of the samples `along` further.
+  [[nodiscard]] Word shifted(const Word* row, std::size_t w, std::ptrdiff_t along) const noexcept {
+    if (along == 0) return row[w];
+    if (along > 0) return row[w] >> 1 | row[w + 1] << (kWordBits - 1);
+    return row[w] << 1 | (w == 0 ? 0 : row[w - 1] >> (kWordBits - 1));
+  }
+  [[nodiscard]] const Word* high(std::size_t r) const noexcept { return high_.data() + r * (words_ + 1); }
+  [[nodiscard]] bool applies(std::size_t j, std::size_t k, const LatticeCell& cell) const noexcept;
+  /// The first and one past the last sample of a range.
+  using Range = std::array<std::ptrdiff_t, 2>;
+  /// The samples whose edge belongs to a cell, by each use that applies to the row.
+  void find_ranges(std::size_t j, std::size_t k, const EdgeKind& kind, std::vector<Range>& ranges) const;
+  /// `used`: by kind.
+  void find_crossed(std::size_t j, std::size_t k, const std::vector<std::vector<Range>>& used, Row& row);
+  void count_cells(std::size_t j, std::size_t k, Row& row) const;
+
+  std::array<std::size_t, 3> size_;
+  const std::array<LayerPattern, 2>& patterns_;
+  std::size_t words_, kinds_;
+  std::vector<Word> high_;  ///< rows x (words + 1); the last one is 0
+  std::vector<Word> crossed_;
+  std::vector<std::uint32_t> before_;
+  std::vector<Row> rows_;
+  std::uint64_t vertices_ = 0, simplices_ = 0, cells_ = 0, active_cells_ = 0;
+};
+
+template <class Visit>
+void LatticeRows::for_each_active(std::size_t j, std::size_t k, const LatticeCell& cell, const Visit& visit) const {
+  if (!applies(j, k, cell)) return;
+  constexpr std::size_t kMost = 8;
+  const std::size_t corners = cell.corners.size();
+  std::array<const Word*, kMost> rows;
+  for (std::size_t c = 0; c < corners; ++c) rows[c] = high(row_at(j, k, cell.corners[c]));
+  for (std::size_t w = 0; w < words_; ++w) {
+    std::array<Word, kMost> bits;
+    Word any = 0, all = ~Word{0};
+    for (std::size_t c = 0; c < corners; ++c) {
+      bits[c] = shifted(rows[c], w, cell.corners[c][0]);
+      any |= bits[c];
+      all &= bits[c];
+    }
+    for (Word rest = any & ~all & range(w, -cell.least, last(cell)); rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      unsigned signature = 0;
+      for (std::size_t c = 0; c < corners; ++c) signature |= static_cast<unsigned>(bits[c] >> bit & 1u) << c;
+      visit(w * kWordBits + bit, signature);
+    }
+  }
+}
+
+}  // namespace tegl::detail
