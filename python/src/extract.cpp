@@ -9,6 +9,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/division.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/periodic.hpp"
@@ -175,7 +176,7 @@ template <class Real>
 AnyContour lattice_contour_of(const AnyImage& image, Lattice lattice, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N <= 4) {
-      return {extract<Real>(lattice_complex(view, lattice), level, options), level};
+      return {extract_lattice<Real>(view, lattice, level, options), level};
     } else {
       throw_dimension("lattices", N, "2 to 4 dimensions");
     }
@@ -196,6 +197,35 @@ std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std
   return call.run([&] {
     auto result = std::make_unique<AnyContour>(is_double ? lattice_contour_of<double>(image, lattice, level, options)
                                                          : lattice_contour_of<float>(image, lattice, level, options));
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
+}
+
+template <class Real>
+AnyContour divided_contour_of(const AnyImage& image, Division division, double level, const ExtractOptions& options) {
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
+    if constexpr (N <= 4) {
+      return {extract<Real>(divided_complex(view, division, level), level, options), level};
+    } else {
+      throw_dimension("divisions", N, "2 to 4 dimensions");
+    }
+  });
+}
+
+std::unique_ptr<AnyContour> extract_divided_any(const AnyImage& image, const std::string& name, double level,
+                                                bool is_double, const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
+  const auto division = named<Division>("division", name,
+                                        {{"kuhn", Division::kuhn},
+                                         {"alternating", Division::alternating},
+                                         {"symmetric", Division::symmetric},
+                                         {"hybrid", Division::hybrid}});
+  return call.run([&] {
+    auto result = std::make_unique<AnyContour>(is_double ? divided_contour_of<double>(image, division, level, options)
+                                                         : divided_contour_of<float>(image, division, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -270,7 +300,9 @@ void bind_extract(py::module_& m) {
   m.def("extract_periodic", &extract_periodic_any, py::arg("image"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
-        py::arg("double"), py::arg("options"), py::arg("progress"), doc::lattice_complex);
+        py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);
+  m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),
+        py::arg("double"), py::arg("options"), py::arg("progress"), doc::divided_complex);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
   m.def("count", &count_any, py::arg("image"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),

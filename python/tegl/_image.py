@@ -23,7 +23,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
-            periodic=None, lattice: _kinds.Lattice | None = None) -> Contour:
+            periodic=None, lattice: _kinds.Lattice | None = None,
+            division: _kinds.Division | None = None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
@@ -82,6 +83,9 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         shifted by half a step along the other axes. "triangular" (2D), "fcc" or "bcc" (3D), "d4" (4D), or "fcc_in_time"
         (4D: fcc in the last three axes, over time). `spacing` along the layers is 0.866, 0.707 or 0.5 of the others if the
         lattice is to be regular. See docs/other-tilings.md.
+    division
+        How cells are divided into simplices: "kuhn" or "symmetric", in 2D and 3D also "alternating", or "hybrid", which
+        divides ambiguous cells only. See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -95,9 +99,14 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     with prepared.terms():
-        if lattice is not None:
-            if periodic is not None:
-                raise ValueError(f"lattice {lattice!r} with periodic; expected one of the two")
+        given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
+                 if value is not None]
+        if len(given) > 1:
+            raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
+        if division is not None:
+            core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
+                                         options, progress)
+        elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
                                          progress)
         elif periodic is None:

@@ -167,6 +167,18 @@ def test_bad_arguments_are_errors_that_name_them(change, error, text):
     assert text in str(raised.value)
 
 
+def test_contours_of_divided_cells():
+    ball = 0.7 - np.sqrt(sum(x**2 for x in np.meshgrid(*[np.linspace(-1, 1, 20)] * 3, indexing="ij")))
+    for division in ("kuhn", "alternating", "symmetric", "hybrid"):
+        surface = tegl.contour(ball, 0.0, division=division, spacing=2 / 19)
+        assert surface.check().is_closed and surface.check().euler == 2
+        assert surface.measure().content == pytest.approx(4 / 3 * np.pi * 0.343, rel=0.03)
+    with pytest.raises(ValueError, match="division with periodic; expected one of the two"):
+        tegl.contour(ball, 0.0, division="kuhn", periodic=0)
+    with pytest.raises(ValueError, match="expected kuhn or symmetric"):
+        tegl.contour(np.zeros((3, 3, 3, 3)), 0.0, division="hybrid", allow_empty=True)
+
+
 def test_contours_of_lattices_and_of_scattered_points():
     layers, n = 30, 22
     k, j, i = np.meshgrid(np.arange(layers), np.arange(n), np.arange(n), indexing="ij")
@@ -176,6 +188,10 @@ def test_contours_of_lattices_and_of_scattered_points():
         surface = tegl.contour(ball, 0.0, lattice=lattice, spacing=[step, 1.0, 1.0])
         assert surface.check().is_closed and surface.check().euler == 2
         assert surface.measure().content == pytest.approx(4 / 3 * np.pi * 216, rel=0.05)
+        normals = tegl.contour(ball, 0.0, lattice=lattice, spacing=[step, 1.0, 1.0], normals=True).normals
+        outwards = surface.vertices - [layers / 2 * step, 11, 11]
+        outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
+        assert np.abs(normals - outwards).max() < 0.1
     with pytest.raises(ValueError, match="expected one of the two"):
         tegl.contour(ball, 0.0, lattice="fcc", periodic=0)
     with pytest.raises(ValueError, match="lattice"):

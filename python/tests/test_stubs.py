@@ -87,6 +87,7 @@ def test_the_names_of_options_are_the_librarys():
     calls = {"Triangulation": lambda: tegl.contour(volume, 0.0, triangulation="?"),
              "Ambiguity": lambda: tegl.contour(volume, 0.0, ambiguity="?"),
              "Lattice": lambda: tegl.contour(volume, 0.0, lattice="?"),
+             "Division": lambda: tegl.contour(volume, 0.0, division="?"),
              "Direction": lambda: tegl.contour(volume, 0.0, direction="?"),
              "Gradient": lambda: tegl.contour(volume, 0.0, gradient="?"),
              "SimplifyMethod": lambda: contour.simplify(0.5, method="?"),

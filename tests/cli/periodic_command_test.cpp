@@ -58,8 +58,7 @@ TEST_F(PeriodicCommand, ABallAcrossTheSeamIsOneComponentAlsoFromASavedContour) {
 
 TEST_F(PeriodicCommand, CloseAndNormalsWorkAcrossTheSeam) {
   const std::string output = path("closed.vtkhdf");
-  (void)run_json(
-      {"contour", file_, "--iso", "-8", "--periodic", "x", "--close", "--normals", "-o", output});
+  (void)run_json({"contour", file_, "--iso", "-8", "--periodic", "x", "--close", "--normals", "-o", output});
   const Mesh mesh = read_mesh(output);
   EXPECT_EQ(check(to_contour<3>(mesh)).boundary_simplices, 0u);
   EXPECT_FALSE(mesh.normals.empty());
@@ -128,6 +127,22 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   expect_refused({"--lattice", "bcc", "--periodic", "x", "-o", output}, "--periodic x with --lattice bcc");
   expect_refused({"--lattice", "bcc", "--close", "-o", output}, "close");
   expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
+  expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output}, "Sobel kernel on a lattice");
+  (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});
+  EXPECT_FALSE(read_mesh(output).normals.empty());
+}
+
+TEST_F(PeriodicCommand, CellsMayBeDivided) {
+  const std::string output = path("divided.ply");
+  for (const auto& [division, cells] : {std::pair{"kuhn", 6}, {"alternating", 5}, {"symmetric", 24}, {"hybrid", 1}}) {
+    const nlohmann::json report = run_json({"contour", file_, "--iso", "0", "--division", division, "-o", output});
+    EXPECT_EQ(report["tiles"], cells * 29 * 19 * 19) << division;
+    EXPECT_EQ(check(to_contour<3>(read_mesh(output))).components, 2u);
+  }
+  expect_refused({"--division", "kuhn", "--lattice", "bcc", "-o", output}, "--lattice bcc with --division kuhn");
+  expect_refused({"--division", "kuhn", "--periodic", "x", "-o", output}, "--periodic x with --division kuhn");
+  expect_refused({"--division", "kuhn", "--stream", "-o", output}, "--division kuhn with --stream");
+  expect_refused({"--division", "random", "-o", output}, "random");
 }
 
 }  // namespace

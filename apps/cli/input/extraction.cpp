@@ -82,11 +82,18 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "
                                     "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D)")
                          ->check(CLI::IsMember({"triangular", "fcc", "bcc", "d4", "fcc_in_time"})));
+  options_.push_back(app.add_option("--division", division_,
+                                    "divide cells into simplices: kuhn or symmetric, in 2D and 3D also alternating, or "
+                                    "hybrid (ambiguous cells only)")
+                         ->check(CLI::IsMember({"kuhn", "alternating", "symmetric", "hybrid"})));
 }
 
 Tiling ExtractionOptions::tiling() const {
+  if (!division_.empty()) refuse_tiling_before_division("--division " + division_);
   if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
-  Tiling tiling{periodic_, std::nullopt};
+  Tiling tiling{periodic_, std::nullopt, std::nullopt};
+  for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid})
+    if (name_of(division) == division_) tiling.division = division;
   for (const Lattice lattice : {Lattice::triangular, Lattice::fcc, Lattice::bcc, Lattice::d4, Lattice::fcc_in_time})
     if (name_of(lattice) == lattice_) tiling.lattice = lattice;
   return tiling;
@@ -99,6 +106,13 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
 }
 
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
+  refuse_tiling_before_division(with);
+  if (!division_.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--division {} with {}; expected one of the two", division_, with));
+}
+
+void ExtractionOptions::refuse_tiling_before_division(const std::string& with) const {
   refuse_periodic_with(with);
   if (!lattice_.empty())
     throw Error(ErrorCode::InvalidArgument,

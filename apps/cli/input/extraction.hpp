@@ -15,6 +15,7 @@
 #include "input/cuts.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
+#include "tegl/division.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/lattice.hpp"
@@ -23,11 +24,12 @@
 
 namespace tegl::cli {
 
-/// The cells between samples, if the grid is periodic or a lattice.
+/// The cells between samples, if the grid is periodic or a lattice, or its cells are divided.
 struct Tiling {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   std::optional<Lattice> lattice = {};     ///< of --lattice
-  [[nodiscard]] bool is_plain() const { return periodic.empty() && !lattice; }
+  std::optional<Division> division = {};   ///< of --division
+  [[nodiscard]] bool is_plain() const { return periodic.empty() && !lattice && !division; }
 };
 
 /// The options --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads,
@@ -38,11 +40,11 @@ class ExtractionOptions {
   /// polygons. This object must outlive the parse.
   void add_to(CLI::App& app, bool of_images_alone);
 
-  /// Adds --periodic and --lattice to a command.
+  /// Adds --periodic, --lattice and --division to a command.
   void add_tiling_to(CLI::App& app);
-  /// The values of --periodic and --lattice. Throws InvalidArgument if both are given.
+  /// The values of --periodic, --lattice and --division. Throws InvalidArgument if two are given.
   [[nodiscard]] Tiling tiling() const;
-  /// Throws InvalidArgument with --periodic or --lattice. `with`: another option or a command.
+  /// Throws InvalidArgument with --periodic, --lattice or --division. `with`: another option or a command.
   void refuse_tiling(const std::string& with) const;
 
   /// The names of the options that were given.
@@ -74,11 +76,14 @@ class ExtractionOptions {
 
  private:
   void refuse_periodic_with(const std::string& other) const;
+  /// The same for --periodic and --lattice.
+  void refuse_tiling_before_division(const std::string& with) const;
 
   std::vector<CLI::Option*> options_;
   std::vector<std::string> isos_;
   std::vector<std::string> periodic_;
   std::string lattice_;
+  std::string division_;
   std::string triangulation_ = "compact";
   std::string ambiguity_ = "low";
   std::string direction_ = "descent";
@@ -132,7 +137,12 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
                        const Use& use, const Tiling& tiling = {}) {
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> Result {
     if (tiling.lattice) {
-      const Complex<N> complex = lattice_complex(owned.view(), *tiling.lattice);
+      if (single_precision)
+        return use(extract_lattice_with_stats<float>(owned.view(), *tiling.lattice, isovalue, options));
+      return use(extract_lattice_with_stats<double>(owned.view(), *tiling.lattice, isovalue, options));
+    }
+    if (tiling.division) {
+      const Complex<N> complex = divided_complex(owned.view(), *tiling.division, isovalue);
       if (single_precision) return use(extract_with_stats<float>(complex, isovalue, options));
       return use(extract_with_stats<double>(complex, isovalue, options));
     }
