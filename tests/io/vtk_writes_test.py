@@ -357,13 +357,13 @@ def over_time():
         expect(f"cut at {t} is closed", both[0]["boundary_simplices"], 0)
     tracks = json.loads(tegl("track", path, "--iso", 0, "--json"))["graph"]
     expect("one track", len(tracks["tracks"]), 1)
-    expect("its ends", [event["kind"] for event in tracks["events"]], ["start", "end"])
+    expect("its ends", [event["kind"] for event in tracks["events"]], ["begin", "end"])
     measured = json.loads(tegl("measure", path, "--iso", 0, "--at", "t=0.3", "--json"))["cuts"][0]
     expect("volume", 40 < measured["content"] < 60, True)
     expect("components", json.loads(tegl("components", path, "--iso", 0, "--json"))["count"], 1)
     tegl("simplify", path, "--iso", 0, "--ratio", 0.5, "-o", FOLDER / "fewer.vtkhdf", "--quiet")
-    refused("from 0 to 2", "measure", path, "--iso", 0, "--at", "t=2.5", status=5)
-    refused("from 0 to 2", "slice", path, "--iso", 0, "--at", "t=-1", "-o", FOLDER / "no.ply", status=5)
+    refused("expected 0 <= t <= 2", "measure", path, "--iso", 0, "--at", "t=2.5", status=5)
+    refused("expected 0 <= t <= 2", "slice", path, "--iso", 0, "--at", "t=-1", "-o", FOLDER / "no.ply", status=5)
     # the same from a list of files
     names = [FOLDER / f"ball_{k}.vtu" for k in range(4)]
     expect("a list of files", contour_vtkhdf(names, "--times", "0,0.5,1,2"), report(path, 0.0)["simplices"])
