@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "compare.hpp"
-#include "complex/complex_cases.hpp"
 #include "complex/cell_groups.hpp"
+#include "complex/complex_cases.hpp"
 #include "complex/complex_edges.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
@@ -84,7 +84,7 @@ TEST(Complex, SpheresAndToriHaveTheirEulerCharacteristic) {
     SCOPED_TRACE(name);
     Complex<3> complex = mesh.complex();
     for (const Triangulation t : kTriangulations) {
-      complex.set_values(values_of(mesh, ball<3>));
+      complex.set_values(values_of(mesh, test::ball<3>));
       const MeshReport sphere = expect_closed_manifold(extract(complex, 0.0, options_of(t)));
       EXPECT_EQ(1u, sphere.components);
       EXPECT_EQ(2, sphere.euler);
@@ -102,7 +102,7 @@ TEST(Complex, AreaAndVolumeConvergeWithOrderTwo) {
     std::vector<std::pair<double, double>> result;
     for (const auto& [name, mesh] : meshes(samples, 0.0)) {
       Complex<3> complex = mesh.complex();
-      complex.set_values(values_of(mesh, ball<3>));
+      complex.set_values(values_of(mesh, test::ball<3>));
       const Measures<3> measures = measure(extract<double>(complex, 0.0));
       result.emplace_back(std::abs(measures.content.value() - volume), std::abs(measures.size - area));
     }
@@ -352,7 +352,7 @@ TEST(Complex, AllValueTypesGiveTheSameContour) {
 TEST(Complex, MovedPointsMoveTheContourAndKeepItsSimplices) {
   const MeshData<3> mesh = mixed_mesh(grid_points<3>({10, 10, 10}), 2);
   Complex<3> complex = mesh.complex();
-  complex.set_values(values_of(mesh, ball<3>));
+  complex.set_values(values_of(mesh, test::ball<3>));
   const auto before = extract<double>(complex, 0.0);
   auto points = mesh.points;
   for (auto& point : points) point[0] += 3.0;
@@ -446,7 +446,7 @@ TEST(Complex, CountingReportsAllOfItsWorkAndCancels) {
 TEST(Complex, ProgressRisesToOneAndCancels) {
   const MeshData<3> mesh = kuhn_mesh(grid_points<3>({30, 30, 30}));
   Complex<3> complex = mesh.complex();
-  complex.set_values(values_of(mesh, ball<3>));
+  complex.set_values(values_of(mesh, test::ball<3>));
   std::vector<double> heard;
   ExtractOptions options;
   options.work.progress = [&](double fraction) {
@@ -469,7 +469,7 @@ TEST(Complex, ProgressRisesToOneAndCancels) {
 TEST(Complex, StatisticsCountCells) {
   const MeshData<3> mesh = kuhn_mesh(grid_points<3>({9, 9, 9}));
   Complex<3> complex = mesh.complex();
-  complex.set_values(values_of(mesh, ball<3>));
+  complex.set_values(values_of(mesh, test::ball<3>));
   const auto stats = extract_with_stats(complex, 0.0).stats;
   EXPECT_EQ(6u * 512u, stats.tiles);
   std::uint64_t active = 0;
