@@ -49,6 +49,42 @@ TEST_F(RealData, SurfaceOfAnObliqueScan) {
   EXPECT_EQ(report["boundary_simplices"], 0);
 }
 
+TEST_F(RealData, MeshesOfHexahedraTetrahedraAndACurvedGrid) {
+  struct MeshFile {
+    const char* name;
+    const char* variable;
+    const char* isovalue;
+    int tiles;
+  };
+  for (const MeshFile& mesh : {MeshFile{"mesh/disk_out_ref_hex.vtu", "Temp", "400", 7472},
+                               MeshFile{"mesh/disk_out_ref_tet.vtu", "Temp", "400", 44832},
+                               MeshFile{"mesh/comb_57x33x25.vts", "Density", "0.3", 56 * 32 * 24}}) {
+    SCOPED_TRACE(mesh.name);
+    const std::string file = shared(mesh.name);
+    if (file.empty()) GTEST_SKIP() << "no shared data";
+    const nlohmann::json report =
+        expect_manifold({"contour", file, "--var", mesh.variable, "--iso", mesh.isovalue, "-o", path("mesh.ply")}, 2);
+    EXPECT_EQ(report["tiles"], mesh.tiles);
+  }
+}
+
+TEST_F(RealData, AFlowOnAMeshOverSixTimes) {
+  const std::string file = shared("mesh/cavity.pvd");
+  if (file.empty()) GTEST_SKIP() << "no shared data";
+  const nlohmann::json info = run_tegl({"info", file, "--json"}).json();
+  EXPECT_EQ(info["times"], nlohmann::json({0.0, 0.5, 1.0, 1.5, 2.0, 2.5}));
+  EXPECT_EQ(info["cells"]["hexahedron"], 400);
+  const std::vector<std::string> speed = {"--var", "speed", "--iso", "0.1"};
+  const auto with_speed = [&](std::vector<std::string> words) {
+    words.insert(words.end(), speed.begin(), speed.end());
+    return words;
+  };
+  const nlohmann::json report = expect_manifold(with_speed({"contour", file, "-o", path("p.vtkhdf")}), 3);
+  EXPECT_EQ(report["tiles"], 5 * 400);
+  for (const char* const at : {"t=0.2", "t=0.8"})
+    expect_manifold(with_speed({"slice", file, "--at", at, "-o", path("p.ply")}), 2);
+}
+
 TEST_F(RealData, CutOfAFilmOfTheBrain) {
   const std::string file = shared("fourd/functional.nii");
   if (file.empty()) GTEST_SKIP() << "no shared data";
