@@ -42,8 +42,15 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
 MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
                           bool several) {
   const CellMeshOptions options = images.cell_mesh_options(files.size(), progress);
-  MeshInput input{read_cell_mesh(std::vector<std::filesystem::path>(files.begin(), files.end()), options),
-                  [&] { return AnyComplex(Complex<2>({}, std::span<const CellType>(), {})); }()};
+  const auto read = [&] {
+    try {
+      return read_cell_mesh(std::vector<std::filesystem::path>(files.begin(), files.end()), options);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::VariableNotFound || !options.variable.empty()) throw;
+      throw Error(error.code(), fmt::format("{} (choose it with --var)", error.what()));
+    }
+  };
+  MeshInput input{read(), AnyComplex(Complex<2>({}, std::span<const CellType>(), {}))};
   input.complex = to_complex(input.mesh);
   if (several) std::visit([](auto& complex) { complex.find_edges(); }, input.complex);
   return input;
