@@ -69,38 +69,38 @@ TEST(HostileMeshes, NestedJsonIsRefusedBeforeItIsParsed) {
   TempDir dir;
   const std::string start = R"({"asset":{"version":"2.0"},"extensionsRequired":)";
   write_file(dir / "extreq.gltf", start + std::string(100000, '[') + std::string(100000, ']') + "}");
-  expect_refused(dir / "extreq.gltf", ErrorCode::MalformedFile, {"more than 256 deep"}, as_mesh);
+  expect_file_refused(dir / "extreq.gltf", ErrorCode::MalformedFile, {"more than 256 deep"}, as_mesh);
   write_file(dir / "list.gltf", start + R"(["KHR_draco_mesh_compression",[[]]]})");
-  expect_refused(dir / "list.gltf", ErrorCode::MalformedFile, {"'extensionsRequired'", "not text"}, as_mesh);
+  expect_file_refused(dir / "list.gltf", ErrorCode::MalformedFile, {"'extensionsRequired'", "not text"}, as_mesh);
   write_file(dir / "many.gltf", start + list(R"("KHR_draco_mesh_compression")", 10000) + "}");
-  expect_refused(dir / "many.gltf", ErrorCode::UnsupportedData,
-                 {"10000 extensions", "'KHR_draco_mesh_compression'", "expected none"}, as_mesh);
+  expect_file_refused(dir / "many.gltf", ErrorCode::UnsupportedData,
+                      {"10000 extensions", "'KHR_draco_mesh_compression'", "expected none"}, as_mesh);
   // Brackets inside strings do not count.
   write_file(dir / "text.gltf", R"({"x":")" + std::string(1000, '[') + R"(\"{","asset":{"version":"1.0"}})");
-  expect_refused(dir / "text.gltf", ErrorCode::MalformedFile, {"asset.version"}, as_mesh);
+  expect_file_refused(dir / "text.gltf", ErrorCode::MalformedFile, {"asset.version"}, as_mesh);
 }
 
 TEST(HostileMeshes, BuffersOfTheSameBytesShareThem) {
   TempDir dir;
   const std::string all = R"("buffers":)" + list(R"({"byteLength":1})", 5000);
   write_file(dir / "buffers.glb", glb(all, std::string(1000000, '\0')));
-  expect_refused(dir / "buffers.glb", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
+  expect_file_refused(dir / "buffers.glb", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
   // A file that is named repeatedly, in different ways, is read once.
   write_file(dir / "b.bin", std::string(std::size_t{10} << 20, '\0'));
   write_file(dir / "files.gltf", R"({"asset":{"version":"2.0"},"buffers":)" +
                                      list(R"({"byteLength":1,"uri":"b.bin"},{"byteLength":1,"uri":"./b.bin"})", 500) +
                                      "}");
-  expect_refused(dir / "files.gltf", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
+  expect_file_refused(dir / "files.gltf", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
 }
 
 TEST(HostileMeshes, InstancesAreCountedBeforeTheyAreMade) {
   TempDir dir;
   write_file(dir / "instances.glb", instances(500, 500, 3000));
-  expect_refused(dir / "instances.glb", ErrorCode::TooLarge, {"750000000 vertices", "expected at most"}, as_mesh);
+  expect_file_refused(dir / "instances.glb", ErrorCode::TooLarge, {"750000000 vertices", "expected at most"}, as_mesh);
   // Primitives without points take time.
   write_file(dir / "empty.glb", instances(20000, 20000, 0));
-  expect_refused(dir / "empty.glb", ErrorCode::TooLarge, {"400000000 primitives with 0 vertices", "expected at most"},
-                 as_mesh);
+  expect_file_refused(dir / "empty.glb", ErrorCode::TooLarge,
+                      {"400000000 primitives with 0 vertices", "expected at most"}, as_mesh);
   write_file(dir / "few.glb", instances(10, 10, 3));
   EXPECT_EQ(read_mesh(dir / "few.glb").coordinates.size(), 900U);
 }
@@ -175,12 +175,12 @@ TEST(HostileMeshes, RepeatedNamesOfPlyAreRefused) {
   TempDir dir;
   write_file(dir / "props.ply", "ply\nformat ascii 1.0\nelement vertex 3\n" + kXyz + "element face 0\n" + kFaces +
                                     repeated("property uchar a\n", 30000) + "end_header\n0 0 0\n1 0 0\n0 1 0\n");
-  expect_refused(dir / "props.ply", ErrorCode::MalformedFile, {"two properties 'a' of element 'face'"}, as_mesh);
+  expect_file_refused(dir / "props.ply", ErrorCode::MalformedFile, {"two properties 'a' of element 'face'"}, as_mesh);
   write_file(dir / "two_vertex.ply", "ply\nformat ascii 1.0\nelement vertex 1\n" + kXyz +
                                          "property float nx\nproperty float ny\nproperty float nz\nelement vertex 3\n" +
                                          kXyz + "element face 1\n" + kFaces +
                                          "end_header\n0 0 0 0 0 1\n0 0 0\n1 0 0\n0 1 1\n3 0 1 2\n");
-  expect_refused(dir / "two_vertex.ply", ErrorCode::MalformedFile, {"two elements 'vertex'", "expected"}, as_mesh);
+  expect_file_refused(dir / "two_vertex.ply", ErrorCode::MalformedFile, {"two elements 'vertex'", "expected"}, as_mesh);
 }
 
 TEST(HostileMeshes, EqualNamesOfAttributesAreNumberedInLinearTime) {
@@ -209,8 +209,8 @@ TEST(HostileMeshes, AttributesOfPolygonsAreNotCopiedWithoutLimit) {
                                   "element face 1\nproperty list uint uchar vertex_indices\n" + properties +
                                   "end_header\n" + std::string(12, '\0') + raw(corners) + std::string(corners, '\0') +
                                   std::string(5000, '\0'));
-  expect_refused(dir / "fan.ply", ErrorCode::TooLarge, {"attributes of the triangles of polygons", "expected at most"},
-                 as_mesh);
+  expect_file_refused(dir / "fan.ply", ErrorCode::TooLarge,
+                      {"attributes of the triangles of polygons", "expected at most"}, as_mesh);
 }
 
 TEST(HostileMeshes, CountsOfPlyGetNoMemoryThatTheFileCannotFill) {
@@ -219,7 +219,7 @@ TEST(HostileMeshes, CountsOfPlyGetNoMemoryThatTheFileCannotFill) {
   std::string file = "ply\nformat binary_little_endian 1.0\nelement vertex 0\n" + kXyz + "element face 20000000\n" +
                      kFaces + "end_header\n" + std::string(20000000, '\0');
   write_file(dir / "faces.ply", file);
-  expect_refused(dir / "faces.ply", ErrorCode::MalformedFile, {"face 0 of 0 vertices"}, as_mesh);
+  expect_file_refused(dir / "faces.ply", ErrorCode::MalformedFile, {"face 0 of 0 vertices"}, as_mesh);
 }
 
 // --- STL
@@ -227,9 +227,10 @@ TEST(HostileMeshes, CountsOfPlyGetNoMemoryThatTheFileCannotFill) {
 TEST(HostileMeshes, StlIsReadInLinearMemory) {
   TempDir dir;
   write_file(dir / "solids.stl", repeated("solid\n", 200000));
-  expect_refused(dir / "solids.stl", ErrorCode::UnsupportedData, {"no triangles"}, as_mesh);
+  expect_file_refused(dir / "solids.stl", ErrorCode::UnsupportedData, {"no triangles"}, as_mesh);
   write_file(dir / "count.stl", std::string(80, 'x') + raw<std::uint32_t>(0xffffffff) + std::string(50, '\0'));
-  expect_refused(dir / "count.stl", ErrorCode::MalformedFile, {"4294967295 triangles", "expected at most 1"}, as_mesh);
+  expect_file_refused(dir / "count.stl", ErrorCode::MalformedFile, {"4294967295 triangles", "expected at most 1"},
+                      as_mesh);
 }
 
 TEST(HostileMeshes, TextOfStlIsReadByItsWords) {
@@ -315,16 +316,16 @@ TEST(HostileMeshes, DatasetsOfHdf5AreBoundedByWhatTheFileStores) {
       H5Lcreate_hard(file.id(), "VTKHDF/PointData/wide", file.id(), ("VTKHDF/PointData/w" + std::to_string(i)).c_str(),
                      H5P_DEFAULT, H5P_DEFAULT);
   }
-  expect_refused(dir / "links.vtkhdf", ErrorCode::MalformedFile, {"of which the file stores", "expected at most"},
-                 as_mesh);
+  expect_file_refused(dir / "links.vtkhdf", ErrorCode::MalformedFile, {"of which the file stores", "expected at most"},
+                      as_mesh);
   {
     const TriangleFile file(dir / "unwritten.vtkhdf");  // arrays declared in the file but not stored
     const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     for (int i = 0; i < 100; ++i)
       file.add(("VTKHDF/PointData/w" + std::to_string(i)).c_str(), {3, 60000}, properties, nullptr);
   }
-  expect_refused(dir / "unwritten.vtkhdf", ErrorCode::MalformedFile, {"'w0'", "3 x 60000", "1440000 bytes", "stores 0"},
-                 as_mesh);
+  expect_file_refused(dir / "unwritten.vtkhdf", ErrorCode::MalformedFile,
+                      {"'w0'", "3 x 60000", "1440000 bytes", "stores 0"}, as_mesh);
 }
 
 TEST(HostileMeshes, ChunksOfHdf5AreBoundedByTheirDataset) {
@@ -345,8 +346,8 @@ TEST(HostileMeshes, ChunksOfHdf5AreBoundedByTheirDataset) {
   write("small.vtkhdf", 1000);
   EXPECT_EQ(read_mesh(dir / "small.vtkhdf").coordinates.size(), 9U);
   write("large.vtkhdf", 2000000);
-  expect_refused(dir / "large.vtkhdf", ErrorCode::MalformedFile, {"'Points'", "chunks of 48000000", "at most 16777216"},
-                 as_mesh);
+  expect_file_refused(dir / "large.vtkhdf", ErrorCode::MalformedFile,
+                      {"'Points'", "chunks of 48000000", "at most 16777216"}, as_mesh);
 }
 
 TEST(HostileMeshes, ChunksOfNetcdfAreBoundedByTheirVariable) {
@@ -364,8 +365,8 @@ TEST(HostileMeshes, ChunksOfNetcdfAreBoundedByTheirVariable) {
     file.values(v, {4, 4, 4}, counting<double>(64));
   }
   const std::vector<std::string> parts = {"'v' of 256 bytes", "1048576 x 4 x 4", "67108864 bytes", "at most 16777216"};
-  expect_refused(dir / "chunk.nc", ErrorCode::MalformedFile, parts, as_image);
-  expect_refused(dir / "chunk.nc", ErrorCode::MalformedFile, parts, as_layers);
+  expect_file_refused(dir / "chunk.nc", ErrorCode::MalformedFile, parts, as_image);
+  expect_file_refused(dir / "chunk.nc", ErrorCode::MalformedFile, parts, as_layers);
 }
 
 TEST(HostileMeshes, ChunksOfNetcdfAreNoMoreThanTheFileHolds) {
@@ -378,8 +379,8 @@ TEST(HostileMeshes, ChunksOfNetcdfAreNoMoreThanTheFileHolds) {
     file.end();
   }
   const std::vector<std::string> parts = {"'v' has 10000 chunks of 1 x 1", "expected at most 4096"};
-  expect_refused(dir / "count.nc", ErrorCode::MalformedFile, parts, as_image);
-  expect_refused(dir / "count.nc", ErrorCode::MalformedFile, parts, as_layers);
+  expect_file_refused(dir / "count.nc", ErrorCode::MalformedFile, parts, as_image);
+  expect_file_refused(dir / "count.nc", ErrorCode::MalformedFile, parts, as_layers);
 }
 
 TEST(HostileMeshes, GroupsOfHdf5AreNotNestedDeeply) {
@@ -394,7 +395,7 @@ TEST(HostileMeshes, GroupsOfHdf5AreNotNestedDeeply) {
     }
     H5Gclose(group);
   }
-  expect_refused(dir / "deep.nc", ErrorCode::MalformedFile, {"groups nested deeper than 32"}, as_image);
+  expect_file_refused(dir / "deep.nc", ErrorCode::MalformedFile, {"groups nested deeper than 32"}, as_image);
 }
 
 TEST(HostileMeshes, GroupsThatAreNoTreeAreRefusedBeforeNetCdfFollowsThem) {
@@ -408,7 +409,8 @@ TEST(HostileMeshes, GroupsThatAreNoTreeAreRefusedBeforeNetCdfFollowsThem) {
       else
         H5Lcreate_hard(file, "/", group, "b", H5P_DEFAULT, H5P_DEFAULT);
     }
-    expect_refused(dir / "loop.nc", ErrorCode::MalformedFile, {"two links lead to the group", "form a tree"}, as_image);
+    expect_file_refused(dir / "loop.nc", ErrorCode::MalformedFile, {"two links lead to the group", "form a tree"},
+                        as_image);
   }
 }
 
@@ -616,8 +618,8 @@ TEST(HostileMeshes, SequencesOfDicomAreNotNestedDeeply) {
           return syntax == Syntax::explicit_big ? as_big_endian(body) : body;
         };
         write_file(dir / "deep.dcm", dicom(syntax, data(with_lengths ? 2000 : 10000)));
-        expect_refused(dir / "deep.dcm", ErrorCode::MalformedFile, {"nested deeper than 64", "expected at most 64"},
-                       as_image);
+        expect_file_refused(dir / "deep.dcm", ErrorCode::MalformedFile,
+                            {"nested deeper than 64", "expected at most 64"}, as_image);
         write_file(dir / "flat.dcm", dicom(syntax, data(60)));
         EXPECT_THAT(error_of([&] { read_image(dir / "flat.dcm"); }).what(), testing::Not(testing::HasSubstr("nested")));
       }
@@ -637,17 +639,17 @@ TEST(HostileMeshes, ManyItemsOfDicomAreNotDeep) {
 TEST(HostileMeshes, FoundFilesAreRefused) {
   const fs::path folder = fs::path(TEGL_SHARED_DATA_DIR) / "hostile";
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
-  expect_refused(folder / "attrs.vtkhdf", ErrorCode::MalformedFile, {"expected"}, as_mesh);
-  expect_refused(folder / "vtkhdf_sig14_rss_1_899.vtkhdf", ErrorCode::MalformedFile,
-                 {"values of 1442840577 bytes", "expected numbers of 1 to 16"}, as_mesh);
-  expect_refused(folder / "chunk.nc", ErrorCode::MalformedFile, {"chunks of", "expected at most"}, as_image);
-  expect_refused(folder / "chunk.nc", ErrorCode::MalformedFile, {"chunks of", "expected at most"}, as_layers);
-  expect_refused(folder / "seq_10000.dcm", ErrorCode::MalformedFile, {"nested deeper than 64"}, as_image);
-  expect_refused(folder / "extreq.gltf", ErrorCode::MalformedFile, {"more than 256 deep"}, as_mesh);
-  expect_refused(folder / "buffers.glb", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
-  expect_refused(folder / "instances.glb", ErrorCode::TooLarge, {"750000000 vertices"}, as_mesh);
-  expect_refused(folder / "props.ply", ErrorCode::MalformedFile, {"two properties 'a'"}, as_mesh);
-  expect_refused(folder / "two_vertex.ply", ErrorCode::MalformedFile, {"two elements 'vertex'"}, as_mesh);
+  expect_file_refused(folder / "attrs.vtkhdf", ErrorCode::MalformedFile, {"expected"}, as_mesh);
+  expect_file_refused(folder / "vtkhdf_sig14_rss_1_899.vtkhdf", ErrorCode::MalformedFile,
+                      {"values of 1442840577 bytes", "expected numbers of 1 to 16"}, as_mesh);
+  expect_file_refused(folder / "chunk.nc", ErrorCode::MalformedFile, {"chunks of", "expected at most"}, as_image);
+  expect_file_refused(folder / "chunk.nc", ErrorCode::MalformedFile, {"chunks of", "expected at most"}, as_layers);
+  expect_file_refused(folder / "seq_10000.dcm", ErrorCode::MalformedFile, {"nested deeper than 64"}, as_image);
+  expect_file_refused(folder / "extreq.gltf", ErrorCode::MalformedFile, {"more than 256 deep"}, as_mesh);
+  expect_file_refused(folder / "buffers.glb", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
+  expect_file_refused(folder / "instances.glb", ErrorCode::TooLarge, {"750000000 vertices"}, as_mesh);
+  expect_file_refused(folder / "props.ply", ErrorCode::MalformedFile, {"two properties 'a'"}, as_mesh);
+  expect_file_refused(folder / "two_vertex.ply", ErrorCode::MalformedFile, {"two elements 'vertex'"}, as_mesh);
   EXPECT_EQ(read_mesh(folder / "plain.vtkhdf").dim, 2);
 }
 

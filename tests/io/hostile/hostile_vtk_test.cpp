@@ -7,8 +7,8 @@
 namespace tegl::test {
 namespace {
 
-void as_image(const fs::path& path) { read_image(path); }
-void as_cells(const fs::path& path) { read_cell_mesh(std::array{path}); }
+void as_vtk_image(const fs::path& path) { read_image(path); }
+void as_vtk_cells(const fs::path& path) { read_cell_mesh(std::array{path}); }
 
 /// An image of 2 x 2 x 2 with an array in appended data.
 std::string image_file(const std::string& attributes, const std::string& extent, const std::string& array,
@@ -69,10 +69,10 @@ TEST(HostileVtk, SizesOfDataAreCheckedBeforeMemoryIsTaken) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     SCOPED_TRACE(i);
     write_file(dir / "f.vti", all[i].bytes);
-    expect_refused(dir / "f.vti", all[i].code, all[i].parts, as_image);
+    expect_file_refused(dir / "f.vti", all[i].code, all[i].parts, as_vtk_image);
   }
   write_file(dir / "f.vti", image_file(wide, eight, "offset=\"0\"", sound));
-  EXPECT_NO_THROW(as_image(dir / "f.vti"));  // the file without a fault
+  EXPECT_NO_THROW(as_vtk_image(dir / "f.vti"));  // the file without a fault
 }
 
 TEST(HostileVtk, XmlThatNeedsMuchIsRefused) {
@@ -96,7 +96,7 @@ TEST(HostileVtk, XmlThatNeedsMuchIsRefused) {
   };
   for (const auto& [bytes, part] : all) {
     write_file(dir / "f.vti", bytes);
-    expect_refused(dir / "f.vti", ErrorCode::MalformedFile, {part}, as_image);
+    expect_file_refused(dir / "f.vti", ErrorCode::MalformedFile, {part}, as_vtk_image);
   }
 }
 
@@ -113,7 +113,7 @@ TEST(HostileVtk, FilesThatEndEarlyAreRefused) {
     const std::size_t end = std::min(whole.rfind("</VTKFile>"), whole.rfind("</AppendedData>") - 8);
     for (std::size_t size = 1; size < end; size += 3) {
       write_file(dir / name, whole.substr(0, size));
-      EXPECT_THAT(error_of([&] { is_image ? as_image(dir / name) : as_cells(dir / name); }).what(),
+      EXPECT_THAT(error_of([&] { is_image ? as_vtk_image(dir / name) : as_vtk_cells(dir / name); }).what(),
                   testing::HasSubstr(name))
           << size << " of " << whole.size();
       if (HasFailure()) return;

@@ -29,8 +29,8 @@ inline double seconds_of_children() {
 inline constexpr double kMostSeconds = kHasSanitizer ? 10.0 : 1.0;
 
 /// Reads a file in a child process; expects this error within the limits of time and memory.
-inline void expect_refused(const fs::path& path, ErrorCode code, const std::vector<std::string>& parts,
-                           const Read& read) {
+inline void expect_file_refused(const fs::path& path, ErrorCode code, const std::vector<std::string>& parts,
+                                const Read& read) {
   SCOPED_TRACE(path.string());
   const double before = seconds_of_children();
   const ChildResult result = in_limited_child([&] { read(path); });
