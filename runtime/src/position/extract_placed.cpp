@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The public function `extract_placed_with_stats`.
+#include "image/row_source.hpp"
+#include "kernel/contour_output.hpp"
+#include "position/place.hpp"
+
+namespace tegl {
+
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_placed_with_stats(const Image<T, N>& image,
+                                                                                 double isovalue,
+                                                                                 const PositionOptions& positions,
+                                                                                 const ExtractOptions& options) {
+  detail::check_arguments(isovalue, options);
+  std::size_t samples = 1;
+  for (int a = 0; a < N; ++a) samples *= image.size(a);
+  detail::check_positions(positions, samples, N);
+  if (positions.rule == Positions::linear) return extract_with_stats<Real>(image, isovalue, options);
+  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+  return detail::extract_placed_from<N, Real>(source, image.grid(), positions, options);
+}
+
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                     \
+  template Extraction<N, float> extract_placed_with_stats<float, T, N>(const Image<T, N>&, double,            \
+                                                                       const PositionOptions&,                \
+                                                                       const ExtractOptions&);                \
+  template Extraction<N, double> extract_placed_with_stats<double, T, N>(const Image<T, N>&, double,          \
+                                                                         const PositionOptions&,              \
+                                                                         const ExtractOptions&);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Extraction with positions by a rule (see tegl/positions.hpp).
+#include "position/place.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/progress.hpp"
+#include "kernel/extract_in_memory.hpp"
+#include "position/edge_rules.hpp"
+#include "position/gravitation.hpp"
+#include "position/relaxed_positions.hpp"
+
+namespace tegl::detail {
+
+void check_positions(const PositionOptions& positions, std::size_t samples, int dimensions) {
+  if (positions.rule == Positions::filtered && positions.filtered.size() != samples)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("filtered positions with {} values; expected one for each of the image's {} samples",
+                            positions.filtered.size(), samples));
+  if (positions.rule == Positions::custom && !positions.custom)
+    throw Error(ErrorCode::InvalidArgument,
+                "custom positions without a function; expected one in PositionOptions::custom");
+  if (positions.rule == Positions::gravitation && dimensions > 4)
+    throw Error(ErrorCode::UnsupportedData,
+                fmt::format("gravitation of a {}D image; expected 2 to 4 dimensions", dimensions));
+  if (!(positions.margin > 0 && positions.margin < 0.5))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("a margin of {}; expected more than 0 and less than 0.5", positions.margin));
+  if (!(positions.last_axis_weight >= 0 && std::isfinite(positions.last_axis_weight)))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("a weight of the last axis of {}; expected 0 or more",
+                                                        positions.last_axis_weight));
+}
+
+namespace {
+
+template <int N, class Real>
+Extraction<N, Real> extract_on_edges(SampleSource<N>& samples, const Grid<N>& grid,
+                                     const PositionsOnEdges<N>& positions, const ExtractOptions& options) {
+  PlacedSource<N> placed(samples, grid, positions, options.epsilon);
+  return extract_in_memory<N, Real>(placed, grid, options);
+}
+
+template <int N, class Real>
+Extraction<N, Real> extract_relaxed(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
+                                    const ExtractOptions& options) {
+  constexpr double kShare = 0.8;  // of the relaxation in the time
+  RelaxationOptions relaxation;
+  relaxation.margin = std::max(positions.margin, options.epsilon);
+  relaxation.last_axis_weight = positions.last_axis_weight;
+  relaxation.work = {options.work.threads, part_of(options.work.progress, 0.0, kShare)};
+  const RelaxedPositions<N> relaxed(samples, grid, options, relaxation);
+  ExtractOptions rest = options;
+  rest.work.progress = part_of(options.work.progress, kShare, 1.0);
+  return extract_on_edges<N, Real>(samples, grid, relaxed, rest);
+}
+
+template <int N, class Real>
+Extraction<N, Real> extract_by_gravitation(SampleSource<N>& samples, const Grid<N>& grid,
+                                           const ExtractOptions& options) {
+  Extraction<N, Real> result;
+  if constexpr (N <= 4) {
+    describe(grid, options, result.contour);
+    const ExtractPlan plan;
+    GravitationOutput<N, Real> output(result.contour, samples, grid, options, plan.max_vertices);
+    result.stats = extract_to(samples, grid, generated_tables<N>(options), options, plan, output);
+  }
+  return result;
+}
+
+}  // namespace
+
+template <int N, class Real>
+Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>& grid,
+                                        const PositionOptions& positions, const ExtractOptions& options) {
+  switch (positions.rule) {
+    case Positions::filtered:
+      return extract_on_edges<N, Real>(samples, grid,
+                                       FilteredPositions<N>(samples, grid, positions.filtered, options.epsilon),
+                                       options);
+    case Positions::custom: {
+      const CustomPositions<N> rule(samples, positions);
+      Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options);
+      rule.rethrow();
+      return result;
+    }
+    case Positions::gravitation: return extract_by_gravitation<N, Real>(samples, grid, options);
+    case Positions::relaxed: return extract_relaxed<N, Real>(samples, grid, positions, options);
+    case Positions::linear: break;
+  }
+  return extract_in_memory<N, Real>(samples, grid, options);
+}
+
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                    \
+  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, const Grid<N>&,      \
+                                                            const PositionOptions&, const ExtractOptions&);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl::detail
