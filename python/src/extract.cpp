@@ -13,6 +13,7 @@
 #include "tegl/lattice.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/periodic.hpp"
+#include "tegl/positions.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl::python {
@@ -133,6 +134,40 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
   return call.run([&] {
     auto result = std::make_unique<AnyContour>(is_double ? contour_of_image<double>(image, level, options)
                                                          : contour_of_image<float>(image, level, options));
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
+}
+
+template <class Real>
+AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& positions, double level,
+                             const ExtractOptions& options) {
+  return visit_image(image, [&](const auto& view) -> AnyContour {
+    return {extract_placed<Real>(view, level, positions, options), level};
+  });
+}
+
+/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered".
+std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule,
+                                               const py::array_t<float, py::array::c_style>& values, double margin,
+                                               double last_axis_weight, double level, bool is_double,
+                                               const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
+  PositionOptions positions;
+  positions.rule = named<Positions>("positions", rule,
+                                    {{"linear", Positions::linear},
+                                     {"filtered", Positions::filtered},
+                                     {"gravitation", Positions::gravitation},
+                                     {"relaxed", Positions::relaxed}});
+  positions.filtered = std::span<const float>(values.data(), static_cast<std::size_t>(values.size()));
+  positions.margin = margin;
+  positions.last_axis_weight = last_axis_weight;
+  return call.run([&] {
+    auto result =
+        std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, level, options)
+                                               : placed_contour_of<float>(image, positions, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -299,6 +334,9 @@ void bind_extract(py::module_& m) {
         py::arg("progress"), doc::extract);
   m.def("extract_periodic", &extract_periodic_any, py::arg("image"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
+  m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("margin"),
+        py::arg("last_axis_weight"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
+        doc::extract_placed);
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),

@@ -549,6 +549,27 @@ def normals_kind(normals: object, gradient: object) -> str:
     return "sobel" if kind else ""
 
 
+def position_values(positions: str, image: object, prepared: Prepared) -> np.ndarray:
+    """The samples of the second image for "filtered", in the library's order; none for other rules."""
+    kinds = typing.get_args(_kinds.Positions)
+    if as_text("positions", positions) not in kinds:
+        raise ValueError(f"positions is {positions!r}; expected one of {', '.join(map(repr, kinds))}")
+    if positions != "filtered":
+        if image is not None:
+            raise ValueError(f"positions_image with positions {positions!r}; expected positions='filtered'")
+        return np.empty(0, np.float32)
+    if image is None:
+        raise ValueError("positions is 'filtered' without positions_image; expected the second image, an array")
+    if hasattr(image, "__tegl_image__"):
+        image = image.__tegl_image__()[-1]
+    values = np.ma.filled(np.ma.asarray(image).astype(np.float32), np.nan) if np.ma.isMaskedArray(image) else np.asarray(
+        image, np.float32)
+    shape = prepared.image.array.shape[::-1] if prepared.is_reversed else prepared.image.array.shape
+    if values.shape != shape:
+        raise ValueError(f"positions_image has the shape {values.shape}; expected {shape}, as the array")
+    return np.ravel(values, order="C" if prepared.is_reversed else "F")
+
+
 EXTRACT_OPTIONS = ("triangulation", "ambiguity", "direction", "close", "epsilon", "normals", "gradient", "threads")
 
 

@@ -16,15 +16,15 @@ from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
 
 
-@_arguments.documents("extract", "ExtractOptions", "Ambiguity")
+@_arguments.documents("extract", "ExtractOptions", "Ambiguity", "extract_placed")
 def contour(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
             axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
             time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
-            periodic=None, lattice: _kinds.Lattice | None = None,
-            division: _kinds.Division | None = None) -> Contour:
+            periodic=None, lattice: _kinds.Lattice | None = None, division: _kinds.Division | None = None,
+            positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
@@ -86,6 +86,15 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     division
         How cells are divided into simplices: "kuhn" or "symmetric", in 2D and 3D also "alternating", or "hybrid", which
         divides ambiguous cells only. See docs/other-tilings.md.
+    positions
+        Where vertices lie between two samples: "linear" (interpolation), "relaxed" (smooth surfaces of masks and labels,
+        without stair steps; every sample stays on its side), "filtered" (linear in `positions_image`) or "gravitation"
+        (moved towards neighbouring samples, for masks). Not with `periodic` and `lattice`. See docs/positions.md.
+    positions_image
+        For "filtered": an array of the same shape, such as a smoothed one. Its samples are clamped to the side of the
+        array's samples. Where it is NaN, the array's own sample counts.
+    time_weight
+        For "relaxed": weight of the smoothing along the `time_axis` relative to the others; 0: each layer by itself.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -96,16 +105,24 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     is_double = _arguments.is_double(dtype, prepared)
+    values = _arguments.position_values(positions, positions_image, prepared)
+    weight = _arguments.as_number("time_weight", time_weight)
+    if weight != 1 and positions != "relaxed":
+        raise ValueError(f"time_weight is {time_weight!r} with positions {positions!r}; expected positions='relaxed'")
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     with prepared.terms():
-        given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
+        given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
+                                          ("positions", None if positions == "linear" else positions))
                  if value is not None]
         if len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         if division is not None:
             core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
                                          options, progress)
+        elif positions != "linear":
+            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, level, is_double, options,
+                                        progress)
         elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
                                          progress)

@@ -21,6 +21,7 @@
 #include "input/commands.hpp"
 #include "input/extraction.hpp"
 #include "input/mesh_input.hpp"
+#include "input/positions.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/io/active_tiles.hpp"
@@ -105,6 +106,7 @@ class ContourCommand final : public Command {
                     "only the component nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D), in the units of the "
                     "image's axes")
         ->type_name("X,Y,Z[,T]");
+    positions_.add_to(app());
     attributes_.add_to(app());
     compress_.add_to(app());
     app().add_flag("--stream", stream_,
@@ -124,6 +126,7 @@ class ContourCommand final : public Command {
     const std::vector<double> point = picked_point();
     ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
     require_tiling_options();
+    require_linear_positions();
     require_inputs();
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
@@ -163,6 +166,8 @@ class ContourCommand final : public Command {
         throw Error(ErrorCode::InvalidArgument,
                     "--index with --stream; expected one of the two: an index needs the image in memory");
     }
+    if (!positions_.file().empty()) also_read({parse_file_and_variable(positions_.file()).file});
+    positions_.require();
     also_read(attributes_.files());
     attributes_.require_inputs();
   }
@@ -190,6 +195,16 @@ class ContourCommand final : public Command {
     if (one_file_) options_.refuse_tiling("--one-file");
     if (options_.polygon_triangulation()) options_.refuse_tiling("a triangulation of polygons");
     if (attributes_.wanted()) options_.refuse_tiling("--attribute");
+  }
+
+  /// Refuses --positions with options of functions that know linear positions only.
+  void require_linear_positions() const {
+    if (is_streamed()) positions_.refuse("--stream");
+    if (!index_.empty()) positions_.refuse("--index");
+    if (facets_) positions_.refuse("--facets");
+    if (app().count("--pick") > 0) positions_.refuse("--pick");
+    if (options_.polygon_triangulation()) positions_.refuse("a triangulation of polygons");
+    if (!options_.tiling().is_plain()) positions_.refuse("--periodic or --lattice");
   }
 
   void require_one_file_of_several(std::size_t isovalues) const {
@@ -233,6 +248,7 @@ class ContourCommand final : public Command {
       result.image_dim = image_dim(input.image);
       require_contour(input, *result.isovalue, options_.allows_empty());
     }
+    placed_ = positions_.library_options(input.image, image_options(bar.stage("positions")), position_values_);
     results.front().seconds.read = watch.lap();  // read once for all isovalues
     WrittenFiles written;
     const auto finished = [&](ContourResult& result) {
@@ -317,6 +333,8 @@ class ContourCommand final : public Command {
           finished,
           triangulated_polygons(
               image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
+    else if (!positions_.are_linear())
+      result.mesh = extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision, finished);
     else
       result.mesh =
           extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, options_.tiling());
@@ -348,7 +366,8 @@ class ContourCommand final : public Command {
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
     const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
-                              app().count("--pick") > 0 || options_.wants_shape_normals() || attributes_.wanted() ||
+                              app().count("--pick") > 0 || !positions_.are_linear() ||
+                              options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
@@ -513,6 +532,9 @@ class ContourCommand final : public Command {
   }
 
   ExtractionOptions options_;
+  PositionArguments positions_;
+  PositionOptions placed_;
+  std::vector<float> position_values_;
   AttributeOptions attributes_;
   CompressOption compress_;
   std::string output_;

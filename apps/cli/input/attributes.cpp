@@ -25,15 +25,15 @@ std::string stem(const fs::path& file) {
   return name.substr(0, std::max<std::size_t>(1, std::min(name.find('.', 1), name.size())));
 }
 
-ReadImageResult read_attribute(const std::string& file, const ReadImageOptions& options) {
+}  // namespace
+
+ReadImageResult read_other_image(const std::string& file, const ReadImageOptions& options) {
   try {
     return read_image(file, options);
   } catch (const Error& error) {
     throw Error(error.code(), with_option_names(error.what()));
   }
 }
-
-}  // namespace
 
 FileAndVariable parse_file_and_variable(const std::string& text) {
   std::error_code ignored;
@@ -67,7 +67,7 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
     const Progress progress = bar.stage("attribute");
     reading.variable = from.variable;
     reading.work.progress = [&](double fraction) { return progress(0.7 * fraction); };
-    const ReadImageResult input = read_attribute(from.file, reading);
+    const ReadImageResult input = read_other_image(from.file, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: an image of {} dimensions for a contour in {}D; expected {}", from.file,

@@ -22,6 +22,9 @@ struct FileAndVariable {
 };
 FileAndVariable parse_file_and_variable(const std::string& text);
 
+/// Reads another image than FILE, with the names of this program's options in errors.
+ReadImageResult read_other_image(const std::string& file, const ReadImageOptions& options);
+
 class AttributeOptions {
  public:
   /// Adds --attribute to a command. This object must outlive the parse.

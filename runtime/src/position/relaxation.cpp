@@ -18,7 +18,7 @@ namespace tegl::detail {
 namespace {
 
 /// Factors of the smoothing: the second one takes back what the first one does to long waves.
-constexpr float kTowards = 0.5f, kAway = -0.53f;
+constexpr float kTowards = 0.62f, kAway = -0.74f;
 
 /// The range of positions.
 struct Limits {

@@ -12,7 +12,7 @@ namespace tegl::detail {
 struct RelaxationOptions {
   double margin = 0.01;           ///< minimum distance of points from samples, as a share of the edge
   double last_axis_weight = 1.0;  ///< weight of the curves in planes along the last axis
-  int rounds = 6;                 ///< of smoothing
+  int rounds = 3;                 ///< of smoothing
   WorkOptions work = {};
 };
 
