@@ -85,7 +85,8 @@ void measure_planes(bool quick) {
     for (int degrees = 1; degrees < 90; degrees += quick ? 7 : 1) {
       const double angle = degrees * std::numbers::pi / 180;
       Distances distances;
-      for (const double offset : offsets) add_plane<2>({std::sin(angle), std::cos(angle)}, offset, lines, rule, distances);
+      for (const double offset : offsets)
+        add_plane<2>({std::sin(angle), std::cos(angle)}, offset, lines, rule, distances);
       const double error = distances.root_mean_square();
       if (degrees == 15) at_15 = error;
       if (degrees == 45) at_45 = error;

@@ -165,9 +165,8 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
   positions.margin = margin;
   positions.last_axis_weight = last_axis_weight;
   return call.run([&] {
-    auto result =
-        std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, level, options)
-                                               : placed_contour_of<float>(image, positions, level, options));
+    auto result = std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, level, options)
+                                                         : placed_contour_of<float>(image, positions, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });

@@ -329,3 +329,34 @@ def test_periodic_axes_by_name_number_and_period():
         edges(periodic=True)
     with pytest.raises(ValueError, match="close"):
         edges(periodic=0, close=True)
+
+
+def test_positions_of_masks():
+    z, y, x = np.ogrid[-1:1:24j, -1:1:26j, -1:1:25j]
+    mask = x**2 + y**2 + z**2 < 0.5
+    linear = tegl.contour(mask, 0.5)
+    relaxed = tegl.contour(mask, 0.5, positions="relaxed")
+    assert np.array_equal(relaxed.simplices, linear.simplices)
+    assert relaxed.check().is_closed and not np.array_equal(relaxed.vertices, linear.vertices)
+    values = np.random.default_rng(1).random(mask.shape)
+    for time_axis in (0, -1):
+        given = tegl.contour(mask, 0.5, positions="filtered", positions_image=values, dtype=np.float64, time_axis=time_axis)
+        # at each vertex, both ends of its edge, clamped to their sides
+        high = np.where(mask, np.maximum(values.astype(np.float32), 0.5), np.minimum(values.astype(np.float32), 0.5))
+        for vertex in given.vertices[::7]:
+            start, end = np.floor(vertex).astype(int), np.ceil(vertex).astype(int)
+            a, b = float(high[tuple(start)]), float(high[tuple(end)])
+            if a != b:
+                assert abs((vertex - start).sum() - (0.5 - a) / (b - a)) < 1e-6
+    with pytest.raises(ValueError, match="expected one of 'linear', 'filtered', 'gravitation', 'relaxed'"):
+        tegl.contour(mask, 0.5, positions="smooth")
+    with pytest.raises(ValueError, match="without positions_image"):
+        tegl.contour(mask, 0.5, positions="filtered")
+    with pytest.raises(ValueError, match=r"has the shape \(2, 2\); expected \(24, 26, 25\)"):
+        tegl.contour(mask, 0.5, positions="filtered", positions_image=np.zeros((2, 2)))
+    with pytest.raises(ValueError, match="expected positions='filtered'"):
+        tegl.contour(mask, 0.5, positions="relaxed", positions_image=values)
+    with pytest.raises(ValueError, match="with periodic"):
+        tegl.contour(mask, 0.5, positions="relaxed", periodic="all")
+    with pytest.raises(ValueError, match="expected positions='relaxed'"):
+        tegl.contour(mask, 0.5, time_weight=0)

@@ -126,7 +126,7 @@ class ContourCommand final : public Command {
     const std::vector<double> point = picked_point();
     ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
     require_tiling_options();
-    require_linear_positions();
+    require_positions();
     require_inputs();
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
@@ -167,7 +167,6 @@ class ContourCommand final : public Command {
                     "--index with --stream; expected one of the two: an index needs the image in memory");
     }
     if (!positions_.file().empty()) also_read({parse_file_and_variable(positions_.file()).file});
-    positions_.require();
     also_read(attributes_.files());
     attributes_.require_inputs();
   }
@@ -197,14 +196,15 @@ class ContourCommand final : public Command {
     if (attributes_.wanted()) options_.refuse_tiling("--attribute");
   }
 
-  /// Refuses --positions with options of functions that know linear positions only.
-  void require_linear_positions() const {
+  /// Refuses --positions with options of functions that know linear positions only, and checks its own options.
+  void require_positions() const {
     if (is_streamed()) positions_.refuse("--stream");
     if (!index_.empty()) positions_.refuse("--index");
     if (facets_) positions_.refuse("--facets");
     if (app().count("--pick") > 0) positions_.refuse("--pick");
     if (options_.polygon_triangulation()) positions_.refuse("a triangulation of polygons");
     if (!options_.tiling().is_plain()) positions_.refuse("--periodic or --lattice");
+    positions_.require();
   }
 
   void require_one_file_of_several(std::size_t isovalues) const {
@@ -366,9 +366,8 @@ class ContourCommand final : public Command {
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
     const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
-                              app().count("--pick") > 0 || !positions_.are_linear() ||
-                              options_.wants_shape_normals() || attributes_.wanted() ||
-                              options_.polygon_triangulation();
+                              app().count("--pick") > 0 || !positions_.are_linear() || options_.wants_shape_normals() ||
+                              attributes_.wanted() || options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
 

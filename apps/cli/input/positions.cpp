@@ -33,13 +33,15 @@ void PositionArguments::add_to(CLI::App& app) {
                  "side of each sample; gravitation: moved towards neighbouring samples, for masks")
       ->check(CLI::IsMember({"linear", "filtered", "gravitation", "relaxed"}))
       ->capture_default_str();
-  app.add_option("--positions-image", file_,
-                 "for --positions filtered: the second image, FILE or FILE:VARIABLE (netCDF), with as many samples along "
-                 "each axis")
+  app.add_option(
+         "--positions-image", file_,
+         "for --positions filtered: the second image, FILE or FILE:VARIABLE (netCDF), with as many samples along "
+         "each axis")
       ->type_name("FILE[:VAR]");
-  app.add_option("--last-axis-weight", weight_,
-                 "for --positions relaxed: weight of the smoothing along the last axis, such as the time, relative to the "
-                 "others; 0: each layer by itself")
+  app.add_option(
+         "--last-axis-weight", weight_,
+         "for --positions relaxed: weight of the smoothing along the last axis, such as the time, relative to the "
+         "others; 0: each layer by itself")
       ->type_name("NUMBER")
       ->capture_default_str();
 }

@@ -52,11 +52,11 @@ requires DimensionBetween<N, 2, 5>
                                                             const PositionOptions& positions,
                                                             const ExtractOptions& options = {});
 
-/// Extracts the contour of an image with vertices placed by a rule. Simplices, with their vertex numbers, equal those of
-/// `extract`. Each vertex on an edge of the grid stays on this edge, except with `gravitation`, which moves it inside
-/// the double pyramid over its edge. Vertices inside cells are computed from the vertices on edges as in `extract`, with
-/// levels of rays (docs/embedding.md) from the image itself. Normals are those of the image's gradient at the new
-/// positions along the edge.
+/// Extracts the contour of an image with vertices placed by a rule. Simplices, with their vertex numbers, equal those
+/// of `extract`. Each vertex on an edge of the grid stays on this edge, except with `gravitation`, which moves it
+/// inside the double pyramid over its edge. Vertices inside cells are computed from the vertices on edges as in
+/// `extract`, with levels of rays (docs/embedding.md) from the image itself. Normals are those of the image's gradient
+/// at the new positions along the edge.
 ///
 /// Except with `gravitation`, what docs/embedding.md proves about self-intersections holds: it is proved for all
 /// positions on edges.

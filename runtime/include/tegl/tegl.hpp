@@ -26,6 +26,7 @@
 #include "tegl/normals.hpp"
 #include "tegl/pick.hpp"
 #include "tegl/polygons.hpp"
+#include "tegl/positions.hpp"
 #include "tegl/project.hpp"
 #include "tegl/saddle.hpp"
 #include "tegl/sample.hpp"

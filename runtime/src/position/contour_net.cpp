@@ -69,7 +69,7 @@ void ContourNet<N>::link_row(int axis, std::size_t row, JoinsHigh<N> joins_high)
             const bool joined = joins_high(base, 1u << axis | 1u << b);
             to = low_high != joined ? Side::lower : Side::upper;
           }
-          const auto& at = to == Side::across ? low_beyond
+          const auto& at = to == Side::across  ? low_beyond
                            : to == Side::lower ? (side == 0 ? low_beyond : low)
                                                : (side == 0 ? up_beyond : up);
           link.bits = link_bits<N>(to, e.number(to == Side::across ? axis : b, at.first, at.second));

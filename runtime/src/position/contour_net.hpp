@@ -39,7 +39,8 @@ class ContourNet {
 
   [[nodiscard]] const CriticalEdges<N>& edges() const noexcept { return edges_; }
   [[nodiscard]] Number size() const noexcept { return edges_.count(); }
-  /// The neighbour of a point in curve c, on the side of decreasing (0) or increasing (1) coordinates of the other axis.
+  /// The neighbour of a point in curve c, on the side of decreasing (0) or increasing (1) coordinates of the other
+  /// axis.
   [[nodiscard]] Link link(Number point, int c, int side) const noexcept {
     return links_[(std::size_t{point} * kCurves + static_cast<std::size_t>(c)) * 2 + static_cast<std::size_t>(side)];
   }

@@ -15,23 +15,16 @@
 
 namespace tegl::detail {
 
-/// The critical edges of an image without missing ends. Edges are numbered by axis, then by row, then along the row.
-/// A row is a line of samples along axis 0; rows are numbered through all layers. Memory: 1/8 + N/16 bytes per sample.
+/// Which samples of an image are high, and which are missing. A row is a line of samples along axis 0; rows are
+/// numbered through all layers. Memory: 1/8 byte per sample, and as much again if any is missing.
 template <int N>
-class CriticalEdges {
+class SampleSigns {
  public:
   using Index = SampleIndex<N>;
-  using Number = std::uint32_t;
 
-  /// Classifies all samples. `samples` must have all layers in memory. `threads`: 0 for all of the machine. Throws
-  /// TooLarge for more than kMost edges.
-  CriticalEdges(const SampleClassifier<N>& samples, const Index& sizes, unsigned threads);
+  /// Classifies all samples. `samples` must have all layers in memory. `threads`: 0 for all of the machine.
+  SampleSigns(const SampleClassifier<N>& samples, const Index& sizes, unsigned threads);
 
-  static constexpr Number kMost = Number{1} << 30;
-
-  [[nodiscard]] Number count() const noexcept { return count_; }
-  /// Number of the first edge along `axis`; `axis` = N: the number of edges.
-  [[nodiscard]] Number first(int axis) const noexcept { return axis < N ? first_[axis] : count_; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
   [[nodiscard]] std::size_t words() const noexcept { return words_; }
   [[nodiscard]] const Index& sizes() const noexcept { return sizes_; }
@@ -68,12 +61,6 @@ class CriticalEdges {
     const Word differ = high_[at] ^ high_[next];
     return missing_.empty() ? differ : differ & ~(missing_[at] | missing_[next]);
   }
-  /// Number of the critical edge along `axis` from sample i of a row.
-  [[nodiscard]] Number number(int axis, std::size_t row, std::size_t i) const noexcept {
-    const std::size_t w = i / kWordBits;
-    const Word below = (Word{1} << (i % kWordBits)) - 1;
-    return prefix_[axis][row * words_ + w] + static_cast<Number>(std::popcount(critical(axis, row, w, true) & below));
-  }
 
  private:
   [[nodiscard]] bool bit(const std::vector<Word>& bits, std::size_t row, std::size_t i) const noexcept {
@@ -92,6 +79,33 @@ class CriticalEdges {
   std::size_t words_;
   std::vector<Word> high_;     ///< rows x (words + 1); the last word of a row is 0
   std::vector<Word> missing_;  ///< as high_; empty if no sample is missing
+};
+
+/// The critical edges of an image without missing ends. Edges are numbered by axis, then by row, then along the row.
+/// Memory: N/16 bytes per sample beside those of SampleSigns.
+template <int N>
+class CriticalEdges : public SampleSigns<N> {
+ public:
+  using typename SampleSigns<N>::Index;
+  using Number = std::uint32_t;
+
+  /// As SampleSigns. Throws TooLarge for more than kMost edges.
+  CriticalEdges(const SampleClassifier<N>& samples, const Index& sizes, unsigned threads);
+
+  static constexpr Number kMost = Number{1} << 30;
+
+  [[nodiscard]] Number count() const noexcept { return count_; }
+  /// Number of the first edge along `axis`; `axis` = N: the number of edges.
+  [[nodiscard]] Number first(int axis) const noexcept { return axis < N ? first_[axis] : count_; }
+  /// Number of the critical edge along `axis` from sample i of a row.
+  [[nodiscard]] Number number(int axis, std::size_t row, std::size_t i) const noexcept {
+    const std::size_t w = i / kWordBits;
+    const Word below = (Word{1} << (i % kWordBits)) - 1;
+    return prefix_[axis][row * this->words() + w] +
+           static_cast<Number>(std::popcount(this->critical(axis, row, w, true) & below));
+  }
+
+ private:
   std::array<std::vector<Number>, N> prefix_;  ///< by axis, row and word: number of the first edge
   std::array<Number, N> first_{};
   Number count_ = 0;

@@ -21,13 +21,11 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_placed_with_stats
   return detail::extract_placed_from<N, Real>(source, image.grid(), positions, options);
 }
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                     \
-  template Extraction<N, float> extract_placed_with_stats<float, T, N>(const Image<T, N>&, double,            \
-                                                                       const PositionOptions&,                \
-                                                                       const ExtractOptions&);                \
-  template Extraction<N, double> extract_placed_with_stats<double, T, N>(const Image<T, N>&, double,          \
-                                                                         const PositionOptions&,              \
-                                                                         const ExtractOptions&);
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                              \
+  template Extraction<N, float> extract_placed_with_stats<float, T, N>(const Image<T, N>&, double,                     \
+                                                                       const PositionOptions&, const ExtractOptions&); \
+  template Extraction<N, double> extract_placed_with_stats<double, T, N>(                                              \
+      const Image<T, N>&, double, const PositionOptions&, const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -32,9 +32,7 @@ class GravitationOutput final : public MemoryOutput<N, Real> {
         samples_(samples),
         grid_(grid),
         threads_(options.work.threads),
-        edges_(samples, grid.sizes(), options.work.threads) {
-    for (auto& of_axis : runs_) of_axis.resize(edges_.rows());
-  }
+        signs_(samples, grid.sizes(), options.work.threads) {}
 
   [[nodiscard]] bool reads_numbers() const noexcept override { return true; }
   void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool /*lists_cubes*/) override {
@@ -46,8 +44,8 @@ class GravitationOutput final : public MemoryOutput<N, Real> {
 
   void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
     for (int a = 0; a < N; ++a)
-      for_each_part(edges_.rows(), threads_, {}, [&](std::size_t from, std::size_t end) {
-        for (std::size_t row = from; row < end; ++row) move_row(a, row);
+      for_each_part(runs_[a].size(), threads_, {}, [&](std::size_t from, std::size_t end) {
+        for (std::size_t i = from; i < end; ++i) move_run(a, runs_[a][i]);
       });
     MemoryOutput<N, Real>::finish(all, caps, nonmanifold);
   }
@@ -57,52 +55,41 @@ class GravitationOutput final : public MemoryOutput<N, Real> {
   /// the nearer end. Then the corner of a tile is on the same side of all simplices around it.
   static constexpr double kInside = 0.999;
 
-  /// The vertices on edges of a row along one axis. Edges beside missing values may have none.
+  /// The vertices on edges of a row along one axis.
   struct Run {
-    Index first = 0;
-    std::uint32_t count = 0;
-    std::vector<Word> bits = {};  ///< the edges with vertices, if they are not all critical edges
+    Index first;
+    std::size_t row;
+    std::size_t bits;  ///< place in `bits_` of the edges that have vertices
   };
 
   void see(int axis, std::size_t k, const RowShape<N>& shape, const EdgePlane& plane) {
     for (std::size_t row = 0; row < shape.rows(); ++row) {
       if (plane.count[row] == 0) continue;
-      const std::size_t global = k * shape.rows() + row;
-      Run& run = runs_[axis][global];
-      run.first = plane.first(row);
-      run.count = plane.count[row];
-      std::uint32_t critical = 0;
-      for (std::size_t w = 0; w < shape.words(); ++w)
-        critical += static_cast<std::uint32_t>(std::popcount(edges_.critical(axis, global, w, true)));
-      if (critical == run.count) continue;
+      runs_[axis].push_back({plane.first(row), k * shape.rows() + row, bits_.size()});
       const auto from = plane.bits[0].begin() + static_cast<std::ptrdiff_t>(row * shape.words());
-      run.bits.assign(from, from + static_cast<std::ptrdiff_t>(shape.words()));
+      bits_.insert(bits_.end(), from, from + static_cast<std::ptrdiff_t>(shape.words()));
     }
   }
 
-  void move_row(int axis, std::size_t row) {
-    const Run& run = runs_[axis][row];
-    if (run.count == 0) return;
-    SampleIndex<N> index = edges_.index_of(row);
+  void move_run(int axis, const Run& run) {
+    SampleIndex<N> index = signs_.index_of(run.row);
     Index vertex = run.first;
-    for (std::size_t w = 0; w < edges_.words(); ++w)
-      for (Word rest = run.bits.empty() ? edges_.critical(axis, row, w, true) : run.bits[w]; rest != 0;
-           rest &= rest - 1, ++vertex) {
+    for (std::size_t w = 0; w < signs_.words(); ++w)
+      for (Word rest = bits_[run.bits + w]; rest != 0; rest &= rest - 1, ++vertex) {
         index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-        move(axis, row, index, this->contour().vertices[vertex]);
+        move(axis, run.row, index, this->contour().vertices[vertex]);
       }
   }
 
   void move(int axis, std::size_t row, const SampleIndex<N>& index, Vertex& vertex) const {
-    const std::array<std::size_t, 2> rows = {row, axis == 0 ? row : row + edges_.stride(axis)};
+    const std::array<std::size_t, 2> rows = {row, axis == 0 ? row : row + signs_.stride(axis)};
     const std::array<std::size_t, 2> at = {index[0], index[0] + (axis == 0 ? 1 : 0)};
     std::array<int, N> pull{};
     int all = 0;
     for (int j = 0; j < N; ++j) {
       // vertices on the border stay on it
-      if (j == axis || index[j] == 0 || index[j] + 1 == edges_.sizes()[j]) continue;
-      for (int e = 0; e < 2; ++e)
-        pull[j] += is_alike(rows[e], at[e], j, 1) - is_alike(rows[e], at[e], j, -1);
+      if (j == axis || index[j] == 0 || index[j] + 1 == signs_.sizes()[j]) continue;
+      for (int e = 0; e < 2; ++e) pull[j] += is_alike(rows[e], at[e], j, 1) - is_alike(rows[e], at[e], j, -1);
       all += std::abs(pull[j]);
     }
     if (all == 0) return;
@@ -120,11 +107,11 @@ class GravitationOutput final : public MemoryOutput<N, Real> {
   /// Whether the neighbour of a sample along axis j, before or behind, is on the sample's side. Missing neighbours
   /// count as such.
   [[nodiscard]] int is_alike(std::size_t row, std::size_t i, int j, int direction) const {
-    const bool high = edges_.is_high(row, i);
-    const std::size_t step = j == 0 ? 1 : edges_.stride(j);
+    const bool high = signs_.is_high(row, i);
+    const std::size_t step = j == 0 ? 1 : signs_.stride(j);
     std::size_t& moved = j == 0 ? i : row;
     moved = direction < 0 ? moved - step : moved + step;
-    return edges_.is_missing(row, i) || edges_.is_high(row, i) == high ? 1 : 0;
+    return signs_.is_missing(row, i) || signs_.is_high(row, i) == high ? 1 : 0;
   }
 
   [[nodiscard]] double distance_of_nearer_end(int axis, const SampleIndex<N>& index) const {
@@ -136,8 +123,9 @@ class GravitationOutput final : public MemoryOutput<N, Real> {
   const SampleSource<N>& samples_;
   const Grid<N>& grid_;
   unsigned threads_;
-  CriticalEdges<N> edges_;
-  std::array<std::vector<Run>, N> runs_;  ///< by axis and row
+  SampleSigns<N> signs_;
+  std::array<std::vector<Run>, N> runs_;  ///< by axis
+  std::vector<Word> bits_;
   std::size_t slabs_ = 0;
 };
 

@@ -31,8 +31,8 @@ void check_positions(const PositionOptions& positions, std::size_t samples, int 
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("a margin of {}; expected more than 0 and less than 0.5", positions.margin));
   if (!(positions.last_axis_weight >= 0 && std::isfinite(positions.last_axis_weight)))
-    throw Error(ErrorCode::InvalidArgument, fmt::format("a weight of the last axis of {}; expected 0 or more",
-                                                        positions.last_axis_weight));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("a weight of the last axis of {}; expected 0 or more", positions.last_axis_weight));
 }
 
 namespace {
@@ -74,29 +74,31 @@ Extraction<N, Real> extract_by_gravitation(SampleSource<N>& samples, const Grid<
 }  // namespace
 
 template <int N, class Real>
-Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>& grid,
-                                        const PositionOptions& positions, const ExtractOptions& options) {
+Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
+                                        const ExtractOptions& options) {
   switch (positions.rule) {
     case Positions::filtered:
-      return extract_on_edges<N, Real>(samples, grid,
-                                       FilteredPositions<N>(samples, grid, positions.filtered, options.epsilon),
-                                       options);
+      return extract_on_edges<N, Real>(
+          samples, grid, FilteredPositions<N>(samples, grid, positions.filtered, options.epsilon), options);
     case Positions::custom: {
       const CustomPositions<N> rule(samples, positions);
       Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options);
       rule.rethrow();
       return result;
     }
-    case Positions::gravitation: return extract_by_gravitation<N, Real>(samples, grid, options);
-    case Positions::relaxed: return extract_relaxed<N, Real>(samples, grid, positions, options);
-    case Positions::linear: break;
+    case Positions::gravitation:
+      return extract_by_gravitation<N, Real>(samples, grid, options);
+    case Positions::relaxed:
+      return extract_relaxed<N, Real>(samples, grid, positions, options);
+    case Positions::linear:
+      break;
   }
   return extract_in_memory<N, Real>(samples, grid, options);
 }
 
-#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                    \
-  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, const Grid<N>&,      \
-                                                            const PositionOptions&, const ExtractOptions&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                                       \
+  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, const Grid<N>&, const PositionOptions&, \
+                                                            const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

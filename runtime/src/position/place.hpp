@@ -14,7 +14,7 @@ void check_positions(const PositionOptions& positions, std::size_t samples, int 
 
 /// Extracts the contour of samples in memory, with positions by a rule other than `linear`.
 template <int N, class Real>
-Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>& grid,
-                                        const PositionOptions& positions, const ExtractOptions& options);
+Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
+                                        const ExtractOptions& options);
 
 }  // namespace tegl::detail

@@ -147,8 +147,7 @@ class PlacedSource final : public SampleSource<N> {
                                      const EdgesInRows& edges, Calc* out) noexcept {
     const auto& placed = static_cast<const PlacedSource&>(samples);
     std::array<std::ptrdiff_t, kEdgesAtOnce> rows;
-    for (std::size_t i = 0; i < edges.count; ++i)
-      rows[i] = placed.inner_rows_[static_cast<std::size_t>(edges.rows[i])];
+    for (std::size_t i = 0; i < edges.count; ++i) rows[i] = placed.inner_rows_[static_cast<std::size_t>(edges.rows[i])];
     const EdgesInRows inner{rows.data(), edges.at, edges.count};
     if constexpr (std::is_same_v<Calc, float>)
       return placed.samples_.around_edges_in_float()(placed.samples_, around, inner, out);
@@ -159,8 +158,8 @@ class PlacedSource final : public SampleSource<N> {
   SampleSource<N>& samples_;
   const PositionsOnEdges<N>& positions_;
   double epsilon_;
-  std::vector<Index> starts_;                ///< by row of a layer: its first sample
-  std::vector<std::ptrdiff_t> inner_rows_;   ///< by row of a layer: its offset in the wrapped source
+  std::vector<Index> starts_;               ///< by row of a layer: its first sample
+  std::vector<std::ptrdiff_t> inner_rows_;  ///< by row of a layer: its offset in the wrapped source
 };
 
 }  // namespace tegl::detail

@@ -64,8 +64,8 @@ class StraightSegment {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return count_; }
-  /// Squared length of the segment's direction (b, a): lines that separate as the segment does differ by at most the inverse of the
-  /// length.
+  /// Squared length of the segment's direction (b, a): lines that separate as the segment does differ by at most the
+  /// inverse of the length.
   [[nodiscard]] double precision() const noexcept { return static_cast<double>(a_ * a_ + b_ * b_); }
 
   /// Follows the steps of the segment again, and finds for each the distance of the line from the middle of the step,
@@ -109,10 +109,10 @@ class StraightSegment {
 
   std::int32_t a_ = 0, b_ = 1, mu_ = 0;
   Point end_{}, upper_first_{}, upper_last_{}, lower_first_{}, lower_last_{};
-  Point sum_{};                  ///< of both ends of all steps
+  Point sum_{};  ///< of both ends of all steps
   std::size_t count_ = 0;
-  unsigned first_ = 0;           ///< direction of the first step
-  unsigned turn_ = 0;            ///< from it to the other direction, in quarter turns; 0: none yet
+  unsigned first_ = 0;  ///< direction of the first step
+  unsigned turn_ = 0;   ///< from it to the other direction, in quarter turns; 0: none yet
 };
 
 }  // namespace tegl::detail

@@ -135,9 +135,9 @@ void expect_all_rules(std::size_t size, unsigned seed) {
       options.epsilon = 0.001;
       const auto linear = extract<double>(image.view(), kLevel, options);
       for (const Positions rule : kRules) {
-        SCOPED_TRACE(::testing::Message() << N << "D, seed " << seed << ", rule " << static_cast<int>(rule)
-                                          << ", ambiguity " << static_cast<int>(ambiguity) << ", triangulation "
-                                          << static_cast<int>(triangulation));
+        SCOPED_TRACE(::testing::Message()
+                     << N << "D, seed " << seed << ", rule " << static_cast<int>(rule) << ", ambiguity "
+                     << static_cast<int>(ambiguity) << ", triangulation " << static_cast<int>(triangulation));
         const auto contour = extract_placed<double>(image.view(), kLevel, by(rule, values), options);
         EXPECT_TRUE(same_bytes(contour.simplices, linear.simplices));
         EXPECT_EQ(contour.vertices.size(), linear.vertices.size());
@@ -233,8 +233,8 @@ TEST(Positions, FilteredByTheImageItselfAreLinear) {
   EXPECT_TRUE(same_bytes(extract_placed(image.view(), 40, by(Positions::filtered, missing)).vertices, linear.vertices));
 }
 
-/// A kernel with a middle of 0.2, for which the condition 1 - a0 < T <= a0 does not hold: without clamping, samples would
-/// change sides.
+/// A kernel with a middle of 0.2, for which the condition 1 - a0 < T <= a0 does not hold: without clamping, samples
+/// would change sides.
 TEST(Positions, FilteredByAKernelAgainstTheConditionChangeNoSample) {
   for (unsigned seed = 0; seed < 6; seed += 2) {
     auto image = random_image<std::uint8_t, 2>(14, seed);
@@ -244,9 +244,8 @@ TEST(Positions, FilteredByAKernelAgainstTheConditionChangeNoSample) {
     for (std::size_t i = 0; i < blurred.size(); ++i) {
       float sum = 0.2f * image.values[i];
       for (const std::ptrdiff_t step : {-1, 1, -14, 14}) {
-        const auto at = static_cast<std::size_t>(
-            std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(i) + step, 0,
-                                       static_cast<std::ptrdiff_t>(blurred.size()) - 1));
+        const auto at = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+            static_cast<std::ptrdiff_t>(i) + step, 0, static_cast<std::ptrdiff_t>(blurred.size()) - 1));
         sum += 0.2f * image.values[at];
       }
       blurred[i] = sum;
@@ -348,9 +347,8 @@ double plane_error(const std::array<double, N>& normal, double offset, std::size
     for (int a = 0; a < N; ++a) sum += normal[a] * (static_cast<double>(x[a]) - middle);
     return sum;
   };
-  const auto image = sample_field<std::uint8_t, N>(Grid<N>::unit(sizes), [&](const Point<N>& x) {
-    return above(x) >= 0 ? 1.0 : 0.0;
-  });
+  const auto image =
+      sample_field<std::uint8_t, N>(Grid<N>::unit(sizes), [&](const Point<N>& x) { return above(x) >= 0 ? 1.0 : 0.0; });
   const auto contour = extract_placed<double>(image.view(), 0.5, by(rule));
   double sum = 0, count = 0;
   for (const auto& vertex : contour.vertices) {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// --positions of tegl contour, run as in a shell.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::HasSubstr;
+
+class PositionsCommand : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    const auto ball = [](const std::vector<double>& x) {
+      return 8.3 - std::hypot(x[0] - 11.6, x[1] - 10.4, x[2] - 11);
+    };
+    mask_ = write("mask.nii",
+                  nifti_bytes(sample({24, 22, 23}, [&](const auto& x) { return ball(x) > 0 ? 1.0 : 0.0; }), {1, 1, 1}));
+    field_ = write("field.nii",
+                   nifti_bytes(sample({24, 22, 23}, [&](const auto& x) { return 0.5 + 0.1 * ball(x); }), {1, 1, 1}));
+  }
+  [[nodiscard]] RunResult run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"contour", mask_, "--iso", "0.5"});
+    return run_tegl(arguments);
+  }
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& message) const {
+    const RunResult result = run(arguments);
+    EXPECT_NE(result.exit, 0);
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+  /// Root mean square distance of the mesh's vertices from the sphere.
+  [[nodiscard]] double error_of(const std::string& file) const {
+    const Mesh mesh = read_mesh(file);
+    double sum = 0;
+    for (std::size_t i = 0; i < mesh.coordinates.size(); i += 3) {
+      const double distance =
+          std::hypot(mesh.coordinates[i] - 11.6, mesh.coordinates[i + 1] - 10.4, mesh.coordinates[i + 2] - 11) - 8.3;
+      sum += distance * distance;
+    }
+    return std::sqrt(3 * sum / static_cast<double>(mesh.coordinates.size()));
+  }
+  std::string mask_, field_;
+};
+
+TEST_F(PositionsCommand, MaskGetsTheSurfaceOfItsShape) {
+  const std::string output = path("surface.ply");
+  ASSERT_EQ(run({"-o", output}).exit, 0);
+  EXPECT_GT(error_of(output), 0.2);
+  ASSERT_EQ(run({"--positions", "relaxed", "-o", output}).exit, 0);
+  EXPECT_LT(error_of(output), 0.17);
+  ASSERT_EQ(run({"--positions", "gravitation", "-o", output}).exit, 0);
+  EXPECT_LT(error_of(output), 0.25);
+  ASSERT_EQ(run({"--positions", "filtered", "--positions-image", field_, "-o", output}).exit, 0);
+  EXPECT_LT(error_of(output), 0.02);
+  ASSERT_EQ(run({"--positions", "relaxed", "--last-axis-weight", "0", "-o", output}).exit, 0);
+}
+
+TEST_F(PositionsCommand, WrongOptionsAreRefused) {
+  const std::string output = path("none.vtkhdf");
+  expect_refused({"--positions", "smooth", "-o", output}, "--positions");
+  expect_refused({"--positions", "filtered", "-o", output}, "without --positions-image");
+  expect_refused({"--positions-image", field_, "-o", output}, "expected --positions filtered");
+  expect_refused({"--positions", "filtered", "--positions-image", path("nowhere.nii"), "-o", output}, "nowhere.nii");
+  expect_refused({"--positions", "relaxed", "--last-axis-weight=-1", "-o", output}, "--last-axis-weight is -1");
+  expect_refused({"--last-axis-weight", "2", "-o", output}, "expected --positions relaxed");
+  expect_refused({"--positions", "relaxed", "--stream", "-o", output}, "--positions relaxed with --stream");
+  expect_refused({"--positions", "relaxed", "--pick", "1,2,3", "-o", output}, "--positions relaxed with --pick");
+  expect_refused({"--positions", "relaxed", "--facets", "-o", path("none.vtu")}, "--positions relaxed with --facets");
+  expect_refused({"--positions", "relaxed", "--periodic", "x", "-o", output}, "with --periodic or --lattice");
+  const std::string small =
+      write("small.nii", nifti_bytes(sample({24, 22, 5}, [](const auto&) { return 1.0; }), {1, 1, 1}));
+  expect_refused({"--positions", "filtered", "--positions-image", small, "-o", output},
+                 "has 24 x 22 x 5 samples; expected 24 x 22 x 23");
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+}  // namespace
+}  // namespace tegl::test
