@@ -11,21 +11,13 @@
 #include <numbers>
 
 #include "tegl/error.hpp"
+#include "tegl/field.hpp"
 
 namespace tegl::bench {
 namespace {
 
-/// 64 well mixed bits of a number: splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
-/// 2014). A function of the index, so noise does not depend on the order of generation.
-std::uint64_t mix(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-  return z ^ (z >> 31U);
-}
-
-/// A number in [0, 1).
-double unit(std::uint64_t index) { return static_cast<double>(mix(index) >> 11U) * 0x1p-53; }
+using detail::mixed_bits;
+using detail::mixed_unit;
 
 /// Position of sample i of an axis from -1 to 1.
 double position(std::size_t i, std::size_t samples) {
@@ -97,7 +89,7 @@ void fill_metaballs(std::size_t samples, float* out) {
   const auto at = [&](std::size_t bump, int axis) { return factor.data() + (bump * N + axis) * samples; };
   for (std::size_t b = 0; b < kBumps; ++b)
     for (int a = 0; a < N; ++a) {
-      const double centre = 1.7 * unit(b * N + a) - 0.85;
+      const double centre = 1.7 * mixed_unit(b * N + a) - 0.85;
       for (std::size_t i = 0; i < samples; ++i) {
         const double x = (position(i, samples) - centre) / kWidth;
         at(b, a)[i] = static_cast<float>(std::exp(-0.5 * x * x));
@@ -117,7 +109,7 @@ void fill_metaballs(std::size_t samples, float* out) {
 
 void fill_noise(std::size_t count, float* out) {
   // 24 bits, so that the difference is exact.
-  for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(mix(i) >> 40U) * 0x1p-24F - 0.5F;
+  for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(mixed_bits(i) >> 40U) * 0x1p-24F - 0.5F;
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "tegl/error.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::python {
@@ -77,6 +78,15 @@ Value named(const char* option, const std::string& name, const std::vector<std::
 /// The names of GradientDirection.
 inline std::vector<std::pair<const char*, GradientDirection>> gradient_directions() {
   return {{"descent", GradientDirection::descent}, {"ascent", GradientDirection::ascent}};
+}
+
+/// The names of lattices.
+inline std::vector<std::pair<const char*, Lattice>> lattices() {
+  return {{"triangular", Lattice::triangular},
+          {"fcc", Lattice::fcc},
+          {"bcc", Lattice::bcc},
+          {"d4", Lattice::d4},
+          {"fcc_in_time", Lattice::fcc_in_time}};
 }
 
 /// A long call without the GIL, so that other Python threads continue. Calls the caller's progress function, whose
@@ -150,6 +160,23 @@ py::array owned(Buffer<std::array<T, Width>>&& buffer) {
                    held.empty() ? nullptr : held.data()->data(), owner);
 }
 
+/// An array that takes over the samples of an image, in the library's order of axes: axis 0 fastest.
+template <class T, int N>
+py::array owned_samples(OwnedImage<T, N>&& image) {
+  auto kept = std::make_unique<Values<T>>(std::move(image.values));
+  const py::capsule owner(kept.get(), [](void* memory) { delete static_cast<Values<T>*>(memory); });
+  const Values<T>& values = *kept.release();
+  std::vector<py::ssize_t> shape;
+  std::vector<py::ssize_t> strides;
+  py::ssize_t stride = sizeof(T);
+  for (const Axis& axis : image.grid.axes) {
+    shape.push_back(static_cast<py::ssize_t>(axis.size()));
+    strides.push_back(stride);
+    stride *= shape.back();
+  }
+  return py::array(py::dtype::of<T>(), shape, strides, values.data(), owner);
+}
+
 /// A dict name -> (values, unit) of attributes that `owner` holds.
 py::dict attribute_arrays(const std::vector<Attribute>& attributes, py::handle owner);
 
@@ -191,6 +218,7 @@ void bind_elements(py::module_& m);
 void bind_track(py::module_& m);
 void bind_index(py::module_& m);
 void bind_files(py::module_& m);
+void bind_filter(py::module_& m);
 void bind_marching_cubes(py::module_& m);
 void bind_mesh(py::module_& m);
 

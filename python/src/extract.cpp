@@ -222,12 +222,7 @@ std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
-  const auto lattice = named<Lattice>("lattice", name,
-                                      {{"triangular", Lattice::triangular},
-                                       {"fcc", Lattice::fcc},
-                                       {"bcc", Lattice::bcc},
-                                       {"d4", Lattice::d4},
-                                       {"fcc_in_time", Lattice::fcc_in_time}});
+  const auto lattice = named<Lattice>("lattice", name, lattices());
   return call.run([&] {
     auto result = std::make_unique<AnyContour>(is_double ? lattice_contour_of<double>(image, lattice, level, options)
                                                          : lattice_contour_of<float>(image, lattice, level, options));

@@ -46,22 +46,10 @@ void put_grid(py::dict& result, const Grid<N>& grid) {
   result["affine"] = py::cast(affine);
 }
 
-/// The array takes over the library's memory, in the order of its axes: axis 0 fastest.
 template <class T, int N>
 void put_image(py::dict& result, OwnedImage<T, N>& image) {
   put_grid(result, image.grid);
-  auto kept = std::make_unique<Values<T>>(std::move(image.values));
-  const py::capsule owner(kept.get(), [](void* memory) { delete static_cast<Values<T>*>(memory); });
-  const Values<T>& values = *kept.release();
-  std::vector<py::ssize_t> shape;
-  std::vector<py::ssize_t> strides;
-  py::ssize_t stride = sizeof(T);
-  for (const Axis& axis : image.grid.axes) {
-    shape.push_back(static_cast<py::ssize_t>(axis.size()));
-    strides.push_back(stride);
-    stride *= shape.back();
-  }
-  result["array"] = py::array(py::dtype::of<T>(), shape, strides, values.data(), owner);
+  result["array"] = owned_samples(std::move(image));
 }
 
 /// The name of the argument that selects one of several variables or series, for the error message of a missing choice.

@@ -155,6 +155,7 @@ PYBIND11_MODULE(_tegl, m) {
   bind_track(m);
   bind_index(m);
   bind_files(m);
+  bind_filter(m);
   bind_marching_cubes(m);
   bind_mesh(m);
 }

@@ -17,6 +17,8 @@ at the border of the array and at missing values. The contour of a 4D array can 
 from . import _tegl
 from ._contour import (Components, Contour, check, components, elements, intersections, load, measure, simplify,
                        track)
+from ._fields import fields, sample
+from ._filter import filter, most_stable_scale, scale_space
 from ._image import Image, contour, read, slice
 from ._index import Index, PickReport
 from ._mesh import Mesh, contour_mesh, contour_points, read_mesh
@@ -29,6 +31,6 @@ __all__ = [
     "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",
     "Intersections", "Measures", "Mesh", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph",
     "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour", "contour_mesh",
-    "contour_points", "elements", "intersections", "load", "marching_cubes", "measure", "read", "read_mesh", "simplify", "slice",
-    "track",
+    "contour_points", "elements", "fields", "filter", "intersections", "load", "marching_cubes", "measure",
+    "most_stable_scale", "read", "read_mesh", "sample", "scale_space", "simplify", "slice", "track",
 ]

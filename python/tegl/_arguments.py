@@ -112,6 +112,8 @@ class Prepared:
     names: tuple[str, ...]
     units: tuple[str, ...]
     value_unit: str
+    axes: tuple  #: UniformAxis or coordinates, in the array's order
+    affine: np.ndarray | None  #: in the array's order
     extent: np.ndarray  #: 2 x N: the lowest and the highest coordinates in the world, in the array's order
 
     @property
@@ -464,7 +466,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
                              "numbers, and a spacing other than 0")
         axes.append(_axis(given, called, size))
     is_reversed = turn_around(0 if time_axis is None else time_axis, ndim)
-    matrix = _affine(affine, ndim)
+    matrix = given_affine = _affine(affine, ndim)
     with np.errstate(over="ignore", invalid="ignore"):
         extent = _extent_of(axes, array.shape, matrix)
     if not is_reversed:
@@ -474,7 +476,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             matrix = np.column_stack([matrix[::-1, ndim - 1::-1], matrix[::-1, ndim]])
         image = _tegl.Image(array.T, axes[::-1], None if matrix is None else matrix.tolist(), list(names)[::-1],
                             list(units)[::-1])
-    return Prepared(image, is_reversed, names, units, value_unit, extent)
+    return Prepared(image, is_reversed, names, units, value_unit, tuple(axes), given_affine, extent)
 
 
 def real(name: str, values: object) -> np.ndarray:

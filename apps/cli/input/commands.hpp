@@ -118,6 +118,7 @@ class Command {
 };
 
 std::unique_ptr<Command> make_info_command(CLI::App& program);
+std::unique_ptr<Command> make_filter_command(CLI::App& program);
 std::unique_ptr<Command> make_contour_command(CLI::App& program);
 std::unique_ptr<Command> make_slice_command(CLI::App& program);
 std::unique_ptr<Command> make_elements_command(CLI::App& program);

@@ -4,6 +4,7 @@
 #include "program/program.hpp"
 
 #include "commands/demo.hpp"
+#include "commands/image_makers.hpp"
 
 namespace tegl::cli {
 
@@ -29,6 +30,9 @@ std::vector<std::unique_ptr<Command>> add_commands(CLI::App& program, const std:
   commands.push_back(make_measure_command(program));
   commands.push_back(make_track_command(program));
   commands.push_back(make_simplify_command(program));
+  commands.push_back(make_filter_command(program));
+  commands.push_back(make_scale_space_command(program));
+  commands.push_back(make_sample_command(program));
   commands.push_back(make_view_command(program, version));
   commands.push_back(make_demo_command(program));
   return commands;

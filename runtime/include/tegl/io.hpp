@@ -11,6 +11,7 @@
 #include "tegl/io/contour_file.hpp"
 #include "tegl/io/elements.hpp"
 #include "tegl/io/facets.hpp"
+#include "tegl/io/image_writer.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/layers.hpp"
 #include "tegl/io/mesh_array.hpp"

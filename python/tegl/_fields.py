@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Samples of analytic fields."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from . import _arguments, _kinds, _tegl
+from ._arguments import Progress
+
+
+@_arguments.documents("make_field", "make_expression")
+def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int = 3, limits: tuple[float, float] = (-1.0, 1.0),
+           parameters: Mapping[str, float] | None = None, seed: int = 0, expression: bool | None = None,
+           lattice: _kinds.Lattice | None = None, threads: int = 0, progress: Progress | None = None) -> np.ndarray:
+    """Samples of a field: an array with the axes (t, z, y, x), float32.
+
+    ::
+
+        tegl.sample("gyroid", 64)                                   # 64 x 64 x 64 samples from -1 to 1
+        tegl.sample("merging", (20, 48, 48, 48))                    # t, z, y, x
+        tegl.sample("metaballs", 128, parameters={"count": 50}, seed=7)
+        tegl.sample("min(0.8 - r, abs(x) - 0.2)", 64)               # an expression of x, y, z and r
+
+    field
+        A name of `tegl.fields()`, or an expression.
+    shape, ndim
+        The number of samples along each axis, or one number for all of `ndim` axes.
+    limits
+        Coordinates of the first and the last sample along each axis.
+    expression
+        Whether `field` is an expression; by default, if it is not a word.
+    lattice
+        The lattice of the samples: odd layers of the first axis are shifted (see `tegl.contour`). The step between
+        layers is then that of the regular lattice, and the last coordinate along the first axis differs.
+    """
+    sizes = [shape] * _arguments.as_whole("ndim", ndim, 2) if isinstance(shape, (int, np.integer)) else list(shape)
+    sizes = [_arguments.as_whole("shape", size, 2) for size in sizes]
+    if not 2 <= len(sizes) <= 5:
+        raise ValueError(f"shape has {len(sizes)} axes; expected 2 to 5")
+    first, last = (_arguments.as_number("limits", one) for one in limits)
+    if not first < last:
+        raise ValueError(f"limits are {first:g} and {last:g}; expected the lower one first")
+    text = _arguments.as_text("field", field)
+    is_expression = not (text.isidentifier() and len(text) > 1) if expression is None else \
+        _arguments.as_bool("expression", expression)
+    axes = [(size, first, (last - first) / (size - 1)) for size in sizes[::-1]]
+    if lattice is not None:
+        steps = {"triangular": 3**0.5 / 2, "fcc": 2**0.5 / 2, "bcc": 0.5, "d4": 0.5, "fcc_in_time": 2**0.5 / 2}
+        across = len(axes) - (2 if lattice == "fcc_in_time" else 1)
+        if lattice in steps:
+            axes[across] = (axes[across][0], first, axes[0][2] * steps[lattice])
+    given = [(_arguments.as_text("a parameter", name), _arguments.as_number(f"parameters[{name!r}]", value))
+             for name, value in (parameters or {}).items()]
+    return _tegl.sample_field(text, is_expression, axes, given, _arguments.as_whole("seed", seed, 0), lattice or "",
+                              _arguments.as_whole("threads", threads, 0), progress).T
+
+
+@_arguments.documents("fields")
+def fields() -> dict[str, dict[str, float]]:
+    """The names of the fields of `tegl.sample`, each with its parameters and their defaults."""
+    return {name: parameters for name, _, _, _, parameters in _tegl.fields()}

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images that are written are read back with the same values, coordinates, names and units.
+#include "tegl/io/image_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "errors.hpp"
+#include "fields.hpp"
+#include "io_support.hpp"
+
+namespace tegl::test {
+namespace {
+
+template <int N>
+Grid<N> named_grid() {
+  Grid<N> grid;
+  constexpr std::array<std::size_t, 4> kSizes = {4, 3, 5, 2};
+  constexpr std::array<const char*, 4> kNames = {"lon", "y \"2\"", "depth", "time"};
+  for (std::size_t a = 0; a < N; ++a) {
+    grid.axes[a] = Axis::uniform(kSizes[a], 0.1 * static_cast<double>(a) - 1, a == 1 ? -0.3 : 0.7);
+    grid.axes[a].name = kNames[a];
+    grid.axes[a].unit = a == 3 ? "s" : "mm";
+  }
+  return grid;
+}
+
+template <class T, int N>
+void expect_same(const OwnedImage<T, N>& image, const ReadImageResult& read, double tolerance = 0) {
+  const auto& any = std::get<AnyImageN<N>>(read.image);
+  ASSERT_TRUE((std::holds_alternative<OwnedImage<T, N>>(any)));
+  const auto& found = std::get<OwnedImage<T, N>>(any);
+  ASSERT_EQ(found.values.size(), image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const auto wanted = static_cast<double>(image.values[i]);
+    EXPECT_TRUE(found.values[i] == image.values[i] ||
+                (std::isnan(wanted) && std::isnan(static_cast<double>(found.values[i]))))
+        << i;
+  }
+  // the world coordinates of all samples along each axis
+  for (int a = 0; a < N; ++a) {
+    EXPECT_EQ(found.grid.axes[a].unit, image.grid.axes[a].unit);
+    for (std::size_t i = 0; i < image.grid.axes[a].size(); ++i)
+      for (int row = 0; row < N; ++row) {
+        const auto at = [&](const Grid<N>& grid) {
+          double sum = grid.offset[row];
+          for (int b = 0; b < N; ++b) sum += grid.linear[row][b] * grid.axes[b][b == a ? i : 0];
+          return sum;
+        };
+        EXPECT_NEAR(at(found.grid), at(image.grid), tolerance) << "axis " << a << " sample " << i;
+      }
+  }
+}
+
+class ImageWriter : public testing::Test {
+ protected:
+  [[nodiscard]] fs::path path(const std::string& name) const { return dir_ / name; }
+
+ private:
+  TempDir dir_;
+};
+
+TEST_F(ImageWriter, NrrdAndNetcdfGiveTheImageBack) {
+  for (const std::string name : {"a.nrrd", "a.nc"}) {
+    const double tolerance = name == "a.nc" ? 0 : 1e-15;
+    const auto check = [&]<class T, int N>(OwnedImage<T, N> image) {
+      ImageInfo info;
+      info.value_unit = "degC";
+      info.value_name = "a long name";
+      write_image(image.view(), path(name), info);
+      const ReadImageResult read = read_image(path(name));
+      expect_same(image, read, tolerance);
+      EXPECT_EQ(read.info.value_unit, "degC");
+      EXPECT_EQ(read.info.value_name, "a long name");
+      return std::get<OwnedImage<T, N>>(std::get<AnyImageN<N>>(read.image)).grid.axes[0].name;
+    };
+    EXPECT_EQ(check(noise_with_missing<float, 3>(named_grid<3>(), 1, 0.2)), "lon");
+    check(noise_with_missing<double, 4>(named_grid<4>(), 2, 0.2));
+    check(noise<std::uint8_t, 2>(named_grid<2>(), 3));
+    check(noise<std::int8_t, 3>(named_grid<3>(), 4));
+    check(noise<std::uint16_t, 3>(named_grid<3>(), 5));
+    check(noise<std::int16_t, 4>(named_grid<4>(), 6));
+    check(noise<std::int32_t, 2>(named_grid<2>(), 7));
+  }
+}
+
+TEST_F(ImageWriter, NrrdKeepsAWorldMapAndItsFrame) {
+  Grid<4> grid = named_grid<4>();
+  grid.linear[0] = {0.8, -0.6, 0, 0};
+  grid.linear[1] = {0.6, 0.8, 0, 0};
+  grid.offset = {10, -20, 30, 0};
+  const auto image = noise<float, 4>(grid, 1);
+  ImageInfo info;
+  info.world_frame = "LPS";
+  write_image(image.view(), path("a.nrrd"), info);
+  const ReadImageResult read = read_image(path("a.nrrd"));
+  expect_same(image, read, 1e-13);
+  EXPECT_EQ(read.info.world_frame, "LPS");
+  // without an oblique axis the frame is kept, too
+  write_image(noise<float, 3>(named_grid<3>(), 1).view(), path("b.nrrd"), info);
+  EXPECT_EQ(read_image(path("b.nrrd")).info.world_frame, "LPS");
+  // RAS is read as LPS: x and y change their signs
+  info.world_frame = "RAS";
+  write_image(noise<float, 3>(named_grid<3>(), 1).view(), path("c.nrrd"), info);
+  const auto found = read_image(path("c.nrrd"));
+  EXPECT_EQ(found.info.world_frame, "LPS");
+  const auto& ras = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(found.image));
+  EXPECT_NEAR(ras.grid.axes[0][1], 1 - 0.7, 1e-15);
+  EXPECT_NEAR(ras.grid.axes[2][0], -0.8, 1e-15);
+}
+
+TEST_F(ImageWriter, NetcdfKeepsUnevenAxesAndCalendars) {
+  Grid<3> grid = named_grid<3>();
+  grid.axes[0] = Axis::rectilinear({0, 1, 4, 9});
+  grid.axes[0].name = "lon";
+  grid.axes[2].name = "time";
+  grid.axes[2].unit = "days since 2000-01-01 (noleap)";
+  const auto image = noise<float, 3>(grid, 1);
+  ImageInfo info;
+  info.variable = "temp";
+  info.axis_directions = {AxisDirection::unknown, AxisDirection::down, AxisDirection::unknown};
+  write_image(image.view(), path("a.nc"), info);
+  const ReadImageResult read = read_image(path("a.nc"));
+  expect_same(image, read);
+  EXPECT_EQ(read.info.variable, "temp");
+  EXPECT_EQ(read.info.axis_directions[1], AxisDirection::down);
+}
+
+TEST_F(ImageWriter, RefusesWhatAFormatCannotHold) {
+  Grid<3> uneven = named_grid<3>();
+  uneven.axes[0] = Axis::rectilinear({0, 1, 4, 9});
+  expect_error(ErrorCode::UnsupportedData, "axis 'x' has uneven steps, which NRRD cannot hold",
+               [&] { write_image(noise<float, 3>(uneven, 1).view(), path("a.nrrd")); });
+  Grid<3> oblique = named_grid<3>();
+  oblique.linear[0][1] = 0.5;
+  expect_error(ErrorCode::UnsupportedData, "axis 'lon' is oblique, which netCDF cannot hold",
+               [&] { write_image(noise<float, 3>(oblique, 1).view(), path("a.nc")); });
+  expect_error(ErrorCode::UnsupportedFormat, "extension '.png'; expected .nrrd or .nc",
+               [&] { write_image(noise<float, 3>(oblique, 1).view(), path("a.png")); });
+  FunctionLayers<float, 3> failing(named_grid<3>(), [](std::size_t k, float* to) {
+    if (k == 2) throw Error(ErrorCode::MalformedFile, "a source that fails");
+    std::fill_n(to, 12, 0.0F);
+  });
+  for (const std::string name : {"b.nrrd", "b.nc"}) {
+    expect_error(ErrorCode::MalformedFile, "a source that fails", [&] { write_layers(failing, path(name)); });
+    EXPECT_FALSE(std::filesystem::exists(path(name)));
+  }
+  expect_error(ErrorCode::WriteFailed, "no_such_folder", [&] {
+    write_image(noise<float, 2>({2, 2}, 1).view(), path("no_such_folder/a.nc"));
+  });
+}
+
+}  // namespace
+}  // namespace tegl::test
