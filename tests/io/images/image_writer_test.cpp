@@ -54,6 +54,12 @@ void expect_same(const OwnedImage<T, N>& image, const ReadImageResult& read, dou
   }
 }
 
+template <int N>
+void write_noise(const Grid<N>& grid, const fs::path& path, const ImageInfo& info = {}) {
+  const auto image = noise<float, N>(grid, 1);
+  write_image(image.view(), path, info);
+}
+
 class ImageWriter : public testing::Test {
  protected:
   [[nodiscard]] fs::path path(const std::string& name) const { return dir_ / name; }
@@ -99,11 +105,11 @@ TEST_F(ImageWriter, NrrdKeepsAWorldMapAndItsFrame) {
   expect_same(image, read, 1e-13);
   EXPECT_EQ(read.info.world_frame, "LPS");
   // without an oblique axis the frame is kept, too
-  write_image(noise<float, 3>(named_grid<3>(), 1).view(), path("b.nrrd"), info);
+  write_noise<3>(named_grid<3>(), path("b.nrrd"), info);
   EXPECT_EQ(read_image(path("b.nrrd")).info.world_frame, "LPS");
   // RAS is read as LPS: x and y change their signs
   info.world_frame = "RAS";
-  write_image(noise<float, 3>(named_grid<3>(), 1).view(), path("c.nrrd"), info);
+  write_noise<3>(named_grid<3>(), path("c.nrrd"), info);
   const auto found = read_image(path("c.nrrd"));
   EXPECT_EQ(found.info.world_frame, "LPS");
   const auto& ras = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(found.image));
@@ -132,13 +138,13 @@ TEST_F(ImageWriter, RefusesWhatAFormatCannotHold) {
   Grid<3> uneven = named_grid<3>();
   uneven.axes[0] = Axis::rectilinear({0, 1, 4, 9});
   expect_error(ErrorCode::UnsupportedData, "axis 'x' has uneven steps, which NRRD cannot hold",
-               [&] { write_image(noise<float, 3>(uneven, 1).view(), path("a.nrrd")); });
+               [&] { write_noise<3>(uneven, path("a.nrrd")); });
   Grid<3> oblique = named_grid<3>();
   oblique.linear[0][1] = 0.5;
   expect_error(ErrorCode::UnsupportedData, "axis 'lon' is oblique, which netCDF cannot hold",
-               [&] { write_image(noise<float, 3>(oblique, 1).view(), path("a.nc")); });
+               [&] { write_noise<3>(oblique, path("a.nc")); });
   expect_error(ErrorCode::UnsupportedFormat, "extension '.png'; expected .nrrd or .nc",
-               [&] { write_image(noise<float, 3>(oblique, 1).view(), path("a.png")); });
+               [&] { write_noise<3>(oblique, path("a.png")); });
   FunctionLayers<float, 3> failing(named_grid<3>(), [](std::size_t k, float* to) {
     if (k == 2) throw Error(ErrorCode::MalformedFile, "a source that fails");
     std::fill_n(to, 12, 0.0F);
@@ -148,7 +154,7 @@ TEST_F(ImageWriter, RefusesWhatAFormatCannotHold) {
     EXPECT_FALSE(std::filesystem::exists(path(name)));
   }
   expect_error(ErrorCode::WriteFailed, "no_such_folder", [&] {
-    write_image(noise<float, 2>({2, 2}, 1).view(), path("no_such_folder/a.nc"));
+    write_noise<2>(Grid<2>::unit({2, 2}), path("no_such_folder/a.nc"));
   });
 }
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The commands tegl scale-space and tegl sample: their images, and other commands that take these.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl/scale_space.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ImageMakers : public ProgramTest {
+ protected:
+  template <int N>
+  [[nodiscard]] OwnedImage<float, N> floats(const std::string& name) const {
+    return std::get<OwnedImage<float, N>>(std::get<AnyImageN<N>>(read_image(path(name)).image));
+  }
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& part, int exit) const {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, exit) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(part));
+  }
+};
+
+TEST_F(ImageMakers, ScaleSpaceIsTheLibrarys) {
+  const std::string volume = write("volume.nii", nifti_bytes(noise({9, 8, 7}, 1), {1, 2, 1}));
+  const RunResult run =
+      run_tegl({"scale-space", volume, "--sigmas", "0.5:2:3", "--iso", "128", "-o", path("a.nrrd"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.json()["sizes"], ElementsAre(9, 8, 7, 3));
+  EXPECT_THAT(run.json()["sigmas"], ElementsAre(0.5, 1.0, 2.0));
+  EXPECT_EQ(run.json()["sizes_of_contour"].size(), 3u);
+  EXPECT_EQ(run.json()["most_stable"]["sigma"], 1.0);
+  const auto image = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(read_image(volume).image));
+  ScaleSpaceLayers<float, 3> layers(image.view(), {0.5, 1, 2});
+  const auto scales = floats<4>("a.nrrd");
+  EXPECT_EQ(scales.values, layers.all().values);
+  EXPECT_EQ(scales.grid.axes[3].name, "log2_sigma");
+  EXPECT_EQ(scales.grid.axes[3][2], 1.0);
+  // other quantities, uneven scales
+  ASSERT_EQ(
+      run_tegl({"scale-space", volume, "--sigmas", "1,2,3", "--samples", "--laplacian", "-o", path("b.nc"), "-q"}).exit,
+      0);
+  EXPECT_NEAR(floats<4>("b.nc").grid.axes[3][2], std::log2(3), 1e-15);
+}
+
+TEST_F(ImageMakers, OtherCommandsRunOverTheScale) {
+  ASSERT_EQ(run_tegl({"sample", "metaballs", "--dim", "2", "--size", "48", "--set", "width=0.08", "--set", "count=30",
+                      "-o", path("balls.nrrd"), "-q"})
+                .exit,
+            0);
+  ASSERT_EQ(
+      run_tegl({"scale-space", path("balls.nrrd"), "--sigmas", "0.03:0.4:12", "-o", path("scales.nrrd"), "-q"}).exit,
+      0);
+  const std::string scales = path("scales.nrrd");
+  const RunResult contour = run_tegl({"contour", scales, "--iso", "0", "-o", path("scales.ply"), "--json"});
+  ASSERT_EQ(contour.exit, 0) << contour.err;
+  EXPECT_EQ(contour.json()["dim"], 2);
+  const RunResult slice =
+      run_tegl({"slice", scales, "--iso", "0", "--at", "log2_sigma=-4", "-o", path("cut.ply"), "--json"});
+  EXPECT_EQ(slice.exit, 0) << slice.err;
+  EXPECT_EQ(slice.json()["dim"], 1);
+  EXPECT_EQ(run_tegl({"measure", scales, "--iso", "0", "--json"}).exit, 0);
+  EXPECT_EQ(run_tegl({"track", scales, "--iso", "0", "-o", path("tracks.json"), "-q"}).exit, 0);
+}
+
+TEST_F(ImageMakers, SamplesOfALatticeAreContouredOnIt) {
+  for (const char* const lattice : {"triangular", "fcc", "bcc", "d4", "fcc_in_time"}) {
+    ASSERT_EQ(run_tegl({"sample", "ball", "--lattice", lattice, "--size", "12", "--set", "radius=0.6", "-o",
+                        path("a.nrrd"), "-q"})
+                  .exit,
+              0);
+    const RunResult run =
+        run_tegl({"contour", path("a.nrrd"), "--lattice", lattice, "--iso", "0", "-o", path("a.vtkhdf"), "--json"});
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_EQ(run.json()["components"], 1) << lattice;
+    EXPECT_EQ(run.json()["boundary_simplices"], 0) << lattice;
+  }
+}
+
+TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
+  const RunResult run = run_tegl({"sample", "ball", "--size", "5,4,3", "--range", "0:2", "-o", path("a.nc"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.json()["input"], nullptr);
+  EXPECT_EQ(run.json()["kind"], "ball");
+  const auto image = floats<3>("a.nc");
+  EXPECT_EQ(image.grid.axes[0][1], 0.5);
+  EXPECT_EQ(image.grid.axes[2][2], 2.0);
+  EXPECT_NEAR(image.values[1], 0.8 - 0.5, 1e-6);
+}
+
+TEST_F(ImageMakers, NameWhatIsWrong) {
+  const std::string film = write("film.nii", nifti_bytes(noise({3, 3, 3, 3}, 1), {1, 1, 1, 1}));
+  const std::string picture = write("a.nrrd", nrrd_bytes(noise({4, 4}, 1)));
+  const std::string out = path("out.nrrd");
+  expect_refused({"scale-space", film, "--sigmas", "1,2", "-o", out}, "5, which files cannot hold", 4);
+  expect_refused({"scale-space", picture, "--sigmas", "2:1:4", "-o", out}, "4 scales from 2 to 1; expected", 2);
+  expect_refused({"scale-space", picture, "--sigmas", "1:2:1.5", "-o", out}, "has the count 1.5", 2);
+  expect_refused({"scale-space", picture, "--sigmas", "2,1", "-o", out}, "expected ascending scales", 2);
+  expect_refused({"scale-space", picture, "--sigmas", "1,2,3", "-o", out}, "has uneven steps, which NRRD cannot hold",
+                 4);
+  expect_refused({"sample", "cube", "-o", out}, "no field 'cube'; expected ball", 2);
+  expect_refused({"sample", "ball", "--set", "size=3", "-o", out}, "has no parameter 'size'; expected radius", 2);
+  expect_refused({"sample", "ball", "--set", "radius", "-o", out}, "--set is 'radius'; expected NAME=NUMBER", 2);
+  expect_refused({"sample", "ball", "--size", "5,4", "-o", out}, "--size has 2 numbers; expected one", 2);
+  expect_refused({"sample", "ball", "--size", "1", "-o", out}, "--size has 1; expected whole numbers from 2", 2);
+  expect_refused({"sample", "ball", "--range", "1:0", "-o", out}, "--range is '1:0'", 2);
+  expect_refused({"sample", "ball", "--lattice", "d4", "--dim", "3", "-o", out},
+                 "--lattice d4 with --dim 3; expected 4", 2);
+  expect_refused({"sample", "x +", "--set", "a=1", "-o", out}, "--set with an expression", 2);
+  EXPECT_THAT(files(), ElementsAre("a.nrrd", "film.nii"));
+}
+
+}  // namespace
+}  // namespace tegl::test
