@@ -3,8 +3,8 @@
 """filters.py PROGRAM [SIZE]: a Gaussian filter of SIZE^3 floats (512), and a median of at most 128^3, on one thread, by
 tegl and by SciPy.
 
-PROGRAM is filter_bench, whose samples both read. Needs python3-scipy (Debian). Prints seconds, the minimum of three runs
-each.
+PROGRAM is filter_bench, whose samples both read. Needs python3-scipy (Debian). Prints seconds, the minimum of three
+runs each.
 """
 
 import os

@@ -73,7 +73,8 @@ def filter(array, *, gaussian=None, discrete_gaussian=None, binomial=None, media
     with prepared.terms():
         result = _tegl.filter(prepared.image, kind.replace("_", "-"), numbers, sizes,
                               0.0 if value_sigma is None else _arguments.as_number("value_sigma", value_sigma), samples,
-                              _borders(border, prepared), _arguments.as_bool("fill", fill), _arguments.as_whole("threads", threads, 0), progress)
+                              _borders(border, prepared), _arguments.as_bool("fill", fill),
+                              _arguments.as_whole("threads", threads, 0), progress)
     result = result.T if prepared.is_reversed else result
     return dataclasses.replace(array, array=result) if isinstance(array, Image) else result
 

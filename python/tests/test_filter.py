@@ -57,7 +57,8 @@ def test_borders_by_axis():
 
 def test_an_image_keeps_its_coordinates():
     image = tegl.read(OCEAN)
-    found = tegl.filter(image, discrete_gaussian=(0.5, 0, 1, 1), samples=True, border=("cyclic", "extended", "extended", "cyclic"))
+    found = tegl.filter(image, discrete_gaussian=(0.5, 0, 1, 1), samples=True,
+                        border=("cyclic", "extended", "extended", "cyclic"))
     assert isinstance(found, tegl.Image) and found.axis_names == image.axis_names
     np.testing.assert_array_equal(np.isnan(found.array), np.isnan(image.array))
     assert len(found.contour(20.0).simplices) > 0
