@@ -111,9 +111,9 @@ class PlacedSource final : public SampleSource<N> {
                                                const std::array<AxisSteps, N>& steps) const noexcept override {
     return samples_.gradient(index, steps);
   }
-  [[nodiscard]] std::array<double, N> sobel(const Index& index,
-                                            const std::array<AxisSteps, N>& steps) const noexcept override {
-    return samples_.sobel(index, steps);
+  [[nodiscard]] ValuesAround<N> values_around(const Index& index,
+                                              const std::array<AxisSteps, N>& steps) const noexcept override {
+    return samples_.values_around(index, steps);
   }
 
  private:
