@@ -96,7 +96,7 @@ TEST_F(FilterCommand, AFilteredImageIsContoured) {
   ASSERT_EQ(run_tegl({"filter", volume(), "--median", "2", "-o", path("clean.nrrd"), "-q"}).exit, 0);
   const RunResult run = run_tegl({"contour", path("clean.nrrd"), "--iso", "128", "-o", path("clean.ply"), "--json"});
   ASSERT_EQ(run.exit, 0) << run.err;
-  EXPECT_GT(run.json()["triangles"], 0);
+  EXPECT_GT(run.json()["simplices"], 0);
 }
 
 TEST_F(FilterCommand, NamesWhatIsWrong) {
