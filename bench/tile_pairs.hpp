@@ -40,8 +40,9 @@ class TilePairs {
     for (Index s = 0; s < count; ++s) {
       bool is_loaded = false;
       for (Index t = 0; t < s; ++t) {
-        if (own_planes_separate(planes_[s], planes_[t]) ||
-            is_separated(planes.simplex(s), planes.simplex(t), planes_[s].on & planes_[t].on))
+        const bool has_same_vertices = planes_[s].on == planes_[t].on;
+        if (!has_same_vertices && (own_planes_separate(planes_[s], planes_[t]) ||
+                                   is_separated(planes.simplex(s), planes.simplex(t), planes_[s].on & planes_[t].on)))
           continue;
         if (!is_loaded) test.load(s);
         is_loaded = true;
@@ -114,7 +115,7 @@ class TilePairs {
   }
   static bool own_planes_separate(const Sides& s, const Sides& t) noexcept {
     const Bits a = s.on & ~t.on, b = t.on & ~s.on;
-    return a != 0 && ((b & ~s.above) == 0 || (b & ~s.below) == 0 || (a & ~t.above) == 0 || (a & ~t.below) == 0);
+    return ((b & ~s.above) == 0 || (b & ~s.below) == 0 || (a & ~t.above) == 0 || (a & ~t.below) == 0);
   }
   [[nodiscard]] bool is_separated(const Simplex& s, const Simplex& t, Bits common) const noexcept {
     for (std::size_t w = 0; w < words_; ++w) {
