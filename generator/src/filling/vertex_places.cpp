@@ -156,7 +156,7 @@ GridPoint VertexPlaces::mean(const Cone& cone, std::span<const GridPoint> places
   return sum.value();
 }
 
-/// The mean of corners and points on edges; with corners, half way from there to the tile's centre.
+/// The mean of corners and points on edges; with corners, half way from there to the tile's centre, for any samples.
 GridPoint VertexPlaces::side_place(std::uint64_t mask, std::span<const GridPoint> places) const {
   WeightedMean sum;
   bool has_corners = false;

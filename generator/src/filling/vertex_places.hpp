@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Places of all vertices of a tile's contour for given points on its edges, as the runtime computes them (table
-// contract: "Positions"), in integers: the same on all machines.
+// contract: "Positions"), in integers: the same on all machines. Copies of corners are an exception: the runtime puts
+// them on their rays where the interpolant has the isovalue, which depends on the samples. Here they are half way. The
+// entries that are searched have no copies of corners; copies are proved for all places on their rays.
 #pragma once
 
 #include <array>
