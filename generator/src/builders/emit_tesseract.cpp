@@ -90,6 +90,17 @@ std::string edges_with_vertices() {
   return text;
 }
 
+std::string ends_of_edges() {
+  // Expands the bits of the edges along an axis to those of the corners at their lower ends.
+  std::string text;
+  for (unsigned a = 0; a < 4; ++a) {
+    text += fmt::format("ends = edges >> {} & 0xffu;  // along {}\n", 8 * a, kAxes[a]);
+    for (unsigned b = 3; b-- > a;) text += fmt::format("ends = (ends | ends << {}) & {:#06x}u;\n", 1u << b, kLower[b]);
+    text += fmt::format("result |= ends | ends << {};\n", 1u << a);
+  }
+  return text;
+}
+
 std::string differences() {
   std::string text;
   for (unsigned a = 0; a < 4; ++a)
@@ -134,19 +145,38 @@ std::string corner_sets(std::size_t count, std::size_t per_line, const std::func
   return rows(count, per_line, [&](std::size_t i) { return fmt::format("{:#06x}", set(static_cast<unsigned>(i))); });
 }
 
-/// Hyperplanes through corners that divide the tesseract. Those with many corners separate most sets, so they come
-/// first.
+/// Hyperplanes through corners that divide the tesseract. Those with few corners on one side divide most pairs of
+/// components, which lie around few corners, so they come first.
 std::string dividers() {
   const Lattice lattice(TileKind::cube, 4);
   const EmbeddingProof proof(lattice.tile(4));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> planes;
   for (const auto& [above, below] : proof.hyperplanes())
     if (above != 0 && below != 0) planes.emplace_back(above, below);
-  std::stable_sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) {
-    return std::popcount(a.first | a.second) < std::popcount(b.first | b.second);
+  const auto smaller_side = [](const auto& plane) {
+    return std::min(std::popcount(plane.first), std::popcount(plane.second));
+  };
+  std::stable_sort(planes.begin(), planes.end(),
+                   [&](const auto& a, const auto& b) { return smaller_side(a) < smaller_side(b); });
+  return rows(planes.size(), 4, [&](std::size_t i) {
+    const auto [above, below] = planes[i];
+    std::uint32_t inside = 0;
+    for (unsigned e = 0; e < 32; ++e) inside |= (ends_of(e) & (above | below)) == 0 ? 1u << e : 0u;
+    return fmt::format("{{{:#06x}, {:#06x}, {:#010x}}}", above, below, inside);
   });
-  return rows(planes.size(), 6,
-              [&](std::size_t i) { return fmt::format("{{{:#06x}, {:#06x}}}", planes[i].first, planes[i].second); });
+}
+
+std::string lifted_vertices() {
+  std::string text;
+  for (unsigned f = 0; f < 8; ++f) {
+    std::array<std::uint64_t, 2> words{};
+    for (unsigned v = 0; v < 16; ++v) {
+      const unsigned lifted = v < 12 ? detail::lifted_edge(4, f, v) : 32 + 4 * f + (v - 12);
+      words[v / 8] |= std::uint64_t{lifted} << (8 * (v % 8));
+    }
+    text += fmt::format("{{{:#018x}, {:#018x}}},  // {}\n", words[0], words[1], plane_name(f));
+  }
+  return text;
 }
 
 std::uint32_t corners_of_square(unsigned number) {
@@ -202,6 +232,8 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                   corner_sets(8, 8, [](unsigned f) { return static_cast<std::uint32_t>(detail::face_corners(4, f)); })},
                  {"ends", corner_sets(32, 8, ends_of)},
                  {"lifted_corners", lifted_corners()},
+                 {"lifted_vertices", lifted_vertices()},
+                 {"ends_of_edges", ends_of_edges()},
                  {"edges_with_vertices", edges_with_vertices()},
                  {"differences", differences()},
                  {"ambiguous_squares", ambiguous_squares()},
@@ -212,7 +244,8 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                                              : "cubes_.triangles(of_part)"},
                  {"cone_all", edges ? std::string(template_text("builder4_edges_cone.cpp"))
                                     : filled("builder4_cone.cpp", {{"add_cubes", for_cubes("add({});")}})},
-                 {"add_cube_regions", for_cubes("add_cube_regions({}, corners, high, first_centre, copy, sigma);")}});
+                 {"find_connected", edges ? std::string(template_text("builder4_edges_connected.cpp"))
+                                          : filled("builder4_connected.cpp", {{"add_cubes", for_cubes("add({});")}})}});
 }
 
 /// The builder of facets: header and source. The lists are those of the compact triangulation.

@@ -122,8 +122,7 @@ void define_entries(std::string& text, const TesseractArrays& arrays) {
   std::vector<std::size_t> entries(arrays.cube.entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = i;
   define(
-      text, class_array(fmt::format("std::array<ResolvedCubes::Entry, {}>", entries.size()), "kEntries"),
-      entries,
+      text, class_array(fmt::format("std::array<ResolvedCubes::Entry, {}>", entries.size()), "kEntries"), entries,
       [&](std::size_t entry) {
         std::array<std::size_t, 3> by_choice{};
         for (std::size_t choice = 0; choice < 3; ++choice) {
@@ -202,11 +201,14 @@ void define_lists(std::string& text, const CubeLists& lists, const std::string& 
 void define_regions(std::string& text, const CubeRegions& regions, const std::string& suffix) {
   const auto name = [&](const char* type, const char* what) { return fmt::format("{} k{}{}[]", type, what, suffix); };
   define(text, name("std::uint32_t", "FirstRegion"), regions.first_region, number);
-  define(text, name("CubeRegions::Region", "Regions"), regions.regions, [](const CubeRegions::Region& r) {
+  constexpr std::size_t kMoreRegions = 2;
+  std::vector<CubeRegions::Region> and_more = regions.regions;
+  and_more.resize(and_more.size() + kMoreRegions);
+  define(text, name("CubeRegions::Region", "Regions"), and_more, [](const CubeRegions::Region& r) {
     return fmt::format("{{{},{},{},{},{}}}", r.corners, r.centre_count, r.tetrahedron_count, r.first_tetrahedron,
                        r.first_centre);
   });
-  constexpr std::size_t kMoreTetrahedra = 3;
+  constexpr std::size_t kMoreTetrahedra = 15;
   define_bytes(text, "kTetrahedra" + suffix, flat(regions.tetrahedra, 4 * kMoreTetrahedra), 32);
   define(text, name("std::uint32_t", "Centres"), regions.centres, mask);
   fmt::format_to(Out(text),

@@ -6,6 +6,7 @@
 #include <bit>
 #include <utility>
 
+#include "ambiguity/connected_sides.hpp"
 #include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
@@ -132,107 +133,177 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   return tile;
 }
 
-/// Decides the centres of a tile's cubes by the trilinear interpolant. `entries`: of its cubes. Returns false if
-/// rounding could decide.
-static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isovalue,
-                           const std::array<std::uint16_t, 8>& entries, std::array<tile::Choice, 8>& choices) noexcept {
-  const auto& joins = cube_joins();
-  const auto value = [&](unsigned f, unsigned corner) {
-    const unsigned of_tile = kCubesIn4D[f][corner];
-    return block.samples[of_tile >> 1][bit + (of_tile & 1u)];
-  };
-  // collect questions about cubes with one pair, decide cubes with several
-  JoinQuestions questions;
-  std::array<std::uint8_t, 8> asked;
-  for (unsigned f = 0; f < 8; ++f) {
-    const CubeJoin& join = joins[entries[f]];
-    if (join.pairs == 1) {
-      for (std::size_t e = 0; e < 8; ++e) questions.ends[e][questions.count] = value(f, join.corners[e]);
-      questions.sign[questions.count] = join.high ? 1.0 : -1.0;
-      asked[questions.count++] = static_cast<std::uint8_t>(f);
-    } else if (join.pairs > 1) {
-      std::array<double, 8> values;
-      for (unsigned corner = 0; corner < 8; ++corner) values[corner] = value(f, corner);
-      choices[f] = detail::decide_centre(values, isovalue, entries[f]);
+namespace {
+
+/// Resolves the tiles of a word, one step for all of them after the other.
+class WordResolver {
+ public:
+  WordResolver(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, TesseractsOfWord& of) noexcept
+      : estimator_(estimator), block_(block), of_(of), cubes_(ResolvedCubes::instance(estimator.triangulation())) {}
+
+  void resolve() noexcept {
+    take_faces();
+    if (estimator_.separates())
+      take_separate();
+    else if (estimator_.is_by_means())
+      take_means();
+    else
+      take_joins();
+    find_vertices();
+    find_connected_ones();
+  }
+
+ private:
+  /// Squares, tiles, and the cubes' entries of the table of resolved cubes.
+  void take_faces() noexcept {
+    const bool separates = estimator_.separates();
+    of_.unsure = 0;
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      const unsigned bit = of_.bits[j], signature = of_.signatures[j];
+      const std::uint64_t high = block_.high[bit];
+      of_.unsure |= std::uint64_t{block_.unsure[bit] != 0} << j;
+      ResolvedKey& key = of_.tiles[j].key;
+      key.signature = static_cast<std::uint16_t>(signature);
+      key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
+      key.low_cubes = key.high_cubes = 0;
+      const auto choice = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
+      key.tile = separates ? tile::Choice::separate : choice;
+      const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
+      for (unsigned f = 0; f < 8; ++f)
+        entries_[j][f] = static_cast<std::uint16_t>(cubes_.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
+                                                                 static_cast<unsigned>(squares >> (8 * f) & 63)));
     }
   }
-  // apply the answers
-  answer(questions, isovalue);
-  for (std::size_t q = 0; q < questions.count; ++q) {
-    if (questions.answers[q] == JoinQuestions::unsure) return false;
-    const auto joined = joins[entries[asked[q]]].high ? tile::Choice::high : tile::Choice::low;
-    if (questions.answers[q] == JoinQuestions::yes) choices[asked[q]] = joined;
+
+  void take_separate() noexcept {
+    for (std::size_t j = 0; j < of_.count; ++j)
+      for (unsigned f = 0; f < 8; ++f)
+        of_.tiles[j].lists[f] = cubes_.list_of_entry(entries_[j][f], tile::Choice::separate);
   }
-  return true;
+
+  void take_means() noexcept {
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      ResolvedTile& tile = of_.tiles[j];
+      const auto high_cubes = static_cast<unsigned>(block_.high[of_.bits[j]] >> kFirstCube<4>);
+      unsigned with_choice = 0;
+      for (unsigned f = 0; f < 8; ++f) {
+        const ResolvedCubes::Entry entry = cubes_.at_entry(entries_[j][f]);
+        tile.lists[f] = entry.lists[entry.has_choice * (1 + (high_cubes >> f & 1u))];
+        with_choice |= unsigned{entry.has_choice} << f;
+      }
+      tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & high_cubes);
+      tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~high_cubes);
+    }
+  }
+
+  /// Decides the centres of cubes by the trilinear interpolant. Cubes with one pair of edges are collected first.
+  void take_joins() noexcept {
+    take_separate();
+    const auto& joins = cube_joins();
+    JoinQuestions questions;
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      if (questions.count + 8 > JoinQuestions::kMost) apply_answers(questions);
+      for (unsigned f = 0; f < 8; ++f) {
+        const CubeJoin& join = joins[entries_[j][f]];
+        if (join.pairs == 1) {
+          for (std::size_t e = 0; e < 8; ++e) questions.ends[e][questions.count] = value(j, f, join.corners[e]);
+          questions.sign[questions.count] = join.high ? 1.0 : -1.0;
+          asked_[questions.count++] = static_cast<std::uint16_t>(8 * j + f);
+        } else if (join.pairs > 1) {
+          std::array<double, 8> values;
+          for (unsigned corner = 0; corner < 8; ++corner) values[corner] = value(j, f, corner);
+          join_cube(j, f, detail::decide_centre(values, estimator_.isovalue(), entries_[j][f]));
+        }
+      }
+    }
+    apply_answers(questions);
+  }
+  void apply_answers(JoinQuestions& questions) noexcept {
+    answer(questions, estimator_.isovalue());
+    for (std::size_t q = 0; q < questions.count; ++q) {
+      const std::size_t j = asked_[q] / 8u;
+      const unsigned f = asked_[q] % 8u;
+      if (questions.answers[q] == JoinQuestions::unsure) of_.unsure |= std::uint64_t{1} << j;
+      if (questions.answers[q] == JoinQuestions::yes)
+        join_cube(j, f, cube_joins()[entries_[j][f]].high ? tile::Choice::high : tile::Choice::low);
+    }
+    questions.count = 0;
+  }
+  void join_cube(std::size_t j, unsigned f, tile::Choice choice) noexcept {
+    ResolvedTile& tile = of_.tiles[j];
+    tile.lists[f] = cubes_.list_of_entry(entries_[j][f], choice);
+    std::uint8_t& cubes = choice == tile::Choice::low ? tile.key.low_cubes : tile.key.high_cubes;
+    if (choice != tile::Choice::separate) cubes = static_cast<std::uint8_t>(cubes | 1u << f);
+  }
+  [[nodiscard]] double value(std::size_t j, unsigned cube, unsigned corner) const noexcept {
+    const unsigned of_tile = kCubesIn4D[cube][corner];
+    return block_.samples[of_tile >> 1][of_.bits[j] + (of_tile & 1u)];
+  }
+
+  void find_vertices() noexcept {
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      ResolvedTile& tile = of_.tiles[j];
+      unsigned with_vertices = 0;  // without branches: few cubes have vertices, which is hard to predict
+      for (unsigned f = 0; f < 8; ++f) with_vertices |= (cubes_.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
+      tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
+      for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
+        const auto f = static_cast<unsigned>(std::countr_zero(rest));
+        tile.cubes[f] = cubes_.key(tile.lists[f]);
+      }
+    }
+  }
+
+  void find_connected_ones() noexcept {
+    BoundarySides sides;
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      const ResolvedKey& key = of_.tiles[j].key;
+      sides.add(key.signature, key.squares, key.high_cubes);
+      sides.add(~std::uint32_t{key.signature}, ~key.squares, key.low_cubes);
+    }
+    find_connected(sides);
+    for (std::size_t j = 0; j < of_.count; ++j)
+      of_.tiles[j].is_connected = (sides.connected[2 * j] & sides.connected[2 * j + 1]) != 0;
+  }
+
+  const FaceEstimator<4>& estimator_;
+  const FaceBlock<4>& block_;
+  TesseractsOfWord& of_;
+  const ResolvedCubes& cubes_;
+  std::array<std::array<std::uint16_t, 8>, kWordBits> entries_;
+  std::array<std::uint16_t, JoinQuestions::kMost> asked_;  ///< by question: 8 * tile + cube
+};
+
+}  // namespace
+
+void resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, TesseractsOfWord& of) noexcept {
+  WordResolver(estimator, block, of).resolve();
 }
 
-bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
-             ResolvedTile& tile) noexcept {
-  if (block.unsure[bit] != 0) return false;
-  const ResolvedCubes& cubes = ResolvedCubes::instance(estimator.triangulation());
-  const std::uint64_t high = block.high[bit];
-  tile.key = {};
-  tile.key.signature = static_cast<std::uint16_t>(signature);
-  tile.key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
-  const bool separates = estimator.separates();
-  if (!separates) tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
-  const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
-  const auto entry_of = [&](unsigned f) {
-    return cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
-                       static_cast<unsigned>(squares >> (8 * f) & 63));
-  };
-  // choices and lists of the cubes
-  unsigned low = 0, joined = 0;
-  if (separates) {
-    for (unsigned f = 0; f < 8; ++f) tile.lists[f] = cubes.list_of_entry(entry_of(f), tile::Choice::separate);
-  } else if (estimator.is_by_means()) {
-    unsigned with_choice = 0;
-    const auto high_cubes = static_cast<unsigned>(high >> kFirstCube<4>);
-    for (unsigned f = 0; f < 8; ++f) {
-      const ResolvedCubes::Entry entry = cubes.at_entry(entry_of(f));
-      tile.lists[f] = entry.lists[entry.has_choice * (1 + (high_cubes >> f & 1u))];
-      with_choice |= unsigned{entry.has_choice} << f;
-    }
-    joined = with_choice & high_cubes;
-    low = with_choice & ~high_cubes;
-  } else {
-    std::array<std::uint16_t, 8> entries;
-    std::array<tile::Choice, 8> choices{};
-    for (unsigned f = 0; f < 8; ++f) entries[f] = static_cast<std::uint16_t>(entry_of(f));
-    if (!decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
-    for (unsigned f = 0; f < 8; ++f) {
-      low |= (choices[f] == tile::Choice::low ? 1u : 0u) << f;
-      joined |= (choices[f] == tile::Choice::high ? 1u : 0u) << f;
-      tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
-    }
+/// Lists the word's ambiguous tiles from `ordinal` on and, if they are many, resolves them.
+void RowOfTesseracts::begin_word(std::size_t word, std::uint32_t ordinal) noexcept {
+  const auto& ambiguous = ambiguous_signatures<4>();
+  word_ = word;
+  first_ = ordinal;
+  of_word_.count = 0;
+  for (std::uint32_t i = ordinal; i < tiles_.count && tiles_.at[i] / kWordBits == word; ++i) {
+    const unsigned signature = tiles_.signatures[i];
+    number_[i - ordinal] = static_cast<std::uint8_t>(of_word_.count);
+    of_word_.bits[of_word_.count] = static_cast<std::uint8_t>(tiles_.at[i] % kWordBits);
+    of_word_.signatures[of_word_.count] = static_cast<std::uint16_t>(signature);
+    of_word_.count += ambiguous[signature] ? 1 : 0;
   }
-  tile.key.low_cubes = static_cast<std::uint8_t>(low);
-  tile.key.high_cubes = static_cast<std::uint8_t>(joined);
-  unsigned with_vertices = 0;  // without branches: few cubes have vertices, which is hard to predict
-  for (unsigned f = 0; f < 8; ++f) with_vertices |= (cubes.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
-  tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
-  for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
-    const auto f = static_cast<unsigned>(std::countr_zero(rest));
-    tile.cubes[f] = cubes.key(tile.lists[f]);
-  }
-  return true;
+  has_many_ = of_word_.count >= RowFaces<4>::kMany;
+  if (has_many_) detail::resolve(estimator_, faces_.look_at(word), of_word_);
 }
 
-ResolvedTile RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
-                                      unsigned signature) noexcept {
-  if (!at_once_ || !ambiguous_signatures<4>()[signature]) return resolved_tile(estimator_, base, signature);
-  const std::size_t word = base[0] / kWordBits;
-  if (word != word_) {
-    word_ = word;
-    const auto& ambiguous = ambiguous_signatures<4>();
-    std::size_t found = 0;
-    for (std::uint32_t i = ordinal; i < tiles_.count && tiles_.at[i] / kWordBits == word; ++i)
-      found += ambiguous[tiles_.signatures[i]] ? 1 : 0;
-    has_many_ = found >= RowFaces<4>::kMany;
+const ResolvedTile& RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
+                                             unsigned signature) noexcept {
+  if (at_once_ && ambiguous_signatures<4>()[signature]) {
+    if (base[0] / kWordBits != word_) begin_word(base[0] / kWordBits, ordinal);
+    const std::size_t number = number_[ordinal - first_];
+    if (has_many_ && (of_word_.unsure >> number & 1u) == 0) return of_word_.tiles[number];
   }
-  ResolvedTile tile;
-  if (has_many_ && detail::resolve(estimator_, faces_.look_at(word), base[0] % kWordBits, signature, tile)) return tile;
-  return resolved_tile(estimator_, base, signature);
+  return alone_ = resolved_tile(estimator_, base, signature);
 }
 
 }  // namespace tegl::detail

@@ -17,6 +17,7 @@ struct ResolvedTile {
   std::array<std::uint16_t, 8> cubes{};
   ResolvedCubes::Lists lists{};
   std::uint8_t with_vertices = 0;  ///< bit set of the cubes that own vertices
+  bool is_connected = false;       ///< whether Sigma is known to be connected (ResolvedTesseract::find)
 };
 
 /// Whether a 4D tile is combined from its cubes if ambiguities are resolved from the data. This holds if the data
@@ -27,9 +28,15 @@ inline bool is_put_together(const FaceEstimator<4>& estimator, unsigned signatur
 /// Resolves a 4D tile.
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
                            unsigned signature) noexcept;
-/// Resolves tile `bit` of a block. Returns false if rounding could decide; resolved_tile must then be used.
-bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
-             ResolvedTile& tile) noexcept;
+/// The ambiguous tiles of a word, and their resolutions.
+struct TesseractsOfWord {
+  std::size_t count = 0;
+  std::array<std::uint8_t, kWordBits> bits;
+  std::array<std::uint16_t, kWordBits> signatures;
+  std::array<ResolvedTile, kWordBits> tiles;
+  std::uint64_t unsure = 0;  ///< tiles that rounding could decide: resolved_tile must be used for them
+};
+void resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, TesseractsOfWord& of) noexcept;
 
 /// Resolves the ambiguous tiles of a row of tesseracts in order, a word at a time if that is faster.
 class RowOfTesseracts {
@@ -41,16 +48,24 @@ class RowOfTesseracts {
         tiles_(tiles),
         at_once_(samples <= kMostListed && RowFaces<4>::can_use(estimator)),
         faces_(estimator, base, samples) {}
-  /// Resolves number `ordinal` of the active tiles, based at `base`. Ordinals must increase from call to call.
-  ResolvedTile resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal, unsigned signature) noexcept;
+  /// Resolves number `ordinal` of the active tiles, based at `base`. Ordinals must increase from call to call. The
+  /// result is valid until the next call.
+  const ResolvedTile& resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
+                              unsigned signature) noexcept;
 
  private:
+  void begin_word(std::size_t word, std::uint32_t ordinal) noexcept;
+
   const FaceEstimator<4>& estimator_;
   RowTiles tiles_;
   bool at_once_;
   std::size_t word_ = ~std::size_t{0};
   bool has_many_ = false;  ///< whether the word is decided at once
   RowFaces<4> faces_;
+  TesseractsOfWord of_word_;
+  std::uint32_t first_ = 0;                     ///< ordinal of the word's first tile resolved at once
+  std::array<std::uint8_t, kWordBits> number_;  ///< by ordinal from there on: number in of_word_
+  ResolvedTile alone_;                          ///< the last one not resolved at once
 };
 
 }  // namespace tegl::detail

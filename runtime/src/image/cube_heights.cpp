@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "image/ray_level.hpp"
 
@@ -58,7 +57,7 @@ double CubeHeights::level(std::uint32_t corners) const noexcept {
     default:
       level = last_root<4>({a, 3.0 * (s0 - s3) + s1 - s2, 3.0 * (s0 + s3) - s1 - s2, s0 - s1 + s2 - s3});
   }
-  if (!(std::abs(a) <= std::numeric_limits<double>::max() / 64)) return 0.5;
+  if (!is_finite_enough(a)) return 0.5;
   return level_inside(level, epsilon);
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace tegl::detail {
 
@@ -32,6 +33,15 @@ template <std::size_t Count, std::size_t K = 1>
     return term + x * polynomial_slope<Count, K + 1>(coefficients, x);
 }
 
+/// Whether the sum of a cell's heights is finite, and so are its values on rays.
+inline bool is_finite_enough(double sum) noexcept {
+  return std::abs(sum) <= std::numeric_limits<double>::max() / 64;
+}
+
+/// Newton's method ends with a step below this.
+template <std::size_t Count>
+inline constexpr double kEnoughOfRay = Count <= 4 ? 1e-5 : 1e-2;
+
 /// The last root in (0, 1) of those that the signs at the fourths of the interval show; -1 if there is none. Newton's
 /// method ends with a step below 1e-5 for cubic polynomials and 1e-2 for others: the next step would be below 1e-9 and,
 /// mostly, 1e-4.
@@ -45,7 +55,6 @@ double last_root(const std::array<double, Count>& coefficients) noexcept {
     above = below, at_above = at_below;
     below -= 0.25, at_below = polynomial_value(coefficients, below);
   }
-  constexpr double kEnough = Count <= 4 ? 1e-5 : 1e-2;
   // Newton's method from the chord's root, or bisection where it leaves the interval
   double x = below + (above - below) * (at_below / (at_below - at_above));
   for (int step = 0; step < 8; ++step) {
@@ -55,17 +64,19 @@ double last_root(const std::array<double, Count>& coefficients) noexcept {
     if (!(next >= below && next <= above)) next = 0.5 * (below + above);
     const double moved = std::abs(next - x);
     x = next;
-    if (moved < kEnough) break;
+    if (moved < kEnoughOfRay<Count>) break;
   }
   return x;
 }
+
+/// Adding and subtracting it rounds to a multiple of 2^-32.
+inline constexpr double kRayLevelStep = 1048576.0;
 
 /// A level inside the ray, at least kLeastRayLevel and `epsilon` from its ends. A multiple of 2^-32, so that positions
 /// on rays to corners, middles of edges and middles of squares are computed exactly.
 inline double level_inside(double level, double epsilon) noexcept {
   const double least = std::max(kLeastRayLevel, epsilon);
-  constexpr double kStep = 1048576.0;
-  return (std::clamp(level, least, 1.0 - least) + kStep) - kStep;
+  return (std::clamp(level, least, 1.0 - least) + kRayLevelStep) - kRayLevelStep;
 }
 
 }  // namespace tegl::detail

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -51,7 +50,7 @@ double TileHeights<K>::level(const std::array<double, K>& end) const noexcept {
     (add(std::integral_constant<std::size_t, Set>{}), ...);
   }
   (std::make_index_sequence<kCorners>());
-  if (!(std::abs(products_[0]) <= std::numeric_limits<double>::max() / 64)) return 0.5;
+  if (!is_finite_enough(products_[0])) return 0.5;
   double level = last_root(by_degree);
   if (level < 0.0) {
     const double at_end = polynomial_value(by_degree, 1.0);

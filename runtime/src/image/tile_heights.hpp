@@ -6,6 +6,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+
+#include "image/corner_levels.hpp"
 
 namespace tegl::detail {
 
@@ -22,6 +25,11 @@ class TileHeights {
   /// those that are a fourth apart. If there is none, the end with the smaller absolute height. Clamped, and a multiple
   /// of 2^-32: level_inside. 0.5 if a sample is infinite.
   [[nodiscard]] double level(const std::array<double, K>& end) const noexcept;
+
+  /// The levels of the rays to `corners`, equal to those of `level`. The other entries of `out` are undefined.
+  void corner_levels(std::uint32_t corners, std::array<double, kCorners>& out) const noexcept requires(K == 4) {
+    detail::corner_levels(products_, epsilon_, corners, out);
+  }
 
  private:
   /// Coefficients of the products of u_a = 2 x_a - 1 over sets of axes.

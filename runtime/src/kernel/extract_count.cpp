@@ -374,7 +374,7 @@ template <int N>
       const unsigned signature = room.signatures[i];
       if (!is_put_together(*estimator_, signature)) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
-      const ResolvedTile tile = tiles.resolve(base, i, signature);
+      const ResolvedTile& tile = tiles.resolve(base, i, signature);
       // add the filling's size
       const ResolvedSize filling = assemble(tile, tesseract, assembled);
       count.simplices += filling.simplices;
@@ -398,9 +398,9 @@ template <int N>
 ResolvedSize Counter<N>::assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract,
                                   AssembledTiles* assembled) const {
   if (assembled == nullptr || assembled->is_full()) return tesseract.size(tile.key, tile.lists);
-  const ResolvedView& filling = tesseract.find(tile.key, tile.lists, ResolvedTesseract::kOther);
+  const ResolvedView& filling = tesseract.find(tile.key, tile.lists, tile.is_connected);
   assembled->add(tile, filling, most_assembled_);
-  return {filling.simplex_count, filling.own_vertices, ResolvedTesseract::kOther};
+  return {filling.simplex_count, filling.own_vertices};
 }
 
 template <int N>

@@ -87,21 +87,21 @@ class TileWriter {
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
       own.index[0] = own.active.place_of(ordinal);
-      Ids ids;
-      std::copy_n(edge_ids, tables::edge_count(N), ids.data());
       if constexpr (N == 4)
         if (own.writer.is_estimated_tile(key)) {
           ResolvedTile tile;
           if (own.at < own.end) {
             const ResolvedView filling = own.assembled->read(own.at, tile);
-            return own.writer.write_resolved(own.view, own.row, own.index, key, tile, filling, ids, own.next,
+            return own.writer.write_resolved(own.view, own.row, own.index, key, tile, filling, edge_ids, own.next,
                                              own.vertices, out);
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
           return own.writer.write_resolved(own.view, own.row, own.index, key, tile,
-                                           own.scratch.tesseract->find(tile.key, tile.lists, ResolvedTesseract::kOther),
-                                           ids, own.next, own.vertices, out);
+                                           own.scratch.tesseract->find(tile.key, tile.lists, tile.is_connected),
+                                           edge_ids, own.next, own.vertices, out);
         }
+      Ids ids;
+      std::copy_n(edge_ids, tables::edge_count(N), ids.data());
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
       own.writer.write_own(list, places, own.index, own.next, own.vertices);
@@ -173,7 +173,7 @@ class TileWriter {
           if (is_estimated_tile(signature)) {
             const ResolvedTile tile = tile_of(scratch.answers, index, signature);
             out = write_resolved(view, row, index, signature, tile,
-                                 scratch.tesseract->find(tile.key, tile.lists, ResolvedTesseract::kOther), ids, own,
+                                 scratch.tesseract->find(tile.key, tile.lists, tile.is_connected), ids.data(), own,
                                  vertices, out);
             continue;
           }
@@ -278,29 +278,30 @@ class TileWriter {
     return tile_of(own.scratch.answers, own.index, signature);
   }
 
-  /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `ids`: numbers of its
-  /// edges' vertices.
+  /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `edge_ids`: numbers of
+  /// its edges' vertices.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
-                          unsigned signature, const ResolvedTile& tile, const ResolvedView& filling, Ids& ids,
-                          Index& own, VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+                          unsigned signature, const ResolvedTile& tile, const ResolvedView& filling,
+                          const Index* edge_ids, Index& own, VertexRun<Vertex> vertices, Simplex* out) const noexcept {
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     // numbers of the cubes' vertices
+    std::array<Index, ResolvedCubes::kCubes * ResolvedCubes::kMostOwn> cube_ids;
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
       const auto cube = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned count = cubes.own_vertices(tile.lists[cube]);
       const unsigned axis = cube / 2, side = cube % 2;
       const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
       const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));
-      for (unsigned j = 0; j < count; ++j) ids[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] = first + j;
+      for (unsigned j = 0; j < count; ++j) cube_ids[ResolvedCubes::kMostOwn * cube + j] = first + j;
     }
     // own vertices
+    const Index first_own = own;
     if constexpr (N == 4)
       if (filling.own_vertices != 0) {
         const EdgePlaces<N, kAll> alphas(source_, index, signature);
         ResolvedPlaces shared(alphas, cubes, tile.lists);
         const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
-          ids[ResolvedTesseract::kFirstOwn + j] = own;
           const TilePoint<N> place = shared.own_vertex(filling, j);
           vertices[own] = in_cell(place);
           if (placement_.normals() != nullptr)
@@ -309,8 +310,8 @@ class TileWriter {
       }
     // simplices
     if constexpr (N == 4)
-      write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, ids.data(),
-                                   ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
+      write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, edge_ids,
+                                   tile.with_vertices != 0 ? cube_ids.data() : nullptr, first_own, flip_},
                     out);
     return out + filling.simplex_count;
   }

@@ -29,11 +29,19 @@ class CellRays {
   /// `end`: corners of a cube (CubeHeights), or a point in the unit tile (TileHeights).
   template <class End>
   [[nodiscard]] double operator()(const End& end) noexcept {
-    if (!heights_) heights_ = source_.template heights<K>(base_, axes_);
-    return heights_->level(end);
+    return heights().level(end);
+  }
+  /// Levels of the rays to corners (TileHeights::corner_levels).
+  void corner_levels(std::uint32_t corners, std::array<double, std::size_t{1} << K>& out) noexcept {
+    heights().corner_levels(corners, out);
   }
 
  private:
+  const CellHeights<K>& heights() noexcept {
+    if (!heights_) heights_ = source_.template heights<K>(base_, axes_);
+    return *heights_;
+  }
+
   const EdgeCrossings<N>& source_;
   SampleIndex<N> base_;
   unsigned axes_;
@@ -180,6 +188,13 @@ class ResolvedPlaces {
       return place;
     }
     constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
+    if (is_corner(mask)) {  // the most frequent copies
+      if (!has_corner_levels_) find_corner_levels(filling);
+      const auto v = static_cast<unsigned>(std::countr_zero(mask));
+      place = kCornerPoints<4>[v];
+      for (double& x : place) x = ray_coordinate(x, corner_levels_[v]);
+      return place;
+    }
     const auto on_edge = [&](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
     place = mask_place<4>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), on_edge, true, rays_);
     for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
@@ -210,6 +225,17 @@ class ResolvedPlaces {
     return (v - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn < cubes_.summary(lists_[cube]).barycentres;
   }
 
+  /// Whether an own vertex copies a corner.
+  static bool is_corner(std::uint64_t mask) noexcept { return (mask & (mask - 1)) == 0 && mask >> 16 == 0; }
+
+  void find_corner_levels(const ResolvedView& filling) noexcept {
+    std::uint32_t corners = 0;
+    for (unsigned j = 0; j < filling.own_vertices; ++j)
+      if (is_corner(filling.masks[j])) corners |= static_cast<std::uint32_t>(filling.masks[j]);
+    rays_.corner_levels(corners, corner_levels_);
+    has_corner_levels_ = true;
+  }
+
   [[gnu::noinline]] void find(unsigned v) noexcept {
     if (v >= ResolvedCubes::kEdges) return find_cube((v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn);
     places_[v] = edges_(v);
@@ -235,6 +261,8 @@ class ResolvedPlaces {
   CellRays<4, 4> rays_;
   std::uint64_t known_ = 0;
   std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< valid if known_ has the bit
+  bool has_corner_levels_ = false;
+  std::array<double, 16> corner_levels_;  ///< of the filling's own vertices that copy corners
 };
 
 }  // namespace tegl::detail

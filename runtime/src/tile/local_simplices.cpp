@@ -4,6 +4,8 @@
 // Highway's foreach_target compiles this file once per instruction set.
 #include "tile/local_simplices.hpp"
 
+#include "builder4.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tile/local_simplices.cpp"
 #include "base/dispatch.hpp"
@@ -20,24 +22,30 @@ using Simplex = std::array<Index, 4>;
 
 /// Without vector instructions.
 HWY_INLINE void write_plain(const LocalSimplices& simplices, Simplex* out) {
-  const Index* const ids = simplices.ids;
+  const auto number = [&](unsigned v) {
+    if (v < 32) return simplices.of_edges[v];
+    return v < 64 ? simplices.of_cubes[v - 32] : simplices.own + (v - 64);
+  };
   const std::uint8_t* local = simplices.local;
   const unsigned last = simplices.flip ? 2 : 3;
   for (std::uint32_t q = 0; q < simplices.count; ++q, ++out, local += 4) {
-    (*out)[0] = ids[local[0]];
-    (*out)[1] = ids[local[1]];
-    (*out)[5 - last] = ids[local[2]];
-    (*out)[last] = ids[local[3]];
+    (*out)[0] = number(local[0]);
+    (*out)[1] = number(local[1]);
+    (*out)[5 - last] = number(local[2]);
+    (*out)[last] = number(local[3]);
   }
 }
 
 #if HWY_TARGET <= HWY_AVX3
 
-/// For at most 64 * kBlocks vertices.
-template <unsigned kBlocks>
+template <bool kHasCubes>
 HWY_INLINE void write_by_registers(const LocalSimplices& simplices, Simplex* out) {
-  __m512i ids[4 * kBlocks];
-  for (unsigned i = 0; i < 4 * kBlocks; ++i) ids[i] = _mm512_loadu_si512(simplices.ids + 16 * i);
+  const __m512i edges[2] = {_mm512_loadu_si512(simplices.of_edges), _mm512_loadu_si512(simplices.of_edges + 16)};
+  __m512i cubes[2] = {_mm512_setzero_si512(), _mm512_setzero_si512()};
+  if constexpr (kHasCubes)
+    for (unsigned i = 0; i < 2; ++i) cubes[i] = _mm512_loadu_si512(simplices.of_cubes + 16 * i);
+  const __m512i after_own = _mm512_set1_epi32(static_cast<int>(simplices.own - 64));
+  const __m512i first_own = _mm512_set1_epi32(64);
   const __m128i order = simplices.flip ? _mm_setr_epi8(0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14)
                                        : _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   for (std::uint32_t q = 0; q < simplices.count; q += 4) {
@@ -45,14 +53,11 @@ HWY_INLINE void write_by_registers(const LocalSimplices& simplices, Simplex* out
     const auto mask = static_cast<__mmask16>(rest >= 4 ? 0xffffu : (1u << (4 * rest)) - 1);
     const __m128i bytes = _mm_maskz_loadu_epi8(mask, simplices.local + 4 * std::size_t{q});
     const __m512i local = _mm512_cvtepu8_epi32(_mm_shuffle_epi8(bytes, order));
-    const __mmask16 in_upper = _mm512_test_epi32_mask(local, _mm512_set1_epi32(32));
-    __m512i numbers = _mm512_permutex2var_epi32(ids[0], local, ids[1]);
-    numbers = _mm512_mask_mov_epi32(numbers, in_upper, _mm512_permutex2var_epi32(ids[2], local, ids[3]));
-    if constexpr (kBlocks == 2) {
-      __m512i behind = _mm512_permutex2var_epi32(ids[4], local, ids[5]);
-      behind = _mm512_mask_mov_epi32(behind, in_upper, _mm512_permutex2var_epi32(ids[6], local, ids[7]));
-      numbers = _mm512_mask_mov_epi32(numbers, _mm512_test_epi32_mask(local, _mm512_set1_epi32(64)), behind);
-    }
+    __m512i numbers = _mm512_permutex2var_epi32(edges[0], local, edges[1]);
+    if constexpr (kHasCubes)
+      numbers = _mm512_mask_mov_epi32(numbers, _mm512_test_epi32_mask(local, _mm512_set1_epi32(32)),
+                                      _mm512_permutex2var_epi32(cubes[0], local, cubes[1]));
+    numbers = _mm512_mask_add_epi32(numbers, _mm512_cmpge_epu32_mask(local, first_own), local, after_own);
     _mm512_mask_storeu_epi32(out + q, mask, numbers);
   }
 }
@@ -61,36 +66,38 @@ HWY_INLINE void write_by_registers(const LocalSimplices& simplices, Simplex* out
 
 void write_local(const LocalSimplices& simplices, Simplex* out) {
 #if HWY_TARGET <= HWY_AVX3
-  if (simplices.id_count <= 64) return write_by_registers<1>(simplices, out);
-  if (simplices.id_count <= 128) return write_by_registers<2>(simplices, out);
-#endif
+  if (simplices.of_cubes == nullptr) return write_by_registers<false>(simplices, out);
+  return write_by_registers<true>(simplices, out);
+#else
   write_plain(simplices, out);
+#endif
 }
 
-void map_local(const std::uint8_t* from, std::size_t count, const std::uint8_t* to, bool swap, std::uint8_t* out) {
-#if HWY_TARGET == HWY_SCALAR
-  const unsigned third = swap ? 3 : 2;
-  for (std::size_t q = 0; q < count; ++q, from += 4, out += 4) {
-    out[0] = to[from[0]];
-    out[1] = to[from[1]];
-    out[2] = to[from[third]];
-    out[3] = to[from[5 - third]];
-  }
+void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t* to, bool swap, std::uint8_t* out) {
+#if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  builders::ResolvedTesseract::map_tetrahedra(from, count, to, swap, out);
 #else
   const hn::FixedTag<std::uint8_t, 16> d;
   alignas(16) static constexpr std::uint8_t kOrders[2][16] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
                                                               {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14}};
   const auto order = hn::Load(d, kOrders[swap ? 1 : 0]);
-  const auto lower = hn::LoadU(d, to);
-  const auto upper = hn::LoadU(d, to + 16);
+  // Not loaded at once: the words have just been written.
+  const hn::FixedTag<std::uint64_t, 2> words;
+  const auto entries = [&](std::size_t i) HWY_ATTR {
+    return hn::BitCast(d, hn::InterleaveLower(words, hn::Set(words, to[i]), hn::Set(words, to[i + 1])));
+  };
+  const auto lower = entries(0);
+  const auto upper = entries(2);
   const auto last_of_lower = hn::Set(d, 15);
-  for (std::size_t q = 0; q < count; q += 4) {
-    const auto local = hn::TableLookupBytes(hn::LoadU(d, from + 4 * q), order);
-    const auto in_half = hn::And(local, last_of_lower);
-    const auto mapped = hn::IfThenElse(hn::Gt(local, last_of_lower), hn::TableLookupBytes(upper, in_half),
-                                       hn::TableLookupBytes(lower, in_half));
-    hn::StoreU(mapped, d, out + 4 * q);
-  }
+  // 16 at once: most regions have no more
+  for (std::size_t q = 0; q < count; q += kMoreSimplices + 1)
+    for (std::size_t i = q; i < q + kMoreSimplices + 1; i += 4) {
+      const auto local = hn::TableLookupBytes(hn::LoadU(d, from + 4 * i), order);
+      const auto in_half = hn::And(local, last_of_lower);
+      const auto mapped = hn::IfThenElse(hn::Gt(local, last_of_lower), hn::TableLookupBytes(upper, in_half),
+                                         hn::TableLookupBytes(lower, in_half));
+      hn::StoreU(mapped, d, out + 4 * i);
+    }
 #endif
 }
 
@@ -110,7 +117,7 @@ void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) n
 
 HWY_EXPORT(map_local);
 
-void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint8_t* to, bool swap,
+void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint64_t* to, bool swap,
                    std::uint8_t* out) noexcept {
   HWY_DYNAMIC_DISPATCH(map_local)(from, count, to, swap, out);
 }

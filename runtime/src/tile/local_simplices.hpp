@@ -12,22 +12,23 @@
 
 namespace tegl::detail {
 
-/// Tetrahedra of a 4D tile.
+/// Tetrahedra of a 4D tile. Local vertices are those of builders::ResolvedView.
 struct LocalSimplices {
   const std::uint8_t* local;  ///< 4 local vertices each
   std::uint32_t count;
-  const Index* ids;        ///< by local vertex
-  std::uint32_t id_count;  ///< valid ids; up to the next multiple of 64, at most 256, may be read
-  bool flip;               ///< reverses the orientation by swapping the last two vertices
+  const Index* of_edges;  ///< numbers of the 32 vertices on edges
+  const Index* of_cubes;  ///< numbers of the 32 own vertices of the cubes; null: the simplices have none of these
+  Index own;              ///< number of the tile's first own vertex
+  bool flip;              ///< reverses the orientation by swapping the last two vertices
 };
 
 /// Writes the vertex numbers of all simplices to `out`.
 void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) noexcept;
 
-/// Maps the local vertices of tetrahedra by the 32 entries of `to`. `swap`: exchanges the last two. Reads and writes up
-/// to kMoreSimplices tetrahedra past the end.
-inline constexpr std::size_t kMoreSimplices = 3;
-void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint8_t* to, bool swap,
+/// Maps the local vertices of tetrahedra by the 32 entries of `to`, the bytes of four words from the lowest on. `swap`:
+/// exchanges the last two. Reads and writes up to kMoreSimplices tetrahedra past the end.
+inline constexpr std::size_t kMoreSimplices = 15;
+void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint64_t* to, bool swap,
                    std::uint8_t* out) noexcept;
 
 }  // namespace tegl::detail

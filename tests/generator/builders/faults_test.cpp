@@ -81,8 +81,8 @@ class Copied {
  public:
   auto size(const ResolvedKey& key) { return builder_.size(converted(key)); }
   builders::ResolvedView find(const ResolvedKey& key) { return converted(builder_.find(converted(key))); }
-  builders::ResolvedView find(const ResolvedKey& key, const builders::ResolvedCubes::Lists& lists, std::uint8_t plan) {
-    return converted(builder_.find(converted(key), lists, plan));
+  builders::ResolvedView find(const ResolvedKey& key, const builders::ResolvedCubes::Lists& lists, bool is_connected) {
+    return converted(builder_.find(converted(key), lists, is_connected));
   }
   static builders::ResolvedCubes::Lists lists_of(const ResolvedKey& key) { return Tesseract::lists_of(converted(key)); }
 

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ambiguity/connected_sides.hpp"
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
@@ -208,6 +209,34 @@ void compare_joins(const Kind& kind) {
 
 TEST(FaceSigns, JoinsInCubesAreThoseOfEachCubeByItself) {
   for (const Kind& kind : kinds()) compare_joins(kind);
+}
+
+/// Against the parts of the contours in the cubes, for random signatures and centres of squares and cubes.
+TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
+  std::mt19937_64 random(1);
+  std::size_t connected = 0;
+  ResolvedTesseract tesseract;
+  for (int i = 0; i < 2000; ++i) {
+    BoundarySides sides;
+    std::vector<ResolvedKey> keys(1 + random() % (BoundarySides::kMost / 2));
+    for (ResolvedKey& key : keys) {
+      key.signature = static_cast<std::uint16_t>(1 + random() % 0xfffe);
+      key.squares = static_cast<std::uint32_t>(random()) & 0xffffffu;
+      const auto decided = static_cast<std::uint8_t>(random()), high = static_cast<std::uint8_t>(random());
+      key.high_cubes = decided & high;
+      key.low_cubes = static_cast<std::uint8_t>(decided & ~high);
+      sides.add(key.signature, key.squares, key.high_cubes);
+      sides.add(~std::uint32_t{key.signature}, ~key.squares, key.low_cubes);
+    }
+    find_connected(sides);
+    for (std::size_t j = 0; j < keys.size(); ++j) {
+      const bool is_connected = sides.connected[2 * j] != 0 && sides.connected[2 * j + 1] != 0;
+      ASSERT_EQ(is_connected, tesseract.find_sigma(ResolvedTesseract::lists_of(keys[j])).size() == 1)
+          << "signature " << keys[j].signature << ", squares " << keys[j].squares;
+      connected += is_connected ? 1 : 0;
+    }
+  }
+  EXPECT_GT(connected, 10'000u);
 }
 
 }  // namespace

@@ -180,6 +180,31 @@ TEST(TileHeights, AreZeroAtTheLevelsOfRays) {
   expect_zeros_at_levels<5>();
 }
 
+TEST(TileHeights, OfCornersTogetherAreThoseOfEach) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int i = 0; i < 20'000; ++i) {
+    std::array<double, 16> heights, levels;
+    const auto kind = random() % 4;
+    for (double& height : heights) {
+      height = uniform(random);
+      if (kind == 1) height = height < 0 ? -1.0 : 1.0;
+      if (kind == 2) height = std::round(2.0 * height);
+    }
+    if (kind == 3 && i % 8 == 0) heights[random() % 16] = std::ldexp(uniform(random), 1023);
+    if (kind == 3 && i % 16 == 1) heights[random() % 16] = std::numeric_limits<double>::infinity();
+    const TileHeights<4> tile(heights, i % 3 == 0 ? 0.125 : 0.0);
+    const std::uint32_t corners = static_cast<std::uint32_t>(random()) & 0xffffu;
+    tile.corner_levels(corners, levels);
+    for (std::uint32_t rest = corners; rest != 0; rest &= rest - 1) {
+      const auto v = static_cast<unsigned>(std::countr_zero(rest));
+      std::array<double, 4> corner;
+      for (unsigned a = 0; a < 4; ++a) corner[a] = v >> a & 1u;
+      ASSERT_EQ(tile.level(corner), levels[v]) << "tile " << i << ", corner " << v;
+    }
+  }
+}
+
 TEST(TileHeights, KeepEpsilonFromBothEndsAndAreHalfWayIfInfinite) {
   std::array<double, 16> heights;
   heights.fill(-1.0);
