@@ -4,6 +4,8 @@
 // Highway's foreach_target compiles this file once per instruction set.
 #include "tile/local_simplices.hpp"
 
+#include <algorithm>
+
 #include "builder4.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,17 +24,17 @@ using Simplex = std::array<Index, 4>;
 
 /// Without vector instructions.
 HWY_INLINE void write_plain(const LocalSimplices& simplices, Simplex* out) {
-  const auto number = [&](unsigned v) {
-    if (v < 32) return simplices.of_edges[v];
-    return v < 64 ? simplices.of_cubes[v - 32] : simplices.own + (v - 64);
-  };
+  Index ids[256];  // by local vertex
+  std::copy_n(simplices.of_edges, 32, ids);
+  if (simplices.of_cubes != nullptr) std::copy_n(simplices.of_cubes, 32, ids + 32);
+  for (unsigned v = 64; v < 256; ++v) ids[v] = simplices.own + (v - 64);
   const std::uint8_t* local = simplices.local;
   const unsigned last = simplices.flip ? 2 : 3;
   for (std::uint32_t q = 0; q < simplices.count; ++q, ++out, local += 4) {
-    (*out)[0] = number(local[0]);
-    (*out)[1] = number(local[1]);
-    (*out)[5 - last] = number(local[2]);
-    (*out)[last] = number(local[3]);
+    (*out)[0] = ids[local[0]];
+    (*out)[1] = ids[local[1]];
+    (*out)[5 - last] = ids[local[2]];
+    (*out)[last] = ids[local[3]];
   }
 }
 

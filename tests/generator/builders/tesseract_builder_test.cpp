@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <vector>
@@ -96,9 +97,10 @@ TEST(TesseractBuilder, TableAndEdgesGiveTheSameBytes) {
 }
 
 TEST(TesseractBuilder, ThePlainMapOfTetrahedraIsTheSame) {
-  std::vector<std::uint8_t> from(64), to(32), out(64), swapped(64);
+  std::vector<std::uint8_t> from(64), out(64), swapped(64);
+  std::array<std::uint64_t, 4> to{};
   for (unsigned v = 0; v < 64; ++v) from[v] = static_cast<std::uint8_t>(v * 7 % 32);
-  for (unsigned v = 0; v < 32; ++v) to[v] = static_cast<std::uint8_t>(100 + v);
+  for (unsigned v = 0; v < 32; ++v) to[v / 8] |= std::uint64_t{100 + v} << (8 * (v % 8));
   builders::ResolvedTesseract::map_tetrahedra(from.data(), 16, to.data(), false, out.data());
   builders::ResolvedTesseract::map_tetrahedra(from.data(), 16, to.data(), true, swapped.data());
   for (unsigned v = 0; v < 64; ++v) {
