@@ -47,7 +47,9 @@ struct SeedSetOptions {
   std::vector<int> scan_order = {};
   /// Only for volume_thinning: keeps constant tiles in the skeleton, as published. They are never active.
   bool keep_constant_tiles = false;
-  WorkOptions work = {};  ///< number of threads that read the image (the other work is sequential), and progress
+  /// Number of threads, and progress. Threads read the image and, for `cover` of many different values, find the first
+  /// trees, which is most of its work; the other work is sequential. The result does not depend on them.
+  WorkOptions work = {};
 };
 
 /// Counts of one find_seeds.

@@ -13,8 +13,11 @@
 #include <utility>
 
 #include "base/progress.hpp"
+#include "base/workers.hpp"
 #include "search/range_sample.hpp"
 #include "search/seed_links.hpp"
+#include "search/seed_ownership.hpp"
+#include "search/tile_blocks.hpp"
 
 namespace tegl::detail {
 
@@ -89,132 +92,6 @@ class Widths {
   unsigned shift_ = 0;
   std::uint64_t last_ = 0;            ///< bin
   std::vector<std::uint32_t> below_;  ///< number of range ends of the sample in lower bins; scaled
-};
-
-/// Owners of tiles or trees, by part of their ranges. Owners are trees that stay.
-template <class Key>
-class Ownership {
- public:
-  explicit Ownership(std::size_t count) : parts_of_(count, kNone) {}
-
-  [[nodiscard]] bool has(std::uint32_t i) const noexcept { return parts_of_[i] != kNone; }
-
-  /// Offers i as a cover of the next tile between `least` and `greatest`; i has at least this range.
-  void offer(std::uint32_t i, Key least, Key greatest) {
-    lowest_ = std::min(lowest_, least);
-    highest_ = std::max(highest_, greatest);
-    offers_.push_back({least, greatest, parts_of_[i]});
-  }
-  /// If the offers cover i, i passes to their owners; otherwise i owns itself. Clears the offers. Returns whether i was
-  /// given up.
-  bool give_up(std::uint32_t i, Key least, Key greatest) {
-    const std::uint64_t first = parts_.size();
-    parts_of_[i] = first;
-    // Most uncovered ranges are uncovered at an end.
-    const bool covered = lowest_ <= least && greatest <= highest_ && divide(least, greatest, first);
-    if (!covered) {
-      parts_.resize(first);
-      parts_.push_back({greatest, i});
-    }
-    forget_offers();
-    return covered;
-  }
-  /// Sets one owner of the whole range of i: i itself if it is not given up.
-  void set_one(std::uint32_t i, std::uint32_t owner, Key greatest) {
-    parts_of_[i] = parts_.size();
-    parts_.push_back({greatest, owner});
-  }
-  /// Gives i up to a single owner if one owner of `other`, whose range contains the range of i, has all of it; then
-  /// clears the offers. Returns false otherwise.
-  bool give_up_to_one(std::uint32_t i, std::uint32_t other, Key least, Key greatest) {
-    const Part* part = &parts_[parts_of_[other]];
-    while (part->end <= least) ++part;
-    if (part->end < greatest) return false;
-    set_one(i, std::uint32_t{part->owner}, greatest);
-    forget_offers();
-    return true;
-  }
-  /// Calls visit(owner, end) for the owners of i between `level` and `end`, in ascending order of levels.
-  template <class Visit>
-  void for_owners(std::uint32_t i, Key level, Key end, const Visit& visit) const {
-    for (const Part* part = &parts_[parts_of_[i]]; level < end;) {
-      while (part->end <= level) ++part;
-      level = std::min(part->end, end);
-      visit(part->owner, level);
-    }
-  }
-  /// Adds links between the owners of a and b, by their new numbers, from `level` to `end`.
-  template <class Number>
-  void add_links(std::uint32_t a, std::uint32_t b, Key level, Key end, const Number& number,
-                 LinkCollector<Key>& collector) const {
-    const Part* of_a = &parts_[parts_of_[a]];
-    const Part* of_b = &parts_[parts_of_[b]];
-    while (level < end) {
-      while (of_a->end <= level) ++of_a;
-      while (of_b->end <= level) ++of_b;
-      const Key both = std::min({of_a->end, of_b->end, end});
-      if (of_a->owner != of_b->owner) {
-        const std::uint32_t p = number(of_a->owner);
-        const std::uint32_t q = number(of_b->owner);
-        collector.add({std::min(p, q), std::max(p, q), level, both});
-      }
-      level = both;
-    }
-  }
-
-  /// A position to which `back_to` truncates the parts; `set` may then give the tiles new parts.
-  [[nodiscard]] std::uint64_t mark() const noexcept { return parts_.size(); }
-  [[nodiscard]] bool since(std::uint64_t mark, std::uint32_t i) const noexcept { return parts_of_[i] >= mark; }
-  void back_to(std::uint64_t mark) { parts_.resize(mark); }
-  /// Sets the parts of i, as owner and end, in ascending order.
-  void set(std::uint32_t i, std::span<const std::pair<std::uint32_t, Key>> parts) {
-    parts_of_[i] = parts_.size();
-    for (const auto& [owner, end] : parts) parts_.push_back({end, owner});
-  }
-
- private:
-  /// From the end of the part before (or the minimum of the range) up to `end`.
-  struct Part {
-    Key end;
-    std::uint32_t owner;
-  };
-  struct Offer {
-    Key least, greatest;
-    std::uint64_t part;  ///< the first part that may still matter
-  };
-  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-
-  void forget_offers() noexcept {
-    offers_.clear();
-    lowest_ = std::numeric_limits<Key>::max();
-    highest_ = 0;
-  }
-  /// Appends parts in ascending order, each as long as possible. Returns false at a gap.
-  bool divide(Key level, Key end, std::uint64_t first) {
-    while (level < end) {
-      Part best{level, 0};
-      for (Offer& offer : offers_) {
-        if (offer.least > level || offer.greatest <= level) continue;
-        while (parts_[offer.part].end <= level) ++offer.part;
-        const Key to = std::min(parts_[offer.part].end, offer.greatest);
-        if (to > best.end) best = {to, parts_[offer.part].owner};
-      }
-      if (best.end == level) return false;
-      level = best.end;
-      best.end = std::min(best.end, end);
-      if (parts_.size() > first && parts_.back().owner == best.owner)
-        parts_.back().end = best.end;
-      else
-        parts_.push_back(best);
-    }
-    return true;
-  }
-
-  std::vector<std::uint64_t> parts_of_;  ///< first part of each tile; the last part ends with the range
-  std::vector<Part> parts_;
-  std::vector<Offer> offers_;
-  Key lowest_ = std::numeric_limits<Key>::max();  ///< of the offers
-  Key highest_ = 0;
 };
 
 /// Counting sort of numbers by class, stable. `for_each(visit)` calls visit(number, class) for all.
@@ -331,89 +208,46 @@ class Coarsening {
   Regions<Key> coarse_;
 };
 
-/// Builds trees from tiles in blocks that fit in the cache. The tiles of a block are given up to one another and to
-/// trees of earlier blocks, and its trees are coarsened at once. Afterwards only tiles at the border of the block are
-/// read again, by adjacent blocks.
+/// Result of a block: its trees, links by roots, and the owners of its border tiles.
 template <class Key>
-class RegionMaker {
+struct FinishedBlock {
+  std::vector<Place> roots;
+  std::vector<KeyLink<Key>> links;            ///< a, b: roots
+  std::vector<std::pair<Place, Key>> owners;  ///< of its border tiles, one after the other: root, end
+};
+
+/// Builds the trees of one block at a time. The tiles of a block are given up to one another and to trees of earlier
+/// blocks, and its trees are coarsened at once. Works on copies of the ranges, which are close together in memory.
+template <class Key>
+class BlockTrees {
  public:
-  RegionMaker(const RangeMap<Key>& map, const Widths<Key>& widths, Neighbourhood neighbourhood,
-              const Progress& progress)
+  /// `first_owner`: by place of a border tile, the position of its first owner in its block.
+  BlockTrees(const RangeMap<Key>& map, const Widths<Key>& widths, const BlockGrid& grid,
+             const std::vector<FinishedBlock<Key>>& finished, std::vector<std::uint32_t>& first_owner)
       : map_(map),
         widths_(widths),
-        progress_(progress),
-        neighbours_(map.tiles.neighbours(neighbourhood)),
-        owners_(map.tiles.room()),
-        number_(map.tiles.room()) {
+        grid_(grid),
+        finished_(finished),
+        first_owner_(first_owner),
+        neighbours_(grid.neighbours()),
+        least_(grid.room()),
+        greatest_(grid.room()),
+        places_(grid.room()),
+        is_earlier_(grid.room()),
+        owners_(grid.room()),
+        outside_(grid.room()) {
+    for (const BlockGrid::Earlier& earlier : grid.earlier()) is_earlier_[earlier.tile] = true;
     for (const std::ptrdiff_t distance : neighbours_)
       if (distance > 0) ahead_.push_back(distance);
   }
 
-  Regions<Key> make() {
-    for_blocks([&](const Block& block) { add(block); });
-    for (std::uint32_t tree = 0; tree < regions_.roots.size(); ++tree) number_[regions_.roots[tree]] = tree;
-    for (KeyLink<Key>& link : regions_.links) {
-      const std::uint32_t a = number_[link.a];
-      const std::uint32_t b = number_[link.b];
-      link.a = std::min(a, b);
-      link.b = std::max(a, b);
-    }
-    return std::move(regions_);
-  }
-
- private:
-  /// Its tiles that are not constant, and which of them have neighbours in other blocks.
-  struct Block {
-    std::vector<Place> tiles;
-    std::vector<std::uint32_t> border;  ///< indexes into `tiles`
-  };
-  static constexpr std::uint32_t kNoNumber = 0;         ///< other numbers are 1 + the number in the block
-  static constexpr std::uint32_t kKept = 1, kGone = 2;  ///< state of the block's tiles before trees are numbered
-
-  template <class Visit>
-  void for_blocks(const Visit& visit) const {
-    constexpr std::array<std::size_t, kMostAxes + 1> kWidth = {1, 4096, 64, 16, 8, 6};
-    const int dim = map_.tiles.dim();
-    const std::size_t width = kWidth[static_cast<std::size_t>(dim)];
-    std::array<std::size_t, kMostAxes> first{};
-    Block block;
-    std::size_t done = 0;
-    for (int axis = 0; axis < dim && map_.tiles.rows() > 0;) {
-      report_progress(progress_, static_cast<double>(done) / static_cast<double>(map_.tiles.room()));
-      block.tiles.clear();
-      block.border.clear();
-      add_tiles(dim - 1, static_cast<std::ptrdiff_t>(map_.tiles.row_place(0)), first, width, false, block);
-      visit(block);
-      done += block.tiles.size();
-      for (axis = 0; axis < dim; ++axis) {
-        first[axis] += width;
-        if (first[axis] < map_.tiles.size(axis)) break;
-        first[axis] = 0;
-      }
-    }
-  }
-  void add_tiles(int axis, std::ptrdiff_t at, const std::array<std::size_t, kMostAxes>& first, std::size_t width,
-                 bool outside, Block& block) const {
-    const std::size_t end = std::min(first[axis] + width, map_.tiles.size(axis));
-    for (std::size_t i = first[axis]; i < end; ++i) {
-      const std::ptrdiff_t place = at + static_cast<std::ptrdiff_t>(i) * map_.tiles.step(axis);
-      const bool at_border = outside || (i == first[axis] && i > 0) || (i + 1 == end && end < map_.tiles.size(axis));
-      if (axis > 0) {
-        add_tiles(axis - 1, place, first, width, at_border, block);
-      } else if (!map_.constant(static_cast<Place>(place))) {
-        if (at_border) block.border.push_back(static_cast<std::uint32_t>(block.tiles.size()));
-        block.tiles.push_back(static_cast<Place>(place));
-      }
-    }
-  }
-
-  void add(const Block& block) {
-    const std::uint64_t mark = owners_.mark();
+  FinishedBlock<Key> make(std::size_t number) {
+    load(number);
+    FinishedBlock<Key> result;
     Regions<Key> trees;  // trees of the block first
-    give_up_tiles(block, trees);
+    give_up_tiles(trees);
     std::size_t loose = trees.roots.size();
-    link(block, mark, trees);
-    const std::vector<Place> numbered = trees.roots;
+    link(trees);
     std::vector<Coarsening<Key>> rounds;
     rounds.reserve(kMostRoundsOfBlocks);
     for (unsigned round = 0; round < kMostRoundsOfBlocks && loose > 0; ++round) {
@@ -424,41 +258,97 @@ class RegionMaker {
       if (loose > before - before / 8) break;
     }
     const Regions<Key>& last = rounds.empty() ? trees : rounds.back().coarse();
-    regions_.roots.insert(regions_.roots.end(), last.roots.begin(),
-                          last.roots.begin() + static_cast<std::ptrdiff_t>(loose));
+    result.roots.assign(last.roots.begin(), last.roots.begin() + static_cast<std::ptrdiff_t>(loose));
+    result.links.reserve(last.links.size());
     for (const KeyLink<Key>& link : last.links)
-      regions_.links.push_back({last.roots[link.a], last.roots[link.b], link.least, link.greatest});
-    keep_border(block, mark, rounds, last.roots);
-    for (const Place root : numbered) number_[root] = kNoNumber;
+      result.links.push_back({last.roots[link.a], last.roots[link.b], link.least, link.greatest});
+    keep_border(rounds, last.roots, result);
+    return result;
   }
 
-  void give_up_tiles(const Block& block, Regions<Key>& trees) {
+ private:
+  static constexpr std::uint32_t kNoNumber = 0;         ///< other numbers are 1 + the number in the block
+  static constexpr std::uint32_t kKept = 1, kGone = 2;  ///< state of the block's tiles before trees are numbered
+
+  /// Copies the ranges of the box, lists the tiles of the block, and gives the tiles of earlier blocks their owners.
+  void load(std::size_t number) {
+    const BlockGrid::Coordinates first = grid_.first(number);
+    std::fill(least_.begin(), least_.end(), Key{0});
+    std::fill(greatest_.begin(), greatest_.end(), Key{0});
+    grid_.for_lines(first, [&](std::size_t tile, Place place, std::size_t length) {
+      for (std::size_t i = 0; i < length; ++i) {
+        least_[tile + i] = map_.least[place + i];
+        greatest_[tile + i] = map_.greatest[place + i];
+        places_[tile + i] = static_cast<Place>(place + i);
+      }
+    });
+    tiles_.clear();
+    border_.clear();
+    add_tiles(grid_.dim() - 1, 0, first, false);
+    owners_.clear();
+    outside_.clear();
+    for (const BlockGrid::Earlier& earlier : grid_.earlier()) {
+      if (constant(earlier.tile)) continue;
+      const FinishedBlock<Key>& block = finished_[number - earlier.blocks_back];
+      parts_.clear();
+      for (std::size_t i = first_owner_[places_[earlier.tile]];; ++i) {
+        const auto& [root, end] = block.owners[i];
+        parts_.emplace_back(outside_(root), end);
+        if (end >= greatest_[earlier.tile]) break;
+      }
+      owners_.set(earlier.tile, parts_);
+    }
+    number_.assign(grid_.room() + outside_.size(), kNoNumber);
+  }
+  void add_tiles(int axis, std::size_t at, const BlockGrid::Coordinates& first, bool outside) {
+    const std::size_t count = std::min(grid_.width(), grid_.size(axis) - first[axis]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t tile = at + (i + 1) * grid_.step(axis);
+      const bool at_border =
+          outside || (i == 0 && first[axis] > 0) || (i + 1 == count && first[axis] + count < grid_.size(axis));
+      if (axis > 0) {
+        add_tiles(axis - 1, tile, first, at_border);
+      } else if (!constant(static_cast<std::uint32_t>(tile))) {
+        if (at_border) border_.push_back(static_cast<std::uint32_t>(tile));
+        tiles_.push_back(static_cast<std::uint32_t>(tile));
+      }
+    }
+  }
+  [[nodiscard]] bool constant(std::uint32_t tile) const noexcept { return least_[tile] == greatest_[tile]; }
+  [[nodiscard]] bool overlap(std::uint32_t a, std::uint32_t b) const noexcept {
+    return std::max(least_[a], least_[b]) < std::min(greatest_[a], greatest_[b]);
+  }
+  [[nodiscard]] Place place_of(std::uint32_t root) const noexcept {
+    return root < places_.size() ? places_[root] : outside_.place(root);
+  }
+
+  void give_up_tiles(Regions<Key>& trees) {
     // Within a class, even places come first: in a row of tiles with slowly increasing values, each odd tile then lies
     // between two processed ones.
     classes_.clear();
-    for (const Place tile : block.tiles)
+    for (const std::uint32_t tile : tiles_)
       classes_.push_back(
-          static_cast<std::uint8_t>(2 * widths_.class_of(map_.least[tile], map_.greatest[tile]) + tile % 2));
+          static_cast<std::uint8_t>(2 * widths_.class_of(least_[tile], greatest_[tile]) + places_[tile] % 2));
     const auto order = sort_by_class(2 * Widths<Key>::kClasses, [&](const auto& visit) {
-      for (std::size_t i = 0; i < block.tiles.size(); ++i) visit(block.tiles[i], classes_[i]);
+      for (std::size_t i = 0; i < tiles_.size(); ++i) visit(tiles_[i], classes_[i]);
     });
-    for (const Place tile : order)
+    for (const std::uint32_t tile : order)
       if (!is_given_up(tile)) number_[tile] = kKept;
     give_up_again(order);
-    for (const Place tile : block.tiles) {
+    for (const std::uint32_t tile : tiles_) {
       if (number_[tile] != kKept) {
         number_[tile] = kNoNumber;
         continue;
       }
-      trees.roots.push_back(tile);
+      trees.roots.push_back(places_[tile]);
       number_[tile] = static_cast<std::uint32_t>(trees.roots.size());
     }
   }
   /// Calls visit(root, end) for the current owners of a tile in ascending order, resolving owners that were given up
   /// since.
   template <class Visit>
-  void for_roots(Place tile, Key level, Key end, const Visit& visit) const {
-    owners_.for_owners(tile, level, end, [&](Place owner, Key to) {
+  void for_roots(std::uint32_t tile, Key level, Key end, const Visit& visit) const {
+    owners_.for_owners(tile, level, end, [&](std::uint32_t owner, Key to) {
       if (number_[owner] == kGone)
         for_roots(owner, level, to, visit);
       else
@@ -467,7 +357,7 @@ class RegionMaker {
     });
   }
   /// Second pass, narrow tiles first: gives up kept tiles that tiles processed later now cover together.
-  void give_up_again(const std::vector<Place>& order) {
+  void give_up_again(const std::vector<std::uint32_t>& order) {
     bool any = false;
     for (auto tile = order.rbegin(); tile != order.rend(); ++tile) {
       if (number_[*tile] != kKept || !is_covered_by_others(*tile)) continue;
@@ -476,13 +366,13 @@ class RegionMaker {
       any = true;
     }
     if (!any) return;
-    for (const Place tile : order) {
+    for (const std::uint32_t tile : order) {
       bool stays = true;
-      owners_.for_owners(tile, map_.least[tile], map_.greatest[tile],
-                         [&](Place owner, Key) { stays = stays && number_[owner] != kGone; });
+      owners_.for_owners(tile, least_[tile], greatest_[tile],
+                         [&](std::uint32_t owner, Key) { stays = stays && number_[owner] != kGone; });
       if (stays) continue;
       parts_.clear();
-      for_roots(tile, map_.least[tile], map_.greatest[tile], [&](Place root, Key end) {
+      for_roots(tile, least_[tile], greatest_[tile], [&](std::uint32_t root, Key end) {
         if (!parts_.empty() && parts_.back().first == root)
           parts_.back().second = end;
         else
@@ -492,17 +382,17 @@ class RegionMaker {
     }
   }
   /// Whether other trees cover the tile; `parts_` are then their parts.
-  bool is_covered_by_others(Place tile) {
-    const Key least = map_.least[tile];
-    const Key greatest = map_.greatest[tile];
+  bool is_covered_by_others(std::uint32_t tile) {
+    const Key least = least_[tile];
+    const Key greatest = greatest_[tile];
     // collect the parts that other roots offer
     offered_.clear();
     Key lowest = greatest, highest = least;
     for (const std::ptrdiff_t distance : neighbours_) {
-      const auto other = static_cast<Place>(tile + distance);
-      if (!owners_.has(other) || !map_.overlap(tile, other)) continue;
-      Key from = std::max(least, map_.least[other]);
-      for_roots(other, from, std::min(greatest, map_.greatest[other]), [&](Place root, Key to) {
+      const auto other = static_cast<std::uint32_t>(tile + distance);
+      if (!owners_.has(other) || !overlap(tile, other)) continue;
+      Key from = std::max(least, least_[other]);
+      for_roots(other, from, std::min(greatest, greatest_[other]), [&](std::uint32_t root, Key to) {
         if (root != tile) {
           offered_.push_back({root, 0, from, to});
           lowest = std::min(lowest, from);
@@ -516,7 +406,7 @@ class RegionMaker {
     parts_.clear();
     for (Key level = least; level < greatest;) {
       Key farthest = level;
-      Place by = tile;
+      std::uint32_t by = tile;
       for (const KeyLink<Key>& offer : offered_)
         if (offer.least <= level && offer.greatest > farthest) {
           farthest = offer.greatest;
@@ -528,61 +418,54 @@ class RegionMaker {
     }
     return true;
   }
-  bool is_given_up(Place tile) {
-    const Key least = map_.least[tile];
-    const Key greatest = map_.greatest[tile];
+  bool is_given_up(std::uint32_t tile) {
+    const Key least = least_[tile];
+    const Key greatest = greatest_[tile];
     for (const std::ptrdiff_t distance : neighbours_) {
-      const auto other = static_cast<Place>(tile + distance);
-      if (!owners_.has(other) || !map_.overlap(tile, other)) continue;
+      const auto other = static_cast<std::uint32_t>(tile + distance);
+      if (!owners_.has(other) || !overlap(tile, other)) continue;
       // A tile that contains the range with room at both ends is as good as any. In noise most tiles lie in one.
-      if (map_.least[other] < least && greatest < map_.greatest[other] &&
-          owners_.give_up_to_one(tile, other, least, greatest))
+      if (least_[other] < least && greatest < greatest_[other] && owners_.give_up_to_one(tile, other, least, greatest))
         return true;
-      owners_.offer(other, map_.least[other], map_.greatest[other]);
+      owners_.offer(other, least_[other], greatest_[other]);
     }
     return owners_.give_up(tile, least, greatest);
   }
 
   /// Collects the links among the tiles of the block and to earlier blocks, and numbers the trees of the latter.
-  void link(const Block& block, std::uint64_t mark, Regions<Key>& trees) {
-    LinkCollector<Key> collector(block.tiles.size() / 2);
-    const auto number = [&](Place root) {
+  void link(Regions<Key>& trees) {
+    LinkCollector<Key> collector(tiles_.size() / 2);
+    const auto number = [&](std::uint32_t root) {
       if (number_[root] == kNoNumber) {
-        trees.roots.push_back(root);
+        trees.roots.push_back(place_of(root));
         number_[root] = static_cast<std::uint32_t>(trees.roots.size());
       }
       return number_[root] - 1;
     };
-    for (const std::uint32_t i : block.border) {
-      const Place tile = block.tiles[i];
-      owners_.for_owners(tile, map_.least[tile], map_.greatest[tile], [&](Place root, Key) { number(root); });
-    }
-    const auto add_links = [&](Place tile, Place other) {
-      if (map_.overlap(tile, other))
-        owners_.add_links(tile, other, std::max(map_.least[tile], map_.least[other]),
-                          std::min(map_.greatest[tile], map_.greatest[other]), number, collector);
+    for (const std::uint32_t tile : border_)
+      owners_.for_owners(tile, least_[tile], greatest_[tile], [&](std::uint32_t root, Key) { number(root); });
+    const auto add_links = [&](std::uint32_t tile, std::uint32_t other) {
+      if (overlap(tile, other))
+        owners_.add_links(tile, other, std::max(least_[tile], least_[other]),
+                          std::min(greatest_[tile], greatest_[other]), number, collector);
     };
-    for (const Place tile : block.tiles)
+    for (const std::uint32_t tile : tiles_)
       for (const std::ptrdiff_t distance : ahead_)
-        if (const auto other = static_cast<Place>(tile + distance); owners_.has(other)) add_links(tile, other);
-    for (const std::uint32_t i : block.border)
+        if (const auto other = static_cast<std::uint32_t>(tile + distance); owners_.has(other)) add_links(tile, other);
+    for (const std::uint32_t tile : border_)
       for (const std::ptrdiff_t distance : ahead_) {
-        const auto other = static_cast<Place>(block.tiles[i] - distance);
-        if (owners_.has(other) && !owners_.since(mark, other)) add_links(block.tiles[i], other);
+        const auto other = static_cast<std::uint32_t>(tile - distance);
+        if (is_earlier_[other] && owners_.has(other)) add_links(tile, other);
       }
     trees.links = collector.take();
   }
 
-  /// Fixes the owners of the border tiles. The owners of interior tiles are discarded: no later block reads them.
-  void keep_border(const Block& block, std::uint64_t mark, const std::vector<Coarsening<Key>>& rounds,
-                   const std::vector<Place>& roots) {
-    using Parts = std::vector<std::pair<std::uint32_t, Key>>;
-    std::vector<std::size_t> end_of;
-    Parts kept, parts, finer;
-    // find the owners after all rounds of coarsening
-    for (const std::uint32_t i : block.border) {
-      const Place tile = block.tiles[i];
-      const Key least = map_.least[tile];
+  /// Keeps the owners of the border tiles after all rounds of coarsening; no later block reads other tiles.
+  void keep_border(const std::vector<Coarsening<Key>>& rounds, const std::vector<Place>& roots,
+                   FinishedBlock<Key>& result) {
+    std::vector<std::pair<std::uint32_t, Key>> parts, finer;
+    for (const std::uint32_t tile : border_) {
+      const Key least = least_[tile];
       const auto add = [&](std::uint32_t owner, Key end) {
         if (!parts.empty() && parts.back().first == owner)
           parts.back().second = end;
@@ -590,7 +473,7 @@ class RegionMaker {
           parts.emplace_back(owner, end);
       };
       parts.clear();
-      owners_.for_owners(tile, least, map_.greatest[tile],
+      owners_.for_owners(tile, least, greatest_[tile],
                          [&](std::uint32_t root, Key end) { add(number_[root] - 1, end); });
       for (const Coarsening<Key>& round : rounds) {
         std::swap(parts, finer);
@@ -601,39 +484,79 @@ class RegionMaker {
           from = end;
         }
       }
-      for (const auto& [tree, end] : parts) kept.emplace_back(roots[tree], end);
-      end_of.push_back(kept.size());
-    }
-    // replace the parts of the block by those of the border
-    owners_.back_to(mark);
-    std::size_t from = 0;
-    for (std::size_t i = 0; i < block.border.size(); ++i) {
-      owners_.set(block.tiles[block.border[i]], std::span(kept).subspan(from, end_of[i] - from));
-      from = end_of[i];
+      first_owner_[places_[tile]] = static_cast<std::uint32_t>(result.owners.size());
+      for (const auto& [tree, end] : parts) result.owners.emplace_back(roots[tree], end);
     }
   }
 
   const RangeMap<Key>& map_;
   const Widths<Key>& widths_;
-  const Progress& progress_;
+  const BlockGrid& grid_;
+  const std::vector<FinishedBlock<Key>>& finished_;
+  std::vector<std::uint32_t>& first_owner_;
   std::vector<std::ptrdiff_t> neighbours_;
   std::vector<std::ptrdiff_t> ahead_;  ///< one of each pair of opposite neighbours
-  Ownership<Key> owners_;
-  std::vector<std::uint32_t> number_;  ///< by root: number of its tree in the current block
+  std::vector<Key> least_, greatest_;  ///< by tile of the box
+  std::vector<Place> places_;          ///< by tile of the box
+  std::vector<bool> is_earlier_;       ///< by tile of the box: whether it belongs to an earlier block
+  Ownership<Key> owners_;              ///< of the tiles of the box: tiles of the block, and roots outside
+  OutsideRoots outside_;
+  std::vector<std::uint32_t> tiles_;   ///< of the block, those that are not constant
+  std::vector<std::uint32_t> border_;  ///< the tiles that have neighbours in other blocks
+  std::vector<std::uint32_t> number_;  ///< by root: number of its tree in the block
   std::vector<std::uint8_t> classes_;
   std::vector<KeyLink<Key>> offered_;  ///< a: the offering root
-  std::vector<std::pair<Place, Key>> parts_;
-  Regions<Key> regions_;
+  std::vector<std::pair<std::uint32_t, Key>> parts_;
 };
+
+/// The regions of all tiles. Blocks of a group are built at the same time; the result is that of building them one
+/// after the other.
+template <class Key>
+Regions<Key> make_first_regions(const RangeMap<Key>& map, const Widths<Key>& widths, Neighbourhood neighbourhood,
+                                unsigned threads, const Progress& progress) {
+  Regions<Key> regions;
+  if (map.tiles.rows() == 0) return regions;
+  const BlockGrid grid(map.tiles, neighbourhood);
+  std::vector<FinishedBlock<Key>> finished(grid.count());
+  std::vector<std::uint32_t> of_place(map.tiles.room());  // first owners, then numbers of roots
+  Workers<BlockTrees<Key>> workers(threads, [&] { return BlockTrees<Key>(map, widths, grid, finished, of_place); });
+  std::size_t done = 0;
+  for (const std::vector<std::size_t>& group : grid.groups()) {
+    report_progress(progress, static_cast<double>(done) / static_cast<double>(grid.count()));
+    workers.for_range(group.size(), 1, [&](std::size_t from, std::size_t to, BlockTrees<Key>& trees) {
+      for (std::size_t i = from; i < to; ++i) finished[group[i]] = trees.make(group[i]);
+    });
+    done += group.size();
+  }
+  std::size_t links = 0;
+  for (const FinishedBlock<Key>& block : finished) {
+    links += block.links.size();
+    for (const Place root : block.roots) {
+      of_place[root] = static_cast<std::uint32_t>(regions.roots.size());
+      regions.roots.push_back(root);
+    }
+  }
+  regions.links.reserve(links);
+  for (FinishedBlock<Key>& block : finished) {
+    for (const KeyLink<Key>& link : block.links) {
+      const std::uint32_t a = of_place[link.a];
+      const std::uint32_t b = of_place[link.b];
+      regions.links.push_back({std::min(a, b), std::max(a, b), link.least, link.greatest});
+    }
+    block = {};
+  }
+  return regions;
+}
 
 }  // namespace
 
 template <class Key>
-Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, const Progress& progress) {
+Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, unsigned threads,
+                          const Progress& progress) {
   const Widths<Key> widths(map);
   report_progress(progress, 0.1);
   const Progress of_tiles = part_of(progress, 0.1, 0.7);
-  Regions<Key> regions = RegionMaker<Key>(map, widths, neighbourhood, of_tiles).make();
+  Regions<Key> regions = make_first_regions(map, widths, neighbourhood, threads, of_tiles);
   double done = 0.7;
   for (unsigned round = 0; round < kMostRounds && regions.roots.size() > kEnoughTrees; ++round) {
     const std::size_t before = regions.roots.size();
@@ -646,9 +569,9 @@ Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood,
   return regions;
 }
 
-template Regions<std::uint8_t> make_regions(const RangeMap<std::uint8_t>&, Neighbourhood, const Progress&);
-template Regions<std::uint16_t> make_regions(const RangeMap<std::uint16_t>&, Neighbourhood, const Progress&);
-template Regions<std::uint32_t> make_regions(const RangeMap<std::uint32_t>&, Neighbourhood, const Progress&);
-template Regions<std::uint64_t> make_regions(const RangeMap<std::uint64_t>&, Neighbourhood, const Progress&);
+template Regions<std::uint8_t> make_regions(const RangeMap<std::uint8_t>&, Neighbourhood, unsigned, const Progress&);
+template Regions<std::uint16_t> make_regions(const RangeMap<std::uint16_t>&, Neighbourhood, unsigned, const Progress&);
+template Regions<std::uint32_t> make_regions(const RangeMap<std::uint32_t>&, Neighbourhood, unsigned, const Progress&);
+template Regions<std::uint64_t> make_regions(const RangeMap<std::uint64_t>&, Neighbourhood, unsigned, const Progress&);
 
 }  // namespace tegl::detail

@@ -22,9 +22,11 @@ struct Regions {
   std::vector<KeyLink<Key>> links;
 };
 
-/// Nearly linear time: each tile is visited a few times, and each round leaves at most about half of the trees.
+/// Nearly linear time: each tile is visited a few times, and each round leaves at most about half of the trees. The
+/// first round uses `threads` threads (0: all of the machine); the result does not depend on them.
 template <class Key>
-Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, const Progress& progress);
+Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, unsigned threads,
+                          const Progress& progress);
 
 /// Roots that meet all components. Linear in the number of links: trees with consecutive numbers are selected in
 /// groups.

@@ -122,7 +122,8 @@ class SeedFinder {
       done = 0.5 * detail::kProgressWithRoots;
     }
     stats_.reduced = true;
-    const auto regions = detail::make_regions(map_, options_.neighbourhood, detail::part_of(progress_, done, 0.8));
+    const auto regions = detail::make_regions(map_, options_.neighbourhood, options_.work.threads,
+                                              detail::part_of(progress_, done, 0.8));
     return detail::cover_regions(map_, regions, detail::part_of(progress_, 0.8, 1.0));
   }
 

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The trees that own the parts of ranges, while tiles or trees are given up (see seed_regions.cpp).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "search/seed_links.hpp"
+
+namespace tegl::detail {
+
+/// Owners of tiles or trees, by part of their ranges. Owners are trees that stay.
+template <class Key>
+class Ownership {
+ public:
+  explicit Ownership(std::size_t count) : parts_of_(count, kNone) {}
+
+  /// Forgets all owners.
+  void clear() {
+    std::fill(parts_of_.begin(), parts_of_.end(), kNone);
+    parts_.clear();
+  }
+
+  [[nodiscard]] bool has(std::uint32_t i) const noexcept { return parts_of_[i] != kNone; }
+
+  /// Offers i as a cover of the next tile between `least` and `greatest`; i has at least this range.
+  void offer(std::uint32_t i, Key least, Key greatest) {
+    lowest_ = std::min(lowest_, least);
+    highest_ = std::max(highest_, greatest);
+    offers_.push_back({least, greatest, parts_of_[i]});
+  }
+  /// If the offers cover i, i passes to their owners; otherwise i owns itself. Clears the offers. Returns whether i was
+  /// given up.
+  bool give_up(std::uint32_t i, Key least, Key greatest) {
+    const std::uint64_t first = parts_.size();
+    parts_of_[i] = first;
+    // Most uncovered ranges are uncovered at an end.
+    const bool covered = lowest_ <= least && greatest <= highest_ && divide(least, greatest, first);
+    if (!covered) {
+      parts_.resize(first);
+      parts_.push_back({greatest, i});
+    }
+    forget_offers();
+    return covered;
+  }
+  /// Sets one owner of the whole range of i: i itself if it is not given up.
+  void set_one(std::uint32_t i, std::uint32_t owner, Key greatest) {
+    parts_of_[i] = parts_.size();
+    parts_.push_back({greatest, owner});
+  }
+  /// Gives i up to a single owner if one owner of `other`, whose range contains the range of i, has all of it; then
+  /// clears the offers. Returns false otherwise.
+  bool give_up_to_one(std::uint32_t i, std::uint32_t other, Key least, Key greatest) {
+    const Part* part = &parts_[parts_of_[other]];
+    while (part->end <= least) ++part;
+    if (part->end < greatest) return false;
+    set_one(i, std::uint32_t{part->owner}, greatest);
+    forget_offers();
+    return true;
+  }
+  /// Calls visit(owner, end) for the owners of i between `level` and `end`, in ascending order of levels.
+  template <class Visit>
+  void for_owners(std::uint32_t i, Key level, Key end, const Visit& visit) const {
+    for (const Part* part = &parts_[parts_of_[i]]; level < end;) {
+      while (part->end <= level) ++part;
+      level = std::min(part->end, end);
+      visit(part->owner, level);
+    }
+  }
+  /// Adds links between the owners of a and b, by their new numbers, from `level` to `end`.
+  template <class Number>
+  void add_links(std::uint32_t a, std::uint32_t b, Key level, Key end, const Number& number,
+                 LinkCollector<Key>& collector) const {
+    const Part* of_a = &parts_[parts_of_[a]];
+    const Part* of_b = &parts_[parts_of_[b]];
+    while (level < end) {
+      while (of_a->end <= level) ++of_a;
+      while (of_b->end <= level) ++of_b;
+      const Key both = std::min({of_a->end, of_b->end, end});
+      if (of_a->owner != of_b->owner) {
+        const std::uint32_t p = number(of_a->owner);
+        const std::uint32_t q = number(of_b->owner);
+        collector.add({std::min(p, q), std::max(p, q), level, both});
+      }
+      level = both;
+    }
+  }
+
+  /// Sets the parts of i, as owner and end, in ascending order.
+  void set(std::uint32_t i, std::span<const std::pair<std::uint32_t, Key>> parts) {
+    parts_of_[i] = parts_.size();
+    for (const auto& [owner, end] : parts) parts_.push_back({end, owner});
+  }
+
+ private:
+  /// From the end of the part before (or the minimum of the range) up to `end`.
+  struct Part {
+    Key end;
+    std::uint32_t owner;
+  };
+  struct Offer {
+    Key least, greatest;
+    std::uint64_t part;  ///< the first part that may still matter
+  };
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
+  void forget_offers() noexcept {
+    offers_.clear();
+    lowest_ = std::numeric_limits<Key>::max();
+    highest_ = 0;
+  }
+  /// Appends parts in ascending order, each as long as possible. Returns false at a gap.
+  bool divide(Key level, Key end, std::uint64_t first) {
+    while (level < end) {
+      Part best{level, 0};
+      for (Offer& offer : offers_) {
+        if (offer.least > level || offer.greatest <= level) continue;
+        while (parts_[offer.part].end <= level) ++offer.part;
+        const Key to = std::min(parts_[offer.part].end, offer.greatest);
+        if (to > best.end) best = {to, parts_[offer.part].owner};
+      }
+      if (best.end == level) return false;
+      level = best.end;
+      best.end = std::min(best.end, end);
+      if (parts_.size() > first && parts_.back().owner == best.owner)
+        parts_.back().end = best.end;
+      else
+        parts_.push_back(best);
+    }
+    return true;
+  }
+
+  std::vector<std::uint64_t> parts_of_;  ///< first part of each tile; the last part ends with the range
+  std::vector<Part> parts_;
+  std::vector<Offer> offers_;
+  Key lowest_ = std::numeric_limits<Key>::max();  ///< of the offers
+  Key highest_ = 0;
+};
+
+}  // namespace tegl::detail
