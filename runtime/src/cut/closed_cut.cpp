@@ -265,6 +265,11 @@ class Cutter {
   [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
     const auto is_merged = [&](Index v) { return !any_apart || !apart[on_(v)]; };
+    if (on_.empty()) {  // every touching simplex has vertices above and below, and gives one piece
+      std::vector<Piece> all(touching_.size());
+      for_each_item(all.size(), threads_, {}, [&](std::size_t i) { all[i] = make_piece(touching_[i], high(i)); });
+      return all;
+    }
     std::vector<std::vector<Piece>> parts(block_count(touching_.size(), kBlock));
     for_each_block(touching_.size(), kBlock, threads_, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
@@ -323,7 +328,7 @@ class Cutter {
       const std::vector<PointKey> pinched = nonmanifold_points(pieces_, corners_, N - 2);
       if (round == 0 && !pinched.empty()) {
         const std::vector<Piece> unmerged = cut_pieces(std::vector<bool>(on_.size(), true));
-        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, most_, threads_), N - 2);
+        excused = nonmanifold_points(unmerged, corners_by_point(unmerged, threads_), N - 2);
       }
       if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
     }
@@ -331,7 +336,7 @@ class Cutter {
 
   void set_pieces(std::vector<Piece> pieces) {
     pieces_ = std::move(pieces);
-    corners_ = corners_by_point(pieces_, most_, threads_);
+    corners_ = corners_by_point(pieces_, threads_);
   }
 
   /// Marks the on vertices among the pinched points (with `all`, every on vertex) as apart, except those whose points
@@ -513,12 +518,17 @@ class Cutter {
 
   void emit(Contour<N - 1, Real>& result) const {
     std::vector<Index> inherited;  // source simplex of each simplex of the cut
+    std::size_t count = 0;
+    for (const Piece& piece : pieces_) count += N == 3 ? 1 : static_cast<std::size_t>(piece.count - 2);
+    result.simplices.reserve(count);
+    const bool inherits = !contour_.simplex_attributes.empty();
+    if (inherits) inherited.reserve(count);
     const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
       std::array<Index, N - 1> simplex;
       for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
       if (!family_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
       result.simplices.push_back(simplex);
-      inherited.push_back(piece.simplex);
+      if (inherits) inherited.push_back(piece.simplex);
     };
     for (const Piece& piece : pieces_) {
       if constexpr (N == 3) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,8 @@ using detail::HyperplaneFamily;
 
 constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< vertices or simplices of a part of the work
 
-/// The simplices that touch the level, ascending.
+/// The simplices that touch the level, ascending. Throws InvalidArgument unless all vertex numbers are below the number
+/// of vertices.
 template <int N, class Real>
 std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
                                       const WorkOptions& work) {
@@ -42,10 +44,17 @@ std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Hyp
   // by block, then in a row
   const std::size_t count = contour.simplices.size();
   std::vector<std::vector<Index>> parts(detail::block_count(count, kBlock));
+  std::atomic<bool> sound = true;
   detail::for_each_block(count, kBlock, work.threads, detail::part_of(work.progress, 0.5, 1.0),
                          [&](std::size_t block, std::size_t from, std::size_t to) {
                            const auto* const simplices = contour.simplices.data();
                            const unsigned char* const side = sides.data();
+                           // here, while the block is in the cache
+                           const std::span block_simplices(simplices + from, to - from);
+                           if (!detail::are_below(detail::flat_rows<Index, N>(block_simplices), sides.size())) {
+                             sound = false;
+                             return;
+                           }
                            std::array<Index, kBlock> found;
                            std::size_t size = 0;
                            for (std::size_t s = from; s < to; ++s) {
@@ -56,6 +65,7 @@ std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Hyp
                            }
                            parts[block].assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size));
                          });
+  if (!sound) detail::require_vertices(contour);
   std::vector<Index> touching;
   std::size_t all = 0;
   for (const auto& part : parts) all += part.size();
@@ -168,7 +178,8 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const Hyperplane<N>& hyperplane,
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
-  detail::require_sound(contour);
+  detail::require_finite(contour);
+  detail::require_attributes(contour);
   const double level = family.template level<Real>(hyperplane.offset);
   const Progress finding = detail::part_of(work.progress, 0.0, 0.8);
   Contour<N - 1, Real> cut = detail::cut_simplices(

@@ -4,11 +4,11 @@
 #include "cut/slice_piece.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <limits>
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
-#include "base/radix_sort.hpp"
+#include "base/workers.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -80,29 +80,66 @@ class Links {
   BasicDisjointSets<std::size_t> sets_;
 };
 
+/// Sorts corners that are in the order of pieces by key, then by piece.
+void sort_by_key(std::span<Corner> corners) {
+  constexpr std::size_t kFew = 32;
+  if (corners.size() > kFew) {
+    std::sort(corners.begin(), corners.end(),
+              [](const Corner& a, const Corner& b) { return std::pair(a.key, a.at) < std::pair(b.key, b.at); });
+    return;
+  }
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const Corner corner = corners[i];
+    std::size_t at = i;
+    for (; at > 0 && corners[at - 1].key > corner.key; --at) corners[at] = corners[at - 1];
+    corners[at] = corner;
+  }
+}
+
 }  // namespace
 
-std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most, unsigned threads) {
-  std::vector<Corner> corners;
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads) {
+  Index least = std::numeric_limits<Index>::max();
+  Index most = 0;
   std::size_t count = 0;
-  for (const Piece& piece : pieces) count += static_cast<std::size_t>(piece.count);
-  corners.reserve(count);
-  for (std::size_t p = 0; p < pieces.size(); ++p)
-    for (int i = 0; i < pieces[p].count; ++i)
-      corners.push_back({pieces[p].points[i], 4 * p + static_cast<std::size_t>(i)});
-  sort_by_bits(
-      corners, static_cast<unsigned>(std::bit_width(most)), [](const Corner& corner) { return lower_end(corner.key); },
-      threads);
-  // Few edges share a lower end, so a comparison sort is fast.
-  for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
-    bool sorted = true;
-    for (j = i + 1; j < corners.size() && lower_end(corners[j].key) == lower_end(corners[i].key); ++j)
-      sorted = sorted && corners[j - 1].key <= corners[j].key;
-    const auto from = corners.begin() + static_cast<std::ptrdiff_t>(i);
-    if (!sorted)
-      std::sort(from, corners.begin() + static_cast<std::ptrdiff_t>(j),
-                [](const Corner& a, const Corner& b) { return std::pair(a.key, a.at) < std::pair(b.key, b.at); });
-  }
+  for (const Piece& piece : pieces)
+    for (int i = 0; i < piece.count; ++i, ++count) {
+      least = std::min(least, lower_end(piece.points[i]));
+      most = std::max(most, lower_end(piece.points[i]));
+    }
+  std::vector<Corner> corners(count);
+  if (count == 0) return corners;
+  // A counting sort by lower end, or by its upper bits if the ends are far apart: about as many buckets as corners.
+  unsigned shift = 0;
+  while ((most - least) >> shift > 2 * count) ++shift;
+  const std::size_t buckets = (std::size_t{most - least} >> shift) + 1;
+  constexpr std::size_t kPart = std::size_t{1} << 13;  // smaller parts are not worth a thread
+  constexpr std::size_t kMostParts = 4;
+  const std::size_t parts = std::clamp<std::size_t>(pieces.size() / kPart, 1, threads == 1 ? 1 : kMostParts);
+  std::vector<std::vector<std::size_t>> next(parts);  // by part and bucket: counts, then places
+  const auto for_corners = [&](const auto& visit) {
+    for_each_block(parts, 1, threads, {}, [&](std::size_t part, std::size_t, std::size_t) {
+      std::vector<std::size_t>& own = next[part];
+      own.resize(buckets);
+      for (std::size_t p = pieces.size() * part / parts; p < pieces.size() * (part + 1) / parts; ++p)
+        for (int i = 0; i < pieces[p].count; ++i) {
+          const PointKey key = pieces[p].points[i];
+          visit(own[(lower_end(key) - least) >> shift], Corner{key, 4 * p + static_cast<std::size_t>(i)});
+        }
+    });
+  };
+  for_corners([](std::size_t& places, const Corner&) { ++places; });
+  std::size_t sum = 0;
+  for (std::size_t bucket = 0; bucket < buckets; ++bucket)
+    for (auto& starts : next) sum += std::exchange(starts[bucket], sum);
+  for_corners([&](std::size_t& place, const Corner& corner) { corners[place++] = corner; });
+  // Places are now the ends of the buckets. Few corners are in a bucket, in the order of pieces.
+  const std::vector<std::size_t>& ends = next.back();
+  for_each_block(buckets, kPart, threads, {}, [&](std::size_t, std::size_t from, std::size_t to) {
+    for (std::size_t bucket = from; bucket < to; ++bucket)
+      sort_by_key(std::span(corners).subspan(bucket == 0 ? 0 : ends[bucket - 1],
+                                             ends[bucket] - (bucket == 0 ? 0 : ends[bucket - 1])));
+  });
   return corners;
 }
 

@@ -37,9 +37,8 @@ struct Corner {
   std::size_t at;  ///< 4 * piece + position of the point in it
 };
 
-/// All incidences sorted by key, then by piece. `most`: maximum vertex number. Threads: 0 for all of the machine. O(c)
-/// for c pieces.
-std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most, unsigned threads);
+/// All incidences sorted by key, then by piece. Threads: 0 for all of the machine. O(c) for c pieces.
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads);
 
 /// The keys, ascending, of the points at which the pieces do not form one path (segments, `dim` 1) or one fan
 /// (polygons, 2), or at which the link of the tetrahedra (3) is neither a sphere nor a disc; also those that have an

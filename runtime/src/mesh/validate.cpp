@@ -3,8 +3,8 @@
 // Validation of contours, for all dimensions.
 #include "mesh/validate.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -12,17 +12,17 @@
 
 namespace tegl::detail {
 
+bool are_below(std::span<const Index> rows, std::size_t vertices) noexcept {
+  if (vertices > std::numeric_limits<Index>::max()) return true;
+  // without branches, so that compilers compare several numbers at once
+  const auto limit = static_cast<Index>(vertices);
+  Index beyond = 0;
+  for (const Index v : rows) beyond |= static_cast<Index>(v >= limit);
+  return beyond == 0;
+}
+
 void require_vertex_numbers(std::span<const Index> rows, std::size_t corners, std::size_t vertices) {
-  const Index* const end = rows.data() + rows.size();
-  const Index* at = rows.data();
-  Index highest = 0;
-  Index others = 0;  // independent of the other maximum, so that both run in parallel
-  for (; end - at >= 2; at += 2) {
-    highest = std::max(highest, at[0]);
-    others = std::max(others, at[1]);
-  }
-  if (at != end) highest = std::max(highest, *at);
-  if (rows.empty() || std::max(highest, others) < vertices) return;
+  if (are_below(rows, vertices)) return;
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (rows[i] >= vertices)
       throw Error(ErrorCode::InvalidArgument,

@@ -13,6 +13,8 @@ namespace tegl::detail {
 
 /// Throws InvalidArgument unless all vertex numbers in `rows`, `corners` per simplex, are below `vertices`. O(#S).
 void require_vertex_numbers(std::span<const Index> rows, std::size_t corners, std::size_t vertices);
+/// Whether all vertex numbers are below the number of vertices.
+bool are_below(std::span<const Index> rows, std::size_t vertices) noexcept;
 
 /// Throws InvalidArgument unless all coordinates, `width` per vertex, are finite. O(#V).
 void require_finite_numbers(std::span<const float> coordinates, std::size_t width);
