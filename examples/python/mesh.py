@@ -24,7 +24,7 @@ tetrahedra = np.concatenate([np.stack([cubes, cubes + a, cubes + a + b, cubes + 
                              for a, b, c in itertools.permutations(steps)])
 print(f"{len(points)} points, {len(tetrahedra)} tetrahedra")
 
-# %% Values at five times: two balls of radius 0.5, which touch where the distance of their centres is 1. The box swells a little.
+# %% Values at five times: two balls of radius 0.5, which touch where the distance of their centres is 1. The box swells.
 times = np.linspace(0, 4, 5)
 places = [points * (1, 1 + 0.02 * t, 1) for t in times]
 values = [0.5 - np.minimum(*(np.linalg.norm(p - (sign * (1.1 - 0.2 * t), 0, 0), axis=1) for sign in (-1, 1)))

@@ -25,10 +25,10 @@ _BY_CORNERS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hex
                (3, 5): "pyramid", (4, 5): "simplex4"}
 
 
-def contour_mesh(points, cells=None, values=None, level: float | None = None, *, times=None, triangulation: _kinds.Triangulation = "compact",
-                 ambiguity: typing.Literal["low", "high"] = "low", direction: _kinds.Direction = "descent",
-                 epsilon: float = 0.0, dtype=np.float32, allow_empty: bool = False, threads: int = 0,
-                 progress: Progress | None = None) -> Contour:
+def contour_mesh(points, cells=None, values=None, level: float | None = None, *, times=None,
+                 triangulation: _kinds.Triangulation = "compact", ambiguity: typing.Literal["low", "high"] = "low",
+                 direction: _kinds.Direction = "descent", epsilon: float = 0.0, dtype=np.float32, allow_empty: bool = False,
+                 threads: int = 0, progress: Progress | None = None) -> Contour:
     """The contour {value = level} of a mesh with a value at each point. It separates values >= level from the others.
 
     ::
@@ -185,7 +185,8 @@ def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
     if values is None or isinstance(values, str):
         data = mesh.point_data
         if values is None and len(data) != 1:
-            raise ValueError(f"the mesh has the arrays {', '.join(map(repr, data)) or 'none'}; expected the name of one as values")
+            raise ValueError(f"the mesh has the arrays {', '.join(map(repr, data)) or 'none'}; expected the name of one as "
+                             "values")
         if values is not None and values not in data:
             raise ValueError(f"values are {values!r}; expected one of {', '.join(map(repr, data)) or 'none'}")
         values = data[next(iter(data)) if values is None else values]
