@@ -35,9 +35,10 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   return fields;
 }
 
+/// The separator of a line; one within quotes does not count.
 char separator_of(std::string_view line) {
   for (const char separator : {',', ';', '\t'})
-    if (line.find(separator) != std::string_view::npos) return separator;
+    if (fields_of(line, separator).size() > 1) return separator;
   return ' ';
 }
 
