@@ -28,9 +28,11 @@ class CellIndex {
   [[nodiscard]] std::size_t size() const noexcept { return cells_; }
   /// Whether the complex has missing values. `extract` then reads all cells.
   [[nodiscard]] bool has_missing() const noexcept { return has_missing_; }
-  /// Number of cells and of points of the complex.
+  /// Number of cells of the complex.
   [[nodiscard]] std::size_t cell_count() const noexcept { return all_cells_; }
+  /// Number of points of the complex.
   [[nodiscard]] std::size_t point_count() const noexcept { return points_; }
+  /// Memory that the index takes.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return nodes_.size() * sizeof(Node) + (lows_.size() + highs_.size()) * sizeof(End);
   }
