@@ -265,9 +265,12 @@ class Cutter {
   [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
     const auto is_merged = [&](Index v) { return !any_apart || !apart[on_(v)]; };
-    if (on_.empty()) {  // every touching simplex has vertices above and below, and gives one piece
+    if (N < 5 && on_.empty()) {  // every touching simplex has vertices above and below, and gives one piece
       std::vector<Piece> all(touching_.size());
-      for_each_item(all.size(), threads_, {}, [&](std::size_t i) { all[i] = make_piece(touching_[i], high(i)); });
+      for_each_item(all.size(), threads_, {}, [&](std::size_t i) {
+        visit_pieces<N>(contour_.simplices[touching_[i]], touching_[i], high(i),
+                        [&](const Piece& piece) { all[i] = piece; });
+      });
       return all;
     }
     std::vector<std::vector<Piece>> parts(block_count(touching_.size(), kBlock));
@@ -519,7 +522,7 @@ class Cutter {
   void emit(Contour<N - 1, Real>& result) const {
     std::vector<Index> inherited;  // source simplex of each simplex of the cut
     std::size_t count = 0;
-    for (const Piece& piece : pieces_) count += N == 3 ? 1 : static_cast<std::size_t>(piece.count - 2);
+    for (const Piece& piece : pieces_) count += N == 4 ? static_cast<std::size_t>(piece.count - 2) : 1;
     result.simplices.reserve(count);
     const bool inherits = !contour_.simplex_attributes.empty();
     if (inherits) inherited.reserve(count);
