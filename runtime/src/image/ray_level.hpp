@@ -34,9 +34,7 @@ template <std::size_t Count, std::size_t K = 1>
 }
 
 /// Whether the sum of a cell's heights is finite, and so are its values on rays.
-inline bool is_finite_enough(double sum) noexcept {
-  return std::abs(sum) <= std::numeric_limits<double>::max() / 64;
-}
+inline bool is_finite_enough(double sum) noexcept { return std::abs(sum) <= std::numeric_limits<double>::max() / 64; }
 
 /// Newton's method ends with a step below this.
 template <std::size_t Count>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Looks up local vertices in registers if these are large enough for all numbers of a tile (see local_simplices.hpp).
+// Looks up local vertices in registers if these are large enough for the numbers of a tile (see local_simplices.hpp).
 // Highway's foreach_target compiles this file once per instruction set.
 #include "tile/local_simplices.hpp"
 

@@ -218,9 +218,10 @@ inline bool has_connected_side(const ResolvedKey& key, bool high) {
   }
   return reached == corners;
 }
-/// Whether Sigma is connected: the boundary is a 3-sphere, in which a connected surface separates two regions.
+/// Whether Sigma is one component: the boundary is a 3-sphere, in which a connected surface separates two regions.
 inline bool has_connected_sides(const ResolvedKey& key) {
-  return has_connected_side(key, true) && has_connected_side(key, false);
+  return key.signature != 0 && key.signature != 0xffffu && has_connected_side(key, true) &&
+         has_connected_side(key, false);
 }
 
 /// What is wrong with the filling of a tile; "" if nothing is. The definition applies if `is_by_squares`: no centre of
