@@ -184,6 +184,9 @@ void expect_reduced_covers(const OwnedImage<T, N>& image, std::size_t isovalues)
     options.neighbourhood = neighbourhood;
     const SeedSet set = find_seeds(image.view(), options);
     EXPECT_TRUE(set.stats.reduced || neighbourhood == Neighbourhood::all);
+    SeedSetOptions on_one_thread = options;
+    on_one_thread.work.threads = 1;
+    EXPECT_EQ(set.tiles, find_seeds(image.view(), on_one_thread).tiles);
     EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
     EXPECT_LE(seed_lower_bound(image.view(), options), set.tiles.size());
     options.method = SeedMethod::sweeping;
