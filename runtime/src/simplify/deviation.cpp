@@ -21,7 +21,9 @@
 #include "mesh/simplex_shapes.hpp"
 #include "mesh/validate.hpp"
 #include "simplify/box_tree.hpp"
+#include "simplify/facet_neighbours.hpp"
 #include "simplify/prism_cover.hpp"
+#include "simplify/prism_walk.hpp"
 
 namespace tegl {
 namespace detail {
@@ -171,7 +173,9 @@ struct DeviationInput {
   const ScaledSimplices<N>& to;
   const BoxTree<N>& tree;
   const BoundaryFaces<N>& open;
+  const FacetNeighbours<N>& neighbours;    ///< of `to`
   const std::vector<double>& of_vertices;  ///< distance of each vertex of `from` from the nearest point of `to`
+  const std::vector<Index>& next;          ///< the simplex of `to` with that point
   double enough;                           ///< bounds below it are not refined
   std::vector<double>& of_to;
 };
@@ -182,13 +186,16 @@ class SimplexDeviation {
  public:
   static constexpr int D = N - 1;
 
-  explicit SimplexDeviation(const DeviationInput<N>& measure) : m_(measure) {}
+  explicit SimplexDeviation(const DeviationInput<N>& measure)
+      : m_(measure), walk_(measure.to.corners, measure.neighbours) {}
 
   /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
     load(s);
     looseness_ = kLooseness;
     const double enough = std::max(m_.enough, kEdgeShare * edge_);
+    const double walked = bound_by_walk(s, enough);
+    if (walked < kInfinity) return walked;
     const double result = in_parts(enough, kMostParts, least);
     for (const Part& part : parts_)
       for (const auto& [t, distance] : part.matches) raise(m_.of_to[t], distance);
@@ -225,6 +232,21 @@ class SimplexDeviation {
     Index next = 0;              ///< a nearest simplex of `to`
     bool operator<(const Part& other) const { return bound < other.bound; }
   };
+
+  /// Bounds the distance by the simplices of `to` that are connected with the ones nearest to the corners. Most
+  /// simplices need no search for all simplices near them.
+  double bound_by_walk(Index s, double enough) {
+    std::array<Index, N> starts;
+    for (int i = 0; i < N; ++i) starts[i] = m_.next[m_.from.simplices[s][i]];
+    const double rim = kRim * edge_;
+    const double rough = std::max(m_.enough, looseness_ * nearest_) - rim;
+    const double limit = std::max(enough, looseness_ * nearest_) - rim;
+    double result = walk_.bound(frame_, without_rim(whole_, kRim), edge_, starts, rough, limit) + rim;
+    if (result <= 2.0 * rim)  // identical contours: without the rim the bound is exact up to rounding
+      result = walk_.bound(frame_, whole_, edge_, starts, 0.0, 2.0 * rim);
+    if (result < kInfinity) walk_.visit_matches([&](Index t, double distance) { raise(m_.of_to[t], distance + rim); });
+    return result;
+  }
 
   void load(Index s) {
     const CornersN<N>& corners = m_.from.corners[s];
@@ -359,12 +381,15 @@ class SimplexDeviation {
   /// Takes the best cover of the part without a rim of this relative width. Every point of the rim is within
   /// rim * edge_ of the rest. Returns false if none improves the bound.
   bool cover_without_rim(Part& part, double rim) {
-    CornersN<N> inner = part.corners;
-    const PointN<N> middle = middle_of<N>(part.corners);
-    for (PointN<N>& corner : inner) corner = between(corner, middle, rim);
-    const Prism<N> prism(inner, edge_);
+    const Prism<N> prism(without_rim(part.corners, rim), edge_);
     gather_ranges(prism, part, true);
     return take_best_cover(prism, part, rim * edge_);
+  }
+
+  static CornersN<N> without_rim(CornersN<N> corners, double rim) {
+    const PointN<N> middle = middle_of<N>(corners);
+    for (PointN<N>& corner : corners) corner = between(corner, middle, rim);
+    return corners;
   }
 
   /// Collects the height ranges of the near simplices over the part: with `cut`, of their parts inside the prism; else
@@ -421,7 +446,8 @@ class SimplexDeviation {
       if (!(low > -reach && high < reach)) continue;
       const double bound = std::max(high - prism.low(), prism.high() - low) + rim;
       if (!(bound < part.bound)) continue;
-      if (open || !covered(std::span(ranges_).subspan(i, j - i), part.corners)) continue;
+      const auto corners_of = [&](std::size_t k) -> const CornersN<N>& { return near_[ranges_[i + k].near].at; };
+      if (open || !covers_a_point<N>(j - i, corners_of, part.corners)) continue;
       found = true;
       part.bound = bound;
       part.matches.clear();
@@ -439,31 +465,6 @@ class SimplexDeviation {
     if (!clipped_.load(near_[part.farthest].at, prism) || !clipped_.clip(prism)) return;
     const PointN<N> below = prism.at_level(clipped_.farthest(prism));
     nearest_ = std::max(nearest_, m_.tree.nearest(frame_.to_space(below), near_[part.farthest].simplex).distance);
-  }
-
-  /// Whether the ranges cover a point of the part with a nonzero degree (orientations counted with signs).
-  [[nodiscard]] bool covered(std::span<const HeightRange> ranges, const CornersN<N>& part) const {
-    for (int attempt = 0; attempt < 4; ++attempt) {
-      // Asymmetric weights avoid points on outlines.
-      PointN<N> x{};
-      double sum = 0.0;
-      for (int i = 0; i < N; ++i) {
-        const double weight = 1.0 + 0.37 * ((i * (attempt + 1) + attempt) % N) + 0.11 * i;
-        sum += weight;
-        for (int a = 0; a < N; ++a) x[a] += weight * part[i][a];
-      }
-      for (double& coordinate : x) coordinate /= sum;
-      int times = 0;
-      bool sure = true;
-      for (const HeightRange& range : ranges) {
-        const std::optional<int> side = covers<N>(near_[range.near].at, flat<N>(x));
-        sure = sure && side.has_value();
-        if (!sure) break;
-        times += *side;
-      }
-      if (sure) return times != 0;
-    }
-    return false;
   }
 
   /// Two bounds: the distance from one simplex is convex, so its maximum is at a corner; and distances are 1-Lipschitz.
@@ -517,6 +518,7 @@ class SimplexDeviation {
   // Current part.
   std::vector<HeightRange> ranges_;
   ClippedSimplex<N> clipped_;
+  PrismWalk<N> walk_;
 };
 
 template <int N>
@@ -554,15 +556,18 @@ template <int N>
 void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, double enough, unsigned threads,
                  const Progress& progress, Deviation& result) {
   const BoundaryFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
+  const FacetNeighbours<N> neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.05, 0.1));
   const BoxTree<N> tree(to.corners);
   // distances of vertices
   std::vector<double> of_vertices(from.points.size());
+  std::vector<Index> next(from.points.size());
   for_each_block(from.points.size(), kGrain, threads, part_of(progress, 0.1, 0.2),
                  [&](std::size_t, std::size_t first, std::size_t end) {
                    auto nearest = tree.nearest(from.points[first]);
                    for (std::size_t v = first; v < end; ++v) {
                      nearest = tree.nearest(from.points[v], nearest.simplex);
                      of_vertices[v] = nearest.distance;
+                     next[v] = nearest.simplex;
                    }
                  });
   for (const auto& simplex : from.simplices)
@@ -577,7 +582,7 @@ void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, d
                  });
   // bounds of simplices
   const DeviationInput<N> measure{
-      from, to, tree, open, of_vertices, std::max(enough, kLeastShare * result.least), result.of_to};
+      from, to, tree, open, neighbours, of_vertices, next, std::max(enough, kLeastShare * result.least), result.of_to};
   for_each_block(
       from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9),
       [&] { return SimplexDeviation<N>(measure); },

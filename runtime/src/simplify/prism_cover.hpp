@@ -338,4 +338,30 @@ std::optional<int> covers(const CornersN<N>& simplex, const PointN<N - 1>& x) {
   return std::nullopt;
 }
 
+/// Whether simplices cover a point of the part with a nonzero degree (orientations counted with signs).
+/// `corners_of(k)`: simplex k of `count` in the frame.
+template <int N, class CornersOf>
+bool covers_a_point(std::size_t count, const CornersOf& corners_of, const CornersN<N>& part) {
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    // Asymmetric weights avoid points on outlines.
+    PointN<N> x{};
+    double sum = 0.0;
+    for (int i = 0; i < N; ++i) {
+      const double weight = 1.0 + 0.37 * ((i * (attempt + 1) + attempt) % N) + 0.11 * i;
+      sum += weight;
+      for (int a = 0; a < N; ++a) x[a] += weight * part[i][a];
+    }
+    for (double& coordinate : x) coordinate /= sum;
+    int times = 0;
+    bool sure = true;
+    for (std::size_t k = 0; k < count && sure; ++k) {
+      const std::optional<int> side = covers<N>(corners_of(k), flat<N>(x));
+      sure = side.has_value();
+      times += side.value_or(0);
+    }
+    if (sure) return times != 0;
+  }
+  return false;
+}
+
 }  // namespace tegl::detail

@@ -17,6 +17,7 @@
 #include "fields.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/simplify.hpp"
 
 namespace tegl::test {
 namespace {
@@ -63,6 +64,32 @@ TYPED_TEST(DeviationOf, NoiseIsBoundedFromAboveAndBelow) {
     EXPECT_GE(result.bound, sampled) << "seed " << seed;
     EXPECT_GE(result.bound, result.least) << "seed " << seed;
     EXPECT_LE(result.bound, 4.0 * std::max(result.least, sampled)) << "seed " << seed;
+  }
+}
+
+/// Bounds by connected simplices hold for contours that are simplified a lot, in both directions and by simplex.
+TYPED_TEST(DeviationOf, SimplifiedNoiseIsBoundedInBothDirections) {
+  constexpr int N = TypeParam::value;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const auto image = noise<float, N>(N == 4 ? 4 : 9, seed);
+    const auto contour = extract<double>(image.view(), 0.5);
+    SimplifyOptions<N> options;
+    options.ratio = 0.4;
+    options.measure = false;
+    options.border = SimplifyBorder::within;
+    const auto result = simplify(contour, options).contour;
+    for (const auto& [from, to] : {std::pair{&contour, &result}, std::pair{&result, &contour}}) {
+      const Deviation way = deviation(*from, *to);
+      EXPECT_GE(way.bound, way.least) << "seed " << seed;
+      EXPECT_LE(way.bound, 2.0 * way.least) << "seed " << seed;
+      EXPECT_EQ(way.bound, *std::max_element(way.of_from.begin(), way.of_from.end()));
+      // every simplex by itself
+      for (std::size_t s = 0; s < from->simplices.size(); s += 1 + from->simplices.size() / 40) {
+        auto one = *from;
+        one.simplices = {from->simplices[s]};
+        ASSERT_GE(way.of_from[s], sampled_deviation(one, *to, 8, s)) << "seed " << seed << ", simplex " << s;
+      }
+    }
   }
 }
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The simplex across each facet of a complex, if the facet is in exactly two simplices that are oriented alike.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/workers.hpp"
+#include "mesh/faces_of_stars.hpp"
+#include "mesh/vertex_stars.hpp"
+#include "tegl/contour.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+class FacetNeighbours {
+ public:
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+  FacetNeighbours(std::span<const std::array<Index, N>> simplices, std::size_t vertex_count, unsigned threads,
+                  const Progress& progress)
+      : across_(simplices.size()) {
+    std::array<Index, N> none;
+    none.fill(kNone);
+    std::fill(across_.begin(), across_.end(), none);
+    const std::span<const Index> rows(simplices.empty() ? nullptr : simplices[0].data(), simplices.size() * N);
+    const Stars stars = make_stars<N>(rows, vertex_count, threads, part_of(progress, 0.0, 0.3));
+    for_each_block(
+        vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0), [] { return std::vector<Side>(); },
+        [&](std::size_t, std::size_t from, std::size_t to, std::vector<Side>& sides) {
+          for (std::size_t v = from; v < to; ++v) join_at(static_cast<Index>(v), stars.of(v), simplices, sides);
+        });
+  }
+
+  /// The simplex across the facet opposite to this corner; kNone if the facet is on the border, in more than two
+  /// simplices, or between simplices of opposite orientations.
+  [[nodiscard]] Index across(Index simplex, int corner) const { return across_[simplex][corner]; }
+
+ private:
+  /// A facet with v as its smallest vertex, seen from one of its simplices.
+  struct Side {
+    std::uint64_t others;  ///< the other vertices, ascending
+    Index simplex;
+    std::uint8_t corner;  ///< the corner opposite to the facet
+    bool is_even;         ///< whether the simplex induces the ascending order of the vertices
+  };
+
+  /// Joins the simplices at the facets whose smallest vertex is v. Each facet is joined at one vertex, so no two
+  /// threads write the same entry.
+  void join_at(Index v, std::span<const Index> star, std::span<const std::array<Index, N>> simplices,
+               std::vector<Side>& sides) {
+    sides.clear();
+    for (const Index s : star)
+      for (int corner = 0; corner < N; ++corner) add_side(v, simplices[s], s, corner, sides);
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.others < b.others; });
+    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
+      while (j < sides.size() && sides[j].others == sides[i].others) ++j;
+      if (j - i != 2 || sides[i].is_even == sides[i + 1].is_even) continue;
+      across_[sides[i].simplex][sides[i].corner] = sides[i + 1].simplex;
+      across_[sides[i + 1].simplex][sides[i + 1].corner] = sides[i].simplex;
+    }
+  }
+
+  static void add_side(Index v, const std::array<Index, N>& row, Index s, int corner, std::vector<Side>& sides) {
+    if (row[corner] == v) return;
+    std::array<Index, N - 1> facet;
+    for (int i = 0, k = 0; i < N; ++i) {
+      if (i == corner) continue;
+      if (row[i] < v) return;
+      facet[k++] = row[i];
+    }
+    bool is_even = corner % 2 == 0;
+    for (int i = 1; i < N - 1; ++i)  // insertion sort, to count the exchanges
+      for (int j = i; j > 0 && facet[j] < facet[j - 1]; --j) {
+        std::swap(facet[j], facet[j - 1]);
+        is_even = !is_even;
+      }
+    std::uint64_t others = 0;
+    for (int i = 1; i < N - 1; ++i) others = others << 32 | facet[i];
+    sides.push_back({others, s, static_cast<std::uint8_t>(corner), is_even});
+  }
+
+  std::vector<std::array<Index, N>> across_;
+};
+
+}  // namespace tegl::detail
