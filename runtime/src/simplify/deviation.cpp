@@ -572,12 +572,18 @@ void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, d
                  });
   for (const auto& simplex : from.simplices)
     for (const Index v : simplex) result.least = std::max(result.least, of_vertices[v]);
-  // distances of sampled centroids
+  // distances of sampled centroids, if they may exceed the distances of all vertices
+  const double of_corners = result.least;
   for_each_block(from.simplices.size() / kSampled, kGrain, threads, part_of(progress, 0.2, 0.25),
                  [&](std::size_t, std::size_t first, std::size_t end) {
-                   double farthest = 0.0;
-                   for (std::size_t s = first; s < end; ++s)
-                     farthest = std::max(farthest, tree.nearest(middle_of<N>(from.corners[s * kSampled])).distance);
+                   double farthest = of_corners;
+                   for (std::size_t k = first; k < end; ++k) {
+                     const std::size_t s = k * kSampled;
+                     const PointN<N> middle = middle_of<N>(from.corners[s]);
+                     const Index guess = next[from.simplices[s][0]];
+                     if (distance_to_simplex<N>(middle, to.corners[guess], N) > farthest)
+                       farthest = std::max(farthest, tree.nearest(middle, guess).distance);
+                   }
                    raise(result.least, farthest);
                  });
   // bounds of simplices

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -24,6 +25,33 @@
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
+
+/// Whether the projections of all corners of `part` are certainly on one side of the projected facet opposite to a
+/// corner of the simplex, all in the frame. Then the facet does not meet the prism over the part.
+template <int N>
+bool is_beside(const CornersN<N>& simplex, int corner, const CornersN<N>& part) {
+  constexpr int D = N - 1;
+  std::array<PointN<D>, D> facet;
+  for (int i = 0, k = 0; i < N; ++i)
+    if (i != corner) facet[k++] = flat<N>(simplex[i]);
+  double longest = 0.0;
+  const auto way_to = [&](const PointN<D>& x) {
+    const PointN<D> way = minus(x, facet[0]);
+    for (const double length : way) longest = std::max(longest, std::abs(length));
+    return way;
+  };
+  for (int i = 1; i < D; ++i) way_to(facet[i]);
+  const PointN<D> normal = normal_of<D>(facet);
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (const PointN<N>& x : part) {
+    const double side = dot(normal, way_to(flat<N>(x)));
+    least = std::min(least, side);
+    largest = std::max(largest, side);
+  }
+  double rounding = 1e-13;
+  for (int k = 0; k < D; ++k) rounding *= longest;
+  return least > rounding || largest < -rounding;
+}
 
 /// Walks through one contour. Use one per thread.
 template <int N>
@@ -125,7 +153,7 @@ class PrismWalk {
       std::uint32_t outside = ~0u;
       for (int j = 0; j < N; ++j)
         if (j != i) outside &= beyond[j];
-      if (outside != 0) continue;
+      if (outside != 0 || is_beside<N>(link.at, i, part)) continue;
       const Index next = neighbours_.across(t, i);
       if (next != FacetNeighbours<N>::kNone)
         visit(next);
