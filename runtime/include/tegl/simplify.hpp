@@ -145,7 +145,7 @@ struct Simplification {
 /// same corners; or the result of `fast` is not a manifold), Cancelled.
 ///
 /// Time: O(S log S), about 2 microseconds per triangle and 3 per tetrahedron (facets, vertices: several times that).
-/// Error bounds take as long for triangles; for tetrahedra 8 to 20 microseconds each, plus 60 to 130 for each
+/// Error bounds take as long for triangles; for tetrahedra about 6 microseconds each, plus about 30 for each
 /// one of the result. This is per round: up to 12 rounds with `max_error`, usually 5 to 35 with a count (a third of
 /// those without bounds), with both as many as for each. If no round keeps max_error, the result is the original
 /// contour and SimplifyStats::end reports it. Memory: about 200 bytes per simplex.
