@@ -139,7 +139,7 @@ class Prepared:
             raise ValueError(f"normals is a kernel of the shape {kernel.shape}; expected {(3,) * n}, the derivative along the "
                              f"first axis, or {(n,) + (3,) * n}, along each axis")
         order: typing.Literal["C", "F"] = "C" if self.is_reversed else "F"  # axis 0 of the library is the fastest
-        return {**options, "kernel": [w for one in self.turned(kernel) for w in one.ravel(order=order).tolist()]}
+        return {**options, "kernel": [w for one in self.turned(list(kernel)) for w in one.ravel(order=order).tolist()]}
 
     def library_axis(self, axis: int | str) -> int:
         number = axis_number(axis, self.names, self.ndim)

@@ -15,13 +15,12 @@ import sys
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 
 # Clang 14 substitutes the types of parameters before it tests the constraint, and then names the type.
-CUT = "DimensionBetween<\\w+, 3, 4>|constraints not satisfied for class template '(Hyperplane|Contour)' \\[with N = [15]"
+CUT = "DimensionBetween<\\w+, 3, 5>|constraints not satisfied for class template '(Hyperplane|Contour)' \\[with N = [16]"
 # (program, what the compiler has to say, as a regular expression): the constraint, with the dimensions that there are.
 REFUSED = [
     ("#include \"tegl/image.hpp\"\nconst tegl::Image<float, 1>* image;\n", "DimensionBetween<\\w+, 2, 5>"),
     ("#include \"tegl/image.hpp\"\nconst tegl::Image<float, 6>* image;\n", "DimensionBetween<\\w+, 2, 5>"),
     ("#include \"tegl/image.hpp\"\nconst tegl::Image<long double, 3>* image;\n", "\\bValue\\b"),
-    ("#include \"tegl/slice.hpp\"\nauto f(const tegl::Contour<5>& c) { return tegl::slice(c, {}); }\n", CUT),
     ("#include \"tegl/slice.hpp\"\nauto f(const tegl::Contour<2>& c) { return tegl::slice(c, {}); }\n", CUT),
 ]
 

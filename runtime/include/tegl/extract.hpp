@@ -33,7 +33,7 @@ enum class Normals { none, differences, sobel, prewitt, forward, backward, conte
 /// divided by the sum of the differences' weights, so that a linear function has its exact slope; this sum must not be
 /// 0. Source: M. Liversage, thesis, 1994, 8.2.13 to 8.2.15.
 struct GradientKernel {
-  std::vector<double> weights;
+  std::vector<double> weights = {};  ///< 3^N or N 3^N
 };
 
 /// Options of all functions that extract contours: in memory, streamed, counted, as facets, slices or components.

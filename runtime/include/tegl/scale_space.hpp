@@ -23,7 +23,7 @@ enum class ScaleQuantity : std::uint8_t { values, laplacian };
 
 /// Options of ScaleSpaceLayers.
 struct ScaleSpaceOptions {
-  ScaleQuantity quantity = ScaleQuantity::values;
+  ScaleQuantity quantity = ScaleQuantity::values;  ///< what the samples of a layer are
   /// By axis: sigma along it as a multiple of the scale; 0 for an axis that is not smoothed, such as the time. Empty: 1
   /// for all.
   std::vector<double> factors = {};
