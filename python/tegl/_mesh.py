@@ -174,7 +174,7 @@ def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
     others = [name for name, _ in pairs if name not in _TYPES and not name.startswith(("vertex", "line"))]
     if others:
         raise ValueError(f"cells are of type {others[0]!r}; expected one of {', '.join(map(repr, _TYPES))}")
-    is_flat = len(flat) == len(known)
+    is_flat = bool(flat) and len(flat) == len(known)
     cells = flat if is_flat else [pair for pair in known if _TYPES[pair[0]][0] not in (5, 8, 9)]
     points = _arguments.real("points", mesh.points)
     if is_flat and points.ndim and points.shape[-1] == 3:
@@ -206,6 +206,7 @@ def contour_points(points, values, level: float, *, triangulation: _kinds.Triang
 
     The other arguments are those of `tegl.contour_mesh`.
     """
+    _require_unmasked("points", points)
     places = _arguments.real("points", points).astype(np.float64)
     if places.ndim != 2 or not 2 <= places.shape[1] <= 4:
         raise ValueError(f"points have the shape {places.shape}; expected (#P, N) with N = 2 to 4")

@@ -274,7 +274,8 @@ class ContourCommand final : public Command {
   /// Options of this command that need an image.
   [[nodiscard]] std::vector<std::string> given_for_images() const {
     std::vector<std::string> given;
-    for (const char* const name : {"--facets", "--stream", "--index", "--pick"})
+    for (const char* const name :
+         {"--facets", "--stream", "--index", "--pick", "--positions", "--positions-image", "--last-axis-weight"})
       if (app().count(name) > 0) given.emplace_back(name);
     return given;
   }

@@ -127,7 +127,9 @@ class FilterCommand final : public Command {
                     "(missing); one word, or one for each axis")
         ->type_name("WORDS")
         ->capture_default_str();
-    app().add_flag("--fill", fill_, "missing samples get values from their neighbours; by default they stay missing");
+    app().add_flag(
+        "--fill", fill_,
+        "missing samples get values from their neighbours; by default they stay missing. Not for --contextual");
     app().add_flag("--normalize", normalize_, "with --kernel: divide the weights by their sum");
     app().add_flag("--stream", stream_, "read, filter and write layer by layer, for images larger than memory");
     add_threads_option(app(), threads_);
@@ -160,6 +162,7 @@ class FilterCommand final : public Command {
     if ((value_option_->count() > 0) != (kind_ == "bilateral"))
       refuse(kind_ == "bilateral" ? "--bilateral without --value-sigma; expected the sigma of the values"
                                   : fmt::format("--value-sigma with {}; expected it with --bilateral", option()));
+    if (fill_ && kind_ == "contextual") refuse("--fill with --contextual, which leaves missing samples unchanged");
     if (normalize_ && kind_ != "kernel")
       refuse(fmt::format("--normalize with {}; expected it with --kernel", option()));
   }

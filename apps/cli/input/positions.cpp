@@ -59,8 +59,8 @@ void PositionArguments::require() const {
   if (rule_ != "filtered" && !file_.empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--positions-image with --positions {}; expected --positions filtered", rule_));
-  if (parse_finite("--last-axis-weight", weight_) < 0)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("--last-axis-weight is {}; expected 0 or more", weight_));
+  if (const double weight = parse_finite("--last-axis-weight", weight_); weight < 0 || weight > 1e6)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--last-axis-weight is {}; expected 0 to 1000000", weight_));
   if (rule_ != "relaxed" && parse_finite("--last-axis-weight", weight_) != 1)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--last-axis-weight with --positions {}; expected --positions relaxed", rule_));

@@ -89,14 +89,29 @@ std::string direction_lines(const ImageHead& head, std::size_t count, const std:
     }
     text += " " + vector_text(column);
   }
-  return text + fmt::format("\nspace origin: {}\n", vector_text(origin));
+  std::string units;
+  for (std::size_t a = 0; a < count; ++a) units += " " + quoted(head.grid.axes[a].unit);
+  return text + fmt::format("\nspace units:{}\nspace origin: {}\n", units, vector_text(origin));
+}
+
+/// Number of axes that may have directions in space; the time has none.
+std::size_t spatial_axes(const ImageHead& head) { return head.axes() == 4 && head.is_separate(3) ? 3 : head.axes(); }
+
+/// The space that the format has a name for, or nothing.
+std::string space_of_image(const ImageHead& head) {
+  return spatial_axes(head) == 3 ? space_of(head.info.world_frame) : "";
+}
+
+/// Number of axes that are written with directions.
+std::size_t directed_axes(const ImageHead& head) {
+  return head.has_world_map() || !space_of_image(head).empty() ? spatial_axes(head) : 0;
 }
 
 std::string geometry_lines(const ImageHead& head, const PendingPath& file) {
   const std::size_t axes = head.axes();
-  const std::size_t spatial = axes == 4 && head.is_separate(3) ? 3 : axes;
-  const std::string space = spatial == 3 ? space_of(head.info.world_frame) : "";
-  const bool directed = head.has_world_map() || !space.empty();
+  const std::size_t spatial = spatial_axes(head);
+  const std::string space = space_of_image(head);
+  const bool directed = directed_axes(head) > 0;
   if (directed && axes > 4)
     fail(ErrorCode::UnsupportedData, file.target(), "{} axes with a world map; expected at most 4", axes);
   std::string spacings = "spacings:";
@@ -118,10 +133,12 @@ std::string geometry_lines(const ImageHead& head, const PendingPath& file) {
 std::unique_ptr<LayerWriter> write_nrrd(const PendingPath& file, const ImageHead& head) {
   require_uniform(head, file);
   std::string sizes, labels, units, centers;
+  const std::size_t directed = directed_axes(head);
   for (std::size_t a = 0; a < head.axes(); ++a) {
     sizes += fmt::format(" {}", head.grid.axes[a].size());
     labels += " " + quoted(head.axis_name(a));
-    units += " " + quoted(head.grid.axes[a].unit);
+    // an axis with a direction has no unit of its own, but that of the space
+    units += " " + quoted(a < directed ? std::string() : head.grid.axes[a].unit);
     centers += " node";
   }
   std::string header = "NRRD0005\n";

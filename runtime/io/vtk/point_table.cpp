@@ -142,6 +142,10 @@ class TableReader {
   /// Returns whether this first line has the names of the columns.
   bool start(const std::vector<std::string_view>& fields) {
     const bool has_names = !std::all_of(fields.begin(), fields.end(), &is_number);
+    const auto numeric = std::find_if(fields.begin(), fields.end(), &is_number);
+    if (has_names && numeric != fields.end())
+      fail(ErrorCode::MalformedFile, path_, "line {} has numbers, such as {}, and {}; expected numbers only, or names",
+           line_, shown(*numeric), shown(*std::find_if_not(fields.begin(), fields.end(), &is_number)));
     std::vector<std::string> names;
     if (has_names) names.assign(fields.begin(), fields.end());
     count_ = fields.size();

@@ -287,7 +287,7 @@ ValueArray read_cell_values(const VtkFile& file, std::string_view parent, const 
     if (array.components != components)
       fail(ErrorCode::MalformedFile, file.path(), "array {} has {} components; expected {}", shown(array.name),
            array.components, components);
-    ValueArray own = file.read(array, count * components, progress);
+    ValueArray own = file.read(array, checked_bytes(std::array{count, components}, 1, file.path()), progress);
     if (std::exchange(is_first, false)) {
       all = std::move(own);
       continue;

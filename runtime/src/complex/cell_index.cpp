@@ -53,14 +53,23 @@ CellIndex::CellIndex(const Complex<N>& complex, const WorkOptions& work)
   detail::tell(work.progress, 1.0);
 }
 
+namespace {
+/// The middle of a range whose ends may be infinite.
+double middle_of(float low, float high) noexcept {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return 0.5 * static_cast<double>(std::max(low, -kMost)) + 0.5 * static_cast<double>(std::min(high, kMost));
+}
+}  // namespace
+
 std::uint32_t CellIndex::add_node(Range* first, Range* end) {
-  // The maximum of the cell in the middle: its range contains it.
+  // A value in the range of the cell in the middle, so that each side has at most half of the cells.
   Range* const middle = first + (end - first) / 2;
   std::nth_element(first, middle, end, [](const Range& a, const Range& b) {
-    return a.low / 2 + a.high / 2 < b.low / 2 + b.high / 2 ||
-           (a.low / 2 + a.high / 2 == b.low / 2 + b.high / 2 && a.cell < b.cell);
+    const double of_a = middle_of(a.low, a.high), of_b = middle_of(b.low, b.high);
+    return of_a < of_b || (of_a == of_b && a.cell < b.cell);
   });
-  const float value = middle->high;
+  const auto centre = static_cast<float>(middle_of(middle->low, middle->high));
+  const float value = middle->low < centre && centre <= middle->high ? centre : middle->high;
   Range* const inside = std::partition(first, end, [&](const Range& range) { return range.high < value; });
   Range* const above = std::partition(inside, end, [&](const Range& range) { return range.low < value; });
   const auto node = static_cast<std::uint32_t>(nodes_.size());

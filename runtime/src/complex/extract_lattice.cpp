@@ -232,8 +232,9 @@ void add_normals(const Complex<N>& complex, const LatticeGradients<N>& gradients
 
 template <int N>
 void check_lattice_options(double isovalue, ExtractOptions options) {
-  if (options.normals == Normals::sobel)
-    throw Error(ErrorCode::InvalidArgument, "normals by the Sobel kernel on a lattice; expected differences");
+  if (options.normals != Normals::none && options.normals != Normals::differences)
+    throw Error(ErrorCode::InvalidArgument,
+                "normals on a lattice by a kernel, by context or to one side; expected differences");
   options.normals = Normals::none;
   check_complex_options(isovalue, options);
 }

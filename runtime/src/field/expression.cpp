@@ -52,6 +52,8 @@ struct Evaluator {
     parser.DefineFun("torus", torus_function, true);
     parser.SetExpr(text);
     parser.Eval();  // finds errors
+    if (parser.GetNumResults() != 1)
+      throw mu::ParserError("has " + std::to_string(parser.GetNumResults()) + " values, separated by commas");
   }
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
@@ -104,13 +106,17 @@ Field make_expression(const std::string& text, int dim) {
                 fmt::format("the expression '{}': {}; expected an expression of {} and r", text, error.GetMsg(),
                             fmt::join(kCoordinates.begin(), kCoordinates.begin() + dim, ", ")));
   }
-  return Field(dim, [evaluators, dim](const double* start, double step, std::size_t count, double* out) {
+  return Field(dim, [evaluators, dim, text](const double* start, double step, std::size_t count, double* out) {
     std::unique_ptr<Evaluator> one = evaluators->take();
-    std::copy_n(start, dim, one->at.begin());
-    for (std::size_t i = 0; i < count; ++i) {
-      one->at[0] = start[0] + static_cast<double>(i) * step;
-      one->distance = norm(one->at.data(), dim);
-      out[i] = one->parser.Eval();
+    try {
+      for (std::size_t i = 0; i < count; ++i) {
+        std::copy_n(start, dim, one->at.begin());  // each time, because an expression may assign
+        one->at[0] = start[0] + static_cast<double>(i) * step;
+        one->distance = norm(one->at.data(), dim);
+        out[i] = one->parser.Eval();
+      }
+    } catch (const mu::ParserError& error) {  // in a part that was not evaluated before
+      throw Error(ErrorCode::InvalidArgument, fmt::format("the expression '{}': {}", text, error.GetMsg()));
     }
     evaluators->give_back(std::move(one));
   });

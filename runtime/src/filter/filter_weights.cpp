@@ -52,7 +52,7 @@ AxisWeights gaussian_weights(double sigma, double truncate) {
 AxisWeights discrete_gaussian_weights(double sigma) {
   require_sigma(sigma, kMostRadius / 10);
   const double t = sigma * sigma;
-  if (t == 0) return {1.0};
+  if (t < 1e-8) return {1.0};  // less than the remainder that is dropped below
   // Miller's recurrence I_(k-1) = I_(k+1) + (2 k / t) I_k, downwards from where I_k is negligible; scaled by
   // e^t = I_0 + 2 I_1 + 2 I_2 + ..., which `mirrored` divides by.
   const auto start = static_cast<std::size_t>(std::ceil(t + 12 * sigma + 20));

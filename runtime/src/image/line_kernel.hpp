@@ -128,7 +128,7 @@ std::array<double, N> kernel_gradient(const LineKernel<N>& kernel, const ValuesA
     double present = 0.0;
     for (std::size_t line = 0; line < LineKernel<N>::kLines; ++line) {
       const auto [backward, forward] = kernel.lines[a][line];
-      const double weight = backward == forward ? forward : backward + forward;
+      const double weight = backward + forward;
       if (weight == 0.0 && backward == 0.0) continue;
       const std::size_t middle = LineKernel<N>::middle(line, stride);
       const double here = values[middle];

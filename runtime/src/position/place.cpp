@@ -30,9 +30,9 @@ void check_positions(const PositionOptions& positions, std::size_t samples, int 
   if (!(positions.margin > 0 && positions.margin < 0.5))
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("a margin of {}; expected more than 0 and less than 0.5", positions.margin));
-  if (!(positions.last_axis_weight >= 0 && std::isfinite(positions.last_axis_weight)))
+  if (!(positions.last_axis_weight >= 0 && positions.last_axis_weight <= 1e6))
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("a weight of the last axis of {}; expected 0 or more", positions.last_axis_weight));
+                fmt::format("a weight of the last axis of {}; expected 0 to 1000000", positions.last_axis_weight));
 }
 
 namespace {

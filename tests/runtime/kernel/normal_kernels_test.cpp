@@ -89,6 +89,22 @@ TEST(GradientKernels, GiveTheNormalsOfTheNamedKinds) {
   expect_kernels_as_named_kinds<5>({3, 3, 3, 3, 3});
 }
 
+TEST(GradientKernels, MayMixSymmetricAndOneSidedLines) {
+  // along axis 0: differences to both sides on the outer lines, forward ones on the middle line, of the same weight
+  GradientKernel kernel{{-0.5, 0, 0.5, 0, -1, 1, -0.5, 0, 0.5, 0, -0.5, 0, 0, 0, 0, 0, 0.5, 0}};
+  const auto image = sample_field<double, 2>(Grid<2>::unit({5, 5}), [](const Point<2>& x) {
+    return x[1] == 2.0 ? 2.0 * x[0] + x[1] : x[0] + x[1];  // twice as steep on the middle line
+  });
+  const auto contour = extract<double>(image.view(), 5.5, options_of(Normals::kernel, kernel));
+  std::size_t compared = 0;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    if (contour.vertices[v][1] != 2.0) continue;
+    ++compared;  // slopes of 1, 2 and 1 on lines of the same weight
+    EXPECT_NEAR(contour.normals[v][0] / contour.normals[v][1], (1.0 + 2.0 + 1.0) / 3, 1e-12);
+  }
+  EXPECT_EQ(compared, 1u);
+}
+
 TEST(GradientKernels, AreTheSumOfTheirWeightsTimesTheValues) {
   // one kernel for each axis, all of them different
   std::mt19937_64 bits(12);
