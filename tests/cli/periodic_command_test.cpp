@@ -127,7 +127,7 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   expect_refused({"--lattice", "bcc", "--periodic", "x", "-o", output}, "--periodic x with --lattice bcc");
   expect_refused({"--lattice", "bcc", "--close", "-o", output}, "close");
   expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
-  expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output}, "Sobel kernel on a lattice");
+  expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output}, "normals on a lattice by a kernel");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});
   EXPECT_FALSE(read_mesh(output).normals.empty());
 }

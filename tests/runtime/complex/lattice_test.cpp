@@ -360,7 +360,8 @@ TEST(Lattice, BadGridsAreRefused) {
                [&] { (void)lattice_complex(image.view(), Lattice::fcc); });
   ExtractOptions options;
   options.normals = Normals::sobel;
-  expect_error(ErrorCode::InvalidArgument, "normals by the Sobel kernel on a lattice; expected differences",
+  expect_error(ErrorCode::InvalidArgument,
+               "normals on a lattice by a kernel, by context or to one side; expected differences",
                [&] { (void)extract_lattice(image.view(), Lattice::fcc, 0.5, options); });
   EXPECT_EQ(name_of(Lattice::bcc), "bcc");
 }
