@@ -3,6 +3,7 @@
 // Normals of contours: of simplices, averaged at vertices, and from gradients of the image; see tegl/normals.hpp.
 #include "tegl/normals.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/periods.hpp"
@@ -132,57 +133,68 @@ GridEdge edge_of(detail::CellPlace<N>& place) noexcept {
   return edge;
 }
 
-/// Gradients at all vertices, as normals. Compiled once for all value types.
+/// Calls `on_edge(vertex, first sample, edge)` for the vertices on edges of the grid, if `wants_edges`, and
+/// `in_cell(vertex, place)` for the others. Vertices outside of the grid are left out. Compiled once for all value
+/// types.
+template <int N, class Real, class OnEdge, class InCell>
+void visit_places(const Grid<N>& grid, const Contour<N, Real>& contour, const WorkOptions& work, bool wants_edges,
+                  const OnEdge& on_edge, const InCell& in_cell) {
+  const detail::GridLocator<N> locator(grid);
+  detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
+    detail::CellPlace<N> place;
+    if (!locator.find(detail::widened_point<N>(contour.vertices[v]), place)) return;
+    if (wants_edges) {
+      detail::CellPlace<N> moved = place;
+      if (const GridEdge edge = edge_of<N, Real>(moved); edge.axis >= 0) {
+        on_edge(v, moved.base, edge);
+        return;
+      }
+    }
+    in_cell(v, place);
+  });
+}
+
+/// Gradients at all vertices, as normals; 0 outside of the grid.
 template <int N, class Real>
 void interpolate_gradients(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid,
                            const Contour<N, Real>& contour, const WorkOptions& work, bool depends_on_edges,
                            Buffer<typename Contour<N, Real>::Vertex>& normals) {
-  const detail::GridLocator<N> locator(grid);
-  detail::for_each_item(normals.size(), work.threads, work.progress, [&](std::size_t v) {
-    std::array<double, N> point;
-    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
-    detail::CellPlace<N> place;
-    normals[v] = {};
-    if (!locator.find(point, place)) return;
-    if (depends_on_edges) {
-      detail::CellPlace<N> moved = place;
-      if (const GridEdge edge = edge_of<N, Real>(moved); edge.axis >= 0) {
-        normals[v] = writer.on_edge(moved.base, edge.axis, edge.alpha);
-        return;
-      }
-    }
-    normals[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
-  });
+  std::fill(normals.begin(), normals.end(), typename Contour<N, Real>::Vertex{});
+  visit_places<N, Real>(
+      grid, contour, work, depends_on_edges,
+      [&](std::size_t v, const auto& first, const GridEdge& edge) {
+        normals[v] = writer.on_edge(first, edge.axis, edge.alpha);
+      },
+      [&](std::size_t v, const detail::CellPlace<N>& place) {
+        normals[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
+      });
 }
 
 /// The uncertainty at all vertices, interpolated as the gradients are.
 template <int N, class Real>
 void find_uncertainty(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid, const Contour<N, Real>& contour,
                       const WorkOptions& work, Buffer<double>& result) {
-  const detail::GridLocator<N> locator(grid);
-  detail::for_each_item(result.size(), work.threads, work.progress, [&](std::size_t v) {
-    detail::CellPlace<N> place;
-    if (!locator.find(detail::widened_point<N>(contour.vertices[v]), place)) return;
-    detail::CellPlace<N> moved = place;
-    if (const GridEdge edge = edge_of<N, Real>(moved); edge.axis >= 0) {
-      auto there = moved.base;
-      ++there[edge.axis];
-      result[v] = (1.0 - edge.alpha) * writer.uncertainty_at(moved.base, {edge.axis, 1}) +
-                  edge.alpha * writer.uncertainty_at(there, {edge.axis, -1});
-      return;
-    }
-    result[v] = 0.0;
-    for (unsigned corner = 0; corner < 1u << N; ++corner) {
-      double weight = 1.0;
-      auto index = place.base;
-      for (int a = 0; a < N; ++a) {
-        const bool is_upper = (corner >> a & 1u) != 0;
-        weight *= is_upper ? place.share[a] : 1.0 - place.share[a];
-        index[a] += is_upper ? 1 : 0;
-      }
-      if (weight > 0.0) result[v] += weight * writer.uncertainty_at(index, {});
-    }
-  });
+  visit_places<N, Real>(
+      grid, contour, work, true,
+      [&](std::size_t v, const auto& first, const GridEdge& edge) {
+        auto second = first;
+        ++second[edge.axis];
+        result[v] = (1.0 - edge.alpha) * writer.uncertainty_at(first, {edge.axis, 1}) +
+                    edge.alpha * writer.uncertainty_at(second, {edge.axis, -1});
+      },
+      [&](std::size_t v, const detail::CellPlace<N>& place) {
+        result[v] = 0.0;
+        for (unsigned corner = 0; corner < 1u << N; ++corner) {
+          double weight = 1.0;
+          auto index = place.base;
+          for (int a = 0; a < N; ++a) {
+            const bool is_upper = (corner >> a & 1u) != 0;
+            weight *= is_upper ? place.share[a] : 1.0 - place.share[a];
+            index[a] += is_upper ? 1 : 0;
+          }
+          if (weight > 0.0) result[v] += weight * writer.uncertainty_at(index, {});
+        }
+      });
 }
 
 }  // namespace
