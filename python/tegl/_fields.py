@@ -33,8 +33,8 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int = 3, limits
     expression
         Whether `field` is an expression; by default, if it is not a word.
     lattice
-        The lattice of the samples: odd layers of the first axis are shifted (see `tegl.contour`). The step between
-        layers is then that of the regular lattice, and the last coordinate along the first axis differs.
+        The lattice of the samples: odd layers are shifted (see `tegl.contour`). The step between layers is then
+        the regular lattice's, and the last coordinate along their axis differs.
     """
     sizes = [shape] * _arguments.as_whole("ndim", ndim, 2) if isinstance(shape, (int, np.integer)) else list(shape)
     sizes = [_arguments.as_whole("shape", size, 2) for size in sizes]
