@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How often the triangles of one cube intersect: scikit-image, VTK and tegl on the same random images.
 
-    PYTHONPATH=build/release/python bench/peer_intersections.py [--cells N] [--seed S]
+    PYTHONPATH=build/release/python bench/peers/intersections.py [--cells N] [--seed S]
 
 Each image has 2 x 2 x 2 samples. Its signature (the set of samples above the isovalue) is random; the distances of the
 samples from the isovalue are uniform, or have a uniform logarithm over three decades. tegl.intersections counts the
@@ -25,7 +25,7 @@ try:
     from vtkmodules.vtkCommonDataModel import vtkImageData
     from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D, vtkMarchingCubes
 except ImportError as error:
-    sys.exit(f"peer_intersections.py: {error}; expected Debian's python3-skimage and python3-vtk9")
+    sys.exit(f"intersections.py: {error}; expected Debian's python3-skimage and python3-vtk9")
 
 DISTANCES = ("uniform", "log-uniform")
 

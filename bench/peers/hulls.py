@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How often the contour of a 4D cell intersects itself if it is a part of a convex hull.
 
-    PYTHONPATH=build/release/python bench/hull_intersections.py [--cells N] [--pairs N] [--seed S]
+    PYTHONPATH=build/release/python bench/peers/hulls.py [--cells N] [--pairs N] [--seed S]
 
 The contour of a signature (the set of high corners) is the hull of the high corners and of the points on the edges
 between high and low corners, without the facets in the cell's boundary. As in a table, tetrahedra are found once for

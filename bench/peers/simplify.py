@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fewer triangles: tegl against VTK's vtkQuadricDecimation and vtkDecimatePro, and against meshoptimizer.
 
-    bench/simplify_peers.py PROGRAM [--samples N] [--ratio R] [--turns N]
+    bench/peers/simplify.py PROGRAM [--samples N] [--ratio R] [--turns N]
 
 PROGRAM is `tegl`. All sides get the same triangles (contours of fields of N^3 samples) and the same target, one thread,
 and take turns, so that other work on the machine disturbs all of them. tegl measures itself (`seconds` of its report);
