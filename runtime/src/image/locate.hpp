@@ -35,9 +35,12 @@ class GridLocator {
  public:
   explicit GridLocator(const Grid<N>& grid)
       : axes_(grid.axes), mapped_(grid.has_world_map()), inverse_(inverse_of<N>(grid.linear)), offset_(grid.offset) {
-    for (int a = 0; a < N; ++a)
-      for (std::size_t i = 0; i < axes_[a].size() && !axes_[a].is_uniform(); ++i)
-        keys_[a].push_back(axes_[a].is_descending() ? -axes_[a][i] : axes_[a][i]);
+    for (int a = 0; a < N; ++a) {
+      const Axis& axis = axes_[a];
+      lines_[a] = {axis.origin(), axis.step(), axis.size() - 1, axis.is_uniform(), axis.is_descending()};
+      for (std::size_t i = 0; i < axis.size() && !axis.is_uniform(); ++i)
+        keys_[a].push_back(axis.is_descending() ? -axis[i] : axis[i]);
+    }
   }
 
   /// Returns false for points outside the grid (by more than kSlack) and for points that are not finite. On axes with
@@ -64,40 +67,51 @@ class GridLocator {
     return true;
   }
 
+  /// The axis's properties, so that points need no calls.
+  struct Line {
+    double origin;
+    double step;
+    std::size_t last;  ///< sample
+    bool uniform;
+    bool descending;
+
+    [[nodiscard]] double at(std::size_t i) const noexcept { return origin + static_cast<double>(i) * step; }
+  };
+
   bool find_along(int a, double x, double slack, std::size_t& base, double& share) const noexcept {
-    const Axis& axis = axes_[a];
-    const std::size_t last = axis.size() - 1;
+    const Line& line = lines_[a];
     base = 0;
     share = 0.0;
     if (!std::isfinite(x)) return false;
-    if (last == 0) return std::abs(x - axis[0]) <= slack * std::abs(axis.step());
-    base = axis.is_uniform() ? uniform_base(axis, x, last) : uneven_base(a, x, last);
-    const double here = axis[base];
-    share = (x - here) / (axis[base + 1] - here);
+    if (line.last == 0) return std::abs(x - line.origin) <= slack * std::abs(line.step);
+    base = line.uniform ? uniform_base(line, x) : uneven_base(a, x);
+    const double here = line.uniform ? line.at(base) : axes_[a][base];
+    const double next = line.uniform ? line.at(base + 1) : axes_[a][base + 1];
+    share = (x - here) / (next - here);
     if (!(share >= -slack && share <= 1.0 + slack)) return false;
     share = std::clamp(share, 0.0, 1.0);
     return true;
   }
 
-  static std::size_t uniform_base(const Axis& axis, double x, std::size_t last) noexcept {
-    const double index = (x - axis.origin()) / axis.step();
+  static std::size_t uniform_base(const Line& line, double x) noexcept {
+    const double index = (x - line.origin) / line.step;
     if (!(index > 0.0)) return 0;
-    auto base = index >= static_cast<double>(last) ? last - 1 : static_cast<std::size_t>(index);
+    auto base = index >= static_cast<double>(line.last) ? line.last - 1 : static_cast<std::size_t>(index);
     // The quotient may have a rounding error, so the samples themselves are compared.
-    const bool descending = axis.is_descending();
-    if (base > 0 && (descending ? x > axis[base] : x < axis[base])) --base;
-    if (base + 1 < last && (descending ? x <= axis[base + 1] : x >= axis[base + 1])) ++base;
+    if (base > 0 && (line.descending ? x > line.at(base) : x < line.at(base))) --base;
+    if (base + 1 < line.last && (line.descending ? x <= line.at(base + 1) : x >= line.at(base + 1))) ++base;
     return base;
   }
 
-  std::size_t uneven_base(int a, double x, std::size_t last) const noexcept {
+  std::size_t uneven_base(int a, double x) const noexcept {
     const std::vector<double>& keys = keys_[a];
     const double key = axes_[a].is_descending() ? -x : x;
     const auto above = static_cast<std::size_t>(std::upper_bound(keys.begin(), keys.end(), key) - keys.begin());
-    return std::min(above == 0 ? 0 : above - 1, last - 1);
+    return std::min(above == 0 ? 0 : above - 1, lines_[a].last - 1);
   }
 
   std::array<Axis, N> axes_;
+  std::array<Line, N> lines_;
   std::array<std::vector<double>, N> keys_;  ///< ascending; only for non-uniform axes
   bool mapped_;
   Matrix<N> inverse_;
