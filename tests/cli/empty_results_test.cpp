@@ -176,5 +176,20 @@ TEST_F(EmptyResults, DoNotExcuseAnAxisScaledTwice) {
   EXPECT_EQ(run_tegl({"index", balls_, "--method", "seed-set", "--scan-order", "0,0,1,2"}).exit, 2);
 }
 
+TEST_F(EmptyResults, OfAMeshWithoutVisibleCellsAreErrorsUnlessAllowed) {
+  const std::string mesh = write(
+      "hidden.vtu",
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray>"
+      "</Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
+      "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells><PointData>"
+      "<DataArray type=\"Float32\" Name=\"v\" format=\"ascii\">0 1 1 1</DataArray></PointData><CellData>"
+      "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">32</DataArray></CellData></Piece>"
+      "</UnstructuredGrid></VTKFile>");
+  expect_outside({"contour", mesh, "--iso", "0.5", "-o", path("out.vtkhdf")}, "hidden");
+  expect_empty_mesh("out.vtkhdf", 3);
+}
+
 }  // namespace
 }  // namespace tegl::test

@@ -379,7 +379,7 @@ class InfoCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a mesh; expected it without {}", file(),
                                                           given.empty() ? "other files" : given.front()));
     ProgressBar bar(streams.err, wants_progress());
-    const CellMeshInfo info = describe_cell_mesh(file(), images().cell_mesh_options(1, bar.stage("read")));
+    const CellMeshInfo info = describe_cell_mesh(file(), images().cell_mesh_options(bar.stage("read")));
     bar.clear();
     streams.out.write(json() ? dump(mesh_json(info, inputs())) : mesh_text(streams.out, info, file()));
     return ExitCode::Ok;

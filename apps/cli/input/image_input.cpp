@@ -177,6 +177,9 @@ void ImageOptions::require_fitting_choice(const std::vector<std::string>& files)
 
 SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files) const {
   require_fitting_choice(files);
+  if (cells_to_points_)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--cells-to-points with {}, which is an image; expected it with a mesh", files.front()));
   if (raw() && !variable().empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} {} with --raw; expected no variable: raw values have no name",
@@ -252,7 +255,7 @@ OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const
   return remembered(with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); }));
 }
 
-CellMeshOptions ImageOptions::cell_mesh_options(std::size_t files, const Progress& progress) const {
+CellMeshOptions ImageOptions::cell_mesh_options(const Progress& progress) const {
   CellMeshOptions options;
   options.variable = variable_;
   options.cells_to_points = cells_to_points_;
@@ -261,9 +264,7 @@ CellMeshOptions ImageOptions::cell_mesh_options(std::size_t files, const Progres
   if (!times_.empty() && !time_step_.empty())
     throw Error(ErrorCode::InvalidArgument, "--times and --time-step; expected one of the two");
   if (!times_.empty()) options.times = parse_numbers("--times", times_);
-  if (!time_step_.empty())
-    for (std::size_t i = 0; i < files; ++i)
-      options.times.push_back(static_cast<double>(i) * parse_finite("--time-step", time_step_));
+  if (!time_step_.empty()) options.time_step = parse_finite("--time-step", time_step_);
   return options;
 }
 

@@ -39,7 +39,7 @@ class ImageOptions {
   [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
 
   /// The options to read FILE as a mesh: --var, --times, --time-step, --cells-to-points.
-  [[nodiscard]] CellMeshOptions cell_mesh_options(std::size_t files, const Progress& progress) const;
+  [[nodiscard]] CellMeshOptions cell_mesh_options(const Progress& progress) const;
 
   /// The variables of the files, as from list_image_variables; empty for raw files.
   [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;

@@ -41,7 +41,7 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
 
 MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
                           bool several) {
-  const CellMeshOptions options = images.cell_mesh_options(files.size(), progress);
+  const CellMeshOptions options = images.cell_mesh_options(progress);
   const auto read = [&] {
     try {
       return read_cell_mesh(std::vector<std::filesystem::path>(files.begin(), files.end()), options);
@@ -74,12 +74,17 @@ CutSpace space_of(const MeshInput& input) {
 
 void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty) {
   if (allow_empty) return;
+  if (mesh.types.empty())
+    throw EmptyResult(
+        fmt::format("{}; expected cells (--allow-empty: an empty result)", fmt::join(mesh.remarks, ", ")));
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   ValueRange range{kNone, kNone};
-  for (const double value : mesh.values) {
-    range.min = std::fmin(range.min, value);
-    range.max = std::fmax(range.max, value);
-  }
+  const std::size_t points = mesh.values.size() / std::max<std::size_t>(1, mesh.times.size());
+  for (std::size_t first = 0; first < mesh.values.size(); first += points)
+    for (const Index p : mesh.corners) {
+      range.min = std::fmin(range.min, mesh.values[first + p]);
+      range.max = std::fmax(range.max, mesh.values[first + p]);
+    }
   if (!(range.min < isovalue && isovalue <= range.max)) throw outside_error(isovalue, range, "");
 }
 

@@ -159,10 +159,17 @@ std::vector<Index> delaunay_of(const std::vector<double>& coordinates) {
   return delaunay_corners<N>(points);
 }
 
+void refuse_values_of_points(const fs::path& path, const std::string& variable, const CellMeshOptions& options) {
+  if (options.cells_to_points)
+    fail(ErrorCode::InvalidArgument, path,
+         "'{}' has values of points; expected values of cells for cells_to_points (--cells-to-points)", variable);
+}
+
 /// The Delaunay triangulation of a table's points.
 FileMesh read_table(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
   PointTable table = read_point_table(path, options.variable, progress);
   const std::size_t column = choose_column(table, options.variable, path);
+  refuse_values_of_points(path, table.value_names[column], options);
   FileMesh mesh;
   mesh.dim = static_cast<int>(table.dim());
   mesh.values = table.column(column);
@@ -193,6 +200,7 @@ FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Pr
          "array '{}' has values of cells; expected values of points, or the option to make point values of them by the "
          "mean of the cells at each point: cells_to_points (--cells-to-points)",
          variable.name);
+  if (!variable.on_cells) refuse_values_of_points(path, variable.name, options);
   std::vector<std::size_t> kept;
   add_cells(stored, mesh, kept, path);
   const ValueArray values =
@@ -213,7 +221,15 @@ FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const P
 std::vector<double> times_of(const std::vector<std::optional<double>>& own, const CellMeshOptions& options,
                              const std::vector<fs::path>& files) {
   std::vector<double> times = options.times;
-  if (times.empty() && own.size() == 1) return {};
+  const bool are_given = !times.empty() || options.time_step;
+  if (are_given && own.size() == 1)
+    fail(ErrorCode::InvalidArgument, files[0],
+         "is one mesh; expected several for times (--times) or a time step (--time-step)");
+  if (!times.empty() && options.time_step)
+    throw Error(ErrorCode::InvalidArgument, "times and a time step; expected one of the two");
+  if (own.size() == 1) return {};
+  for (std::size_t i = 0; i < own.size() && options.time_step; ++i)
+    times.push_back(static_cast<double>(i) * *options.time_step);
   if (!times.empty() && times.size() != own.size())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} times for {} files; expected one for each", times.size(), own.size()));
@@ -270,7 +286,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
       mesh.files.push_back(std::move(step.file));
       times.push_back(step.time);
     }
-    if (options.times.empty() && times.size() > 1) options.times = std::move(times);
+    if (options.times.empty() && !options.time_step && times.size() > 1) options.times = std::move(times);
   }
   std::vector<std::optional<double>> own_times;
   FileMesh first;

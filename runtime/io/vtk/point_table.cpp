@@ -47,6 +47,9 @@ bool is_number(std::string_view field) {
   return field.empty() || parse_number(field, number);
 }
 
+/// The name of the values in tables without names.
+constexpr const char* kUnnamed = "value";
+
 /// The meaning of the columns: the first `axes.size()` entries of a row of the table are coordinates.
 struct Columns {
   std::vector<std::size_t> axes;
@@ -74,10 +77,11 @@ Columns columns_of(const std::vector<std::string>& names, std::size_t count, con
     std::size_t value = count - 1;
     if (!variable.empty()) {
       const auto found = std::find(names.begin(), names.end(), variable);
-      if (found == names.end())
+      if (found == names.end() && !(names.empty() && variable == kUnnamed))
         fail(ErrorCode::VariableNotFound, path, "has no column '{}'; it has {}", variable,
-             names.empty() ? "columns without names" : fmt::format("{}", fmt::join(names, ", ")));
-      value = static_cast<std::size_t>(found - names.begin());
+             names.empty() ? fmt::format("columns without names, of which the last is '{}'", kUnnamed)
+                           : fmt::format("{}", fmt::join(names, ", ")));
+      if (found != names.end()) value = static_cast<std::size_t>(found - names.begin());
     }
     for (std::size_t c = 0; c < count; ++c)
       if (c != value) columns.axes.push_back(c);
@@ -152,7 +156,7 @@ class TableReader {
     columns_ = columns_of(names, count_, variable_, path_);
     for (std::size_t a = 0; a < columns_.axes.size(); ++a)
       table_.axis_names.push_back(has_names ? names[columns_.axes[a]] : std::string(1, "xyzt"[a]));
-    for (const std::size_t c : columns_.values) table_.value_names.push_back(has_names ? names[c] : "value");
+    for (const std::size_t c : columns_.values) table_.value_names.push_back(has_names ? names[c] : kUnnamed);
     return has_names;
   }
 
@@ -164,10 +168,29 @@ class TableReader {
     return value;
   }
 
+  /// Leaves out columns with text in the first row, such as names of stations. Text in later rows is an error.
+  void leave_out_text(const std::vector<std::string_view>& fields) {
+    std::vector<std::size_t> kept;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < columns_.values.size(); ++i) {
+      const std::size_t c = columns_.values[i];
+      const bool is_chosen = variable_.empty() ? columns_.values.size() == 1 : table_.value_names[i] == variable_;
+      if (!is_number(fields[c]) && !is_chosen) continue;
+      kept.push_back(c);
+      names.push_back(table_.value_names[i]);
+    }
+    if (kept.empty())
+      fail(ErrorCode::MalformedFile, path_, "line {} has text in all columns of values: {}; expected a number", line_,
+           fmt::join(table_.value_names, ", "));
+    columns_.values = std::move(kept);
+    table_.value_names = std::move(names);
+  }
+
   void read_row(const std::vector<std::string_view>& fields) {
     if (fields.size() != count_)
       fail(ErrorCode::MalformedFile, path_, "line {} has {} fields; expected {}, as in the first line", line_,
            fields.size(), count_);
+    if (table_.lines.empty()) leave_out_text(fields);
     for (const std::size_t c : columns_.axes) {
       const double x = number(fields[c], c, "a coordinate");
       if (!std::isfinite(x))

@@ -29,9 +29,10 @@ bool is_point_table(const std::filesystem::path& path);
 /// Reads a table. Fields are separated by commas, semicolons, tabs or blanks, whichever the first line has; lines that
 /// start with '#' are comments. If the first line has a field that is no number, it has the columns' names, and x, y, z
 /// and t (or time) are the coordinates, in this order. Without columns x and y, `variable` (or the last column) has the
-/// values, and all others are coordinates. A value that is empty or "nan" is missing. Errors, with the line:
-/// FileNotFound, MalformedFile (no number, not finite, another number of fields, two equal points), UnsupportedData
-/// (not 2 to 4 coordinates), VariableNotFound, Cancelled.
+/// values, and all others are coordinates. A value that is empty or "nan" is missing. Columns with text in the first
+/// row are left out, unless they are coordinates or `variable`. Without names, the values are called "value". Errors,
+/// with the line: FileNotFound, MalformedFile (no number, not finite, another number of fields, two equal points),
+/// UnsupportedData (not 2 to 4 coordinates), VariableNotFound, Cancelled.
 PointTable read_point_table(const std::filesystem::path& path, const std::string& variable, const Progress& progress);
 
 /// The number of the column of values named `variable`; if it is empty, of the only one. Errors: VariableNotFound.

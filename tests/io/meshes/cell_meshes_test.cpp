@@ -184,6 +184,20 @@ TEST(CellMesh, FilesOfASeriesMustMatch) {
   expect_error(ErrorCode::InvalidArgument, {"0.5", "ascending"}, [&] { read_cell_mesh(same, options); });
   options.times = {0.5, 1.0};
   EXPECT_EQ(to_complex(read_cell_mesh(same, options)).index(), 2U);  // 4D
+  options.time_step = 0.25;
+  expect_error(ErrorCode::InvalidArgument, {"times and a time step"}, [&] { read_cell_mesh(same, options); });
+  options.times.clear();
+  EXPECT_THAT(read_cell_mesh(same, options).times, testing::ElementsAre(0.0, 0.25));
+}
+
+TEST(CellMesh, OptionsThatDoNotFitAreErrors) {
+  TempDir dir;
+  write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));
+  const std::vector<std::pair<std::string, CellMeshOptions>> wrong = {{"one mesh", {.times = {1.0}}},
+                                                                      {"one mesh", {.time_step = 1.0}},
+                                                                      {"values of points", {.cells_to_points = true}}};
+  for (const auto& [part, options] : wrong)
+    expect_error(ErrorCode::InvalidArgument, {"a.vtu", part}, [&] { read(dir / "a.vtu", options); });
 }
 
 TEST(CellMesh, CollectionsNameFilesInTheirFolder) {
@@ -268,6 +282,22 @@ TEST(PointTable, ColumnsHaveNamesInAnyOrder) {
   EXPECT_THAT(read(dir / "b.csv").axis_names, testing::ElementsAre("lon", "lat"));
   write_file(dir / "c.csv", "0 0  1\n1 0 2\n 0 1 3\n1 1 4\n");
   EXPECT_THAT(read(dir / "c.csv").values, testing::ElementsAre(1, 2, 3, 4));
+  options.variable = "value";
+  EXPECT_THAT(read(dir / "c.csv", options).values, testing::ElementsAre(1, 2, 3, 4));
+}
+
+TEST(PointTable, ColumnsOfTextAreLeftOut) {
+  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
+  TempDir dir;
+  write_file(dir / "a.csv", "station,x,y,v\nA1,0,0,1\nB2,1,0,2\n3,0,1,3\nC,1,1,4\n");
+  const CellMesh mesh = read(dir / "a.csv");
+  EXPECT_EQ(mesh.variable, "v");
+  EXPECT_THAT(mesh.values, testing::ElementsAre(1, 2, 3, 4));
+  CellMeshOptions options;
+  options.variable = "station";
+  expect_error(ErrorCode::MalformedFile, {"line 2, column 1", "'A1'"}, [&] { read(dir / "a.csv", options); });
+  write_file(dir / "b.csv", "x,y,a,b\n0,0,one,two\n");
+  expect_error(ErrorCode::MalformedFile, {"line 2", "a, b"}, [&] { read(dir / "b.csv"); });
 }
 
 TEST(PointTable, WrongRowsAreErrorsWithTheirLine) {

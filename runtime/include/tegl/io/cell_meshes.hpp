@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -40,11 +41,14 @@ struct CellMeshOptions {
   /// The array; NAME:K is component K of a vector and NAME:magnitude its length. Empty: the only one of one component.
   /// Tables: the column.
   std::string variable = {};
-  /// Values of cells become values of points: the mean of the cells at the point, as by vtkCellDataToPointData.
+  /// Values of cells become values of points: the mean of the cells at the point, as by vtkCellDataToPointData. An
+  /// error for values of points.
   bool cells_to_points = false;
-  std::vector<double> times = {};    ///< one per file, ascending; empty: those in the files, else 0, 1, 2, ...
-  bool allow_outside_paths = false;  ///< a .pvd file may name files outside of its folder
-  WorkOptions work = {};             ///< progress; files are read by one thread
+  /// One per mesh, ascending; empty: those in the files, else 0, 1, 2, ... For several meshes only.
+  std::vector<double> times = {};
+  std::optional<double> time_step = {};  ///< in place of times: 0, this, twice this, ...
+  bool allow_outside_paths = false;      ///< a .pvd file may name files outside of its folder
+  WorkOptions work = {};                 ///< progress; files are read by one thread
 };
 
 /// Whether a file is a mesh of cells: by extension (.vtu, .vts, .csv); a .pvd file by the files that it names. Errors:
@@ -66,7 +70,8 @@ struct CellMeshOptions {
 /// Errors, naming the file (and of a table the line): FileNotFound; MalformedFile (damaged, or numbers that contradict
 /// each other; two equal points of a table); UnsupportedFormat (a compressor other than zlib; parallel files, which
 /// name others); UnsupportedData (polyhedra, curved cells and other types; no cells of 2 or 3 dimensions; values of
-/// cells without cells_to_points; files of a series that do not match); VariableNotFound; InvalidArgument (times);
+/// cells without cells_to_points; files of a series that do not match); VariableNotFound; InvalidArgument (times;
+/// cells_to_points with values of points);
 /// TooLarge; Cancelled.
 [[nodiscard]] CellMesh read_cell_mesh(std::span<const std::filesystem::path> files,
                                       const CellMeshOptions& options = {});
