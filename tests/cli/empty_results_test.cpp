@@ -187,8 +187,13 @@ TEST_F(EmptyResults, OfAMeshWithoutVisibleCellsAreErrorsUnlessAllowed) {
       "<DataArray type=\"Float32\" Name=\"v\" format=\"ascii\">0 1 1 1</DataArray></PointData><CellData>"
       "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">32</DataArray></CellData></Piece>"
       "</UnstructuredGrid></VTKFile>");
-  expect_outside({"contour", mesh, "--iso", "0.5", "-o", path("out.vtkhdf")}, "hidden");
-  expect_empty_mesh("out.vtkhdf", 3);
+  std::vector<std::string> command = {"contour", mesh, "--iso", "0.5", "-o", path("out.vtkhdf")};
+  const RunResult refused = run_tegl(command);
+  EXPECT_EQ(refused.exit, 5);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("hidden"), HasSubstr("--allow-empty")));
+  command.emplace_back("--allow-empty");
+  EXPECT_EQ(run_tegl(command).exit, 0);
+  expect_empty_mesh("out.vtkhdf", 2);
 }
 
 }  // namespace

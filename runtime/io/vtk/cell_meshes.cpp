@@ -105,8 +105,8 @@ void add_cells(const StoredCells& stored, FileMesh& mesh, std::vector<std::size_
     kept.push_back(c);
   }
   if (others > 0)
-    mesh.remarks.push_back(fmt::format("{} cells of fewer than {} dimensions are left out", others, mesh.dim));
-  if (hidden > 0) mesh.remarks.push_back(fmt::format("{} cells are left out: hidden by vtkGhostType", hidden));
+    mesh.remarks.push_back(fmt::format("cells of fewer than {} dimensions are left out: {}", mesh.dim, others));
+  if (hidden > 0) mesh.remarks.push_back(fmt::format("cells hidden by vtkGhostType are left out: {}", hidden));
 }
 
 /// The mean, at each point, of the values of the cells that have it.

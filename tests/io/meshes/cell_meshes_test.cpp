@@ -166,7 +166,7 @@ TEST(CellMesh, GhostTypesAreReadFromAllPiecesAndMustBeWhole) {
   const CellMesh mesh = read(dir / "a.vtu");
   EXPECT_EQ(mesh.types.size(), 2U);
   ASSERT_EQ(mesh.remarks.size(), 1U);
-  EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("2 cells are left out: hidden"));
+  EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("hidden by vtkGhostType are left out: 2"));
   write_file(dir / "b.vtu", file(piece("0 nan", "Float32")));
   expect_error(ErrorCode::MalformedFile, {"vtkGhostType", "float", "UInt8"}, [&] { read(dir / "b.vtu"); });
 }
