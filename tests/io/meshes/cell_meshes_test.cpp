@@ -71,7 +71,7 @@ TEST(CellMesh, CellsOfFewerDimensionsAreLeftOutWithARemark) {
   const CellMesh mesh = read(dir / "a.vtu");
   EXPECT_EQ(mesh.types, std::vector{CellType::tetrahedron});
   ASSERT_EQ(mesh.remarks.size(), 1U);
-  EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("1 cells of fewer than 3 dimensions"));
+  EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("cells of fewer than 3 dimensions are left out: 1"));
 }
 
 struct WrongMesh {
