@@ -10,6 +10,7 @@
 #include "tegl/complex.hpp"
 #include "tegl/components.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/deviation.hpp"
 #include "tegl/dimensions.hpp"
 #include "tegl/elements.hpp"

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of images on curved grids: samples with coordinates of their own, such as ocean models with longitude and
+// latitude in arrays of two dimensions.
+//
+// The contour is made on the grid of the indices, and each vertex then gets a place between the samples' coordinates.
+// So the topology, and what is proved about it, are those of an image with straight axes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "tegl/contour.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/image.hpp"
+
+namespace tegl {
+
+/// One coordinate of the samples of a curved grid.
+struct CurvedAxis {
+  int axis = 0;        ///< which coordinate of the vertices this is, and the axis of the image that it stands for
+  unsigned along = 0;  ///< bit a: the coordinate differs along axis a of the image; bit `axis` is set
+  /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN: unknown.
+  std::vector<double> values = {};
+  bool operator==(const CurvedAxis&) const = default;  ///< equal if all numbers are
+};
+
+/// Cells of a curved grid that are not mapped to space one to one: at a corner, the edges have another orientation than
+/// in most cells, or none.
+template <int N>
+struct GridFolds {
+  std::uint64_t cells = 0;                            ///< number of such cells
+  std::array<std::size_t, N> first = {};              ///< index of the first one, if there is one
+  bool operator==(const GridFolds&) const = default;  ///< equal if both are
+};
+
+/// Finds the cells in which the grid is folded. The grid's own coordinates along curved axes are not used. Cells with
+/// unknown coordinates do not count. Errors: InvalidGrid (as `extract_curved`). O(cells) time.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] GridFolds<N> find_folds(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                                      const WorkOptions& work = {});
+
+/// The grid on which `on_curved_grid` expects a contour: along curved axes, indices (negative ones along one axis, if
+/// the curved grid has the other orientation); along others, the grid's own coordinates. Errors: InvalidGrid (as
+/// `extract_curved`).
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Grid<N> index_grid(const Grid<N>& grid, std::span<const CurvedAxis> curved);
+
+/// Moves a contour from index_grid(grid, curved) to the curved grid: vertices by multilinear interpolation of the
+/// samples' coordinates, normals by the Jacobian (central differences, interpolated). Attributes remain. Errors:
+/// InvalidGrid (as `extract_curved`); UnsupportedData for a vertex between samples of unknown coordinates, and for a
+/// contour with periods. O(V) time.
+template <Coordinate Real, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, Real> on_curved_grid(Contour<N, double>&& contour, const Grid<N>& grid,
+                                              std::span<const CurvedAxis> curved, const WorkOptions& work = {});
+
+/// As `extract_curved`, with counts and times; these do not include the time to move the vertices.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Extraction<N, Real> extract_curved_with_stats(const Image<T, N>& image,
+                                                            std::span<const CurvedAxis> curved, double isovalue,
+                                                            const ExtractOptions& options = {}) {
+  ExtractOptions of_indices = options;
+  if (options.work.progress) of_indices.work.progress = [&](double done) { return options.work.progress(0.9 * done); };
+  WorkOptions moving = options.work;
+  if (options.work.progress) moving.progress = [&](double done) { return options.work.progress(0.9 + 0.1 * done); };
+  const Image<T, N> indexed(image.data(), index_grid<N>(image.grid(), curved), image.strides());
+  Extraction<N, double> made = extract_with_stats<double>(indexed, isovalue, of_indices);
+  return {on_curved_grid<Real>(std::move(made.contour), image.grid(), curved, moving), made.stats};
+}
+
+/// Extracts the contour of an image whose samples have coordinates of their own. Simplices, with their vertex numbers,
+/// are those of `extract` on the indices, reversed if the grid has the other orientation; so the contour faces the side
+/// of ExtractOptions::direction in space. The image's grid gives the sizes, the coordinates of axes that are not
+/// curved, and names and units.
+///
+/// A contour on a grid without folds (`find_folds`) is embedded if the cells of the grid are; with folds, parts
+/// overlap.
+///
+/// Errors: as `extract`; InvalidGrid for a curved axis that the image does not have or has twice, an `along` without it
+/// or with an axis that the image does not have, another number of values, infinite values, and a grid with a world
+/// map; UnsupportedData where the contour needs an unknown coordinate: make the image's values there NaN. Time: as
+/// `extract` with vertices in double precision, and O(V).
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Contour<N, Real> extract_curved(const Image<T, N>& image, std::span<const CurvedAxis> curved,
+                                              double isovalue, const ExtractOptions& options = {}) {
+  return extract_curved_with_stats<Real>(image, curved, isovalue, options).contour;
+}
+
+}  // namespace tegl

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Folds of curved grids, and contours on them; see tegl/curved.hpp.
+#include "tegl/curved.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include "base/atomic_minimum.hpp"
+#include "base/periods.hpp"
+#include "base/workers.hpp"
+#include "curved/curved_map.hpp"
+
+namespace tegl {
+namespace {
+
+/// Moves vertices and normals.
+template <int N>
+class Mover {
+ public:
+  Mover(const Grid<N>& grid, std::span<const CurvedAxis> curved)
+      : map_(grid, curved), indices_(index_grid<N>(grid, curved)), locator_(indices_) {
+    is_straight_and_needed_ = (map_.along() & ~map_.curved()) != 0;
+  }
+
+  /// The place of a point of the index grid.
+  [[nodiscard]] detail::CellPlace<N> place_of(const std::array<double, N>& point) const noexcept {
+    detail::CellPlace<N> place{};
+    if (is_straight_and_needed_) {
+      locator_.find_nearest(point, place);
+      return place;
+    }
+    for (int a = 0; a < N; ++a) {
+      if ((map_.curved() >> a & 1u) == 0) continue;
+      const double index = point[a] * indices_.axes[a].step();
+      place.base[a] = static_cast<std::size_t>(index > 0.0 ? index : 0.0);
+      place.share[a] = index - static_cast<double>(place.base[a]);
+    }
+    return place;
+  }
+
+  /// The point in space; NaN where coordinates are unknown.
+  [[nodiscard]] std::array<double, N> moved(std::array<double, N> point) const noexcept {
+    map_.move(place_of(point), point);
+    return point;
+  }
+
+  /// The normal in space of one on the index grid: the gradient g becomes the solution x of J^T x = g.
+  [[nodiscard]] std::array<double, N> turned(const std::array<double, N>& point,
+                                             const std::array<double, N>& normal) const noexcept {
+    const detail::CellPlace<N> place = place_of(point);
+    const Matrix<N> by_index = map_.derivatives(place);
+    Eigen::Matrix<double, N, N> transposed;
+    Eigen::Matrix<double, N, 1> gradient;
+    for (int a = 0; a < N; ++a) {
+      gradient(a) = normal[a];
+      for (int c = 0; c < N; ++c)
+        transposed(a, c) = (map_.curved() >> c & 1u) == 0 ? (a == c ? 1.0 : 0.0) : by_index[c][a] / step_at(a, place);
+    }
+    const Eigen::Matrix<double, N, 1> solution = transposed.partialPivLu().solve(gradient);
+    std::array<double, N> result{};
+    const double length = solution.norm();
+    if (std::isfinite(length) && length > 0.0)
+      for (int a = 0; a < N; ++a) result[a] = solution(a) / length;
+    return result;
+  }
+
+  /// The last coordinate, rounded, but off the layers of the image unless it is on one: so cuts at layers are those of
+  /// `extract`. The last axis must not be curved.
+  template <class Real>
+  [[nodiscard]] Real rounded_last(const std::array<double, N>& point) const noexcept {
+    constexpr int kLast = N - 1;
+    const Axis& axis = indices_.axes[kLast];
+    auto result = static_cast<Real>(point[kLast]);
+    detail::CellPlace<N> place;
+    if (!locator_.find_nearest(point, place)) return result;
+    for (std::size_t layer = place.base[kLast]; layer < std::min(place.base[kLast] + 2, axis.size()); ++layer)
+      if (result == static_cast<Real>(axis[layer]) && point[kLast] != axis[layer])
+        result = std::nextafter(result, point[kLast] > axis[layer] ? std::numeric_limits<Real>::infinity()
+                                                                   : -std::numeric_limits<Real>::infinity());
+    return result;
+  }
+  [[nodiscard]] bool is_curved(int axis) const noexcept { return (map_.curved() >> axis & 1u) != 0; }
+
+ private:
+  /// The step of the index grid along an axis.
+  [[nodiscard]] double step_at(int a, const detail::CellPlace<N>& place) const noexcept {
+    const Axis& axis = indices_.axes[a];
+    if (axis.is_uniform() || axis.size() < 2) return axis.step();
+    const std::size_t base = std::min(place.base[a], axis.size() - 2);
+    return axis[base + 1] - axis[base];
+  }
+
+  detail::CurvedMap<N> map_;
+  Grid<N> indices_;
+  detail::GridLocator<N> locator_;
+  bool is_straight_and_needed_ = false;  ///< whether curved coordinates differ along an axis with its own coordinates
+};
+
+template <int N>
+[[noreturn]] void throw_unknown(const Mover<N>& mover, const std::array<double, N>& point) {
+  const detail::CellPlace<N> place = mover.place_of(point);
+  std::vector<std::size_t> index(place.base.begin(), place.base.end());
+  throw Error(ErrorCode::UnsupportedData,
+              fmt::format("the contour crosses the cell at the sample ({}), which has unknown coordinates; expected "
+                          "missing values there",
+                          fmt::join(index, ", ")));
+}
+
+}  // namespace
+
+template <int N>
+requires DimensionBetween<N, 2, 4> GridFolds<N> find_folds(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                                                           const WorkOptions& work) {
+  detail::require_curved<N>(grid, curved);
+  const detail::CurvedMap<N> map(grid, curved);
+  GridFolds<N> folds;
+  if (curved.empty()) return folds;
+  // Cells that differ only along other axes are alike.
+  std::array<std::size_t, N> cells;
+  std::size_t count = 1, alike = 1;
+  for (int a = 0; a < N; ++a) {
+    const bool differs = (map.along() >> a & 1u) != 0;
+    const std::size_t size = grid.axes[a].size() - 1;
+    cells[a] = differs ? size : 1;
+    count *= cells[a];
+    alike *= differs ? 1 : size;
+  }
+  const double expected = map.main_orientation();
+  const auto cell_of = [&](std::size_t number) {
+    std::array<std::size_t, N> cell{};
+    for (int a = 0; a < N; ++a) {
+      cell[a] = number % cells[a];
+      number /= cells[a];
+    }
+    return cell;
+  };
+  std::atomic<std::uint64_t> found{0};
+  std::atomic<std::size_t> first{std::numeric_limits<std::size_t>::max()};
+  detail::for_each_item(count, work.threads, work.progress, [&](std::size_t number) {
+    const std::array<std::size_t, N> cell = cell_of(number);
+    bool is_folded = false;
+    for (unsigned corner = 0; corner < 1u << N; ++corner) {
+      if ((corner & ~map.along()) != 0) continue;
+      const double orientation = map.orientation(cell, corner);
+      if (std::isnan(orientation)) return;
+      is_folded = is_folded || orientation != expected;
+    }
+    if (!is_folded) return;
+    found.fetch_add(1, std::memory_order_relaxed);
+    detail::lower_to(first, number);
+  });
+  folds.cells = found * alike;
+  if (folds.cells > 0) folds.first = cell_of(first);
+  return folds;
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Grid<N> index_grid(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
+  detail::require_curved<N>(grid, curved);
+  if (curved.empty()) return grid;
+  Grid<N> result = grid;
+  double step = detail::CurvedMap<N>(grid, curved).main_orientation();
+  for (const CurvedAxis& one : curved) {
+    const Axis& own = grid.axes[one.axis];
+    Axis axis = Axis::uniform(own.size(), 0.0, std::exchange(step, 1.0));
+    axis.name = own.name;
+    axis.unit = own.unit;
+    result.axes[one.axis] = std::move(axis);
+  }
+  return result;
+}
+
+template <Coordinate Real, int N>
+requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, double>&& contour, const Grid<N>& grid,
+                                                                   std::span<const CurvedAxis> curved,
+                                                                   const WorkOptions& work) {
+  detail::require_unwrapped(contour, "on_curved_grid");
+  const Mover<N> mover(grid, curved);
+  Contour<N, Real> result;
+  const std::size_t vertices = contour.vertices.size();
+  result.vertices.resize(vertices);
+  result.normals.resize(contour.normals.size());
+  std::atomic<std::size_t> unknown{vertices};
+  detail::for_each_item(vertices, work.threads, work.progress, [&](std::size_t v) {
+    const std::array<double, N> point = mover.moved(contour.vertices[v]);
+    bool is_known = true;
+    for (int a = 0; a < N; ++a) {
+      is_known = is_known && !std::isnan(point[a]);
+      result.vertices[v][a] = static_cast<Real>(point[a]);
+    }
+    if constexpr (N == 4 && std::is_same_v<Real, float>)
+      if (!mover.is_curved(3)) result.vertices[v][3] = mover.template rounded_last<Real>(contour.vertices[v]);
+    if (!is_known) detail::lower_to(unknown, v);
+    if (result.normals.empty()) return;
+    const std::array<double, N> normal = mover.turned(contour.vertices[v], contour.normals[v]);
+    for (int a = 0; a < N; ++a) result.normals[v][a] = static_cast<Real>(normal[a]);
+  });
+  if (unknown < vertices) throw_unknown<N>(mover, contour.vertices[unknown]);
+  result.simplices = std::move(contour.simplices);
+  result.axis_names = std::move(contour.axis_names);
+  result.axis_units = std::move(contour.axis_units);
+  result.direction = contour.direction;
+  result.vertex_attributes = std::move(contour.vertex_attributes);
+  result.simplex_attributes = std::move(contour.simplex_attributes);
+  return result;
+}
+
+#define TEGL_INSTANTIATE_CURVED(N)                                                                      \
+  template GridFolds<N> find_folds<N>(const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&); \
+  template Grid<N> index_grid<N>(const Grid<N>&, std::span<const CurvedAxis>);                          \
+  template Contour<N, float> on_curved_grid<float, N>(Contour<N, double>&&, const Grid<N>&,             \
+                                                      std::span<const CurvedAxis>, const WorkOptions&); \
+  template Contour<N, double> on_curved_grid<double, N>(Contour<N, double>&&, const Grid<N>&,           \
+                                                        std::span<const CurvedAxis>, const WorkOptions&);
+TEGL_INSTANTIATE_CURVED(2)
+TEGL_INSTANTIATE_CURVED(3)
+TEGL_INSTANTIATE_CURVED(4)
+#undef TEGL_INSTANTIATE_CURVED
+
+}  // namespace tegl

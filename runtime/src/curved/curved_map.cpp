@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "curved/curved_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+namespace tegl::detail {
+
+template <int N>
+void require_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
+  const auto fail = [](const std::string& text) { throw Error(ErrorCode::InvalidGrid, text); };
+  if (grid.has_world_map()) fail("a curved grid with a world map; expected coordinates in space");
+  unsigned seen = 0;
+  for (const CurvedAxis& one : curved) {
+    if (one.axis < 0 || one.axis >= N)
+      fail(fmt::format("curved coordinates of axis {}; expected an axis from 0 to {}", one.axis, N - 1));
+    if ((seen >> one.axis & 1u) != 0) fail(fmt::format("two curved coordinates of axis {}; expected one", one.axis));
+    seen |= 1u << one.axis;
+    if ((one.along >> one.axis & 1u) == 0 || one.along >> N != 0)
+      fail(fmt::format(
+          "curved coordinates of axis {} along the axes of the bits {}; expected this axis and others below "
+          "{}",
+          one.axis, one.along, N));
+    std::size_t samples = 1;
+    for (int a = 0; a < N; ++a)
+      if ((one.along >> a & 1u) != 0) samples *= grid.axes[a].size();
+    if (one.values.size() != samples)
+      fail(fmt::format("{} curved coordinates of axis {}; expected {}, one for each sample", one.values.size(),
+                       one.axis, samples));
+    const auto infinite = std::find_if(one.values.begin(), one.values.end(), [](double x) { return std::isinf(x); });
+    if (infinite != one.values.end())
+      fail(fmt::format("a curved coordinate of axis {} is {}; expected finite ones", one.axis, *infinite));
+  }
+}
+
+template <int N>
+CurvedMap<N>::CurvedMap(const Grid<N>& grid, std::span<const CurvedAxis> curved) : axes_(curved), sizes_(grid.sizes()) {
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    curved_ |= 1u << axes_[k].axis;
+    along_ |= axes_[k].along;
+    std::size_t stride = 1;
+    for (int a = 0; a < N; ++a) {
+      if ((axes_[k].along >> a & 1u) == 0) continue;
+      strides_[k][a] = stride;
+      stride *= sizes_[a];
+    }
+  }
+}
+
+template <int N>
+double CurvedMap<N>::orientation(const SampleIndex& cell, unsigned corner) const noexcept {
+  SampleIndex at = cell;
+  for (int a = 0; a < N; ++a) at[a] += corner >> a & 1u;
+  // The determinant's rows of straight axes are unit vectors.
+  Matrix<N> edges = identity<N>();
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    const double here = value(k, at);
+    for (int a = 0; a < N; ++a) {
+      double& edge = edges[axes_[k].axis][a];
+      edge = 0.0;
+      if ((axes_[k].along >> a & 1u) == 0) continue;
+      SampleIndex other = at;
+      other[a] = cell[a] + 1 - (corner >> a & 1u);
+      edge = (corner >> a & 1u) != 0 ? here - value(k, other) : value(k, other) - here;
+    }
+  }
+  Eigen::Matrix<double, N, N> matrix;
+  for (int c = 0; c < N; ++c)
+    for (int a = 0; a < N; ++a) matrix(c, a) = edges[c][a];
+  const double determinant = matrix.determinant();
+  return std::isnan(determinant) ? determinant : static_cast<double>((determinant > 0.0) - (determinant < 0.0));
+}
+
+template <int N>
+double CurvedMap<N>::main_orientation() const {
+  constexpr std::size_t kSamples = 997;  // a prime, so that the cells are not all at the same place along an axis
+  std::size_t cells = 1;
+  for (int a = 0; a < N; ++a) cells *= (along_ >> a & 1u) != 0 ? std::max<std::size_t>(sizes_[a], 2) - 1 : 1;
+  const std::size_t step = std::max<std::size_t>(1, cells / kSamples);
+  double sum = 0.0;
+  for (std::size_t number = 0; number < cells; number += step) {
+    SampleIndex cell{};
+    std::size_t rest = number;
+    bool is_cell = true;
+    for (int a = 0; a < N; ++a) {
+      if ((along_ >> a & 1u) == 0) continue;
+      if (sizes_[a] < 2) is_cell = false;
+      const std::size_t size = std::max<std::size_t>(sizes_[a], 2) - 1;
+      cell[a] = rest % size;
+      rest /= size;
+    }
+    const double sign = is_cell ? orientation(cell, 0) : 0.0;
+    if (!std::isnan(sign)) sum += sign;
+  }
+  return sum < 0.0 ? -1.0 : 1.0;
+}
+
+template <int N>
+typename CurvedMap<N>::Corners CurvedMap<N>::corners_of(const CellPlace<N>& place, unsigned along) const noexcept {
+  Corners corners;
+  corners.index[0] = place.base;
+  corners.weight[0] = 1.0;
+  corners.count = 1;
+  for (int a = 0; a < N; ++a) {
+    const double share = place.share[a];
+    if ((along >> a & 1u) == 0 || share == 0.0) continue;
+    if (share == 1.0) {
+      for (unsigned i = 0; i < corners.count; ++i) ++corners.index[i][a];
+      continue;
+    }
+    for (unsigned i = 0; i < corners.count; ++i) {
+      corners.index[corners.count + i] = corners.index[i];
+      ++corners.index[corners.count + i][a];
+      corners.weight[corners.count + i] = corners.weight[i] * share;
+      corners.weight[i] *= 1.0 - share;
+    }
+    corners.count *= 2;
+  }
+  return corners;
+}
+
+template <int N>
+void CurvedMap<N>::move(const CellPlace<N>& place, std::array<double, N>& point) const noexcept {
+  const Corners corners = corners_of(place, along_);
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    double sum = 0.0;
+    for (unsigned i = 0; i < corners.count; ++i) sum += corners.weight[i] * value(k, corners.index[i]);
+    point[axes_[k].axis] = sum;
+  }
+}
+
+template <int N>
+double CurvedMap<N>::difference(std::size_t k, const SampleIndex& index, int a) const noexcept {
+  SampleIndex before = index, after = index;
+  if (index[a] > 0) --before[a];
+  if (index[a] + 1 < sizes_[a]) ++after[a];
+  const double here = value(k, index);
+  double low = value(k, before), high = value(k, after);
+  double steps = static_cast<double>(after[a] - before[a]);
+  // one-sided next to unknown coordinates
+  if (std::isnan(low)) {
+    low = here;
+    --steps;
+  }
+  if (std::isnan(high)) {
+    high = here;
+    --steps;
+  }
+  return steps > 0.0 ? (high - low) / steps : 0.0;
+}
+
+template <int N>
+Matrix<N> CurvedMap<N>::derivatives(const CellPlace<N>& place) const noexcept {
+  Matrix<N> result{};
+  const Corners corners = corners_of(place, along_);
+  for (std::size_t k = 0; k < axes_.size(); ++k)
+    for (int a = 0; a < N; ++a) {
+      if ((axes_[k].along >> a & 1u) == 0) continue;
+      double& sum = result[axes_[k].axis][a];
+      for (unsigned i = 0; i < corners.count; ++i) sum += corners.weight[i] * difference(k, corners.index[i], a);
+    }
+  return result;
+}
+
+#define TEGL_INSTANTIATE_CURVED(N)                                              \
+  template void require_curved<N>(const Grid<N>&, std::span<const CurvedAxis>); \
+  template class CurvedMap<N>;
+TEGL_INSTANTIATE_CURVED(2)
+TEGL_INSTANTIATE_CURVED(3)
+TEGL_INSTANTIATE_CURVED(4)
+#undef TEGL_INSTANTIATE_CURVED
+
+}  // namespace tegl::detail
