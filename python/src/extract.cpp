@@ -6,9 +6,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/division.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/normals.hpp"
@@ -206,6 +211,34 @@ std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const st
   });
 }
 
+using CurvedAxes = std::vector<std::tuple<int, unsigned, std::vector<double>, std::string, std::string>>;
+
+template <class Real>
+AnyContour curved_contour_of(const AnyImage& image, std::span<const CurvedAxis> curved, double level,
+                             const ExtractOptions& options) {
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
+    if constexpr (N <= 4)
+      return {extract_curved<Real>(view, curved, level, options), level};
+    else
+      throw_dimension("curved grids", N, "2 to 4 dimensions");
+  });
+}
+
+std::unique_ptr<AnyContour> extract_curved_any(const AnyImage& image, const CurvedAxes& given, double level,
+                                               bool is_double, const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
+  std::vector<CurvedAxis> curved;
+  for (const auto& [axis, along, values, name, unit] : given) curved.push_back({axis, along, values, name, unit});
+  return call.run([&] {
+    auto result = std::make_unique<AnyContour>(is_double ? curved_contour_of<double>(image, curved, level, options)
+                                                         : curved_contour_of<float>(image, curved, level, options));
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
+}
+
 template <class Real>
 AnyContour lattice_contour_of(const AnyImage& image, Lattice lattice, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
@@ -328,6 +361,8 @@ void bind_extract(py::module_& m) {
         py::arg("progress"), doc::extract);
   m.def("extract_periodic", &extract_periodic_any, py::arg("image"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
+  m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("level"), py::arg("double"),
+        py::arg("options"), py::arg("progress"), doc::extract_curved);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("margin"),
         py::arg("last_axis_weight"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
         doc::extract_placed);

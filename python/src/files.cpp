@@ -115,6 +115,10 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   put(result, "value_name", read.info.value_name);
   put(result, "world_frame", read.info.world_frame);
   result["axis_directions"] = directions_of(read.info);
+  py::list curved;
+  for (const CurvedAxis& one : read.info.curved)
+    curved.append(py::make_tuple(one.axis, one.along, one.values, one.name, one.unit));
+  result["curved"] = curved;
   return result;
 }
 

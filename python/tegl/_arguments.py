@@ -114,6 +114,7 @@ class Prepared:
     value_unit: str
     axes: tuple  #: UniformAxis or coordinates, in the array's order
     affine: np.ndarray | None  #: in the array's order
+    sizes: tuple[int, ...]  #: of the array's axes
     extent: np.ndarray  #: 2 x N: the lowest and the highest coordinates in the world, in the array's order
 
     @property
@@ -176,6 +177,24 @@ def periodic_axes(periodic: object, prepared: Prepared) -> tuple[list[int], list
     if not axes or len(set(axes)) != len(axes):
         raise ValueError(f"periodic is {periodic!r}; expected at least one axis, each once")
     return axes, [period for _, period in given]
+
+
+def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.ndarray, str, str]]:
+    """The argument `curved` for the library: axis, set of axes that the coordinate differs along, values, name, unit."""
+    if not isinstance(curved, Mapping) or not curved:
+        raise TypeError(f"curved is {curved!r}; expected a dict of axes and arrays of coordinates")
+    result = []
+    for key, given in curved.items():
+        axis = prepared.library_axis(key)
+        values = real(f"curved[{key!r}]", given).astype(np.float64)
+        sizes = prepared.sizes
+        if values.ndim != prepared.ndim or any(size not in (1, whole) for size, whole in zip(values.shape, sizes)):
+            raise ValueError(f"curved[{key!r}] has the shape {values.shape}; expected {sizes}, with 1 for axes along "
+                             "which the coordinate does not differ")
+        along = sum(1 << (prepared.ndim - 1 - a if prepared.is_reversed else a)
+                    for a, size in enumerate(values.shape) if size > 1)
+        result.append((axis, along, values.ravel("C" if prepared.is_reversed else "F"), "", ""))
+    return result
 
 
 def turn_around(time_axis: int, ndim: int) -> bool:
@@ -407,8 +426,11 @@ def _masked(array: np.ndarray, mask) -> np.ndarray:
 
 
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
-            time_axis=None) -> Prepared:
+            time_axis=None, allow_curved: bool = False) -> Prepared:
     """The library's view of an array. Values are copied only if the type or a mask requires it."""
+    if not allow_curved and getattr(data, "curved", None):
+        raise ValueError("an image with a curved grid, which only tegl.contour and filters know; expected its `array`, with "
+                         "indices as coordinates, or a contour")
     if isinstance(data, (str, os.PathLike)):
         raise TypeError(f"{data!r} is a path; expected an array, or tegl.read({data!r})")
     if hasattr(data, "data_vars"):
@@ -476,7 +498,8 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             matrix = np.column_stack([matrix[::-1, ndim - 1::-1], matrix[::-1, ndim]])
         image = _tegl.Image(array.T, axes[::-1], None if matrix is None else matrix.tolist(), list(names)[::-1],
                             list(units)[::-1])
-    return Prepared(image, is_reversed, names, units, value_unit, tuple(axes), given_affine, extent)
+    return Prepared(image, is_reversed, names, units, value_unit, tuple(axes), given_affine, tuple(array.shape),
+                    extent)
 
 
 def real(name: str, values: object) -> np.ndarray:

@@ -68,7 +68,7 @@ def filter(array, *, gaussian=None, discrete_gaussian=None, binomial=None, media
     if _arguments.as_bool("samples", samples) and kind not in _SIGMAS:
         raise ValueError(f"samples with {kind}, which has no sigma")
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
+                                  allow_curved=True, axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     numbers, sizes = _numbers(kind, value, prepared)
     with prepared.terms():
         result = _tegl.filter(prepared.image, kind.replace("_", "-"), numbers, sizes,
@@ -128,7 +128,7 @@ def scale_space(array, sigmas, *, laplacian: bool = False, factors=None, samples
     For arrays of 2 to 4 axes. The scale is the first axis of the result, or the last one with `time_axis=-1`.
     """
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
+                                  allow_curved=True, axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     scales = _arguments.as_numbers("sigmas", sigmas)
     along = [] if factors is None else prepared.turned(_arguments.as_numbers("factors", factors))
     with prepared.terms():

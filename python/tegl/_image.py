@@ -24,7 +24,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
             periodic=None, lattice: _kinds.Lattice | None = None, division: _kinds.Division | None = None,
-            positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0) -> Contour:
+            positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0, curved=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
@@ -95,6 +95,11 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         array's samples. Where it is NaN, the array's own sample counts.
     time_weight
         For "relaxed": weight of the smoothing along the `time_axis` relative to the others; 0: each layer by itself.
+    curved
+        Coordinates of the samples of a curved grid, in place of `coords` of some axes: a dict of axes (names or numbers) and
+        arrays of coordinates with as many axes as `array`, and size 1 along the axes on which they do not depend, such as
+        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Default: those of an image from `tegl.read`.
+        See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -103,7 +108,9 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
                                          close=close, epsilon=epsilon, normals=normals, gradient=gradient,
                                          threads=threads)
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
+                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+    if curved is None and getattr(array, "curved", None):
+        curved = array.curved
     is_double = _arguments.is_double(dtype, prepared)
     values = _arguments.position_values(positions, positions_image, prepared)
     weight = _arguments.as_number("time_weight", time_weight)
@@ -111,9 +118,10 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         raise ValueError(f"time_weight is {time_weight!r} with positions {positions!r}; expected positions='relaxed'")
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
+    of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
-                                          ("positions", None if positions == "linear" else positions))
+                                          ("positions", None if positions == "linear" else positions), ("curved", curved))
                  if value is not None]
         if len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
@@ -126,6 +134,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
                                          progress)
+        elif curved is not None:
+            core = _tegl.extract_curved(prepared.image, of_samples, level, is_double, options, progress)
         elif periodic is None:
             core = _tegl.extract(prepared.image, level, is_double, options, progress)
         else:
@@ -133,6 +143,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             core = _tegl.extract_periodic(prepared.image, axes, periods, level, is_double, options, progress)
     if not allow_empty and not len(core.simplices):
         _outside.require_level(prepared, level)
+    if curved is not None:
+        return Contour._of(core, prepared.is_reversed)
     return Contour._of(core, prepared.is_reversed, prepared.extent, prepared.image.grid)
 
 
@@ -278,6 +290,8 @@ class Image:
     world_frame: str  #: such as "RAS"; "" if there is none
     #: direction of growing coordinates of each axis, from the file: "up", "down" (depths, pressures) or "unknown"
     axis_directions: tuple[_kinds.AxisDirection, ...]
+    #: coordinates of a curved grid, by axis: see `tegl.contour`; those axes have indices as `coords`. {}: straight axes
+    curved: dict[int, np.ndarray] = dataclasses.field(repr=False, default_factory=dict)
     _axes: tuple = dataclasses.field(repr=False, default=())
 
     def __repr__(self) -> str:
@@ -393,8 +407,15 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
     array = array.T if is_reversed else array
     coords = tuple(axis.origin + np.arange(size) * axis.step if isinstance(axis, _arguments.UniformAxis) else axis
                    for axis, size in zip(axes, array.shape))
-    return Image(array=array, coords=coords, axis_names=tuple(found["names"])[turn],
-                 axis_units=tuple(found["units"])[turn], affine=affine, time_axis=0 if is_reversed else ndim - 1,
+    curved = {}
+    names, units = list(found["names"]), list(found["units"])
+    for axis, along, values, name, unit in found["curved"]:
+        sizes = [size if along >> a & 1 else 1 for a, size in enumerate(found["array"].shape)]
+        values = np.array(values).reshape(sizes, order="F")
+        curved[ndim - 1 - axis if is_reversed else axis] = values.T if is_reversed else values
+        names[axis], units[axis] = name or names[axis], unit or units[axis]
+    return Image(array=array, coords=coords, axis_names=tuple(names)[turn],
+                 axis_units=tuple(units)[turn], curved=curved, affine=affine, time_axis=0 if is_reversed else ndim - 1,
                  value_name=found["value_name"], value_unit=found["value_unit"], format=found["format"],
                  variable=found["variable"], variables=tuple(found["variables"]), world_frame=found["world_frame"],
                  axis_directions=tuple(found["axis_directions"] or ["unknown"] * ndim)[turn], _axes=axes)

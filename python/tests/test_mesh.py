@@ -302,3 +302,49 @@ def test_meshes_like_those_of_meshio():
     mesh.points = np.column_stack([flat, flat[:, 0]])
     with pytest.raises(ValueError, match="on a surface in space"):
         tegl.contour_mesh(mesh, level=0.0)
+
+
+def test_curved_grids_have_the_coordinates_of_their_samples():
+    angle, radius = np.meshgrid(np.linspace(0, 3, 60), np.linspace(1, 2, 20), indexing="ij")
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    for order in ("C", "F"):
+        arc = tegl.contour(np.array(1.5 - radius, order=order), 0.0, curved={0: x, 1: y}, dtype=np.float64, normals=True)
+        assert np.abs(np.hypot(*arc.vertices.T) - 1.5).max() < 0.002
+        assert arc.measure().size == pytest.approx(4.5, rel=1e-3)
+        radial = arc.vertices / np.hypot(*arc.vertices.T)[:, None]
+        assert (arc.normals * radial).sum(axis=1).min() > 0.99
+    last = tegl.contour((1.5 - radius)[..., None] + np.zeros(5), 0.0, curved={0: x[..., None], 1: y[..., None]}, time_axis=-1)
+    assert last.vertices[:, 2].max() == 4 and last.check().is_manifold
+    with pytest.raises(ValueError, match=r"curved\[0\] has the shape \(20, 60\); expected \(60, 20\)"):
+        tegl.contour(radius, 1.5, curved={0: x.T})
+    with pytest.raises(ValueError, match="along the axes"):
+        tegl.contour(radius, 1.5, curved={0: x[:1]})
+    with pytest.raises(TypeError, match="expected a dict"):
+        tegl.contour(radius, 1.5, curved=[x, y])
+    with pytest.raises(ValueError, match="periodic with curved"):
+        tegl.contour(radius, 1.5, curved={0: x, 1: y}, periodic=1)
+
+
+def test_curved_grids_of_netcdf_files(tmp_path):
+    netcdf_file = pytest.importorskip("scipy.io").netcdf_file
+    with netcdf_file(tmp_path / "model.nc", "w") as file:
+        for name, size in (("time", 3), ("eta", 12), ("xi", 15)):
+            file.createDimension(name, size)
+        eta, xi = np.meshgrid(np.arange(12.0), np.arange(15.0), indexing="ij")
+        lon, lat = 175 + xi + 0.1 * eta, 10 + eta + 0.2 * xi
+        for name, values, unit in (("lon", np.where(lon > 180, lon - 360, lon), "degrees_east"), ("lat", lat, "degrees_north")):
+            variable = file.createVariable(name, "d", ("eta", "xi"))
+            variable[:] = values
+            variable.units = unit
+        temp = file.createVariable("temp", "f", ("time", "eta", "xi"))
+        temp[:] = 20 - np.hypot(lon - 182, lat - 17) + np.zeros((3, 1, 1))
+        temp.coordinates = "lon lat"
+    image = tegl.read(tmp_path / "model.nc", "temp")
+    assert image.axis_names == ("time", "lat", "lon") and image.axis_units[1:] == ("degrees_north", "degrees_east")
+    assert sorted(image.curved) == [1, 2] and np.allclose(image.curved[2], lon[None]) and np.allclose(image.curved[1], lat[None])
+    tube = image.contour(17.0)
+    assert np.abs(np.hypot(tube.vertices[:, 2] - 182, tube.vertices[:, 1] - 17) - 3).max() < 0.1
+    assert tube.axis_names == ("time", "lat", "lon")
+    assert tegl.contour(image.array, 17.0).vertices[:, 2].max() < 15  # indices
+    with pytest.raises(ValueError, match="curved grid"):
+        tegl.slice(image, 17.0, at=1)

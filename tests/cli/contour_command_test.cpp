@@ -317,5 +317,39 @@ TEST_F(Contour, StaysOpenAroundMissingSamples) {
   EXPECT_EQ(report["bad_links"], 0);
 }
 
+TEST_F(Contour, OfACurvedGridHasItsCoordinates) {
+  const std::string model = TEGL_SOURCE_DIR "/tests/io/seeds/netcdf_curved.nc";
+  const RunResult run = run_tegl({"contour", model, "--iso", "1.5", "-o", path("o.vtkhdf")});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  const Mesh mesh = read_mesh(path("o.vtkhdf"));
+  ASSERT_EQ(mesh.space_dim, 3);
+  EXPECT_EQ(mesh.axis_names[0], "lon");
+  EXPECT_EQ(mesh.axis_units[1], "degrees_north");
+  for (std::size_t v = 0; v < mesh.coordinates.size(); v += 3)
+    EXPECT_NEAR(std::hypot(mesh.coordinates[v] - 179.5, mesh.coordinates[v + 1] - 37), 1.5, 0.15);
+  // by the indices
+  EXPECT_EQ(run_tegl({"contour", model, "--iso", "1.5", "--index-grid", "-o", path("i.vtkhdf")}).exit, 0);
+  for (const double x : read_mesh(path("i.vtkhdf")).coordinates) EXPECT_LE(x, 6);
+  // the same by a command that contours the file itself
+  const RunResult components = run_tegl({"components", model, "--iso", "1.5", "--json"});
+  ASSERT_EQ(components.exit, 0) << components.err;
+  EXPECT_EQ(components.json()["count"], 1);
+  EXPECT_NEAR(components.json()["components"][0]["lowest"][0].get<double>(), 178, 0.15);
+  EXPECT_EQ(run_tegl({"info", model, "--json"}).json()["curved"], nlohmann::json({"lon", "lat"}));
+  // what does not know such grids says so
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--stream"}, {"--pick", "1,1,1"}, {"--facets"}, {"--positions", "relaxed"}}) {
+    std::vector<std::string> arguments = {"contour", model, "--iso", "1.5", "-o", path("x.vtkhdf")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult refused = run_tegl(arguments);
+    EXPECT_NE(refused.exit, 0) << more[0];
+    EXPECT_THAT(refused.err, HasSubstr("--index-grid")) << more[0];
+  }
+  EXPECT_THAT(run_tegl({"contour", model, "--iso", "1.5", "--periodic", "xi", "-o", path("x.vtkhdf")}).err,
+              HasSubstr("curved grid"));
+  EXPECT_THAT(run_tegl({"slice", model, "--iso", "1.5", "--at", "time=0.5", "-o", path("x.ply")}).err,
+              HasSubstr("--index-grid"));
+}
+
 }  // namespace
 }  // namespace tegl::test

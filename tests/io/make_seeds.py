@@ -113,6 +113,24 @@ def write_netcdf(folder):
         for name, size in (("y", 4), ("x", 5)):
             data.createDimension(name, size)
         data.createVariable("v", "f4", ("y", "x"))[:] = values((4, 5), "f4")
+    write_curved_netcdf(folder / "netcdf_curved.nc")
+
+
+def write_curved_netcdf(path):
+    """A cone around longitude 179.5 and latitude 37, at two times, on a curved grid across the date line."""
+    with scipy.io.netcdf_file(path, "w") as data:
+        for name, size in (("time", 2), ("eta", 6), ("xi", 7)):
+            data.createDimension(name, size)
+        eta, xi = numpy.meshgrid(numpy.arange(6.0), numpy.arange(7.0), indexing="ij")
+        lon, lat = 176 + xi + 0.2 * eta, 40 - eta - 0.1 * xi
+        for name, array, unit in (("lon", numpy.where(lon > 180, lon - 360, lon), "degrees_east"),
+                                  ("lat", lat, "degrees_north")):
+            variable = data.createVariable(name, "d", ("eta", "xi"))
+            variable[:] = array
+            variable.units = unit
+        cone = data.createVariable("v", "f", ("time", "eta", "xi"))
+        cone[:] = numpy.hypot(lon - 179.5, lat - 37) + numpy.zeros((2, 1, 1))
+        cone.coordinates = "lon lat"
 
 
 def fill_hdf5(data, compressed):

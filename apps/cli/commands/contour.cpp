@@ -19,6 +19,7 @@
 #include "commands/streaming.hpp"
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
+#include "input/contour_input.hpp"
 #include "input/extraction.hpp"
 #include "input/mesh_input.hpp"
 #include "input/positions.hpp"
@@ -196,6 +197,12 @@ class ContourCommand final : public Command {
     if (attributes_.wanted()) options_.refuse_tiling("--attribute");
   }
 
+  /// Whether no option is given that needs straight axes.
+  [[nodiscard]] bool knows_curved_grids() const {
+    return index_.empty() && app().count("--pick") == 0 && !options_.polygon_triangulation() && !attributes_.wanted() &&
+           positions_.are_linear();
+  }
+
   /// Refuses --positions with options of functions that know linear positions only, and checks its own options.
   void require_positions() const {
     if (is_streamed()) positions_.refuse("--stream");
@@ -240,7 +247,9 @@ class ContourCommand final : public Command {
 
   void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     Stopwatch watch;
-    ReadImageResult input = read(bar.stage("read"));
+    ReadImageResult input = read(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused);
+    tiling_ = options_.tiling();
+    remark(take_curved(input, file(), options_, tiling_));
     require_output_holds(results.front().output, image_dim(input.image) - 1);
     for (ContourResult& result : results) {
       result.input = inputs();
@@ -337,8 +346,7 @@ class ContourCommand final : public Command {
     else if (!positions_.are_linear())
       result.mesh = extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision, finished);
     else
-      result.mesh =
-          extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, options_.tiling());
+      result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, tiling_);
   }
 
   /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
@@ -533,6 +541,7 @@ class ContourCommand final : public Command {
 
   ExtractionOptions options_;
   PositionArguments positions_;
+  Tiling tiling_;  ///< with the image's curved grid
   PositionOptions placed_;
   std::vector<float> position_values_;
   AttributeOptions attributes_;

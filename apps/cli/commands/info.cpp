@@ -130,6 +130,8 @@ Json to_json(const Description& description, const InputFiles& input) {
   Json& axes = json["axes"] = Json::array();
   for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
   json["periodic"] = description.around;
+  Json& curved = json["curved"] = Json::array();
+  for (const CurvedAxis& one : info.curved) curved.push_back(one.name);
   json["world_frame"] = info.world_frame;
   json["world"] = nullptr;
   if (!description.linear.empty()) {
@@ -181,6 +183,10 @@ std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& ro
 
 std::string world_text(const Description& description) {
   const std::string& frame = description.info.world_frame;
+  std::vector<std::string> curved;
+  for (const CurvedAxis& one : description.info.curved)
+    curved.push_back(one.unit.empty() ? one.name : fmt::format("{} ({})", one.name, one.unit));
+  if (!curved.empty()) return report_line("world", fmt::format("a curved grid: {}", fmt::join(curved, ", ")));
   if (description.linear.empty()) return report_line("world", frame.empty() ? "the axes themselves" : frame);
   double largest = 0.0;
   for (const auto& row : description.linear)
@@ -355,7 +361,7 @@ class InfoCommand final : public Command {
     // an image: read and describe
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
-    const ReadImageResult image = read(bar.stage("read"));
+    const ReadImageResult image = read(bar.stage("read"), CurvedGrids::allowed);
     Description description;
     description.info = image.info;
     description.read_seconds = watch.lap();

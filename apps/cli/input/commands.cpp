@@ -57,16 +57,30 @@ unsigned Command::threads_wanted() const {
   return option == nullptr || option->count() == 0 ? 0 : option->as<unsigned>();
 }
 
-ReadImageResult Command::read(const Progress& progress) {
+ReadImageResult Command::read(const Progress& progress, CurvedGrids curved) {
   ReadSeriesResult result = images_.read(worked_on_, progress);
   take_order(result.files);
+  settle_curved(result.info, curved);
   return {std::move(result.image), std::move(result.info)};
 }
 
 OpenLayersResult Command::open() {
   OpenSeriesResult result = images_.open(worked_on_);
   take_order(result.files);
+  settle_curved(result.info, CurvedGrids::refused);
   return {std::move(result.layers), std::move(result.info)};
+}
+
+void Command::settle_curved(ImageInfo& info, CurvedGrids curved) const {
+  if (images_.index_grid()) info.curved.clear();
+  if (info.curved.empty() || curved == CurvedGrids::allowed) return;
+  std::vector<std::string> names;
+  for (const CurvedAxis& one : info.curved) names.push_back(one.name);
+  throw Error(
+      ErrorCode::UnsupportedData,
+      fmt::format("{} has a curved grid ({} in arrays of several dimensions), which this command or option does "
+                  "not know; expected --index-grid, for indices as coordinates",
+                  worked_on_.front(), fmt::join(names, ", ")));
 }
 
 void Command::take_order(const std::vector<std::filesystem::path>& files) {

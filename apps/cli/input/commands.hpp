@@ -28,6 +28,9 @@ struct Streams {
   Console err{stderr};
 };
 
+/// Whether a command can use the coordinates of curved grids.
+enum class CurvedGrids : std::uint8_t { allowed, refused };
+
 /// A command of the program: `tegl NAME FILE ...`.
 class Command {
  public:
@@ -88,8 +91,9 @@ class Command {
   /// Options to read FILE as a mesh, with --allow-outside-paths and --in-process.
   [[nodiscard]] ReadMeshOptions mesh_options(Progress progress) const;
   /// Reads the image of FILE and these options. Then the current files are in the order of the series.
-  [[nodiscard]] ReadImageResult read(const Progress& progress);
-  /// Opens the image to be read layer by layer.
+  /// Curved grids are errors unless they are allowed or --index-grid is given.
+  [[nodiscard]] ReadImageResult read(const Progress& progress, CurvedGrids curved = CurvedGrids::refused);
+  /// Opens the image to be read layer by layer. Curved grids are errors unless --index-grid is given.
   [[nodiscard]] OpenLayersResult open();
   /// Throws FileNotFound unless the current files are readable.
   void require_inputs() const;
@@ -104,6 +108,7 @@ class Command {
 
  private:
   void take_order(const std::vector<std::filesystem::path>& files);
+  void settle_curved(ImageInfo& info, CurvedGrids curved) const;
 
   CLI::App* app_;
   CLI::Option* json_option_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -44,7 +45,32 @@ Contour<N, double> widened(Contour<N, Real> contour) {
   }
 }
 
+/// The range of a curved coordinate.
+CutAxis cut_axis_of(const CurvedAxis& one) {
+  CutAxis axis{one.name, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const double x : one.values) {
+    axis.first = std::fmin(axis.first, x);
+    axis.last = std::fmax(axis.last, x);
+  }
+  return axis;
+}
+
 }  // namespace
+
+std::string take_curved(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
+                        Tiling& tiling) {
+  if (input.info.curved.empty()) return "";
+  options.refuse_tiling("the curved grid of " + file);
+  tiling.curved = std::move(input.info.curved);
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
+    const GridFolds<N> folds = find_folds<N>(owned.grid, tiling.curved);
+    if (folds.cells == 0) return "";
+    return fmt::format(
+        "the curved grid is folded in {}, the first at the sample ({}): the contour may overlap itself there",
+        counted(folds.cells, "cell", "cells"), fmt::join(folds.first, ", "));
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image);
+}
 
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
   Mesh mesh = read_mesh(file, options);
@@ -204,13 +230,20 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   // an image to be contoured
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();
-  const Tiling tiling = options_.tiling();
-  ReadImageResult input = read(bar.stage("read"));
+  Tiling tiling = options_.tiling();
+  ReadImageResult input = read(bar.stage("read"), keep_image ? CurvedGrids::refused : CurvedGrids::allowed);
+  remark(take_curved(input, file(), options_, tiling));
   result.file = inputs();
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue, allows_empty());
   result.last_axis = space_of(input.image).axes.back();
   result.ends = ends_of_last_axis(input.image);
+  for (const CurvedAxis& one : tiling.curved)
+    if (one.axis == image_dim(input.image) - 1) {
+      const CutAxis axis = cut_axis_of(one);
+      result.last_axis = axis;
+      result.ends = {axis.first, axis.last};
+    }
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");

@@ -91,7 +91,7 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
 Tiling ExtractionOptions::tiling() const {
   if (!division_.empty()) refuse_tiling_before_division("--division " + division_);
   if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
-  Tiling tiling{periodic_, std::nullopt, std::nullopt};
+  Tiling tiling{periodic_, std::nullopt, std::nullopt, {}};
   for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid})
     if (name_of(division) == division_) tiling.division = division;
   for (const Lattice lattice : {Lattice::triangular, Lattice::fcc, Lattice::bcc, Lattice::d4, Lattice::fcc_in_time})

@@ -15,6 +15,7 @@
 #include "input/cuts.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/division.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io/images.hpp"
@@ -24,12 +25,13 @@
 
 namespace tegl::cli {
 
-/// The cells between samples, if the grid is periodic or a lattice, or its cells are divided.
+/// The cells between samples, if the grid is periodic, curved or a lattice, or its cells are divided.
 struct Tiling {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   std::optional<Lattice> lattice = {};     ///< of --lattice
   std::optional<Division> division = {};   ///< of --division
-  [[nodiscard]] bool is_plain() const { return periodic.empty() && !lattice && !division; }
+  std::vector<CurvedAxis> curved = {};     ///< of the image's curved grid
+  [[nodiscard]] bool is_plain() const { return periodic.empty() && !lattice && !division && curved.empty(); }
 };
 
 /// The options --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads,
@@ -136,6 +138,11 @@ template <class Result, class Use>
 Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOptions& options, bool single_precision,
                        const Use& use, const Tiling& tiling = {}) {
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> Result {
+    if (!tiling.curved.empty()) {
+      if (single_precision)
+        return use(extract_curved_with_stats<float>(owned.view(), tiling.curved, isovalue, options));
+      return use(extract_curved_with_stats<double>(owned.view(), tiling.curved, isovalue, options));
+    }
     if (tiling.lattice) {
       if (single_precision)
         return use(extract_lattice_with_stats<float>(owned.view(), *tiling.lattice, isovalue, options));

@@ -51,6 +51,8 @@ class ImageOptions {
   /// The readers' remarks about the files read so far: skipped files, uneven distances.
   [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
+  /// Whether --index-grid is given: indices as coordinates of curved grids.
+  [[nodiscard]] bool index_grid() const { return index_grid_; }
   /// Whether --fix is given.
   [[nodiscard]] bool has_fixed() const { return !fixed_.empty(); }
   /// The names of the options that were given.
@@ -78,6 +80,7 @@ class ImageOptions {
   bool allow_outside_paths_ = false;
   bool in_process_ = false;
   bool cells_to_points_ = false;
+  bool index_grid_ = false;
   std::vector<std::string> fixed_;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;

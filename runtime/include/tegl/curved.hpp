@@ -20,15 +20,6 @@
 
 namespace tegl {
 
-/// One coordinate of the samples of a curved grid.
-struct CurvedAxis {
-  int axis = 0;        ///< which coordinate of the vertices this is, and the axis of the image that it stands for
-  unsigned along = 0;  ///< bit a: the coordinate differs along axis a of the image; bit `axis` is set
-  /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN: unknown.
-  std::vector<double> values = {};
-  bool operator==(const CurvedAxis&) const = default;  ///< equal if all numbers are
-};
-
 /// Cells of a curved grid that are not mapped to space one to one: at a corner, the edges have another orientation than
 /// in most cells, or none.
 template <int N>

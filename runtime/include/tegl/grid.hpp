@@ -84,4 +84,15 @@ struct Grid {
   }
 };
 
+/// One coordinate of the samples of a curved grid (tegl/curved.hpp).
+struct CurvedAxis {
+  int axis = 0;        ///< which coordinate of the vertices this is, and the axis of the image that it stands for
+  unsigned along = 0;  ///< bit a: the coordinate differs along axis a of the image; bit `axis` is set
+  /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN: unknown.
+  std::vector<double> values = {};
+  std::string name = {};  ///< of the coordinate, such as "lon"; empty: that of the image's axis
+  std::string unit = {};  ///< of the coordinate; empty: that of the image's axis
+  bool operator==(const CurvedAxis&) const = default;  ///< equal if all members are
+};
+
 }  // namespace tegl

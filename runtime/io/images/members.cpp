@@ -239,6 +239,10 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
   result.grid = with_last_axis(first, std::move(last));
   result.info = members.front().info;
   if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
+  for (const Member& member : members)
+    if (member.info.curved != result.info.curved)
+      fail(ErrorCode::UnsupportedData, member.path,
+           "has other curved coordinates than {}; expected the same in all files", members.front().path.string());
   std::vector<fs::path> paths;
   for (const Member& member : members) paths.push_back(member.path);
   // reader of layers

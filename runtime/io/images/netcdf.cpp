@@ -13,11 +13,13 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -342,7 +344,9 @@ struct VariableGrid {
   RawGrid grid;
   std::vector<AxisDirection> directions;  ///< of the grid's axes
   std::size_t last_dimension = 0;
-  std::size_t time_axis = 0;  ///< index of the last axis in the file, from the fastest
+  std::size_t time_axis = 0;            ///< index of the last axis in the file, from the fastest
+  bool has_time = false;                ///< whether the last axis is time
+  std::vector<std::size_t> dimensions;  ///< of the variable, by axis
 };
 
 VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
@@ -368,8 +372,11 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcS
   const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
   move_last(axes);
   move_last(result.directions);
+  result.has_time = found != is_time.end();
   result.time_axis = static_cast<std::size_t>(last);
   result.last_dimension = dimension_of[result.time_axis];
+  move_last(dimension_of);
+  result.dimensions = std::move(dimension_of);
   const auto n = static_cast<Eigen::Index>(axes.size());
   result.grid.linear = Eigen::MatrixXd::Identity(n, n);
   result.grid.offset = Eigen::VectorXd::Zero(n);
@@ -383,6 +390,158 @@ ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t c
   std::size_t outer = 1;
   for (std::size_t a = 0; a + 1 < axes.size(); ++a) (a < grid.time_axis ? inner : outer) *= axes[a].size();
   return outer == 1 || count == 1 ? std::move(values) : with_axis_last(values, inner, count, outer);
+}
+
+// ---- coordinates in arrays of two or more dimensions (CF conventions, section 5.2) ---------------------------------
+
+enum class Coordinate { other, longitude, latitude, vertical };
+
+Coordinate coordinate_of(const NcFile& file, const NcVariable& variable) {
+  const std::string unit = lower(file.text(variable, "units"));
+  const std::string name = lower(file.text(variable, "standard_name"));
+  const auto is_degrees = [&](std::string_view to) {
+    return unit.starts_with("degree") && (unit.ends_with(to) || unit.ends_with(fmt::format("_{}", to.substr(0, 1))));
+  };
+  if (name == "longitude" || is_degrees("_east")) return Coordinate::longitude;
+  if (name == "latitude" || is_degrees("_north")) return Coordinate::latitude;
+  if (lower(file.text(variable, "axis")) == "z" || !file.text(variable, "positive").empty())
+    return Coordinate::vertical;
+  return Coordinate::other;
+}
+
+/// A coordinate variable with the axes of the image that it differs along.
+struct CurvedVariable {
+  NcVariable variable;
+  std::vector<std::size_t> axes;  ///< by dimension, fastest first; only those of which more than one index is read
+  unsigned along = 0;
+};
+
+/// The variables that the attribute "coordinates" names and that differ along two or more axes of the image, by
+/// meaning.
+std::map<Coordinate, CurvedVariable> curved_variables(const NcFile& file, const NcVariable& of,
+                                                      const VariableGrid& grid) {
+  std::map<Coordinate, CurvedVariable> result;
+  const std::string names = file.text(of, "coordinates");
+  const std::vector<NcVariable> all = file.variables();
+  for (const std::string_view word : words(names))
+    for (const NcVariable& variable : all) {
+      if (variable.name.substr(variable.name.rfind('/') + 1) != word || !is_numeric(variable.type)) continue;
+      CurvedVariable one{variable, {}, 0};
+      bool is_known = true;
+      for (std::size_t d = variable.dimensions.size(); d-- > 0;) {
+        const auto found = std::ranges::find(of.dimensions, variable.dimensions[d]);
+        is_known = is_known && found != of.dimensions.end();
+        const auto dimension = static_cast<std::size_t>(found - of.dimensions.begin());
+        const auto axis = std::ranges::find(grid.dimensions, dimension);
+        if (!is_known || axis == grid.dimensions.end()) continue;
+        one.axes.push_back(static_cast<std::size_t>(axis - grid.dimensions.begin()));
+        one.along |= 1u << one.axes.back();
+      }
+      if (is_known && one.axes.size() >= 2) result.emplace(coordinate_of(file, variable), std::move(one));
+    }
+  result.erase(Coordinate::other);
+  return result;
+}
+
+/// Continues longitudes across 360 degrees, from each value to the next.
+void unwrap(std::vector<double>& longitudes, std::size_t row) {
+  double first = std::numeric_limits<double>::quiet_NaN();
+  double last = first;
+  for (std::size_t i = 0; i < longitudes.size(); ++i) {
+    const double& reference = i % row == 0 && !std::isnan(first) ? first : last;
+    double& value = longitudes[i];
+    if (std::isnan(value)) continue;
+    if (!std::isnan(reference)) value += 360.0 * std::round((reference - value) / 360.0);
+    if (i % row == 0) first = value;
+    last = value;
+  }
+}
+
+/// The values of a coordinate variable, in the order of the image's axes.
+std::vector<double> read_curved(const NcFile& file, const NcVariable& of, const NcSlab& slab, const CurvedVariable& one,
+                                const std::vector<Axis>& axes) {
+  NcSlab part = whole(one.variable);
+  for (std::size_t d = 0; d < one.variable.dimensions.size(); ++d) {
+    const auto j =
+        static_cast<std::size_t>(std::ranges::find(of.dimensions, one.variable.dimensions[d]) - of.dimensions.begin());
+    part.start[d] = slab.start[j];
+    part.count[d] = slab.count[j];
+  }
+  const auto stored = std::visit([](const auto& values) { return std::vector<double>(values.begin(), values.end()); },
+                                 unpack(file.values(one.variable, part), read_packing(file, one.variable)));
+  // strides of the result by the variable's dimensions, fastest first
+  std::vector<std::size_t> strides(one.axes.size(), 1);
+  for (std::size_t i = 0; i < one.axes.size(); ++i)
+    for (const std::size_t other : one.axes)
+      if (other < one.axes[i]) strides[i] *= axes[other].size();
+  std::vector<double> result(stored.size());
+  for (std::size_t s = 0; s < stored.size(); ++s) {
+    std::size_t at = 0;
+    for (std::size_t i = 0, rest = s; i < one.axes.size(); rest /= axes[one.axes[i]].size(), ++i)
+      at += rest % axes[one.axes[i]].size() * strides[i];
+    result[at] = std::isfinite(stored[s]) ? stored[s] : std::numeric_limits<double>::quiet_NaN();
+  }
+  return result;
+}
+
+/// The curved axes of the image; the grid then has indices there. Longitude and latitude are used if their axes have no
+/// coordinate variables of their own.
+std::vector<CurvedAxis> find_curved(const NcFile& file, const NcVariable& variable, const NcSlab& slab,
+                                    VariableGrid& grid) {
+  std::vector<Axis>& axes = grid.grid.axes;
+  std::vector<CurvedAxis> result;
+  const auto variables = curved_variables(file, variable, grid);
+  const auto add = [&](const CurvedVariable& one, std::size_t axis) {
+    Axis indices = Axis::uniform(axes[axis].size());
+    indices.name = axes[axis].name;
+    axes[axis] = std::move(indices);
+    result.push_back({static_cast<int>(axis), one.along, read_curved(file, variable, slab, one, axes),
+                      one.variable.name.substr(one.variable.name.rfind('/') + 1), file.text(one.variable, "units")});
+    grid.directions[axis] = direction_of(file, one.variable);
+  };
+  const std::size_t in_space = axes.size() - (grid.has_time ? 1 : 0);
+  unsigned taken = 0;
+  const auto longitude = variables.find(Coordinate::longitude);
+  const auto latitude = variables.find(Coordinate::latitude);
+  if (longitude != variables.end() && latitude != variables.end() &&
+      longitude->second.along == latitude->second.along) {
+    std::vector<std::size_t> two;
+    for (std::size_t a = 0; a < in_space && two.size() < 2; ++a)
+      if ((longitude->second.along >> a & 1u) != 0 && !file.coordinate(variable, grid.dimensions[a])) two.push_back(a);
+    if (two.size() == 2) {
+      add(longitude->second, two[0]);
+      unwrap(result.back().values, axes[two[0]].size());
+      add(latitude->second, two[1]);
+      taken = 1u << two[0] | 1u << two[1];
+    }
+  }
+  if (const auto vertical = variables.find(Coordinate::vertical); vertical != variables.end())
+    for (std::size_t a = in_space; a-- > 0;)
+      if ((vertical->second.along & ~taken) >> a & 1u) {
+        add(vertical->second, a);
+        break;
+      }
+  return result;
+}
+
+/// Makes samples with unknown coordinates missing, if the values have a missing value.
+void hide_unknown(const std::vector<CurvedAxis>& curved, const std::vector<Axis>& axes, ValueArray& values) {
+  const auto hide = [&]<class T>(ValueVector<T>& all) {
+    if constexpr (std::is_floating_point_v<T>)
+      for (const CurvedAxis& one : curved) {
+        if (std::ranges::none_of(one.values, [](double x) { return std::isnan(x); })) continue;
+        for (std::size_t s = 0; s < all.size(); ++s) {
+          std::size_t at = 0, stride = 1;
+          for (std::size_t a = 0, rest = s; a < axes.size(); rest /= axes[a].size(), ++a) {
+            if ((one.along >> a & 1u) == 0) continue;
+            at += rest % axes[a].size() * stride;
+            stride *= axes[a].size();
+          }
+          if (std::isnan(one.values[at])) all[s] = std::numeric_limits<T>::quiet_NaN();
+        }
+      }
+  };
+  std::visit(hide, values);
 }
 
 struct Found {
@@ -476,6 +635,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   const NcFile file(path, options.work.progress, options.allow_outside_paths);
   Found found = find_variable(file, options);
   VariableGrid grid = read_grid(file, found.variable, found.slab);
+  found.info.curved = find_curved(file, found.variable, found.slab, grid);
   found.info.axis_directions = std::move(grid.directions);
   // values
   RawImage image;
@@ -483,6 +643,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
   image.values = unpacked_values(file, found.variable, slab, packing, options.work.progress);
   if (extent == Extent::whole) image.values = in_order(std::move(image.values), grid, grid.grid.axes.back().size());
+  if (extent == Extent::whole) hide_unknown(found.info.curved, grid.grid.axes, image.values);
   image.grid = std::move(grid.grid);
   image.info = std::move(found.info);
   return image;
@@ -495,7 +656,8 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
          "is compressed as a whole and cannot be read layer by layer; expected an uncompressed file");
   Found found = find_variable(*file, options);
   file->require_stored(found.variable, found.slab);
-  const VariableGrid grid = read_grid(*file, found.variable, found.slab);
+  VariableGrid grid = read_grid(*file, found.variable, found.slab);
+  found.info.curved = find_curved(*file, found.variable, found.slab, grid);
   found.info.axis_directions = grid.directions;
   const Packing packing = read_packing(*file, found.variable);
   expect_memory(2 * file->chunk_bytes(found.variable, sizeof(double)));

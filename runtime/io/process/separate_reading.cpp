@@ -131,6 +131,13 @@ void put_info(Packer& packer, const ImageInfo& info) {
   packer.text(info.stored_type ? name_of(*info.stored_type) : "");
   put_texts(packer, info.variables);
   put_list(packer, info.axis_directions, [&](AxisDirection direction) { put_direction(packer, direction); });
+  put_list(packer, info.curved, [&](const CurvedAxis& curved) {
+    packer.number(static_cast<std::uint64_t>(curved.axis));
+    packer.number(static_cast<std::uint64_t>(curved.along));
+    put_list(packer, curved.values, [&](double value) { packer.number(value); });
+    packer.text(curved.name);
+    packer.text(curved.unit);
+  });
   put_texts(packer, info.remarks);
 }
 
@@ -141,6 +148,15 @@ ImageInfo get_info(Unpacker& unpacker) {
   info.stored_type = parse_value_type(unpacker.text());
   get_texts(unpacker, info.variables);
   get_list(unpacker, info.axis_directions, [&] { return get_direction(unpacker); });
+  get_list(unpacker, info.curved, [&] {
+    CurvedAxis curved;
+    curved.axis = static_cast<int>(unpacker.number<std::uint64_t>());
+    curved.along = static_cast<unsigned>(unpacker.number<std::uint64_t>());
+    get_list(unpacker, curved.values, [&] { return unpacker.number<double>(); });
+    curved.name = unpacker.text();
+    curved.unit = unpacker.text();
+    return curved;
+  });
   get_texts(unpacker, info.remarks);
   return info;
 }

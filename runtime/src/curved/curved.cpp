@@ -208,6 +208,10 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, do
   result.simplices = std::move(contour.simplices);
   result.axis_names = std::move(contour.axis_names);
   result.axis_units = std::move(contour.axis_units);
+  for (const CurvedAxis& one : curved) {
+    if (!one.name.empty()) result.axis_names[one.axis] = one.name;
+    if (!one.unit.empty()) result.axis_units[one.axis] = one.unit;
+  }
   result.direction = contour.direction;
   result.vertex_attributes = std::move(contour.vertex_attributes);
   result.simplex_attributes = std::move(contour.simplex_attributes);

@@ -527,5 +527,72 @@ TEST(NetCdf, ProgressRisesAndCancels) {
                [&] { read_image(dir / "a.nc", {.work = {.progress = [](double) { return false; }}}); });
 }
 
+/// A model's file: values along time, s, eta and xi, with longitude and latitude along eta and xi, and depths along s
+/// too.
+void write_curved(const fs::path& path, int format, bool own_axes) {
+  NcWriter file(path, format);
+  const int time = file.dimension("time", 2), s = file.dimension("s", 3), eta = file.dimension("eta", 4),
+            xi = file.dimension("xi", 5);
+  const int lon = file.variable("lon", NC_DOUBLE, {eta, xi}), lat = file.variable("lat", NC_FLOAT, {eta, xi}),
+            depth = file.variable("depth", NC_DOUBLE, {s, eta, xi}),
+            v = file.variable("v", NC_FLOAT, {time, s, eta, xi});
+  const int own = own_axes ? file.variable("xi", NC_DOUBLE, {xi}) : -1;
+  file.text(lon, "units", "degrees_east");
+  file.text(lat, "standard_name", "latitude");
+  file.text(depth, "positive", "down");
+  file.text(depth, "units", "m");
+  file.number(depth, "_FillValue", NC_DOUBLE, {-999});
+  file.text(v, "coordinates", "lon lat depth other");
+  file.end();
+  std::vector<double> longitudes, latitudes, depths, values;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 5; ++i) {
+      const double x = 178 + i + 0.5 * j;
+      longitudes.push_back(x > 180 ? x - 360 : x);
+      latitudes.push_back(10 + j);
+    }
+  for (int k = 0; k < 60; ++k) depths.push_back(k == 7 ? -999 : k);
+  for (int k = 0; k < 120; ++k) values.push_back(k);
+  file.values(lon, longitudes);
+  file.values(lat, latitudes);
+  file.values(depth, depths);
+  file.values(v, values);
+  if (own >= 0) file.values(own, {0, 1, 2, 3, 4});
+}
+
+TEST(NetCdf, CoordinatesInArraysAreCurvedAxes) {
+  TempDir dir;
+  for (const bool in_process : {true, false}) {
+    write_curved(dir / "a.nc", in_process ? 0 : NC_NETCDF4, false);
+    ReadImageOptions options;
+    options.separate_process = !in_process;
+    const ReadImageResult read = read_image(dir / "a.nc", options);
+    const auto& curved = read.info.curved;
+    ASSERT_EQ(curved.size(), 3U);
+    EXPECT_EQ(curved[0].axis, 0);
+    EXPECT_EQ(curved[0].along, 3U);
+    EXPECT_EQ(curved[0].name, "lon");
+    EXPECT_EQ(curved[0].unit, "degrees_east");
+    EXPECT_EQ(curved[0].values[4], 182) << "continued across 180 degrees";
+    EXPECT_EQ(curved[0].values[19], 183.5);
+    EXPECT_EQ(curved[1].axis, 1);
+    EXPECT_EQ(curved[1].values[19], 13);
+    EXPECT_EQ(curved[2].axis, 2);
+    EXPECT_EQ(curved[2].along, 7U);
+    EXPECT_TRUE(std::isnan(curved[2].values[7]));
+    EXPECT_EQ(curved[2].values[59], 59);
+    EXPECT_EQ(read.info.axis_directions[2], AxisDirection::down);
+    const auto& image = std::get<OwnedImage<float, 4>>(std::get<AnyImageN<4>>(read.image));
+    EXPECT_EQ(image.grid.axes[0][4], 4) << "indices";
+    EXPECT_TRUE(std::isnan(image.values[7]) && std::isnan(image.values[67])) << "unknown depth";
+    EXPECT_EQ(image.values[8], 8);
+  }
+  // A dimension with a coordinate variable of its own is straight.
+  write_curved(dir / "b.nc", 0, true);
+  const ReadImageResult read = read_image(dir / "b.nc");
+  ASSERT_EQ(read.info.curved.size(), 1U);
+  EXPECT_EQ(read.info.curved[0].name, "depth");
+}
+
 }  // namespace
 }  // namespace tegl::test

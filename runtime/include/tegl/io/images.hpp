@@ -40,7 +40,10 @@ struct ImageInfo {
   std::string world_frame = {};                     ///< such as "RAS", "LPS"; empty if unknown
   std::optional<ValueType> stored_type = {};        ///< value type in the file, before any conversion; none: float16
   std::vector<AxisDirection> axis_directions = {};  ///< netCDF: one per axis of the image; else empty
-  std::vector<std::string> remarks = {};            ///< DICOM: skipped files, uneven slice distances; else empty
+  /// netCDF: coordinates in arrays of two or more dimensions (CF conventions, section 5.2), for tegl/curved.hpp. The
+  /// grid has indices on these axes. Empty if the grid's axes are straight.
+  std::vector<CurvedAxis> curved = {};
+  std::vector<std::string> remarks = {};  ///< DICOM: skipped files, uneven slice distances; else empty
 };
 
 /// An image and its metadata.
@@ -85,7 +88,9 @@ struct ReadImageOptions {
 /// Grid::linear and offset, exactly, even if sheared; other orientations become part of the axes. NRRD spaces RAS and
 /// LAS are converted to LPS. Values are those stored; uint32, int64 and uint64 become int32 if all values fit, else
 /// double. NIfTI slope and intercept and netCDF packing are applied. Missing values of netCDF become NaN, in float, or
-/// in double if float cannot represent the values.
+/// in double if float cannot represent the values. netCDF variables on curved grids, with longitude and latitude (or a
+/// vertical coordinate) in arrays of two or more dimensions, have indices on those axes, and the arrays in
+/// ImageInfo::curved; longitudes are continued across 360 degrees, and samples with unknown coordinates are missing.
 ///
 /// Errors, all naming the file: FileNotFound, MalformedFile (damaged, truncated or inconsistent; compressed data are
 /// checked to the last byte), UnsupportedFormat, UnsupportedData (colours, vectors, other than 2 to 4 axes; a file of
