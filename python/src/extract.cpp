@@ -211,7 +211,8 @@ std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const st
   });
 }
 
-using CurvedAxes = std::vector<std::tuple<int, unsigned, std::vector<double>, std::string, std::string>>;
+using CurvedAxes = std::vector<std::tuple<int, unsigned, py::array_t<double, py::array::c_style | py::array::forcecast>,
+                                          std::string, std::string>>;
 
 template <class Real>
 AnyContour curved_contour_of(const AnyImage& image, std::span<const CurvedAxis> curved, double level,
@@ -230,7 +231,8 @@ std::unique_ptr<AnyContour> extract_curved_any(const AnyImage& image, const Curv
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
   std::vector<CurvedAxis> curved;
-  for (const auto& [axis, along, values, name, unit] : given) curved.push_back({axis, along, values, name, unit});
+  for (const auto& [axis, along, values, name, unit] : given)
+    curved.push_back({axis, along, std::vector<double>(values.data(), values.data() + values.size()), name, unit});
   return call.run([&] {
     auto result = std::make_unique<AnyContour>(is_double ? curved_contour_of<double>(image, curved, level, options)
                                                          : curved_contour_of<float>(image, curved, level, options));

@@ -117,7 +117,9 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   result["axis_directions"] = directions_of(read.info);
   py::list curved;
   for (const CurvedAxis& one : read.info.curved)
-    curved.append(py::make_tuple(one.axis, one.along, one.values, one.name, one.unit));
+    curved.append(py::make_tuple(one.axis, one.along,
+                                 py::array_t<double>(static_cast<py::ssize_t>(one.values.size()), one.values.data()),
+                                 one.name, one.unit));
   result["curved"] = curved;
   return result;
 }

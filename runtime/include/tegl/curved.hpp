@@ -44,12 +44,12 @@ requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Grid<N> index_grid(const Grid<N>& grid, std::span<const CurvedAxis> curved);
 
 /// Moves a contour from index_grid(grid, curved) to the curved grid: vertices by multilinear interpolation of the
-/// samples' coordinates, normals by the Jacobian (central differences, interpolated). Attributes remain. Errors:
-/// InvalidGrid (as `extract_curved`); UnsupportedData for a vertex between samples of unknown coordinates, and for a
-/// contour with periods. O(V) time.
+/// samples' coordinates, normals by the Jacobian (central differences, interpolated). Attributes remain,
+/// and moved contours are not copied. Errors: InvalidGrid (as `extract_curved`); UnsupportedData for a vertex between
+/// samples of unknown coordinates, and for a contour with periods. O(V) time.
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4>
-[[nodiscard]] Contour<N, Real> on_curved_grid(Contour<N, double>&& contour, const Grid<N>& grid,
+[[nodiscard]] Contour<N, Real> on_curved_grid(Contour<N, Real> contour, const Grid<N>& grid,
                                               std::span<const CurvedAxis> curved, const WorkOptions& work = {});
 
 /// As `extract_curved`, with counts and times; these do not include the time to move the vertices.
@@ -63,7 +63,7 @@ requires DimensionBetween<N, 2, 4>
   WorkOptions moving = options.work;
   if (options.work.progress) moving.progress = [&](double done) { return options.work.progress(0.9 + 0.1 * done); };
   const Image<T, N> indexed(image.data(), index_grid<N>(image.grid(), curved), image.strides());
-  Extraction<N, double> made = extract_with_stats<double>(indexed, isovalue, of_indices);
+  Extraction<N, Real> made = extract_with_stats<Real>(indexed, isovalue, of_indices);
   return {on_curved_grid<Real>(std::move(made.contour), image.grid(), curved, moving), made.stats};
 }
 
@@ -78,7 +78,7 @@ requires DimensionBetween<N, 2, 4>
 /// Errors: as `extract`; InvalidGrid for a curved axis that the image does not have or has twice, an `along` without it
 /// or with an axis that the image does not have, another number of values, infinite values, and a grid with a world
 /// map; UnsupportedData where the contour needs an unknown coordinate: make the image's values there NaN. Time: as
-/// `extract` with vertices in double precision, and O(V).
+/// `extract`, and O(V). Precision: places between samples are rounded to Real as indices.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_curved(const Image<T, N>& image, std::span<const CurvedAxis> curved,

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -72,23 +71,6 @@ class Mover {
       for (int a = 0; a < N; ++a) result[a] = solution(a) / length;
     return result;
   }
-
-  /// The last coordinate, rounded, but off the layers of the image unless it is on one: so cuts at layers are those of
-  /// `extract`. The last axis must not be curved.
-  template <class Real>
-  [[nodiscard]] Real rounded_last(const std::array<double, N>& point) const noexcept {
-    constexpr int kLast = N - 1;
-    const Axis& axis = indices_.axes[kLast];
-    auto result = static_cast<Real>(point[kLast]);
-    detail::CellPlace<N> place;
-    if (!locator_.find_nearest(point, place)) return result;
-    for (std::size_t layer = place.base[kLast]; layer < std::min(place.base[kLast] + 2, axis.size()); ++layer)
-      if (result == static_cast<Real>(axis[layer]) && point[kLast] != axis[layer])
-        result = std::nextafter(result, point[kLast] > axis[layer] ? std::numeric_limits<Real>::infinity()
-                                                                   : -std::numeric_limits<Real>::infinity());
-    return result;
-  }
-  [[nodiscard]] bool is_curved(int axis) const noexcept { return (map_.curved() >> axis & 1u) != 0; }
 
  private:
   /// The step of the index grid along an axis.
@@ -180,50 +162,45 @@ requires DimensionBetween<N, 2, 4> Grid<N> index_grid(const Grid<N>& grid, std::
 }
 
 template <Coordinate Real, int N>
-requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, double>&& contour, const Grid<N>& grid,
+requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Real> contour, const Grid<N>& grid,
                                                                    std::span<const CurvedAxis> curved,
                                                                    const WorkOptions& work) {
   detail::require_unwrapped(contour, "on_curved_grid");
   const Mover<N> mover(grid, curved);
-  Contour<N, Real> result;
   const std::size_t vertices = contour.vertices.size();
-  result.vertices.resize(vertices);
-  result.normals.resize(contour.normals.size());
+  // The first vertex without a place keeps its indices, for the message.
   std::atomic<std::size_t> unknown{vertices};
-  detail::for_each_item(vertices, work.threads, work.progress, [&](std::size_t v) {
-    const std::array<double, N> point = mover.moved(contour.vertices[v]);
-    bool is_known = true;
-    for (int a = 0; a < N; ++a) {
-      is_known = is_known && !std::isnan(point[a]);
-      result.vertices[v][a] = static_cast<Real>(point[a]);
+  detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const std::array<double, N> indices = detail::widened_point<N>(contour.vertices[v]);
+      const std::array<double, N> point = mover.moved(indices);
+      bool is_known = true;
+      for (int a = 0; a < N; ++a) is_known = is_known && !std::isnan(point[a]);
+      if (!is_known) {
+        detail::lower_to(unknown, v);
+        continue;
+      }
+      if (!contour.normals.empty()) {
+        const auto normal = mover.turned(indices, detail::widened_point<N>(contour.normals[v]));
+        for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
+      }
+      for (int a = 0; a < N; ++a) contour.vertices[v][a] = static_cast<Real>(point[a]);
     }
-    if constexpr (N == 4 && std::is_same_v<Real, float>)
-      if (!mover.is_curved(3)) result.vertices[v][3] = mover.template rounded_last<Real>(contour.vertices[v]);
-    if (!is_known) detail::lower_to(unknown, v);
-    if (result.normals.empty()) return;
-    const std::array<double, N> normal = mover.turned(contour.vertices[v], contour.normals[v]);
-    for (int a = 0; a < N; ++a) result.normals[v][a] = static_cast<Real>(normal[a]);
   });
-  if (unknown < vertices) throw_unknown<N>(mover, contour.vertices[unknown]);
-  result.simplices = std::move(contour.simplices);
-  result.axis_names = std::move(contour.axis_names);
-  result.axis_units = std::move(contour.axis_units);
+  if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));
   for (const CurvedAxis& one : curved) {
-    if (!one.name.empty()) result.axis_names[one.axis] = one.name;
-    if (!one.unit.empty()) result.axis_units[one.axis] = one.unit;
+    if (!one.name.empty()) contour.axis_names[one.axis] = one.name;
+    if (!one.unit.empty()) contour.axis_units[one.axis] = one.unit;
   }
-  result.direction = contour.direction;
-  result.vertex_attributes = std::move(contour.vertex_attributes);
-  result.simplex_attributes = std::move(contour.simplex_attributes);
-  return result;
+  return contour;
 }
 
-#define TEGL_INSTANTIATE_CURVED(N)                                                                      \
-  template GridFolds<N> find_folds<N>(const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&); \
-  template Grid<N> index_grid<N>(const Grid<N>&, std::span<const CurvedAxis>);                          \
-  template Contour<N, float> on_curved_grid<float, N>(Contour<N, double>&&, const Grid<N>&,             \
-                                                      std::span<const CurvedAxis>, const WorkOptions&); \
-  template Contour<N, double> on_curved_grid<double, N>(Contour<N, double>&&, const Grid<N>&,           \
+#define TEGL_INSTANTIATE_CURVED(N)                                                                                    \
+  template GridFolds<N> find_folds<N>(const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&);               \
+  template Grid<N> index_grid<N>(const Grid<N>&, std::span<const CurvedAxis>);                                        \
+  template Contour<N, float> on_curved_grid<float, N>(Contour<N, float>, const Grid<N>&, std::span<const CurvedAxis>, \
+                                                      const WorkOptions&);                                            \
+  template Contour<N, double> on_curved_grid<double, N>(Contour<N, double>, const Grid<N>&,                           \
                                                         std::span<const CurvedAxis>, const WorkOptions&);
 TEGL_INSTANTIATE_CURVED(2)
 TEGL_INSTANTIATE_CURVED(3)
