@@ -70,7 +70,7 @@ class Counter {
                               ClosedStars* more) {
     ClosedStar found;
     if (star.size() > kMostTetrahedra) return found;
-    load(rows, v, star);
+    load(rows, v, star, more != nullptr);
     const std::size_t paired = find_reverses();
     if (paired != arrows_ && (more == nullptr || repeats_one())) return found;
     if (more != nullptr) write_across(more->across);
@@ -84,15 +84,16 @@ class Counter {
 
  private:
   static constexpr std::size_t kMostTetrahedra = 64;
+  static constexpr std::size_t kMostLanes = 16;  ///< of 32-bit words
   static constexpr std::size_t kMostArrows = 3 * kMostTetrahedra;
-  static constexpr std::size_t kPadding = 16;  ///< at least the lanes of a vector
+  static constexpr std::size_t kPadding = 32;  ///< at least the lanes of four vectors of 64-bit words
 
-  HWY_INLINE void load(const Index* rows, Index v, std::span<const Index> star) {
+  /// Without a branch that depends on the tetrahedra: which vertices are above v varies irregularly.
+  HWY_INLINE void load(const Index* rows, Index v, std::span<const Index> star, bool with_tetrahedra) {
     const hn::CappedTag<std::uint32_t, 8> d;
     const hn::FixedTag<std::uint32_t, 4> d4;
     const auto centre = hn::Set(d4, v);
-    std::uint32_t* to = ends_.data();
-    std::size_t singles = 0, tetrahedra = 0;
+    std::size_t singles = 0, tetrahedra = 0, arrow = 0;
     for (const Index s : star) {
       const Index* const row = rows + std::size_t{s} * 4;
       const auto vertices = hn::LoadU(d4, row);
@@ -101,19 +102,20 @@ class Counter {
       hn::StoreMaskBits(d4, hn::Eq(vertices, centre), bits + 8);
       const Arrows& arrows = kArrows[static_cast<unsigned>(bits[0]) | static_cast<unsigned>(bits[8]) << 4];
       const auto repeated = hn::LoadDup128(d, row);
-      for (std::size_t k = 0; k < 8; k += hn::Lanes(d))
-        hn::StoreU(hn::TableLookupLanes(repeated, hn::SetTableIndices(d, arrows.places.data() + k)), d, to + k);
-      const std::size_t arrow = static_cast<std::size_t>(to - ends_.data()) / 2;
-      for (std::size_t k = 0; k < 3; ++k) {
-        tetrahedra_of_[arrow + k] = s;
-        omitted_[arrow + k] = arrows.omitted[k];
+      for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
+        const auto ends = hn::TableLookupLanes(repeated, hn::SetTableIndices(d, arrows.places.data() + k));
+        if (k == 0) singles_[singles] = hn::GetLane(ends);
+        hn::StoreU(ends, d, ends_.data() + 2 * arrow + k);
       }
-      singles_[singles] = row[arrows.places[0]];
+      if (with_tetrahedra) {
+        hn::StoreU(hn::Set(d4, s), d4, tetrahedra_of_.data() + arrow);
+        std::memcpy(omitted_.data() + arrow, arrows.omitted.data(), 4);
+      }
       singles += arrows.single;
       tetrahedra += arrows.count == 3 ? 1 : 0;
-      to += 2 * arrows.count;
+      arrow += arrows.count;
     }
-    arrows_ = static_cast<std::size_t>(to - ends_.data()) / 2;
+    arrows_ = arrow;
     single_count_ = singles;
     tetrahedra_ = tetrahedra;
   }
@@ -121,27 +123,44 @@ class Counter {
   /// Sets the places of the reverses of the directed edges; kMostArrows for those without one. Returns the number of
   /// edges that occur once and whose reverse occurs once.
   HWY_INLINE std::size_t find_reverses() {
-    const hn::ScalableTag<std::uint64_t> d;
-    const hn::Repartition<std::uint32_t, decltype(d)> d_ends;
-    const std::size_t lanes = hn::Lanes(d);
-    const auto one = hn::Set(d, std::uint64_t{1});
-    for (std::size_t j = 0; j < arrows_; j += lanes) {
-      const auto reverse = hn::BitCast(d, hn::Shuffle2301(hn::LoadU(d_ends, ends_.data() + 2 * j)));
-      auto places = hn::Set(d, std::uint64_t{kMostArrows});
-      auto place = hn::Zero(d);
-      for (std::size_t i = 0; i < arrows_; ++i) {
-        std::uint64_t arrow;
-        std::memcpy(&arrow, ends_.data() + 2 * i, sizeof arrow);
-        places = hn::IfThenElse(hn::Eq(reverse, hn::Set(d, arrow)), place, places);
-        place = hn::Add(place, one);
-      }
-      hn::StoreU(places, d, places_.data() + j);
-    }
+    const std::size_t lanes = hn::Lanes(hn::ScalableTag<std::uint64_t>());
+    std::size_t j = 0;
+    for (; arrows_ > j + 3 * lanes; j += 4 * lanes) find_reverses_of<4>(j);
+    if (arrows_ > j + 2 * lanes)
+      find_reverses_of<3>(j);
+    else if (arrows_ > j + lanes)
+      find_reverses_of<2>(j);
+    else if (arrows_ > j)
+      find_reverses_of<1>(j);
     // An edge that occurs twice is not the reverse of its reverse at one of the two places.
     places_[kMostArrows] = kMostArrows;
     std::size_t paired = 0;
     for (std::size_t i = 0; i < arrows_; ++i) paired += places_[places_[i]] == i ? 1 : 0;
     return paired;
+  }
+  /// For the directed edges in kVectors vectors, from number j.
+  template <int kVectors>
+  HWY_INLINE void find_reverses_of(std::size_t j) {
+    const hn::ScalableTag<std::uint64_t> d;
+    const hn::Repartition<std::uint32_t, decltype(d)> d_ends;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto one = hn::Set(d, std::uint64_t{1});
+    hn::Vec<decltype(d)> reverse[kVectors], places[kVectors];
+    for (int k = 0; k < kVectors; ++k) {
+      const std::uint32_t* const ends = ends_.data() + 2 * (j + static_cast<std::size_t>(k) * lanes);
+      reverse[k] = hn::BitCast(d, hn::Shuffle2301(hn::LoadU(d_ends, ends)));
+      places[k] = hn::Set(d, std::uint64_t{kMostArrows});
+    }
+    auto place = hn::Zero(d);
+    for (std::size_t i = 0; i < arrows_; ++i) {
+      std::uint64_t arrow;
+      std::memcpy(&arrow, ends_.data() + 2 * i, sizeof arrow);
+      const auto here = hn::Set(d, arrow);
+      for (int k = 0; k < kVectors; ++k) places[k] = hn::IfThenElse(hn::Eq(reverse[k], here), place, places[k]);
+      place = hn::Add(place, one);
+    }
+    for (int k = 0; k < kVectors; ++k)
+      hn::StoreU(places[k], d, places_.data() + j + static_cast<std::size_t>(k) * lanes);
   }
 
   /// Whether a directed edge occurs twice.
@@ -181,7 +200,7 @@ class Counter {
       const auto is_new = hn::AndNot(is_repeat, hn::FirstN(d, count - j));
       repeats += std::min(lanes, count - j) - hn::CountTrue(d, is_new);
       if (more != nullptr) {
-        std::array<std::uint32_t, kPadding> kept;
+        std::array<std::uint32_t, kMostLanes> kept;
         const std::size_t size = hn::CompressBlendedStore(here, is_new, d, kept.data());
         more->edges.insert(more->edges.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(size));
       }
@@ -198,11 +217,17 @@ class Counter {
   alignas(64) std::array<std::uint32_t, 2 * kMostArrows + kMostTetrahedra + kPadding> starts_{};
 };
 
+constexpr std::size_t kAhead = 2;  ///< stars
+
 void count_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges, std::span<ClosedStar> found,
                  ClosedStars* more) {
   Counter counter;
-  for (std::size_t i = 0; i < found.size(); ++i)
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    // rows that are needed soon; most are in the third level of cache
+    if (i + kAhead < found.size())
+      for (const Index s : stars.of(from + i + kAhead)) __builtin_prefetch(rows + std::size_t{s} * 4);
     found[i] = counter.count(rows, static_cast<Index>(from + i), stars.of(from + i), with_edges, more);
+  }
 }
 
 #else

@@ -74,22 +74,63 @@ std::vector<Index> first_items(std::span<const Index> labels, Index count) {
   return first;
 }
 
-/// Calls add(found, item) for each item with a label below `count`, in parallel by block. Then calls merge(found of a
-/// block, label) in order.
-template <class Found, class Make, class Add, class Merge>
+constexpr std::size_t kFewItems = 64;
+
+/// Calls add(found, item) for each item with a label below `count`, in parallel by block; `add` is made by
+/// make_add(from, to) for at most kFewItems items at a time. Then calls merge(found of a block, label) in order.
+template <class Found, class Make, class MakeAdd, class Merge>
 void for_labelled(std::span<const Index> labels, Index count, unsigned threads, const Progress& progress,
-                  const Make& make, const Add& add, const Merge& merge) {
+                  const Make& make, const MakeAdd& make_add, const Merge& merge) {
   std::vector<typename FoundByLabel<Found>::Part> parts(block_count(labels.size(), kBlock));
   for_each_block(
       labels.size(), kBlock, threads, progress, [&] { return FoundByLabel<Found>(count); },
       [&](std::size_t block, std::size_t from, std::size_t to, FoundByLabel<Found>& found) {
-        for (std::size_t i = from; i < to; ++i)
-          if (labels[i] < count) add(found.at(parts[block], labels[i], make), static_cast<Index>(i));
+        for (std::size_t few = from; few < to; few += kFewItems) {
+          const std::size_t end = std::min(to, few + kFewItems);
+          const auto add = make_add(few, end);
+          for (std::size_t i = few; i < end; ++i)
+            if (labels[i] < count) add(found.at(parts[block], labels[i], make), static_cast<Index>(i));
+        }
         found.finish(parts[block]);
       });
   for (const auto& part : parts)
     for (const auto& [label, found] : part) merge(found, label);
 }
+
+/// Simplices of a contour with labels, and the reference point of each label.
+template <int N>
+struct LabelledPieces {
+  const SimplexView<N>& contour;
+  std::span<const Index> labels;
+  std::span<const PointOf<N>> references;
+};
+
+/// Adds a few simplices to their sums.
+template <int N>
+class AddPieces {
+ public:
+  AddPieces(const LabelledPieces<N>& pieces, std::size_t from, std::size_t to) : pieces_(pieces), from_(from) {
+    if constexpr (N == 4)
+      if (pieces.contour.periods().empty())
+        find_piece_terms(pieces.contour, pieces.references, pieces.labels, from, std::span(terms_).first(to - from));
+  }
+  void operator()(PieceSums<N>& sum, Index s) const {
+    const std::span<const Period<N>> periods = pieces_.contour.periods();
+    if constexpr (N == 4)
+      if (periods.empty()) return sum.add(terms_[s - from_]);
+    std::array<PointOf<N>, N> corners = pieces_.contour.corners(s);
+    if (!periods.empty()) {
+      move_near(periods, pieces_.references[pieces_.labels[s]], corners[0]);
+      for (int j = 1; j < N; ++j) move_near(periods, corners[0], corners[j]);
+    }
+    sum.add(corners);
+  }
+
+ private:
+  const LabelledPieces<N>& pieces_;
+  std::size_t from_;
+  std::array<PieceTerms<N>, N == 4 ? kFewItems : 0> terms_;  ///< not set if the contour is wrapped
+};
 
 }  // namespace
 
@@ -134,26 +175,22 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
   const PointOf<N>* const direction = across ? &*across : nullptr;
   std::vector<PieceSums<N>> sums;
   for (const PointOf<N>& point : reference) sums.emplace_back(point, direction);
+  const LabelledPieces<N> pieces{contour, simplex_labels, reference};
   for_labelled<PieceSums<N>>(
       simplex_labels, count, threads, part_of(progress, 0.0, 0.9),
       [&](Index label) { return PieceSums<N>(reference[label], direction); },
-      [&](PieceSums<N>& sum, Index s) {
-        std::array<PointOf<N>, N> corners = contour.corners(s);
-        if (!periods.empty()) {
-          move_near(periods, reference[simplex_labels[s]], corners[0]);
-          for (int j = 1; j < N; ++j) move_near(periods, corners[0], corners[j]);
-        }
-        sum.add(corners);
-      },
+      [&](std::size_t from, std::size_t to) { return AddPieces<N>(pieces, from, to); },
       [&](const PieceSums<N>& sum, Index label) { sums[label].add(sum); });
   // boxes of vertices
   std::vector<Extent<N>> extents(reference.begin(), reference.end());
   for_labelled<Extent<N>>(
       vertex_labels, count, threads, part_of(progress, 0.9, 1.0), reference_of,
-      [&](Extent<N>& extent, Index v) {
-        PointOf<N> point = contour.point(v);
-        move_near(periods, reference[vertex_labels[v]], point);
-        extent.add(point, point, 1);
+      [&](std::size_t, std::size_t) {
+        return [&](Extent<N>& extent, Index v) {
+          PointOf<N> point = contour.point(v);
+          move_near(periods, reference[vertex_labels[v]], point);
+          extent.add(point, point, 1);
+        };
       },
       [&](const Extent<N>& extent, Index label) {
         extents[label].add(extent.lowest, extent.highest, extent.vertices);

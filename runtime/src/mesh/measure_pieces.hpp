@@ -16,6 +16,7 @@
 #include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "mesh/faces_of_stars.hpp"
+#include "mesh/piece_terms.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
 #include "mesh/vertex_stars.hpp"
@@ -66,17 +67,15 @@ class PieceSums {
 
   void add(const std::array<PointOf<N>, N>& corners) noexcept {
     const PointOf<N> normal = normal_vector_of<N>(corners);
-    const double measure = length_of<N>(normal);
-    few_.size += measure;
-    double flux = 0.0;
-    for (int a = 0; a < N; ++a) {
-      double middle = 0.0;
-      for (const PointOf<N>& corner : corners) middle += corner[a] - reference_[a];
-      few_.moment[a] += measure * (middle / N);
-      flux += normal[a] * (corners[0][a] - reference_[a]);
-    }
-    if (across_ != nullptr) flux = add_flux_across(corners, normal);
-    few_.content += flux;
+    PieceTerms<N> terms = piece_terms_of<N>(corners, reference_, normal);
+    if (across_ != nullptr) terms.flux = add_flux_across(corners, normal);
+    add(terms);
+  }
+  /// Adds a simplex of a contour that is not wrapped.
+  void add(const PieceTerms<N>& terms) noexcept {
+    few_.size += terms.size;
+    for (int a = 0; a < N; ++a) few_.moment[a] += terms.moment[a];
+    few_.content += terms.flux;
     ++count_;
     if (++few_.count == kFew) settle();
   }

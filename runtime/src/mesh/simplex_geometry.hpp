@@ -116,6 +116,11 @@ class SimplexView {
   [[nodiscard]] std::span<const Index> rows() const noexcept {
     return {simplices_.empty() ? nullptr : simplices_.data()->data(), simplices_.size() * N};
   }
+  /// Calls f with a pointer to the vertices.
+  template <class F>
+  decltype(auto) with_points(const F& f) const {
+    return is_single_ ? f(singles_) : f(doubles_);
+  }
   [[nodiscard]] PointOf<N> point(Index v) const noexcept {
     if (!is_single_) return doubles_[v];
     PointOf<N> result;
