@@ -526,8 +526,8 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, const Coord
   if constexpr (D == 3) {
     std::optional<detail::IncidenceData<4>> made;
     if (incidence == nullptr)
-      incidence =
-          &made.emplace(detail::make_incidence<4>(rows, complex.vertex_count, threads, part_of(progress, 0.2, 0.7)));
+      incidence = &made.emplace(
+          detail::make_incidence<4>(rows, complex.vertex_count, true, threads, part_of(progress, 0.2, 0.7)));
     links = count_links(complex, *incidence, connected, threads, part_of(progress, 0.7, 1.0));
   } else if (incidence != nullptr) {
     links = count_links<D>(complex, incidence->stars, connected, threads, part_of(progress, 0.2, 1.0));

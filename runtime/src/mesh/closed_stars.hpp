@@ -34,11 +34,10 @@ struct ClosedStars {
   /// By tetrahedron, its row of the tetrahedra across its triangles: entry i is across the triangle opposite to vertex
   /// i. Entries are written for the triangles that are counted.
   Index* across = nullptr;
-  std::vector<Index> edges;  ///< the other ends of the edges that are counted, star after star
+  std::vector<Index> edges;  ///< the other ends of the edges that are counted, if any are, star after star
 };
 
-/// The stars of the vertices from, from + 1, … `rows`: #S x 4, row = tetrahedron. `more`: null or what to add to; needs
-/// `with_edges`.
+/// The stars of the vertices from, from + 1, … `rows`: #S x 4, row = tetrahedron. `more`: null or what to add to.
 void count_closed_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges,
                         std::span<ClosedStar> found, ClosedStars* more = nullptr);
 

@@ -127,8 +127,8 @@ std::uint64_t digest_of(std::span<const Index> numbers) noexcept {
 }
 
 template <int N>
-IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_count, unsigned threads,
-                                const Progress& progress) {
+IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_count, bool with_counts,
+                                unsigned threads, const Progress& progress) {
   const std::size_t count = rows.size() / N;
   if (count >= kSeveralSimplices)
     throw Error(ErrorCode::TooLarge,
@@ -136,9 +136,10 @@ IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_
   IncidenceData<N> data;
   data.stars = make_stars<N>(rows, vertex_count, threads, part_of(progress, 0.0, 0.2));
   data.across.resize(count);
-  data.euler_above.resize(vertex_count);
+  if (with_counts) data.euler_above.resize(vertex_count);
+  const bool with_edges = N == 4 && with_counts;
   for (auto* const edges : {&data.near_edges, &data.far_edges}) {
-    if (N == 4) edges->resize(vertex_count);
+    if (with_edges) edges->resize(vertex_count);
     std::fill(edges->begin(), edges->end(), 0u);
   }
   // simplices that repeat a vertex get no other entries
@@ -153,24 +154,27 @@ IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_
       [&](std::size_t block, std::size_t from, std::size_t to, AnyStar<N>& any) {
         std::vector<ClosedStar> closed(to - from);
         ClosedStars found{count == 0 ? nullptr : data.across.data()->data(), {}};
-        if constexpr (N == 4) count_closed_stars(rows.data(), data.stars, from, true, closed, &found);
+        if constexpr (N == 4) count_closed_stars(rows.data(), data.stars, from, with_edges, closed, &found);
         std::size_t edge = 0;  // in `found`
         for (std::size_t i = from; i < to; ++i) {
           const auto v = static_cast<Index>(i);
           const std::span<const Index> star = data.stars.of(v);
-          data.euler_above[v] = 0;
-          if (star.empty()) continue;
-          if (const ClosedStar& here = closed[i - from]; N == 4 && here.is_settled) {
-            data.euler_above[v] = here.euler_above();
-            add_edges(data, v, to, std::span<const Index>(found.edges).subspan(edge, here.edges));
+          const ClosedStar& here = closed[i - from];
+          const bool is_settled = N == 4 && here.is_settled && !star.empty();
+          if (with_counts)
+            data.euler_above[v] = star.empty() ? 0
+                                  : is_settled ? here.euler_above()
+                                               : static_cast<std::int32_t>(any.euler_above(v, star));
+          if (with_edges && !star.empty()) {
+            add_edges(
+                data, v, to,
+                is_settled ? std::span<const Index>(found.edges).subspan(edge, here.edges) : any.edges_above(v, star));
             edge += here.edges;
-            if (here.boundary > 0) irregular[block].push_back({v, here.boundary, 0, 0, here.boundary});
-            continue;
           }
-          data.euler_above[v] = static_cast<std::int32_t>(any.euler_above(v, star));
-          if constexpr (N == 4) add_edges(data, v, to, any.edges_above(v, star));
-          const IrregularFaces faces = any.pair(v, star, data);
-          if (faces.boundary + faces.several + faces.conflicts + faces.open > 0) irregular[block].push_back(faces);
+          IrregularFaces faces{v, here.boundary, 0, 0, here.boundary};
+          if (!is_settled) faces = any.pair(v, star, data);
+          if (with_counts && faces.boundary + faces.several + faces.conflicts + faces.open > 0)
+            irregular[block].push_back(faces);
         }
       });
   for (const auto& part : irregular) data.irregular.insert(data.irregular.end(), part.begin(), part.end());
@@ -192,8 +196,8 @@ void require_incidence(const IncidenceData<N>& incidence, std::span<const Index>
                             incidence.digest, digest));
 }
 
-#define TEGL_INCIDENCE(N)                                                                                      \
-  template IncidenceData<N> make_incidence<N>(std::span<const Index>, std::size_t, unsigned, const Progress&); \
+#define TEGL_INCIDENCE(N)                                                                                            \
+  template IncidenceData<N> make_incidence<N>(std::span<const Index>, std::size_t, bool, unsigned, const Progress&); \
   template void require_incidence<N>(const IncidenceData<N>&, std::span<const Index>, std::size_t);
 TEGL_INCIDENCE(2)
 TEGL_INCIDENCE(3)
@@ -210,7 +214,7 @@ Incidence<N>::Incidence(const Contour<N, Real>& contour, const WorkOptions& work
   detail::require_vertices(contour);
   const auto rows = detail::flat_rows(std::span<const std::array<Index, N>>(contour.simplices));
   auto data = std::make_shared<detail::IncidenceData<N>>(
-      detail::make_incidence<N>(rows, contour.vertices.size(), work.threads, work.progress));
+      detail::make_incidence<N>(rows, contour.vertices.size(), true, work.threads, work.progress));
   data->digest = detail::digest_of(rows);
   data_ = std::move(data);
 }

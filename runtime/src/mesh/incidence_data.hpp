@@ -45,10 +45,11 @@ struct IncidenceData {
 /// Digest of an array of vertex numbers.
 std::uint64_t digest_of(std::span<const Index> numbers) noexcept;
 
-/// All vertex numbers must be below `vertex_count`. `rows`: #S x N, row = simplex. Without the digest.
+/// All vertex numbers must be below `vertex_count`. `rows`: #S x N, row = simplex. Without the digest. `with_counts`:
+/// whether to find more than `stars` and `across`.
 template <int N>
-IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_count, unsigned threads,
-                                const Progress& progress);
+IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_count, bool with_counts,
+                                unsigned threads, const Progress& progress);
 
 /// Counts of the faces by the label of their vertices (without labels: one label for all), as `count_faces` of a
 /// complex.

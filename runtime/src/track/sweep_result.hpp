@@ -56,6 +56,7 @@ struct SweepResult {
   std::vector<SweepArc> arcs;        ///< in the order of their start
   std::vector<SweepHandle> handles;  ///< by time, then vertex
   std::vector<SweepSample> samples;  ///< by time, then arc
+  double first = 0.0, last = 0.0;    ///< times of the lowest and the highest vertex of a simplex
   std::vector<Index> simplex_arcs;   ///< #S, if requested; kNone for simplices that repeat a vertex
 };
 

@@ -57,8 +57,7 @@ void require_sound(const Contour<N, Real>& contour) {
 struct SweptContour {
   std::span<const std::string> axis_names;  ///< one per axis
   std::span<const std::string> axis_units;
-  std::span<const Index> rows;  ///< vertex numbers of all simplices
-  double epsilon;               ///< of its coordinates' type
+  double epsilon;  ///< of its coordinates' type
   detail::FunctionRef<double(Index vertex, int axis)> coordinate;
 
   [[nodiscard]] int last_axis() const noexcept { return static_cast<int>(axis_names.size()) - 1; }
@@ -70,6 +69,8 @@ class Builder {
   Builder(const SweptContour& contour, const TrackOptions& options, SweepResult&& swept)
       : contour_(contour),
         options_(options),
+        first_(swept.first),
+        last_(swept.last),
         samples_(std::move(swept.samples)),
         simplex_arcs_(std::move(swept.simplex_arcs)),
         graph_(std::move(swept.nodes), std::move(swept.arcs), std::move(swept.handles)) {}
@@ -105,17 +106,9 @@ class Builder {
     result_.space_dim = static_cast<int>(contour_.axis_names.size());
     std::copy(contour_.axis_names.begin(), contour_.axis_names.end(), result_.axis_names.begin());
     std::copy(contour_.axis_units.begin(), contour_.axis_units.end(), result_.axis_units.begin());
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -least;
-    for (const Index v : contour_.rows) {
-      const double time = contour_.coordinate(v, contour_.last_axis());
-      least = std::min(least, time);
-      greatest = std::max(greatest, time);
-    }
-    if (contour_.rows.empty()) least = greatest = 0;
-    result_.first = options_.first.value_or(least);
-    result_.last = options_.last.value_or(greatest);
-    tolerance_ = 4 * contour_.epsilon * std::max(std::abs(least), std::abs(greatest));
+    result_.first = options_.first.value_or(first_);
+    result_.last = options_.last.value_or(last_);
+    tolerance_ = 4 * contour_.epsilon * std::max(std::abs(first_), std::abs(last_));
   }
 
   void add_events() {
@@ -238,6 +231,7 @@ class Builder {
 
   const SweptContour& contour_;
   const TrackOptions& options_;
+  double first_, last_;  ///< times of the contour
   std::vector<detail::SweepSample> samples_;
   std::vector<Index> simplex_arcs_;
   SweptGraph graph_;
@@ -295,7 +289,7 @@ TrackGraph track_with(const Contour<N, Real>& contour, const detail::IncidenceDa
   const detail::SimplexView<N> view(contour);
   if (incidence != nullptr) detail::require_incidence<N>(*incidence, view.rows(), view.vertex_count());
   const auto coordinate = [&](Index vertex, int axis) { return view.coordinate(vertex, axis); };
-  const SweptContour swept{contour.axis_names, contour.axis_units, view.rows(),
+  const SweptContour swept{contour.axis_names, contour.axis_units,
                            static_cast<double>(std::numeric_limits<Real>::epsilon()), coordinate};
   return Builder(swept, options, detail::sweep(contour, incidence, options)).build();
 }

@@ -8,18 +8,19 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
 #include "base/radix_sort.hpp"
-#include "base/sort_few.hpp"
 #include "base/workers.hpp"
 #include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
 #include "track/link_sides.hpp"
+#include "track/sides_across.hpp"
 #include "track/sweep_result.hpp"
 
 namespace tegl::detail {
@@ -70,27 +71,45 @@ class SweptComplex {
  public:
   using Simplex = std::array<Index, N>;
 
-  /// `incidence`: null if it is not known; must outlive the complex.
+  /// `incidence`: null if it is not known; must outlive the complex. Tetrahedra are then given one.
   SweptComplex(const SimplexView<N>& contour, const IncidenceData<N>* incidence, unsigned threads,
                const Progress& progress)
       : contour_(contour), incidence_(incidence) {
     rank_vertices(threads, part_of(progress, 0.0, 0.2));
-    rank_simplices(threads, part_of(progress, 0.2, 0.3));
-    if (incidence != nullptr) {
-      copy_border(threads, part_of(progress, 0.3, 0.8));
-    } else {
+    if constexpr (N == 4)
+      if (incidence == nullptr) {
+        own_ = make_incidence<4>(contour.rows(), contour.vertex_count(), false, threads, part_of(progress, 0.2, 0.7));
+        incidence_ = &own_;
+      }
+    border_.assign(contour.simplices().size(), 0);
+    in_border_.assign(contour.vertex_count(), 0);
+    rank_simplices(threads, part_of(progress, 0.7, 0.75));
+    if (incidence_ == nullptr) {
       stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
-                             part_of(progress, 0.3, 0.5));
-      find_border(threads, part_of(progress, 0.5, 0.8));
+                             part_of(progress, 0.75, 0.77));
+      find_border(threads, part_of(progress, 0.77, 0.8));
     }
     find_passages(threads, part_of(progress, 0.8, 1.0));
   }
+
+  SweptComplex(const SweptComplex&) = delete;
+  SweptComplex& operator=(const SweptComplex&) = delete;
 
   [[nodiscard]] const SimplexView<N>& contour() const { return contour_; }
   /// Vertices by rank, ascending.
   [[nodiscard]] const Simplex& simplex(Index s) const { return simplices_[s]; }
   [[nodiscard]] std::size_t vertex_count() const { return times_.size(); }
   [[nodiscard]] double time(Index v) const { return times_[v]; }
+  /// Times of the lowest and the highest vertex of a simplex; 0 if there are none.
+  [[nodiscard]] std::pair<double, double> times() const {
+    if (simplices_.empty()) return {0.0, 0.0};
+    Index lowest = kNone, highest = 0;
+    for (const Simplex& simplex : simplices_) {
+      lowest = std::min(lowest, simplex.front());
+      highest = std::max(highest, simplex.back());
+    }
+    return {times_[lowest], times_[highest]};
+  }
   /// The vertex of the contour.
   [[nodiscard]] Index vertex(Index rank) const { return order_[rank]; }
   /// Simplices around a vertex, ascending, without those that repeat a vertex.
@@ -148,43 +167,49 @@ class SweptComplex {
     });
   }
 
+  /// Also finds the border if the incidence is known.
   void rank_simplices(unsigned threads, const Progress& progress) {
     simplices_.resize(contour_.simplices().size());
+    const Simplex* across = incidence_ != nullptr ? incidence_->across.data() : nullptr;
+    if constexpr (N == 4) {
+      if (incidence_ == &own_)
+        across_ = std::move(own_.across);  // ordered in place
+      else
+        across_.resize(simplices_.size());
+      if (incidence_ == &own_) across = across_.data();
+    }
     for_each_item(simplices_.size(), threads, progress, [&](std::size_t s) {
-      Simplex ranks;
-      for (int i = 0; i < N; ++i) ranks[i] = rank_[contour_.simplices()[s][i]];
-      sort_few(ranks);
+      Simplex given;
+      for (int i = 0; i < N; ++i) given[i] = rank_[contour_.simplices()[s][i]];
+      Simplex there;
+      there.fill(kSeveralSimplices);
+      if (across != nullptr) there = across[s];
+      Simplex ranks{}, sorted_across{};
+      for (int i = 0; i < N; ++i) {
+        int place = 0;
+        for (int j = 0; j < N; ++j) place += (j < i ? given[j] <= given[i] : given[j] < given[i]) ? 1 : 0;
+        ranks[place] = given[i];
+        sorted_across[place] = there[i];
+      }
       simplices_[s] = ranks;
+      if constexpr (N == 4) across_[s] = sorted_across;
+      if (std::find(there.begin(), there.end(), kNoSimplex) != there.end()) mark_border(s, sorted_across);
     });
   }
-
-  /// As find_border, from the incidence.
-  void copy_border(unsigned threads, const Progress& progress) {
-    border_.assign(simplices_.size(), 0);
-    in_border_.assign(contour_.vertex_count(), 0);
-    for_each_item(simplices_.size(), threads, progress, [&](std::size_t s) {
-      const auto& across = incidence_->across[s];
-      if (std::find(across.begin(), across.end(), kNoSimplex) == across.end()) return;
-      const Simplex& simplex = simplices_[s];
-      if (std::adjacent_find(simplex.begin(), simplex.end()) != simplex.end()) return;  // repeats a vertex
-      unsigned border = 0;
-      for (int i = 0; i < N; ++i) {
-        if (across[i] != kNoSimplex) continue;
-        const Index omitted = rank_[contour_.simplices()[s][i]];
-        for (int j = 0; j < N; ++j) {
-          if (simplex[j] == omitted)
-            border |= 1u << j;
-          else
-            std::atomic_ref(in_border_[simplex[j]]).store(1, std::memory_order_relaxed);
-        }
-      }
-      border_[s] = static_cast<std::uint8_t>(border);
-    });
+  void mark_border(std::size_t s, const Simplex& across) {
+    const Simplex& simplex = simplices_[s];
+    if (is_collapsed<N>(simplex.data())) return;
+    unsigned border = 0;
+    for (int i = 0; i < N; ++i) {
+      if (across[i] != kNoSimplex) continue;
+      border |= 1u << i;
+      for (int j = 0; j < N; ++j)
+        if (j != i) std::atomic_ref(in_border_[simplex[j]]).store(1, std::memory_order_relaxed);
+    }
+    border_[s] = static_cast<std::uint8_t>(border);
   }
 
   void find_border(unsigned threads, const Progress& progress) {
-    border_.assign(simplices_.size(), 0);
-    in_border_.assign(contour_.vertex_count(), 0);
     for_each_block(
         contour_.vertex_count(), kBlock, threads, progress,
         [&] { return SingleFaces<N>(simplices_, contour_.vertex_count()); },
@@ -200,18 +225,33 @@ class SweptComplex {
   }
 
   void find_passages(unsigned threads, const Progress& progress) {
+    struct Scratch {
+      LinkSides<N> sides;
+      std::optional<SidesAcross> across;
+    };
     passages_.resize(contour_.vertex_count());
     for_each_block(
         contour_.vertex_count(), kBlock, threads, progress,
-        [&] { return LinkSides<N>(simplices_, contour_.vertex_count()); },
-        [&](std::size_t, std::size_t from, std::size_t to, LinkSides<N>& sides) {
+        [&] {
+          Scratch scratch{LinkSides<N>(simplices_, contour_.vertex_count()), {}};
+          if constexpr (N == 4) scratch.across.emplace(simplices_, across_);
+          return scratch;
+        },
+        [&](std::size_t, std::size_t from, std::size_t to, Scratch& scratch) {
           for (std::size_t i = from; i < to; ++i) {
             const auto v = static_cast<Index>(i);
             passages_[v] = {};
-            if (!sides.are_connected(v, star(v))) continue;
+            if constexpr (N == 4)
+              if (in_border_[v] == 0)
+                if (const StarSides sides = scratch.across->visit(v, star(v)); sides.are_connected) {
+                  passages_[v] = {sides.below, simplices_[sides.below].front(), sides.growth, 0};
+                  continue;
+                }
+            if (!scratch.sides.are_connected(v, star(v))) continue;
             passages_[v] = count_cells(v);
             if constexpr (N == 4)
-              if (in_border_[v] != 0) passages_[v].euler = static_cast<std::int32_t>(sides.euler_change(v, star(v)));
+              if (in_border_[v] != 0)
+                passages_[v].euler = static_cast<std::int32_t>(scratch.sides.euler_change(v, star(v)));
           }
         });
   }
@@ -228,12 +268,15 @@ class SweptComplex {
   }
 
   SimplexView<N> contour_;
+  IncidenceData<N> own_;  ///< N = 4, if none was given; without `across`
   const IncidenceData<N>* incidence_;
   Buffer<Index> order_;
   Buffer<Index> rank_;
   Buffer<double> times_;       ///< by rank
   Buffer<Simplex> simplices_;  ///< by ranks
-  Stars stars_;                ///< empty if the incidence is known
+  /// N = 4: the simplices across the facet without the vertex at the same place, or constants of Incidence.
+  Buffer<Simplex> across_;
+  Stars stars_;  ///< empty if the incidence is known
   std::vector<std::uint8_t> border_;
   std::vector<std::uint8_t> in_border_;  ///< by vertex: whether it is in the border
   Buffer<Passage> passages_;

@@ -26,6 +26,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "base/periods.hpp"
@@ -79,6 +80,7 @@ class Sweeper {
       visit(v);
     }
     settle_starts();
+    std::tie(result_.first, result_.last) = complex_.times();
     fraction_ = 1.0;
     tell_all(kTellEvery);
     return std::move(result_);
@@ -318,11 +320,15 @@ class Sweeper {
     if (complex_.star(b).size() < complex_.star(a).size()) std::swap(a, b);
     bool joined = false;
     tell_all(complex_.star(a).size());
+    const auto own = first_seen_ + static_cast<std::uint32_t>(front);
     for (const Index t : complex_.star(a)) {
+      if (seen_[t] == own) continue;
       const auto& other = complex_.simplex(t);
-      if (std::find(other.begin(), other.end(), b) == other.end()) continue;
+      bool has_b = false;  // found without branches
+      for (const Index u : other) has_b = has_b | (u == b);
+      if (!has_b) continue;
       if (seen_[t] < first_seen_) {
-        seen_[t] = first_seen_ + static_cast<std::uint32_t>(front);
+        seen_[t] = own;
         fronts_[front].cells.push_back(t);
         continue;
       }

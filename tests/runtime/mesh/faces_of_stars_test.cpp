@@ -162,7 +162,7 @@ void expect_incidence_as_listed(const SimplexList<N>& rows) {
   const ListedFaces<N> faces = list_faces<N>(rows);
   const auto of_face = simplices_by_face<N>(rows);
   const std::size_t vertices = vertices_of<N>(rows);
-  const auto incidence = detail::make_incidence<N>(flat<N>(rows), vertices, 1, {});
+  const auto incidence = detail::make_incidence<N>(flat<N>(rows), vertices, true, 1, {});
   for (Index s = 0; s < rows.size(); ++s)
     for (int i = 0; i < N; ++i) {
       const std::vector<Index>& here = of_face.at(face_without<N>(rows[s], i));
