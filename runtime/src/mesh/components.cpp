@@ -119,21 +119,28 @@ void require_labels(const SimplexRows& contour, const ComponentLabels& labels, c
   Buffer<std::uint8_t> is_in_simplex(contour.vertices), has_simplex(labels.count);
   std::fill(is_in_simplex.begin(), is_in_simplex.end(), std::uint8_t{0});
   std::fill(has_simplex.begin(), has_simplex.end(), std::uint8_t{0});
-  const auto is_sound = [&](std::size_t s) {
-    const Index label = labels.simplices[s];
-    if (label >= labels.count) return false;
-    mark_shared(has_simplex[label]);
-    bool is_equal = true;
-    for (const Index v : contour[s]) {
-      mark_shared(is_in_simplex[v]);
-      is_equal = is_equal && labels.vertices[v] == label;
-    }
-    return is_equal;
-  };
   std::atomic<std::size_t> first_fault = contour.size();
   detail::for_each_part(contour.size(), work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t s = from; s < to; ++s)
-      if (!is_sound(s)) detail::lower_to(first_fault, s);
+    // copies, because the compiler must assume that writing a byte changes anything that it cannot see
+    const SimplexRows rows = contour;
+    const Index* const of_vertices = labels.vertices.data();
+    const Index* const of_simplices = labels.simplices.data();
+    std::uint8_t* const vertex_flags = is_in_simplex.data();
+    std::uint8_t* const label_flags = has_simplex.data();
+    const Index count = labels.count;
+    Index last = kNoComponent;  // of the labels that have a simplex
+    for (std::size_t s = from; s < to; ++s) {
+      const Index label = of_simplices[s];
+      bool is_sound = label < count;
+      if (is_sound && label != last) mark_shared(label_flags[label]);
+      last = label;
+      for (std::size_t i = 0; is_sound && i < rows.width; ++i) {
+        const Index v = rows.numbers[s * rows.width + i];
+        mark_shared(vertex_flags[v]);
+        is_sound = of_vertices[v] == label;
+      }
+      if (!is_sound) detail::lower_to(first_fault, s);
+    }
   });
   if (const std::size_t s = first_fault; s < contour.size()) {
     const Index label = labels.simplices[s];

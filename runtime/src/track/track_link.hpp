@@ -116,6 +116,8 @@ class SweptComplex {
   [[nodiscard]] std::span<const Index> star(Index v) const {
     return incidence_ != nullptr ? incidence_->stars.of(order_[v]) : stars_.of(v);
   }
+  /// N = 4: by place, the simplex across the facet without that vertex, or a constant of Incidence.
+  [[nodiscard]] const Simplex& across(Index s) const { return across_[s]; }
   /// Bit i: the facet without vertex i is in no other simplex (border).
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
   /// The same for positions in the simplex of the contour.
@@ -238,9 +240,10 @@ class SweptComplex {
           return scratch;
         },
         [&](std::size_t, std::size_t from, std::size_t to, Scratch& scratch) {
-          for (std::size_t i = from; i < to; ++i) {
-            const auto v = static_cast<Index>(i);
+          for (std::size_t i = from; i < to; ++i) {  // in the order of the contour: stars are near each other
+            const Index v = rank_[i];
             passages_[v] = {};
+            if (N == 4 && i + kAhead < to) prefetch(star(rank_[i + kAhead]));
             if constexpr (N == 4)
               if (in_border_[v] == 0)
                 if (const StarSides sides = scratch.across->visit(v, star(v)); sides.are_connected) {
@@ -254,6 +257,14 @@ class SweptComplex {
                 passages_[v].euler = static_cast<std::int32_t>(scratch.sides.euler_change(v, star(v)));
           }
         });
+  }
+  static constexpr std::size_t kAhead = 2;  ///< stars
+  /// Fetches the rows of simplices that are needed soon; most are in the third level of cache.
+  void prefetch(std::span<const Index> star) const {
+    for (const Index s : star) {
+      __builtin_prefetch(&simplices_[s]);
+      __builtin_prefetch(&across_[s]);
+    }
   }
   [[nodiscard]] Passage count_cells(Index v) const {
     Passage passage;

@@ -249,7 +249,8 @@ class Sweeper {
   /// Cells reached from one group, in breadth-first order.
   struct Front {
     std::vector<Index> cells;
-    std::size_t next = 0;
+    std::size_t next = 0;         ///< not yet searched over edges
+    std::size_t next_across = 0;  ///< N = 4: not yet searched across facets; next at least
     [[nodiscard]] bool is_done() const { return next == cells.size(); }
   };
 
@@ -266,8 +267,8 @@ class Sweeper {
       for (std::size_t f = 0; f < count; ++f) {
         Front& front = fronts_[f];
         if (front.is_done()) continue;
-        changed = expand(front.cells[front.next], f, level) || changed;
-        changed = ++front.next == front.cells.size() || changed;
+        changed = expand(front, f, level) || changed;
+        changed = front.is_done() || changed;
       }
       if (changed) open = open_groups(count);
     }
@@ -289,7 +290,7 @@ class Sweeper {
     }
     for (std::size_t f = 0; f < count; ++f) {
       fronts_[f].cells.clear();
-      fronts_[f].next = 0;
+      fronts_[f].next = fronts_[f].next_across = 0;
     }
     front_of_part_.assign(star_.link_size(), kNone);
     Index used = 0;
@@ -304,14 +305,32 @@ class Sweeper {
     return count;
   }
 
-  /// Adds the unmarked cells that touch a cell to the front. Returns true if groups were merged.
-  bool expand(Index s, std::size_t front, Index level) {
+  /// Adds unmarked cells that touch the next cell of a front. Returns true if groups were merged. Tetrahedra are
+  /// searched across their triangles first, then over their edges, which takes longer and rarely finds more: most
+  /// searches end when they meet.
+  bool expand(Front& front, std::size_t number, Index level) {
+    if constexpr (N == 4)
+      if (front.next_across < front.cells.size()) return expand_across(front.cells[front.next_across++], number, level);
+    const auto& simplex = complex_.simplex(front.cells[front.next++]);
     bool joined = false;
-    const auto& simplex = complex_.simplex(s);
     for (const Index a : simplex) {
       if (a > level) continue;
       for (const Index b : simplex)
-        if (b > level) joined = expand_over(a, b, front) || joined;
+        if (b > level) joined = expand_over(a, b, number) || joined;
+    }
+    return joined;
+  }
+
+  bool expand_across(Index s, std::size_t front, Index level) {
+    bool joined = false;
+    const auto& simplex = complex_.simplex(s);
+    int below = 0;
+    for (const Index u : simplex) below += u <= level ? 1 : 0;
+    tell_all(N);
+    for (int i = 0; i < N; ++i) {
+      const bool crosses = below - (i < below ? 1 : 0) > 0 && N - below - (i < below ? 0 : 1) > 0;
+      const Index t = complex_.across(s)[i];
+      if (crosses && t < kSeveralSimplices) joined = meet(t, front) || joined;
     }
     return joined;
   }
@@ -323,22 +342,25 @@ class Sweeper {
     const auto own = first_seen_ + static_cast<std::uint32_t>(front);
     for (const Index t : complex_.star(a)) {
       if (seen_[t] == own) continue;
-      const auto& other = complex_.simplex(t);
       bool has_b = false;  // found without branches
-      for (const Index u : other) has_b = has_b | (u == b);
-      if (!has_b) continue;
-      if (seen_[t] < first_seen_) {
-        seen_[t] = own;
-        fronts_[front].cells.push_back(t);
-        continue;
-      }
-      const Index here = groups_.find(static_cast<Index>(front));
-      const Index there = groups_.find(seen_[t] - first_seen_);
-      if (here == there) continue;
-      groups_.join(here, there);
-      joined = true;
+      for (const Index u : complex_.simplex(t)) has_b = has_b | (u == b);
+      if (has_b) joined = meet(t, front) || joined;
     }
     return joined;
+  }
+
+  /// Adds a cell that touches a cell of the front, if it is unmarked. Else returns whether groups were merged.
+  bool meet(Index t, std::size_t front) {
+    if (seen_[t] < first_seen_) {
+      seen_[t] = first_seen_ + static_cast<std::uint32_t>(front);
+      fronts_[front].cells.push_back(t);
+      return false;
+    }
+    const Index here = groups_.find(static_cast<Index>(front));
+    const Index there = groups_.find(seen_[t] - first_seen_);
+    if (here == there) return false;
+    groups_.join(here, there);
+    return true;
   }
 
   [[nodiscard]] bool is_done(Index group, std::size_t count) {
