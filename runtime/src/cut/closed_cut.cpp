@@ -262,11 +262,11 @@ class Cutter {
 
   /// The pieces of all simplices. Points around on vertices are merged, except around the vertices in `apart`.
   /// Collapsed pieces are omitted.
-  [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
+  [[nodiscard]] Buffer<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
     const auto is_merged = [&](Index v) { return !any_apart || !apart[on_(v)]; };
     if (N < 5 && on_.empty()) {  // every touching simplex has vertices above and below, and gives one piece
-      std::vector<Piece> all(touching_.size());
+      Buffer<Piece> all(touching_.size());
       for_each_item(all.size(), threads_, {}, [&](std::size_t i) {
         visit_pieces<N>(contour_.simplices[touching_[i]], touching_[i], high(i),
                         [&](const Piece& piece) { all[i] = piece; });
@@ -284,7 +284,7 @@ class Cutter {
         });
       }
     });
-    std::vector<Piece> result;
+    Buffer<Piece> result;
     result.reserve(std::accumulate(parts.begin(), parts.end(), std::size_t{0},
                                    [](std::size_t sum, const auto& part) { return sum + part.size(); }));
     for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
@@ -296,6 +296,7 @@ class Cutter {
   [[nodiscard]] Piece merged_piece(const Piece& piece, const IsMerged& is_merged) const {
     Piece merged;
     merged.simplex = piece.simplex;
+    merged.count = 0;
     for (int k = 0; k < piece.count; ++k) {
       const std::optional<Index> on = on_end(piece.points[k]);
       const PointKey key = on && is_merged(*on) ? vertex_point(*on) : piece.points[k];
@@ -325,19 +326,19 @@ class Cutter {
     std::vector<bool> apart(on_.size(), false);
     std::vector<PointKey> excused;
     for (int round = 0;; ++round) {
-      std::vector<Piece> merged = cut_pieces(apart);
+      Buffer<Piece> merged = cut_pieces(apart);
       merged.insert(merged.end(), faces.begin(), faces.end());
       set_pieces(std::move(merged));
       const std::vector<PointKey> pinched = nonmanifold_points(pieces_, corners_, N - 2);
       if (round == 0 && !pinched.empty()) {
-        const std::vector<Piece> unmerged = cut_pieces(std::vector<bool>(on_.size(), true));
+        const Buffer<Piece> unmerged = cut_pieces(std::vector<bool>(on_.size(), true));
         excused = nonmanifold_points(unmerged, corners_by_point(unmerged, threads_), N - 2);
       }
       if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
     }
   }
 
-  void set_pieces(std::vector<Piece> pieces) {
+  void set_pieces(Buffer<Piece> pieces) {
     pieces_ = std::move(pieces);
     corners_ = corners_by_point(pieces_, threads_);
   }
@@ -451,6 +452,7 @@ class Cutter {
 
   /// Numbers the points in the order of their keys and replaces keys by numbers.
   void number_points() {
+    keys_.reserve(corners_.size() / 3);  // about: a point is in several pieces
     for (const Corner& corner : corners_) {
       if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
       pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;
@@ -592,8 +594,8 @@ class Cutter {
   bool any_low_ = false;
   std::vector<Sides> sides_;  ///< by touching simplex
   Index most_ = 0;            ///< maximum number of their vertices
-  std::vector<Piece> pieces_;
-  std::vector<Corner> corners_;  ///< incidences of the pieces, sorted by key
+  Buffer<Piece> pieces_;
+  Buffer<Corner> corners_;  ///< incidences of the pieces, sorted by key
   std::vector<PointKey> keys_;
 };
 

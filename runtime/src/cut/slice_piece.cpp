@@ -98,7 +98,7 @@ void sort_by_key(std::span<Corner> corners) {
 
 }  // namespace
 
-std::vector<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads) {
+Buffer<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads) {
   Index least = std::numeric_limits<Index>::max();
   Index most = 0;
   std::size_t count = 0;
@@ -107,7 +107,7 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, unsigned thr
       least = std::min(least, lower_end(piece.points[i]));
       most = std::max(most, lower_end(piece.points[i]));
     }
-  std::vector<Corner> corners(count);
+  Buffer<Corner> corners(count);
   if (count == 0) return corners;
   // A counting sort by lower end, or by its upper bits if the ends are far apart: about as many buckets as corners.
   unsigned shift = 0;
@@ -137,8 +137,8 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, unsigned thr
   const std::vector<std::size_t>& ends = next.back();
   for_each_block(buckets, kPart, threads, {}, [&](std::size_t, std::size_t from, std::size_t to) {
     for (std::size_t bucket = from; bucket < to; ++bucket)
-      sort_by_key(std::span(corners).subspan(bucket == 0 ? 0 : ends[bucket - 1],
-                                             ends[bucket] - (bucket == 0 ? 0 : ends[bucket - 1])));
+      sort_by_key(std::span<Corner>(corners).subspan(bucket == 0 ? 0 : ends[bucket - 1],
+                                                     ends[bucket] - (bucket == 0 ? 0 : ends[bucket - 1])));
   });
   return corners;
 }

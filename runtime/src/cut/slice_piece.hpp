@@ -27,8 +27,8 @@ constexpr bool is_vertex_point(PointKey key) { return lower_end(key) == upper_en
 /// of which a simplex may have several.
 struct Piece {
   std::array<PointKey, 4> points;
-  int count = 0;
-  Index simplex = 0;  ///< the simplex that was cut
+  int count;
+  Index simplex;  ///< the simplex that was cut
 };
 
 /// An incidence of a point and a piece.
@@ -38,7 +38,7 @@ struct Corner {
 };
 
 /// All incidences sorted by key, then by piece. Threads: 0 for all of the machine. O(c) for c pieces.
-std::vector<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads);
+Buffer<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads);
 
 /// The keys, ascending, of the points at which the pieces do not form one path (segments, `dim` 1) or one fan
 /// (polygons, 2), or at which the link of the tetrahedra (3) is neither a sphere nor a disc; also those that have an

@@ -14,10 +14,18 @@ namespace tegl::detail {
 
 bool are_below(std::span<const Index> rows, std::size_t vertices) noexcept {
   if (vertices > std::numeric_limits<Index>::max()) return true;
-  // without branches, so that compilers compare several numbers at once
-  const auto limit = static_cast<Index>(vertices);
+  if (vertices == 0) return rows.empty();
+  // Without branches, so that compilers compare several numbers at once; by signs, since not all processors compare
+  // unsigned numbers. If the last number is below 2^31, then a number is greater iff it has the upper bit or the
+  // difference has.
+  const auto last = static_cast<Index>(vertices - 1);
+  constexpr Index kUpper = Index{1} << 31;
   Index beyond = 0;
-  for (const Index v : rows) beyond |= static_cast<Index>(v >= limit);
+  if (last < kUpper) {
+    for (const Index v : rows) beyond |= v | (last - v);
+    return (beyond & kUpper) == 0;
+  }
+  for (const Index v : rows) beyond |= static_cast<Index>(v > last);
   return beyond == 0;
 }
 
