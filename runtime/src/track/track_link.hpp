@@ -84,11 +84,12 @@ class SweptComplex {
     border_.assign(contour.simplices().size(), 0);
     in_border_.assign(contour.vertex_count(), 0);
     rank_simplices(threads, part_of(progress, 0.7, 0.75));
-    if (incidence_ == nullptr) {
-      stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
-                             part_of(progress, 0.75, 0.77));
-      find_border(threads, part_of(progress, 0.77, 0.8));
-    }
+    if constexpr (N != 4)
+      if (incidence_ == nullptr) {
+        stars_ = make_stars<N>(flat_rows(std::span<const Simplex>(simplices_)), contour.vertex_count(), threads,
+                               part_of(progress, 0.75, 0.77));
+        find_border(threads, part_of(progress, 0.77, 0.8));
+      }
     find_passages(threads, part_of(progress, 0.8, 1.0));
   }
 

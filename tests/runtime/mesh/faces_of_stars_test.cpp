@@ -19,6 +19,7 @@
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "track/link_sides.hpp"
+#include "track/sides_across.hpp"
 
 namespace tegl {
 namespace {
@@ -259,6 +260,29 @@ void expect_sides_as_defined(SimplexList<N> rows) {
   }
 }
 
+/// Rows with ascending vertices. Sides that are found connected must be; at least `least` vertices must be decided.
+void expect_sides_across_are_connected(SimplexList<4> rows, std::size_t least) {
+  for (auto& row : rows) std::sort(row.begin(), row.end());
+  const std::size_t vertices = vertices_of<4>(rows);
+  const auto incidence = detail::make_incidence<4>(flat<4>(rows), vertices, false, 1, {});
+  detail::SidesAcross sides(rows, incidence.across);
+  std::size_t decided = 0;
+  for (Index v = 0; v < vertices; ++v) {
+    const std::span<const Index> star = incidence.stars.of(v);
+    const detail::StarSides found = sides.visit(v, star);
+    if (!found.are_connected) continue;
+    ++decided;
+    EXPECT_TRUE(is_side_connected<4>(rows, star, v, true)) << "vertex " << v;
+    EXPECT_TRUE(is_side_connected<4>(rows, star, v, false)) << "vertex " << v;
+    int growth = 0;
+    for (const Index s : star) growth += (rows[s].front() == v ? 1 : 0) - (rows[s].back() == v ? 1 : 0);
+    EXPECT_EQ(found.growth, growth);
+    EXPECT_LT(rows[found.below].front(), v);
+    EXPECT_NE(std::find(rows[found.below].begin(), rows[found.below].end(), v), rows[found.below].end());
+  }
+  EXPECT_GE(decided, least);
+}
+
 template <class T>
 class FacesOfStarsTest : public testing::Test {};
 template <int N>
@@ -274,6 +298,7 @@ TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnContours) {
   expect_incidence_as_listed<N>(rows);
   expect_single_faces_as_listed<N>(rows);
   expect_sides_as_defined<N>(rows);
+  if constexpr (N == 4) expect_sides_across_are_connected(rows, vertices_of<4>(rows) / 4);
 }
 
 TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnRandomComplexes) {
@@ -286,6 +311,7 @@ TYPED_TEST(FacesOfStarsTest, AreThoseOfAListOnRandomComplexes) {
     expect_incidence_as_listed<N>(rows);
     expect_single_faces_as_listed<N>(rows);
     expect_sides_as_defined<N>(rows);
+    if constexpr (N == 4) expect_sides_across_are_connected(rows, 0);
     if (testing::Test::HasFailure()) FAIL() << "run " << run;
   }
 }
