@@ -6,11 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <random>
 
 #include "errors.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
+#include "mesh/piece_terms.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/slice.hpp"
 
@@ -82,6 +84,43 @@ TEST(Measure, DoesNotLoseDigitsFarFromTheOrigin) {
   EXPECT_NEAR(found.size, expected.size, 1e-8);
   EXPECT_NEAR(found.content.value(), expected.content.value(), 1e-8);
   EXPECT_NEAR(found.centroid[0], 1e6 + expected.centroid[0], 1e-8);
+}
+
+/// The terms that the vectors of the processor give, against the formula, bit by bit.
+template <class Real>
+void expect_terms_of_formula(double scale) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> coordinate(-scale, scale);
+  Contour<4, Real> contour;
+  contour.vertices.resize(40);
+  for (auto& vertex : contour.vertices)
+    for (Real& x : vertex) x = static_cast<Real>(coordinate(random));
+  contour.simplices.resize(101);
+  for (auto& simplex : contour.simplices)
+    for (Index& v : simplex) v = static_cast<Index>(random() % 40);  // some repeat a vertex: of size 0
+  const detail::SimplexView<4> view(contour);
+  const std::vector<detail::PointOf<4>> references{view.point(3), view.point(17)};
+  std::vector<Index> labels(contour.simplices.size());
+  for (Index& label : labels) label = static_cast<Index>(random() % 3);  // 2 has no reference point
+  constexpr std::size_t kFrom = 5;
+  std::vector<detail::PieceTerms<4>> terms(labels.size() - kFrom);
+  detail::find_piece_terms(view, references, labels, kFrom, terms);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (labels[kFrom + i] >= references.size()) continue;
+    const auto corners = view.corners(kFrom + i);
+    const auto expected =
+        detail::piece_terms_of<4>(corners, references[labels[kFrom + i]], detail::normal_vector_of<4>(corners));
+    EXPECT_EQ(terms[i].size, expected.size);
+    EXPECT_EQ(terms[i].flux, expected.flux);
+    EXPECT_EQ(terms[i].moment, expected.moment);
+  }
+}
+
+TEST(Measure, TermsOfTetrahedraAreThoseOfTheFormula) {
+  expect_terms_of_formula<double>(1.0);
+  expect_terms_of_formula<float>(100.0);
+  expect_terms_of_formula<double>(1e-60);  // squares of volumes underflow
+  expect_terms_of_formula<double>(1e60);
 }
 
 TEST(Measure, OfAnOpenContourHasNoContent) {
