@@ -157,8 +157,8 @@ struct TrackOptions {
 /// Errors: InvalidArgument (a coordinate, time or option that is not finite; times that do not ascend; a negative
 /// min_lifetime; a vertex number out of range), Cancelled. An empty contour gives an empty graph. Thread-safe. Cost:
 /// O(#V + #S), plus a search for each vertex above which a part may split: from all sides at once, until all
-/// sides except the largest are complete or found to be connected; plus the cuts at `times`. Memory: 41 bytes per
-/// simplex, 4 more with `times`, and 54 per vertex (N = 4), plus 8 per vertex and thread.
+/// sides except the largest are complete or found to be connected; plus the cuts at `times`. Memory (N = 4): 57 bytes
+/// per simplex, 4 more with `times`, and 54 per vertex, plus 1 per simplex and 8 per vertex for each thread.
 ///
 /// Based on: G. Reeb, Sur les points singuliers d'une forme de Pfaff complètement intégrable, 1946; S. Parsa, A
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (a sweep that maintains the components of the cut);
