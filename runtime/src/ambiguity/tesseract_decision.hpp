@@ -42,12 +42,15 @@ void resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, Tesse
 class RowOfTesseracts {
  public:
   /// For the row of `base`, which has `samples` samples. `tiles`: its active tiles.
+  /// `of_word`: room for the tiles of a word. It is large, and making it costs more than a row of few tiles.
   RowOfTesseracts(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base, std::size_t samples,
-                  const RowTiles& tiles) noexcept
+                  const RowTiles& tiles, TesseractsOfWord& of_word) noexcept
       : estimator_(estimator),
+        cubes_(ResolvedCubes::instance(estimator.triangulation())),
         tiles_(tiles),
         at_once_(samples <= kMostListed && RowFaces<4>::can_use(estimator)),
-        faces_(estimator, base, samples) {}
+        faces_(estimator, base, samples),
+        of_word_(of_word) {}
   /// Resolves number `ordinal` of the active tiles, based at `base`. Ordinals must increase from call to call. The
   /// result is valid until the next call.
   const ResolvedTile& resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
@@ -55,14 +58,16 @@ class RowOfTesseracts {
 
  private:
   void begin_word(std::size_t word, std::uint32_t ordinal) noexcept;
+  static void fetch(const ResolvedCubes& cubes, const ResolvedTile& tile) noexcept;
 
   const FaceEstimator<4>& estimator_;
+  const ResolvedCubes& cubes_;
   RowTiles tiles_;
   bool at_once_;
   std::size_t word_ = ~std::size_t{0};
   bool has_many_ = false;  ///< whether the word is decided at once
   RowFaces<4> faces_;
-  TesseractsOfWord of_word_;
+  TesseractsOfWord& of_word_;
   std::uint32_t first_ = 0;                     ///< ordinal of the word's first tile resolved at once
   std::array<std::uint8_t, kWordBits> number_;  ///< by ordinal from there on: number in of_word_
   ResolvedTile alone_;                          ///< the last one not resolved at once

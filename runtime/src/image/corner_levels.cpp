@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "image/ray_level.hpp"
 
@@ -41,25 +43,27 @@ struct RayPolynomials {
           result[set][corner] = std::popcount(set & ~corner) % 2 == 0 ? 1.0 : -1.0;
       return result;
     }();
-    const RayTag d;
-    for (auto& coefficient : of) coefficient = hn::Zero(d);
-    for (std::size_t set = 0; set < 16; ++set) {
-      auto& coefficient = of[static_cast<std::size_t>(std::popcount(set))];
-      const auto weights = hn::LoadU(d, kProducts[set].data() + first);
-      coefficient = hn::Add(coefficient, hn::Mul(hn::Set(d, products[set]), weights));
+    // Unrolled, so that the coefficients stay in registers.
+    [&]<std::size_t... Set>(std::index_sequence<Set...>) HWY_ATTR {
+      const RayTag d;
+      RayLanes sums[5] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+      ((sums[std::popcount(Set)] = hn::Add(
+            sums[std::popcount(Set)], hn::Mul(hn::Set(d, products[Set]), hn::LoadU(d, kProducts[Set].data() + first)))),
+       ...);
+      std::copy(std::begin(sums), std::end(sums), of.begin());
     }
+    (std::make_index_sequence<16>());
   }
   HWY_INLINE RayLanes value(RayLanes x) const {
-    RayLanes result = of[4];
-    for (std::size_t k = 4; k-- > 0;) result = hn::Add(of[k], hn::Mul(x, result));
-    return result;
+    const auto cubic = hn::Add(of[3], hn::Mul(x, of[4]));
+    const auto square = hn::Add(of[2], hn::Mul(x, cubic));
+    return hn::Add(of[0], hn::Mul(x, hn::Add(of[1], hn::Mul(x, square))));
   }
   HWY_INLINE RayLanes slope(RayLanes x) const {
     const RayTag d;
-    RayLanes result = hn::Mul(hn::Set(d, 4.0), of[4]);
-    for (std::size_t k = 4; k-- > 1;)
-      result = hn::Add(hn::Mul(hn::Set(d, static_cast<double>(k)), of[k]), hn::Mul(x, result));
-    return result;
+    const auto times = [d](double k, RayLanes coefficient) HWY_ATTR { return hn::Mul(hn::Set(d, k), coefficient); };
+    const auto linear = hn::Add(times(3.0, of[3]), hn::Mul(x, times(4.0, of[4])));
+    return hn::Add(times(1.0, of[1]), hn::Mul(x, hn::Add(times(2.0, of[2]), hn::Mul(x, linear))));
   }
 };
 

@@ -47,7 +47,8 @@ template <int N, class T, class Out, class Strides>
 
 template <Value T, int N>
 unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corners& corners) const noexcept {
-  std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
+  std::array<std::ptrdiff_t, std::size_t{1} << N> offsets;
+  offsets[0] = 0;  // the others are set before they are read
   const std::ptrdiff_t along = offset_in_row(base);
   const T* const samples = row(base) + along;
   // A cell within the last layer has no upper layer.

@@ -223,21 +223,26 @@ void keep_count(const TileCount& count, Slab<N>& slab, std::size_t row) {
 
 template <int N>
 TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const {
-  TileCount count = count_tile_row<N>(tile_row(shape_, view, *view.slab, row), *rows_, room);
+  TileRow tiles = tile_row(shape_, view, *view.slab, row);
+  tiles.sizes = !lists_cubes_;  // else resolve_tesseracts counts them
+  TileCount count = count_tile_row<N>(tiles, *rows_, room);
   if (N < 4 && estimator_ != nullptr) resolve_tiles(view, row, room, count);
   return count;
 }
 
-/// Lists the indices of ambiguous tiles in first ... end - 1. Returns their number. Branch-free in the tiles.
-template <int N, std::size_t Count>
-static std::uint32_t list_ambiguous(const TileRoom& room, std::uint32_t first, std::uint32_t end,
-                                    std::array<std::uint32_t, Count>& out) {
-  const auto& ambiguous = ambiguous_signatures<N>();
+/// Indices of tiles of a row, of up to 64 of them.
+using TilePlaces = std::array<std::uint32_t, kWordBits>;
+
+/// Lists the indices of those tiles in first ... end - 1 whose signatures are `wanted`. Returns their number.
+/// Branch-free in the tiles.
+template <class Wanted>
+static std::uint32_t list_tiles(const TileRoom& room, std::uint32_t first, std::uint32_t end, TilePlaces& out,
+                                const Wanted& wanted) {
   std::uint32_t* const to = out.data();
   std::uint32_t found = 0;
   for (std::uint32_t i = first; i < end; ++i) {
     to[found] = i;
-    found += ambiguous[room.signatures[i]] ? 1 : 0;
+    found += wanted(room.signatures[i]) ? 1 : 0;
   }
   return found;
 }
@@ -324,10 +329,12 @@ template <int N>
     TileResolver<N> resolver(*estimator_, *rows_, base, room, is_listed, count);
     // calls resolve_found with the indices of ambiguous tiles, and their number
     const auto for_ambiguous = [&](const auto& resolve_found) {
-      std::array<std::uint32_t, kWordBits> places;
+      const auto& ambiguous = ambiguous_signatures<N>();
+      TilePlaces places;
       for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
         const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
-        resolve_found(places.data(), list_ambiguous<N>(room, first, end, places));
+        const auto wanted = [&](unsigned signature) { return ambiguous[signature]; };
+        resolve_found(places.data(), list_tiles(room, first, end, places, wanted));
       }
     };
     if constexpr (N == 2) {
@@ -353,30 +360,38 @@ template <int N>
 
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
-                                                      TileCount& count, ResolvedTesseract& tesseract,
+                                                      TileCount& count, CountScratch& scratch,
                                                       AssembledTiles* assembled, const FoundCubes* found) const {
   if constexpr (N == 4) {
+    // Tiles of the table. Most rows of smooth images have no others.
+    std::uint32_t of_table = 0;
+    for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+      TilePlaces places;
+      const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
+      const std::uint32_t found = list_tiles(
+          room, first, end, places, [&](unsigned signature) { return !is_put_together(*estimator_, signature); });
+      for (std::uint32_t j = 0; j < found; ++j) {
+        const unsigned signature = room.signatures[places[j]];
+        count.simplices += rows_->entries[signature] & RowTable::kCountMask;
+        count.own_vertices += rows_->own_vertices(signature);
+      }
+      of_table += found;
+    }
+    if (of_table == count.active) return;
     const bool is_listed = shape_.size(0) <= kMostListed;
     BitWalk walk(room.active);
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
-    RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active});
-    // Subtract the table's sizes. In a loop of their own, entries are fetched together: they are seldom in a cache. No
-    // branches, which noise makes hard to predict.
-    for (std::uint32_t i = 0; i < count.active; ++i) {
-      const unsigned signature = room.signatures[i];
-      const std::uint32_t replaced = 0u - static_cast<std::uint32_t>(is_put_together(*estimator_, signature));
-      count.simplices -= rows_->entries[signature] & RowTable::kCountMask & replaced;
-      count.own_vertices -= rows_->own_vertices(signature) & replaced;
-    }
+    RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active},
+                          *scratch.of_word);
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
       if (!is_put_together(*estimator_, signature)) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile& tile = tiles.resolve(base, i, signature);
       // add the filling's size
-      const ResolvedSize filling = assemble(tile, tesseract, assembled);
+      const ResolvedSize filling = assemble(tile, *scratch.tesseract, assembled);
       count.simplices += filling.simplices;
       count.own_vertices += filling.own_vertices;
       // record its cubes that own vertices, each by one tile only
@@ -405,9 +420,11 @@ ResolvedSize Counter<N>::assemble(const ResolvedTile& tile, ResolvedTesseract& t
 
 template <int N>
 CountScratch Counter<N>::make_scratch() const {
-  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, {}};
-  if (lists_cubes_)
+  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, nullptr, {}};
+  if (lists_cubes_) {
     scratch.tesseract = std::make_unique<ResolvedTesseract>(make_resolved_tesseract(estimator_->triangulation()));
+    scratch.of_word = std::make_unique<TesseractsOfWord>();
+  }
   if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
   if (estimator_ != nullptr && estimator_->is_callers()) {
     if constexpr (N == 4)
@@ -453,7 +470,7 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   if (rows_ != nullptr) {
     const TileRoom room = tile_room(slab, row, scratch);
     TileCount count = find_tiles(view, row, room);
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, assembled(slab, row), nullptr);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, scratch, assembled(slab, row), nullptr);
     keep_count(count, slab, row);
     return;
   }
@@ -515,7 +532,7 @@ void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>
     const TileRoom room = tile_room(slab, row, scratch);
     count = find_tiles(view, row, room);
     const FoundCubes found{upper.cubes, slab.cubes};
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, assembled(slab, row), &found);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, scratch, assembled(slab, row), &found);
   }
   keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];

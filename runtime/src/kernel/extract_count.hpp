@@ -33,6 +33,7 @@ struct CountScratch {
   std::vector<Word> words;                       ///< one row
   TileLists tiles;                               ///< one row, if slabs do not keep lists
   std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, if ambiguities are resolved from the data
+  std::unique_ptr<TesseractsOfWord> of_word;     ///< with `tesseract`
   RowAnswers answers;                            ///< if a caller's estimator resolves ambiguities
 };
 
@@ -152,7 +153,7 @@ class Counter {
     std::array<CubePlane, N - 1>& in_slab;
   };
   void resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
-                          ResolvedTesseract& tesseract, AssembledTiles* assembled, const FoundCubes* found) const;
+                          CountScratch& scratch, AssembledTiles* assembled, const FoundCubes* found) const;
   [[nodiscard]] static AssembledTiles* assembled(Slab<N>& slab, std::size_t row) noexcept {
     return slab.assembled.empty() ? nullptr : &slab.assembled[chunk_of(row)];
   }

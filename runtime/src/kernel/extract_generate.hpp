@@ -134,8 +134,10 @@ class TileWriter {
   /// write_tile_row for tiles resolved from the data. Not inlined, because its stack frame is large.
   [[gnu::noinline]] void write_tesseracts(const TileOutput<N>& output, const typename RowShape<N>::Index& start,
                                           const RowTiles& tiles, TilesWithOwnVertices& own) const noexcept {
-    RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
+    RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, *own.scratch.of_word);
     own.tesseracts = &tesseracts;
+    // read for one tile after the other, and seldom in a cache
+    for (std::uint32_t i = 0; i < tiles.count; ++i) __builtin_prefetch(&ambiguous_signatures<N>()[tiles.signatures[i]]);
     const Slab<N>& slab = *own.view.slab;
     if (!slab.assembled.empty()) {
       own.assembled = &slab.assembled[chunk_of(own.row)];

@@ -12,6 +12,7 @@
 #define HWY_TARGET_INCLUDE "kernel/extract_rows.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "hwy/cache_control.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -205,7 +206,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     store(out, [&](int half)
                    HWY_ATTR { return _mm512_or_si512(half_of(low, half), _mm512_slli_epi16(half_of(high, half), 8)); });
     std::uint32_t simplices = 0;
-    for (unsigned i = 0; i < count; ++i) simplices += table.entries[out[i]] & RowTable::kCountMask;
+    for (unsigned i = 0; i < count && row.sizes; ++i) simplices += table.entries[out[i]] & RowTable::kCountMask;
     return simplices;
   } else {
     store(out, [&](int half) HWY_ATTR { return half_of(low, half); });
@@ -234,7 +235,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     room.signatures[at] = static_cast<std::uint16_t>(signature);
     // few tiles: gather the corners of each
     room.at[at++] = static_cast<std::uint16_t>(first + bit);
-    simplices += table.entries[signature] & RowTable::kCountMask;
+    if (N < 4 || row.sizes) simplices += table.entries[signature] & RowTable::kCountMask;
   };
   if (static_cast<unsigned>(std::popcount(mixed)) <= kFew) {
     for (; mixed != 0; mixed &= mixed - 1) {
@@ -276,7 +277,7 @@ HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, cons
       count.active += static_cast<std::uint32_t>(std::popcount(mixed));
     }
   }
-  if (table.has_own_vertices())
+  if (table.has_own_vertices() && row.sizes)
     for (std::uint32_t i = 0; i < count.active; ++i) count.own_vertices += table.own_vertices(room.signatures[i]);
   // sums over the row
   const Word* const upper = row.corners[1u << (N - 2)];
@@ -381,6 +382,10 @@ HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
   return key;
 }
 
+/// Tiles between the one that is written and the one whose entry is fetched: those of 4D tiles are seldom in a cache.
+/// Lists of signatures have entries past the end (TileRoom).
+constexpr std::size_t kAhead = 4;
+
 #if HWY_TARGET <= HWY_AVX3
 
 /// First vertex numbers of a tile's edge streams, in one or two registers.
@@ -424,6 +429,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
   auto* out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
+    if constexpr (N == 4) hwy::Prefetch(entries + row.signatures[i + kAhead]);
     const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
@@ -485,6 +491,7 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
   auto* out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
+    if constexpr (N == 4) hwy::Prefetch(entries + row.signatures[i + kAhead]);
     const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];

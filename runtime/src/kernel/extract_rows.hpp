@@ -29,6 +29,8 @@ struct TileRow {
   std::array<const Word*, 8> corners;  ///< the 2^(N-1) rows of samples around the tiles
   std::size_t tiles;                   ///< along the row
   const Word* valid;                   ///< null: all tiles are valid
+  /// N = 4: whether simplices and own vertices are counted. The entries of the table are seldom in a cache.
+  bool sizes = true;
 };
 
 /// Output of counting a row of tiles.

@@ -57,7 +57,7 @@ class Placement {
   }
 
   /// World position of a point given by axis coordinates.
-  [[nodiscard]] Vertex world(const std::array<double, N>& point) const noexcept {
+  [[nodiscard, gnu::always_inline]] Vertex world(const std::array<double, N>& point) const noexcept {
     Vertex vertex;
     if (!mapped_) {
       for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(point[a]);
@@ -118,7 +118,13 @@ class Placement {
  private:
   [[nodiscard]] static double between(double a, double b, double x) noexcept {
     const double p = a + x * (b - a);
-    return x >= 1.0 ? b : std::clamp(p, std::min(a, b), std::max(a, b));
+    return x >= 1.0 ? b : clamped(p, std::min(a, b), std::max(a, b));
+  }
+  /// std::clamp without branches, which noise makes hard to predict.
+  template <class T>
+  [[nodiscard]] static T clamped(T x, T least, T most) noexcept {
+    x = least > x ? least : x;
+    return x > most ? most : x;
   }
 
   /// Keeps a point between layers k and k + 1 off both layers by the smallest difference that its type represents. Used
@@ -126,7 +132,7 @@ class Placement {
   /// between layers would coincide with a layer, and `slice` could not distinguish them from the layer's own points.
   Vertex inside_slab(Vertex vertex, std::size_t k) const noexcept {
     if constexpr (N == 3 || N == 4)
-      if (!insides_.empty()) vertex[N - 1] = std::clamp(vertex[N - 1], insides_[k][0], insides_[k][1]);
+      if (!insides_.empty()) vertex[N - 1] = clamped(vertex[N - 1], insides_[k][0], insides_[k][1]);
     return vertex;
   }
 

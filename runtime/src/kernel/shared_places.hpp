@@ -19,13 +19,13 @@
 
 namespace tegl::detail {
 
-/// Levels of the contour on rays inside the cell along K `axes` based at `base` (CellHeights). Reads the samples at the
-/// first request.
+/// Levels of the contour on rays inside the cell along K `axes` based at `base` (CellHeights), which must outlive it;
+/// with `raised`, at the next samples along these axes. Reads the samples at the first request.
 template <int N, int K>
 class CellRays {
  public:
-  CellRays(const EdgeCrossings<N>& source, const SampleIndex<N>& base, unsigned axes) noexcept
-      : source_(source), base_(base), axes_(axes) {}
+  CellRays(const EdgeCrossings<N>& source, const SampleIndex<N>& base, unsigned axes, unsigned raised = 0) noexcept
+      : source_(source), base_(base), axes_(axes), raised_(raised) {}
   /// `end`: corners of a cube (CubeHeights), or a point in the unit tile (TileHeights).
   template <class End>
   [[nodiscard]] double operator()(const End& end) noexcept {
@@ -38,17 +38,21 @@ class CellRays {
 
  private:
   const CellHeights<K>& heights() noexcept {
-    if (!heights_) heights_ = source_.template heights<K>(base_, axes_);
+    if (heights_) return *heights_;
+    auto base = base_;
+    for (unsigned a = 0; a < N; ++a) base[a] += raised_ >> a & 1u;
+    heights_ = source_.template heights<K>(base, axes_);
     return *heights_;
   }
 
   const EdgeCrossings<N>& source_;
-  SampleIndex<N> base_;
-  unsigned axes_;
+  const SampleIndex<N>& base_;
+  unsigned axes_, raised_;
   std::optional<CellHeights<K>> heights_;
 };
 
 /// Positions of the vertices on critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
+/// `base` must outlive it: a copy would wait until its parts, which have just been set, are in memory.
 template <int N, unsigned Axes>
 class EdgePlaces {
  public:
@@ -67,14 +71,12 @@ class EdgePlaces {
   /// Of a cube of the cell, which is a tesseract.
   [[nodiscard]] CellRays<N, 3> rays_in(unsigned cube) const noexcept {
     static_assert(Axes == 15);
-    auto base = base_;
-    base[cube / 2] += cube % 2;
-    return {source_, base, Axes ^ 1u << cube / 2};
+    return {source_, base_, Axes ^ 1u << cube / 2, cube % 2 << cube / 2};
   }
 
  private:
   const EdgeCrossings<N>& source_;
-  SampleIndex<N> base_;
+  const SampleIndex<N>& base_;
   std::array<double, tables::edge_count(kDim)> alphas_;  ///< undefined for non-critical edges
 };
 
