@@ -372,8 +372,9 @@ template <int N>
           room, first, end, places, [&](unsigned signature) { return !is_put_together(*estimator_, signature); });
       for (std::uint32_t j = 0; j < found; ++j) {
         const unsigned signature = room.signatures[places[j]];
-        count.simplices += rows_->entries[signature] & RowTable::kCountMask;
-        count.own_vertices += rows_->own_vertices(signature);
+        const std::uint32_t entry = rows_->entries[signature];
+        count.simplices += entry & RowTable::kCountMask;
+        if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += rows_->own_vertices(signature);
       }
       of_table += found;
     }
