@@ -358,27 +358,32 @@ template <int N>
   }
 }
 
+/// Counts the sizes of the tiles that the data do not affect. Returns the number of these tiles.
+static std::uint32_t count_tiles_of_table(const FaceEstimator<4>& estimator, const RowTable& table,
+                                          const TileRoom& room, TileCount& count) {
+  std::uint32_t tiles = 0;
+  for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+    TilePlaces places;
+    const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
+    const std::uint32_t found = list_tiles(room, first, end, places,
+                                           [&](unsigned signature) { return !is_put_together(estimator, signature); });
+    for (std::uint32_t j = 0; j < found; ++j) {
+      const unsigned signature = room.signatures[places[j]];
+      const std::uint32_t entry = table.entries[signature];
+      count.simplices += entry & RowTable::kCountMask;
+      if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += table.own_vertices(signature);
+    }
+    tiles += found;
+  }
+  return tiles;
+}
+
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
                                                       TileCount& count, CountScratch& scratch,
                                                       AssembledTiles* assembled, const FoundCubes* found) const {
   if constexpr (N == 4) {
-    // Tiles of the table. Most rows of smooth images have no others.
-    std::uint32_t of_table = 0;
-    for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
-      TilePlaces places;
-      const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
-      const std::uint32_t found = list_tiles(
-          room, first, end, places, [&](unsigned signature) { return !is_put_together(*estimator_, signature); });
-      for (std::uint32_t j = 0; j < found; ++j) {
-        const unsigned signature = room.signatures[places[j]];
-        const std::uint32_t entry = rows_->entries[signature];
-        count.simplices += entry & RowTable::kCountMask;
-        if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += rows_->own_vertices(signature);
-      }
-      of_table += found;
-    }
-    if (of_table == count.active) return;
+    if (count_tiles_of_table(*estimator_, *rows_, room, count) == count.active) return;  // as in most smooth rows
     const bool is_listed = shape_.size(0) <= kMostListed;
     BitWalk walk(room.active);
     auto base = shape_.index_of(row);

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "ambiguity/tesseract_decision.hpp"
+#include "hwy/cache_control.h"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_count.hpp"
 #include "kernel/extract_edges.hpp"
@@ -137,7 +138,7 @@ class TileWriter {
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, *own.scratch.of_word);
     own.tesseracts = &tesseracts;
     // read for one tile after the other, and seldom in a cache
-    for (std::uint32_t i = 0; i < tiles.count; ++i) __builtin_prefetch(&ambiguous_signatures<N>()[tiles.signatures[i]]);
+    for (std::uint32_t i = 0; i < tiles.count; ++i) hwy::Prefetch(&ambiguous_signatures<N>()[tiles.signatures[i]]);
     const Slab<N>& slab = *own.view.slab;
     if (!slab.assembled.empty()) {
       own.assembled = &slab.assembled[chunk_of(own.row)];
