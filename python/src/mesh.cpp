@@ -79,6 +79,7 @@ std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& typ
                                          const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = arguments["normals"].cast<std::string>();
   MeshArguments mesh{
       {}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), level, is_double, axis_names};
   for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.types.push_back(static_cast<CellType>(type));
@@ -86,9 +87,11 @@ std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& typ
   if (dim < 2 || dim > 4)
     throw Error(ErrorCode::UnsupportedData, fmt::format("points have {} coordinates; expected 2 to 4", dim));
   return call.run([&] {
-    return std::make_unique<AnyContour>(dim == 2   ? contour_of_mesh<2>(points_of<2>(points), mesh, options)
-                                        : dim == 3 ? contour_of_mesh<3>(points_of<3>(points), mesh, options)
-                                                   : contour_of_mesh<4>(points_of<4>(points), mesh, options));
+    auto contour = std::make_unique<AnyContour>(dim == 2   ? contour_of_mesh<2>(points_of<2>(points), mesh, options)
+                                                : dim == 3 ? contour_of_mesh<3>(points_of<3>(points), mesh, options)
+                                                           : contour_of_mesh<4>(points_of<4>(points), mesh, options));
+    add_shape_normals(*contour, normals, options);
+    return contour;
   });
 }
 

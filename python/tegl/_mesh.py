@@ -26,9 +26,10 @@ _BY_CORNERS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hex
 
 
 def contour_mesh(points, cells=None, values=None, level: float | None = None, *, times=None,
-                 triangulation: _kinds.Triangulation = "compact", ambiguity: typing.Literal["low", "high"] = "low",
-                 direction: _kinds.Direction = "descent", epsilon: float = 0.0, dtype=np.float32, allow_empty: bool = False,
-                 threads: int = 0, progress: Progress | None = None) -> Contour:
+                 triangulation: _kinds.Triangulation = "compact", ambiguity: _kinds.Ambiguity = "low",
+                 direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
+                 normals: bool | typing.Literal["gradient", "geometric", "flat"] = False, dtype=np.float32,
+                 allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
     """The contour {value = level} of a mesh with a value at each point. It separates values >= level from the others.
 
     ::
@@ -51,14 +52,17 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     times
         Ascending times of the rows of `values`, for N = 2 and 3: the result is the contour in space and time, with the time
         as the last coordinate; `slice`, `track` and `measure` cut it at any time.
-    triangulation, ambiguity, direction, epsilon, dtype, allow_empty, threads, progress
-        As for `tegl.contour`. Ambiguity: "low" or "high". 4D contours are barycentric.
+    triangulation, ambiguity, direction, close, epsilon, normals, dtype, allow_empty, threads, progress
+        As for `tegl.contour`. `close` makes caps at the border of the mesh. Normals: True or "gradient", "geometric" or
+        "flat". 4D contours are barycentric, with ambiguity "low" or "high".
 
     The columns of the vertices are the columns of `points`, then the time. Errors: ValueError, with the library's message;
     TypeError for an argument of a wrong type; Cancelled if `progress` returns False.
     """
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
-                                         epsilon=epsilon, threads=threads)
+                                         close=close, epsilon=epsilon, normals=normals, threads=threads)
+    if options["normals"] not in ("", "gradient", "geometric", "flat"):
+        raise ValueError(f"normals of a mesh are {normals!r}; expected True, False, 'gradient', 'geometric' or 'flat'")
     options["kernel"] = []
     if hasattr(points, "points") and hasattr(points, "cells"):
         if cells is not None:
@@ -195,7 +199,8 @@ def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
 
 @_arguments.documents("delaunay")
 def contour_points(points, values, level: float, *, triangulation: _kinds.Triangulation = "compact",
-                   direction: _kinds.Direction = "descent", epsilon: float = 0.0, dtype=np.float32,
+                   direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
+                   normals: bool | typing.Literal["gradient", "geometric", "flat"] = False, dtype=np.float32,
                    allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
     """The contour {value = level} of scattered points in 2D to 4D, with linear interpolation in their Delaunay cells.
 
@@ -212,8 +217,8 @@ def contour_points(points, values, level: float, *, triangulation: _kinds.Triang
         raise ValueError(f"points have the shape {places.shape}; expected (#P, N) with N = 2 to 4")
     name = {2: "triangle", 3: "tetra", 4: "simplex4"}[places.shape[1]]
     return contour_mesh(places, {name: _tegl.delaunay(places)}, values, level, triangulation=triangulation,
-                        direction=direction, epsilon=epsilon, dtype=dtype, allow_empty=allow_empty, threads=threads,
-                        progress=progress)
+                        direction=direction, close=close, epsilon=epsilon, normals=normals, dtype=dtype,
+                        allow_empty=allow_empty, threads=threads, progress=progress)
 
 
 def _mask_of(array) -> np.ndarray | None:

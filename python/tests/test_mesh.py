@@ -137,6 +137,17 @@ def test_options_and_progress_are_those_of_contour():
         tegl.contour_mesh(points, cells, values, 0.0, progress=lambda _: False)
 
 
+def test_caps_close_contours_at_the_border_and_normals_are_gradients():
+    points, cells = tetrahedra(9)
+    values = points @ [2.0, -1.0, 2.0]
+    contour = tegl.contour_mesh(points, cells, values, 0.3, close=True, normals=True, ambiguity="saddle")
+    assert contour.check().is_closed
+    np.testing.assert_allclose(contour.normals, np.broadcast_to([-2 / 3, 1 / 3, -2 / 3], contour.normals.shape), atol=1e-6)
+    low = tegl.contour_mesh(points, cells, -values, -0.3, close=True, normals="flat")
+    assert low.measure().content + contour.measure().content == pytest.approx(8.0)
+    assert not tegl.contour_mesh(points, cells, values, 0.3).check().is_closed
+
+
 @pytest.mark.parametrize("change, error, text", [
     (dict(cells=[[0, 1, 2, 99999]]), ValueError, "cell 0: corner 3 is point 99999; expected a number below 27"),
     (dict(cells=[[0, 1, 2, -1]]), ValueError, "from -1 to 2"),
@@ -156,7 +167,8 @@ def test_options_and_progress_are_those_of_contour():
     (dict(times=[0.0, 1.0]), ValueError, "values have the shape (27,); expected (2, 27)"),
     (dict(times=[1.0, 0.0], values=np.zeros((2, 27))), ValueError, "expected ascending times"),
     (dict(level=7.0), ValueError, "level is 7.0; expected a level above"),
-    (dict(ambiguity="mean"), ValueError, "low or high"),
+    (dict(ambiguity="mean", times=[0.0, 1.0], values=np.zeros((2, 27))), ValueError, "low or high"),
+    (dict(normals="sobel"), ValueError, "normals of a mesh are 'sobel'; expected True"),
     (dict(dtype="int32"), ValueError, "expected float32 or float64"),
 ])
 def test_bad_arguments_are_errors_that_name_them(change, error, text):

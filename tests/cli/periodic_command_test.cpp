@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// --periodic of tegl contour and of commands that contour an image, run as in a shell.
+// --periodic of tegl contour and of commands that contour an image, curved grids, and options of contours of meshes,
+// run as in a shell.
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "sample_files.hpp"
 #include "tegl/check.hpp"
@@ -143,6 +147,28 @@ TEST_F(PeriodicCommand, CellsMayBeDivided) {
   expect_refused({"--division", "kuhn", "--periodic", "x", "-o", output}, "--periodic x with --division kuhn");
   expect_refused({"--division", "kuhn", "--stream", "-o", output}, "--division kuhn with --stream");
   expect_refused({"--division", "random", "-o", output}, "random");
+}
+
+TEST_F(PeriodicCommand, MeshesAreClosedAndHaveNormalsFromTheGradient) {
+  std::string text = R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1">
+<PointData><DataArray type="Float64" Name="f" format="ascii">0 1 0 1 0 1 0 1</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">)";
+  for (const char* const corner : {"0 0 0 ", "1 0 0 ", "0 1 0 ", "1 1 0 ", "0 0 1 ", "1 0 1 ", "0 1 1 ", "1 1 1 "})
+    text += corner;
+  text += R"(</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 4 5 6 7
+</DataArray><DataArray type="Int64" Name="offsets" format="ascii">8</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">11</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
+  const std::string file = write("cell.vtu", text), saved = path("half.vtkhdf");
+  (void)run_json(
+      {"contour", file, "--iso", "0.25", "--close", "--ambiguity", "saddle", "--normals", "gradient", "-o", saved});
+  const Mesh half = read_mesh(saved);
+  ASSERT_EQ(half.normals.size(), half.coordinates.size());
+  for (std::size_t v = 0; v < half.normals.size(); v += 3) EXPECT_NEAR(half.normals[v], -1.0, 1e-12);
+  const nlohmann::json measure = run_json({"measure", saved});
+  EXPECT_NEAR(measure["content"].get<double>(), 0.75, 1e-12);
+  const RunResult run = run_tegl({"contour", file, "--iso", "0.25", "--normals", "sobel", "-o", saved});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("--normals sobel with"));
 }
 
 }  // namespace

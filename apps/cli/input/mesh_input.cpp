@@ -32,10 +32,8 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
   };
-  if (options.close) fail("--close", "a contour that is open at the border of the mesh");
-  if (options.normals != Normals::none) fail("--normals gradient or sobel", "--normals geometric or flat");
-  if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
-    fail("--ambiguity from the data", "low or high");
+  if (options.normals != Normals::none && options.normals != Normals::differences)
+    fail(fmt::format("--normals {}", extraction.normals()).c_str(), "--normals gradient, geometric or flat");
   if (extraction.polygon_triangulation()) fail("--triangulation of polygons", "compact or barycentric");
 }
 

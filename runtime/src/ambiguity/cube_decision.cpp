@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "ambiguity/face_decision.hpp"
 #include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
@@ -98,21 +99,11 @@ bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigne
   return (means.unsure & (ambiguous | (has_choice ? 64u : 0u))) == 0;
 }
 
-/// Decides the squares and the interior of a cube with an ambiguous signature.
-template <int N>
-CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
-                    std::span<const double, 8> values, unsigned signature) noexcept {
-  if (estimator.is_by_saddles()) {
-    std::array<double, 8> corners;
-    std::copy(values.begin(), values.end(), corners.begin());
-    return estimator.separates() ? detail::decide_squares(corners, estimator.isovalue(), signature)
-                                 : detail::decide_cube(corners, estimator.isovalue(), signature);
-  }
+/// Decides face by face: `is_high(square, values)` decides an ambiguous square, `centre()` the interior.
+template <class IsHigh, class Centre>
+CubeDecision decide_faces(std::span<const double, 8> values, unsigned signature, const IsHigh& is_high,
+                          const Centre& centre) noexcept {
   CubeDecision decision;
-  if (estimator.is_by_means() &&
-      decide_by_means(values, estimator.isovalue(), signature, estimator.separates(), decision))
-    return decision;
-  decision = {};
   const auto& table = tables::kTile3Resolved;
   const unsigned ambiguous = table.ambiguous_squares[signature];
   for (unsigned rest = ambiguous; rest != 0; rest &= rest - 1) {
@@ -120,16 +111,50 @@ CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::siz
     const auto& of_square = kCornersOfSquares[square];
     const std::array<double, 4> corners = {values[of_square[0]], values[of_square[1]], values[of_square[2]],
                                            values[of_square[3]]};
-    const unsigned axis = kAxesOf[axes][square / 2];
-    auto at = base;
-    at[axis] += square % 2;
-    const unsigned is_high = estimator.is_square_high(at, axes ^ 1u << axis, corners) ? 1 : 0;
-    decision.high_squares = static_cast<std::uint8_t>(decision.high_squares | is_high << square);
+    const unsigned bit = is_high(square, corners) ? 1 : 0;
+    decision.high_squares = static_cast<std::uint8_t>(decision.high_squares | bit << square);
   }
   const unsigned r = packed_squares(decision.high_squares, ambiguous);
-  if (table.entries[table.first_entry[signature] + r].components > 1)
-    decision.centre = estimator.choice(base, axes, values);
+  if (table.entries[table.first_entry[signature] + r].components > 1) decision.centre = centre();
   return decision;
+}
+
+/// Decides the squares and the interior of a cube with an ambiguous signature by its values.
+CubeDecision decide_by_values(FaceRule rule, std::span<const double, 8> values, double isovalue,
+                              unsigned signature) noexcept {
+  if (rule.by == FaceRule::By::saddles) {
+    std::array<double, 8> corners;
+    std::copy(values.begin(), values.end(), corners.begin());
+    return rule.separates ? detail::decide_squares(corners, isovalue, signature)
+                          : detail::decide_cube(corners, isovalue, signature);
+  }
+  CubeDecision decision;
+  if (decide_by_means(values, isovalue, signature, rule.separates, decision)) return decision;
+  return decide_faces(
+      values, signature, [&](unsigned, const auto& corners) { return is_mean_high(corners, isovalue); },
+      [&] {
+        if (rule.separates) return tile::Choice::separate;
+        return is_mean_high(values, isovalue) ? tile::Choice::high : tile::Choice::low;
+      });
+}
+
+/// The same, also by a caller's estimator.
+template <int N>
+CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                    std::span<const double, 8> values, unsigned signature) noexcept {
+  if (!estimator.is_callers()) {
+    const FaceRule rule{estimator.is_by_saddles() ? FaceRule::By::saddles : FaceRule::By::means, estimator.separates()};
+    return decide_by_values(rule, values, estimator.isovalue(), signature);
+  }
+  return decide_faces(
+      values, signature,
+      [&](unsigned square, const auto& corners) {
+        const unsigned axis = kAxesOf[axes][square / 2];
+        auto at = base;
+        at[axis] += square % 2;
+        return estimator.is_square_high(at, axes ^ 1u << axis, corners);
+      },
+      [&] { return estimator.choice(base, axes, values); });
 }
 
 CubeKey key_of(unsigned signature, const CubeDecision& decision) noexcept {
@@ -150,6 +175,16 @@ CubeKey cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t
 }
 template CubeKey cube_key<3>(const FaceEstimator<3>&, const std::array<std::size_t, 3>&, unsigned, unsigned) noexcept;
 template CubeKey cube_key<4>(const FaceEstimator<4>&, const std::array<std::size_t, 4>&, unsigned, unsigned) noexcept;
+
+CubeKey cube_key(FaceRule rule, std::span<const double, 8> values, double isovalue, unsigned signature) noexcept {
+  if (!ambiguous_signatures<3>()[signature]) return CubeKey(signature);
+  return key_of(signature, decide_by_values(rule, values, isovalue, signature));
+}
+
+bool is_square_high(FaceRule rule, std::span<const double, 4> values, double isovalue) noexcept {
+  if (rule.by == FaceRule::By::means) return is_mean_high(values, isovalue);
+  return tegl::square_is_high<double>(values, isovalue);
+}
 
 template <>
 unsigned resolved_key<3>(const FaceEstimator<3>& estimator, const std::array<std::size_t, 3>& base,

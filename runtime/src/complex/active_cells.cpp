@@ -4,6 +4,7 @@
 #include "complex/active_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -44,7 +45,7 @@ void scan(const CellGroup& group, std::size_t from, std::size_t to, const PointB
     if (four == 0 || four == all_full) continue;
     for (std::size_t j = i; j < std::min(count, i + 4); ++j)
       if (const std::uint16_t signature = scratch.signatures[j]; signature != 0 && signature != full)
-        block.cells.push_back({static_cast<Index>(from + j), signature});
+        block.cells.push_back({static_cast<Index>(from + j), signature, 0});
   }
 }
 
@@ -57,9 +58,22 @@ void scan_blocks(const CellBlocks& blocks, const CellGroup& group, std::size_t f
       scan(group, first, std::min(to, first + kCells), bits, scratch, block);
 }
 
-void add_sizes(const CellCases& cases, ActiveBlock& block) {
+/// Resolves ambiguous cells from the values.
+void resolve(const CellGroup& group, const ResolvedCells& resolved, std::span<const double> values,
+             ActiveBlock& block) {
+  std::array<double, 16> at;
+  for (ActiveCell& cell : block.cells) {
+    if (!resolved.is_ambiguous(cell.signature)) continue;
+    const Index* const corners = group.cell(cell.cell);
+    for (std::size_t v = 0; v < group.corner_count; ++v) at[v] = values[corners[v]];
+    cell.variant = resolved.variant(at.data(), cell.signature);
+  }
+}
+
+void finish(const CellGroup& group, const CellCases& cases, std::span<const double> values, ActiveBlock& block) {
+  if (cases.resolved() != nullptr) resolve(group, *cases.resolved(), values, block);
   for (const ActiveCell& cell : block.cells) {
-    const tables::CellList& list = cases[cell.signature].list();
+    const tables::CellList& list = cases.of(cell.signature, cell.variant).list();
     block.simplices += list.simplex_count;
     block.shared += list.shared_vertices;
     block.own += list.added() - list.shared_vertices;
@@ -92,7 +106,8 @@ PointBits classify_points(std::span<const double> values, double isovalue, const
 }
 
 std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTables& tables, const PointBits& bits,
-                                           const ComplexEdges* edges, const WorkOptions& work) {
+                                           const ComplexEdges* edges, std::span<const double> values,
+                                           const WorkOptions& work) {
   const std::vector<CellRange> ranges = ranges_of(cells);
   std::vector<ActiveBlock> blocks(ranges.size());
   for_each_block(
@@ -104,7 +119,7 @@ std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTa
           scan(cells.groups[group], from, to, bits, scratch, blocks[b]);
         else
           scan_blocks(edges->blocks[group], cells.groups[group], from, to, bits, scratch, blocks[b]);
-        add_sizes(tables.of_group[group], blocks[b]);
+        finish(cells.groups[group], tables.of_group[group], values, blocks[b]);
       });
   return blocks;
 }
@@ -138,9 +153,10 @@ std::vector<ActiveBlock> blocks_of_cells(const CellGroups& cells, const CellTabl
       const Index* const corners = group.cell(cell);
       unsigned signature = 0;
       for (std::size_t c = 0; c < group.corner_count; ++c) signature |= (values[corners[c]] >= isovalue ? 1u : 0u) << c;
-      if (signature != 0 && signature != full) blocks[b].cells.push_back({cell, static_cast<std::uint16_t>(signature)});
+      if (signature != 0 && signature != full)
+        blocks[b].cells.push_back({cell, static_cast<std::uint16_t>(signature), 0});
     }
-    add_sizes(tables.of_group[part.group], blocks[b]);
+    finish(group, tables.of_group[part.group], values, blocks[b]);
   });
   return blocks;
 }

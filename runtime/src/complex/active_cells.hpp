@@ -30,6 +30,7 @@ struct PointBits {
 struct ActiveCell {
   Index cell;               ///< in its group
   std::uint16_t signature;  ///< bit v: corner v is high
+  std::uint16_t variant;    ///< CellCases::of
 };
 
 /// The active cells among consecutive cells of one group, and the sizes of their contours.
@@ -51,10 +52,11 @@ struct CellTables {
 [[nodiscard]] PointBits classify_points(std::span<const double> values, double isovalue, const WorkOptions& work);
 
 /// The active cells in blocks that do not depend on the number of threads. `edges`: null if not known; otherwise blocks
-/// of cells without active ones are passed over. Errors: Cancelled.
+/// of cells without active ones are passed over. `values`: of the points, for cells that are resolved from them.
+/// Errors: Cancelled.
 [[nodiscard]] std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTables& tables,
                                                          const PointBits& bits, const ComplexEdges* edges,
-                                                         const WorkOptions& work);
+                                                         std::span<const double> values, const WorkOptions& work);
 
 /// The active ones of `active` (ascending numbers: by group, then by cell), in the same kind of blocks. There must be
 /// no missing values.

@@ -3,10 +3,14 @@
 // The contour of one cell: its list in the table, moved by the symmetry of its signature.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "ambiguity/face_estimator.hpp"
 #include "complex/cell_groups.hpp"
 #include "tegl/ambiguity.hpp"
 
@@ -24,6 +28,9 @@ class CellContour {
     permutation_ = table.permutations + element * table.permutation_stride;
     reverses_ = reverses_ != (table.reverses[element] != 0);
   }
+  /// A list of a table without symmetries.
+  CellContour(const tables::CellTable& table, const tables::CellList& list) noexcept
+      : table_(&table), list_(&list), reverses_(false) {}
 
   [[nodiscard]] const tables::CellList& list() const noexcept { return *list_; }
   /// Whether the last two vertices of each simplex are exchanged.
@@ -61,11 +68,48 @@ class CellContour {
   return result;
 }
 
+/// The contours of the cells of one shape whose ambiguous quadrilaterals are resolved from the data.
+class ResolvedCells {
+ public:
+  /// `rule`: not a caller's. `table`: of the same triangulation.
+  ResolvedCells(tables::CellShape shape, const tables::CellTable& table, Triangulation triangulation, FaceRule rule,
+                double isovalue);
+  ResolvedCells(const ResolvedCells&) = delete;
+  ResolvedCells& operator=(const ResolvedCells&) = delete;
+
+  /// Whether a cell's contour depends on more than its signature.
+  [[nodiscard]] bool is_ambiguous(unsigned signature) const noexcept { return ambiguous_[signature]; }
+  /// The variant of an ambiguous cell with these values at its corners: 0 if all faces are low-connected, 1 if all are
+  /// high-connected, otherwise the number of a list.
+  [[nodiscard]] std::uint16_t variant(const double* values, unsigned signature) const noexcept;
+  /// The contour of a variant above 1.
+  [[nodiscard]] CellContour contour(unsigned variant) const noexcept { return {table_, lists_[variant - 2]}; }
+  /// The place in the unit cube of a side vertex of a hexahedron, from its mask: on a ray from the centre, where the
+  /// trilinear interpolant has the isovalue.
+  [[nodiscard]] std::array<double, 3> place(std::uint64_t mask, const std::array<double, 8>& values,
+                                            double epsilon) const noexcept;
+
+ private:
+  void add_hexahedra(Triangulation triangulation);
+  void add_wedges();
+
+  tables::CellShape shape_;
+  tables::CellTable table_;
+  FaceRule rule_;
+  double isovalue_;
+  std::vector<bool> ambiguous_;                ///< by signature
+  std::array<std::uint8_t, 12> cube_edges_{};  ///< hexahedra: the edge of the cell for an edge of the cube
+  std::vector<tables::CellList> lists_;
+  std::vector<std::uint8_t> simplices_;
+  std::vector<std::uint64_t> masks_;
+};
+
 /// The contours of a shape by signature.
 class CellCases {
  public:
   /// `table` must outlive this object.
-  CellCases(const tables::CellTable& table, bool high_connected) : table_(&table), high_connected_(high_connected) {
+  CellCases(const tables::CellTable& table, bool high_connected, std::shared_ptr<const ResolvedCells> resolved = {})
+      : table_(&table), high_connected_(high_connected), resolved_(std::move(resolved)) {
     if (table.corner_count > 8) return;  // many signatures: each is looked up when it occurs
     for (unsigned s = 0; s < 1u << table.corner_count; ++s) crossed_.push_back(crossed_edges(table, s));
   }
@@ -73,6 +117,14 @@ class CellCases {
   [[nodiscard]] CellContour operator[](unsigned signature) const noexcept {
     return {*table_, signature, high_connected_};
   }
+  /// The contour of a cell that is resolved from the data (ResolvedCells::variant); 0 for other cells.
+  [[nodiscard]] CellContour of(unsigned signature, unsigned variant) const noexcept {
+    if (variant == 0) return (*this)[signature];
+    if (variant == 1) return {*table_, signature, true};
+    return resolved_->contour(variant);
+  }
+  /// Null: ambiguous faces are resolved by a fixed rule.
+  [[nodiscard]] const ResolvedCells* resolved() const noexcept { return resolved_.get(); }
   /// Calls visit(edge) for the crossed edges, ascending.
   template <class Visit>
   void for_each_crossed(unsigned signature, const Visit& visit) const {
@@ -83,6 +135,7 @@ class CellCases {
  private:
   const tables::CellTable* table_;
   bool high_connected_;
+  std::shared_ptr<const ResolvedCells> resolved_;
   std::vector<std::uint32_t> crossed_;
 };
 

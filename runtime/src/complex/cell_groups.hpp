@@ -75,6 +75,11 @@ struct ComplexAccess {
   static const ComplexEdges* edges(const Complex<N>& complex) noexcept {
     return complex.edges_.get();
   }
+  /// The facets on the border, or null before find_border.
+  template <int N>
+  static const std::vector<BorderFacet>* border(const Complex<N>& complex) noexcept {
+    return complex.border_.get();
+  }
   template <int N>
   static const CellSigns& signs(const Complex<N>& complex) noexcept {
     return *complex.signs_;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "complex/border_facets.hpp"
 #include "complex/complex_edges.hpp"
 #include "tegl/error.hpp"
 
@@ -129,6 +130,13 @@ requires DimensionBetween<N, 2, 4>
 void Complex<N>::find_edges(const WorkOptions& work) {
   if (edges_ == nullptr)
     edges_ = std::make_shared<const detail::ComplexEdges>(detail::find_complex_edges(points_.size(), *cells_, work));
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4>
+void Complex<N>::find_border(const WorkOptions& work) {
+  if (border_ == nullptr)
+    border_ = std::make_shared<const detail::BorderFacets>(detail::find_border(points_.size(), *cells_, work));
 }
 
 template <int N>

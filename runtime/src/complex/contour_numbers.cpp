@@ -4,7 +4,10 @@
 #include "complex/contour_numbers.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
+#include "ambiguity/face_estimator.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "kernel/contour_output.hpp"
@@ -15,11 +18,16 @@ namespace tegl::detail {
 
 namespace {
 
-CellTables tables_of(const CellGroups& cells, const ExtractOptions& options) {
+CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOptions& options) {
   CellTables tables;
-  for (const CellGroup& group : cells.groups)
-    tables.of_group.emplace_back(tables::cell_table(group.shape, options.triangulation),
-                                 options.ambiguity == Ambiguity::high);
+  for (const CellGroup& group : cells.groups) {
+    const tables::CellTable& table = tables::cell_table(group.shape, options.triangulation);
+    std::shared_ptr<const ResolvedCells> resolved;
+    if (is_estimated(options.ambiguity))
+      resolved = std::make_shared<const ResolvedCells>(group.shape, table, options.triangulation,
+                                                       face_rule(options.ambiguity), isovalue);
+    tables.of_group.emplace_back(table, options.ambiguity == Ambiguity::high, std::move(resolved));
+  }
   return tables;
 }
 
@@ -29,21 +37,23 @@ WorkOptions work_of(const ExtractOptions& options, const Progress& progress) {
 
 }  // namespace
 
-void check_complex_options(double isovalue, const ExtractOptions& options) {
+void check_complex_options(int dim, double isovalue, const ExtractOptions& options) {
   check_arguments(isovalue, options);
-  if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
+  if (options.ambiguity == Ambiguity::custom)
     throw Error(ErrorCode::InvalidArgument,
-                "ambiguity resolved from the data; expected low or high for the contour of a complex");
-  if (options.close)
-    throw Error(ErrorCode::InvalidArgument, "close is set; expected false for the contour of a complex");
-  if (options.normals != Normals::none)
-    throw Error(ErrorCode::InvalidArgument, "normals are requested; expected none for the contour of a complex");
+                "ambiguity resolved by a custom estimator; expected another rule for the contour of a complex");
+  if (dim == 4 && is_estimated(options.ambiguity))
+    throw Error(ErrorCode::InvalidArgument,
+                "ambiguity resolved from the data; expected low or high for the contour of a 4D complex");
+  if (options.normals != Normals::none && options.normals != Normals::differences)
+    throw Error(ErrorCode::InvalidArgument,
+                "normals by a kernel, by context or to one side; expected differences for the contour of a complex");
 }
 
 ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values,
                                double isovalue, const ExtractOptions& options, const Progress& progress,
                                ExtractStats& stats, const std::vector<Index>* active)
-    : tables_(tables_of(cells, options)),
+    : tables_(tables_of(cells, isovalue, options)),
       bits_([&] {
         if (active != nullptr) return PointBits();
         Stopwatch watch;
@@ -51,10 +61,10 @@ ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edge
         watch.add_to(stats.classify_seconds);
         return bits;
       }()),
-      blocks_(active == nullptr
-                  ? find_active_cells(cells, tables_, bits_, edges, work_of(options, part_of(progress, 0.2, 0.5)))
-                  : blocks_of_cells(cells, tables_, *active, values, isovalue,
-                                    work_of(options, part_of(progress, 0.2, 0.5)))),
+      blocks_(active == nullptr ? find_active_cells(cells, tables_, bits_, edges, values,
+                                                    work_of(options, part_of(progress, 0.2, 0.5)))
+                                : blocks_of_cells(cells, tables_, *active, values, isovalue,
+                                                  work_of(options, part_of(progress, 0.2, 0.5)))),
       crossings_(cells, tables_, blocks_, edges, values.size(), work_of(options, part_of(progress, 0.5, 0.8))),
       shared_(number_shared_points(tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
       first_shared_(sums_before(blocks_, &ActiveBlock::shared)),
@@ -65,6 +75,17 @@ ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edge
   require_numbers(vertex_count_);
   stats.tiles = cells.cell_count;
   for (const ActiveBlock& block : blocks_) stats.active_tiles += block.cells.size();
+}
+
+Index ContourNumbers::polygon(std::span<const Index> vertices) const {
+  PolygonKey key;
+  key.fill(kNoPoint);
+  if (vertices.size() > key.size()) return kNoPoint;
+  std::copy(vertices.begin(), vertices.end(), key.begin());
+  std::sort(key.begin(), key.end());
+  const auto found = std::lower_bound(shared_.keys.begin(), shared_.keys.end(), key);
+  if (found == shared_.keys.end() || *found != key) return kNoPoint;
+  return static_cast<Index>(edge_ends().size() + static_cast<std::size_t>(found - shared_.keys.begin()));
 }
 
 std::vector<Index> ContourNumbers::vertices_at_missing(const CellGroups& cells) const {

@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// Checks the options of an extraction from a complex. Errors: InvalidIsovalue, InvalidArgument.
-void check_complex_options(double isovalue, const ExtractOptions& options);
+/// Checks the options of an extraction from a complex of dimension `dim`. Errors: InvalidIsovalue, InvalidArgument.
+void check_complex_options(int dim, double isovalue, const ExtractOptions& options);
 
 /// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells.
 class ContourNumbers {
@@ -32,9 +32,10 @@ class ContourNumbers {
   [[nodiscard]] const std::vector<ActiveBlock>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] const std::vector<EdgeEnds>& edge_ends() const noexcept { return crossings_.ends(); }
   [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
-  [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept {
-    return tables_.of_group[group].table();
-  }
+  [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept { return cases(group).table(); }
+  [[nodiscard]] const CellCases& cases(std::size_t group) const noexcept { return tables_.of_group[group]; }
+  /// The barycentre of the polygon with these vertices in a common 3-face, or kNoPoint.
+  [[nodiscard]] Index polygon(std::span<const Index> vertices) const;
 
   /// The vertices of an active cell: by edge, then by added vertex.
   using CellVertices = std::array<Index, 256>;
@@ -64,7 +65,7 @@ void ContourNumbers::for_each_cell(std::size_t block, const Visit& visit) const 
   std::size_t crossing = 0;
   CellVertices vertices{};
   for (const ActiveCell& cell : of.cells) {
-    const CellContour contour = cases[cell.signature];
+    const CellContour contour = cases.of(cell.signature, cell.variant);
     const tables::CellList& list = contour.list();
     crossings_.of_cell(block, cell, crossing, vertices.data());
     Index* added = vertices.data() + cases.table().edge_count;

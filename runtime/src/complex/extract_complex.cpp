@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Writes contours of complexes: positions of vertices, and simplices with their orientation.
+// Writes contours of complexes: positions and normals of vertices, and simplices with their orientation.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,8 +14,10 @@
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
+#include "complex/complex_caps.hpp"
 #include "complex/contour_numbers.hpp"
 #include "complex/edge_alpha.hpp"
+#include "complex/point_gradients.hpp"
 #include "kernel/split_nonmanifold.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
@@ -49,15 +52,32 @@ void check_range(const Complex<N>& complex) {
                                 -kMost, kMost, sizeof(Real) == 4 ? "float" : "double"));
 }
 
+/// The points of cells that have vertices at places other than the mean of edges' points: these need the gradients at
+/// all corners.
+template <int N>
+std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumbers& numbers) {
+  std::vector<Index> points;
+  for (std::size_t b = 0; b < numbers.blocks().size(); ++b) {
+    const CellGroup& group = ComplexAccess::cells(complex).groups[numbers.blocks()[b].group];
+    const CellCases& cases = numbers.cases(numbers.blocks()[b].group);
+    for (const ActiveCell& cell : numbers.blocks()[b].cells)
+      if (cases.of(cell.signature, cell.variant).list().side_vertices > 0)
+        points.insert(points.end(), group.cell(cell.cell), group.cell(cell.cell) + group.corner_count);
+  }
+  return points;
+}
+
 template <int N, class Real>
 class ComplexWriter {
  public:
-  ComplexWriter(const Complex<N>& complex, const ContourNumbers& numbers, double isovalue,
-                const ExtractOptions& options, Contour<N, Real>& contour)
+  /// `gradients`: null if the contour gets no normals.
+  ComplexWriter(const Complex<N>& complex, const ContourNumbers& numbers, const PointGradients<N>* gradients,
+                double isovalue, const ExtractOptions& options, Contour<N, Real>& contour)
       : complex_(complex),
         cells_(ComplexAccess::cells(complex)),
         signs_(ComplexAccess::signs(complex)),
         numbers_(numbers),
+        gradients_(gradients),
         isovalue_(isovalue),
         epsilon_(options.epsilon),
         is_layered_(ComplexAccess::is_layered(complex)),
@@ -76,7 +96,7 @@ class ComplexWriter {
       Mean mean(*this);
       for (const Index v : polygons[i])
         if (v != kNoPoint) mean.add_vertex(v);
-      contour_.vertices[first + i] = mean.place();
+      write(first + i, mean);
     });
   }
 
@@ -89,16 +109,42 @@ class ComplexWriter {
             const bool is_inverted = (signs_[group][cell.cell >> 6] >> (cell.cell & 63u) & 1u) != 0;
             write_simplices(is_inverted, first, contour, vertices);
             const Index* const corners = cells_.groups[group].cell(cell.cell);
-            write_own_points(numbers_.table(group), corners, contour, vertices);
+            write_own_points(numbers_.cases(group), cell.variant, corners, contour, vertices);
           });
         });
+  }
+
+  /// Appends caps.
+  void write_caps(const ComplexCaps<N>& caps) {
+    std::size_t v = numbers_.size().vertices;
+    contour_.vertices.resize(v + caps.vertex_count());
+    if (gradients_ != nullptr) contour_.normals.resize(v + caps.vertex_count());
+    for (const Index p : caps.corners()) {
+      for (std::size_t i = 0; i < N; ++i) contour_.vertices[v][i] = static_cast<Real>(complex_.points()[p][i]);
+      if (gradients_ != nullptr) contour_.normals[v] = normal_of(gradients_->at(p));
+      ++v;
+    }
+    for (std::size_t j = 0; v < contour_.vertices.size(); ++j, ++v) {
+      Mean mean(*this);
+      for (const CapVertex point : caps.points_of(j))
+        if (point.is_corner())
+          mean.add_corner(static_cast<Index>(point.number()));
+        else
+          mean.add_vertex(static_cast<Index>(point.number()));
+      write(v, mean);
+    }
+    contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
+    for (const auto& simplex : caps.simplices()) {
+      auto& numbers = contour_.simplices.emplace_back();
+      for (std::size_t k = 0; k < N; ++k) numbers[k] = caps.number(simplex[k]);
+    }
   }
 
  private:
   using Point = std::array<double, N>;
   using Vertex = std::array<Real, N>;
 
-  /// The mean of points, within their bounds; between two layers, off both.
+  /// The mean of points, within their bounds; between two layers, off both. Its normal is the mean of their normals.
   class Mean {
    public:
     explicit Mean(const ComplexWriter& writer) : writer_(writer) {
@@ -111,17 +157,20 @@ class ComplexWriter {
       for (std::size_t i = 0; i < N; ++i) point[i] = double{writer_.contour_.vertices[v][i]};
       add(point);
       for (const Index end : writer_.numbers_.edge_ends()[v]) add_layer(writer_.complex_.points()[end][N - 1]);
+      if (writer_.gradients_ != nullptr) add_normal(writer_.contour_.normals[v]);
     }
     /// Adds a corner of a cell.
     void add_corner(Index p) noexcept {
       add(writer_.complex_.points()[p]);
       add_layer(writer_.complex_.points()[p][N - 1]);
+      if (writer_.gradients_ != nullptr) add_normal(writer_.normal_of(writer_.gradients_->at(p)));
     }
     [[nodiscard]] Point mean() const noexcept {
       Point mean;
       for (std::size_t i = 0; i < N; ++i) mean[i] = std::clamp(sum_[i] / count_, lowest_[i], highest_[i]);
       return mean;
     }
+    [[nodiscard]] Vertex normal() const noexcept { return PointGradients<N>::template unit<Real>(normal_); }
     [[nodiscard]] Vertex place() const noexcept {
       Vertex vertex;
       const Point mean = this->mean();
@@ -142,27 +191,44 @@ class ComplexWriter {
       }
       ++count_;
     }
+    void add_normal(const Vertex& normal) noexcept {
+      for (std::size_t i = 0; i < N; ++i) normal_[i] += double{normal[i]};
+    }
     void add_layer(double layer) noexcept {
       low_layer_ = std::min(low_layer_, layer);
       high_layer_ = std::max(high_layer_, layer);
     }
 
     const ComplexWriter& writer_;
-    Point sum_{}, lowest_, highest_;
+    Point sum_{}, lowest_, highest_, normal_{};
     double count_ = 0;
     double low_layer_ = std::numeric_limits<double>::infinity();
     double high_layer_ = -std::numeric_limits<double>::infinity();
   };
+
+  void write(std::size_t number, const Mean& mean) const noexcept {
+    contour_.vertices[number] = mean.place();
+    if (gradients_ != nullptr) contour_.normals[number] = mean.normal();
+  }
+
+  /// The normal along a gradient, on the side of the direction.
+  [[nodiscard]] Vertex normal_of(Point gradient) const noexcept {
+    if (descends_)
+      for (double& x : gradient) x = -x;
+    return PointGradients<N>::template unit<Real>(gradient);
+  }
 
   void write_edge_point(const EdgeEnds& ends, std::size_t number) const noexcept {
     const Point &from = complex_.points()[ends[0]], &to = complex_.points()[ends[1]];
     const double alpha = alpha_of(complex_.values()[ends[0]], complex_.values()[ends[1]], isovalue_, epsilon_);
     Vertex& vertex = contour_.vertices[number];
     vertex = point_on_edge<Real>(from, to, alpha);
-    if (is_layered_ && from[N - 1] != to[N - 1]) {
-      const auto [low, high] = inside_of<Real>(from[N - 1], to[N - 1]);
-      vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
-    }
+    if (is_layered_ && from[N - 1] != to[N - 1]) keep_between(ends[0], ends[1], vertex);
+    if (gradients_ == nullptr) return;
+    const Point &at_from = gradients_->at(ends[0]), &at_to = gradients_->at(ends[1]);
+    Point gradient;
+    for (std::size_t i = 0; i < N; ++i) gradient[i] = (1.0 - alpha) * at_from[i] + alpha * at_to[i];
+    contour_.normals[number] = normal_of(gradient);
   }
 
   void write_simplices(bool is_inverted, std::uint64_t first, const CellContour& contour,
@@ -176,11 +242,18 @@ class ComplexWriter {
     }
   }
 
-  void write_own_points(const tables::CellTable& table, const Index* corners, const CellContour& contour,
+  void write_own_points(const CellCases& cases, unsigned variant, const Index* corners, const CellContour& contour,
                         const ContourNumbers::CellVertices& vertices) const noexcept {
+    const tables::CellTable& table = cases.table();
     const tables::CellList& list = contour.list();
     for (unsigned j = list.shared_vertices; j < list.added(); ++j) {
       const std::uint64_t mask = contour.mask(j);
+      const Index number = vertices[table.edge_count + j];
+      const bool is_side = j >= unsigned{list.shared_vertices} + list.cone_vertices;
+      if (N == 3 && is_side && variant > 1) {
+        write_side(*cases.resolved(), corners, mask, number);
+        continue;
+      }
       std::array<Index, 32> points;  // ascending, so that the sum does not depend on the cell's numbering
       std::size_t count = 0;
       for (std::uint64_t edges = mask >> table.corner_count; edges != 0; edges &= edges - 1)
@@ -190,9 +263,37 @@ class ComplexWriter {
       for (std::size_t i = 0; i < count; ++i) mean.add_vertex(points[i]);
       for (std::uint32_t v = 0; v < table.corner_count; ++v)
         if ((mask >> v & 1u) != 0) mean.add_corner(corners[v]);
-      const bool is_side = j >= unsigned{list.shared_vertices} + list.cone_vertices;
-      contour_.vertices[vertices[table.edge_count + j]] = is_side ? inwards(table, corners, mean) : mean.place();
+      write(number, mean);
+      if (is_side) contour_.vertices[number] = inwards(table, corners, mean);
     }
+  }
+
+  /// A side vertex of a hexahedron that is resolved from the data: its place in the unit cube, mapped by the trilinear
+  /// map of the corners.
+  void write_side(const ResolvedCells& resolved, const Index* corners, std::uint64_t mask,
+                  Index number) const noexcept {
+    std::array<double, 8> values;
+    for (std::size_t v = 0; v < 8; ++v) values[v] = complex_.values()[corners[v]];
+    const std::array<double, 3> place = resolved.place(mask, values, epsilon_);
+    Point point{}, gradient{};
+    for (std::size_t v = 0; v < 8; ++v) {
+      double weight = 1.0;
+      for (std::size_t a = 0; a < 3; ++a) weight *= (v >> a & 1u) != 0 ? place[a] : 1.0 - place[a];
+      for (std::size_t i = 0; i < N; ++i) {
+        point[i] += weight * complex_.points()[corners[v]][i];
+        if (gradients_ != nullptr) gradient[i] += weight * gradients_->at(corners[v])[i];
+      }
+    }
+    Vertex& vertex = contour_.vertices[number];
+    for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(point[i]);
+    if (is_layered_) keep_between(corners[0], corners[7], vertex);
+    if (gradients_ != nullptr) contour_.normals[number] = normal_of(gradient);
+  }
+
+  /// Moves a vertex off the layers of two points.
+  void keep_between(Index p, Index q, Vertex& vertex) const noexcept {
+    const auto [low, high] = inside_of<Real>(complex_.points()[p][N - 1], complex_.points()[q][N - 1]);
+    vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
   }
 
   /// The midpoint of a point and the cell's centre.
@@ -202,11 +303,7 @@ class ComplexWriter {
     const Point a = point.mean(), b = centre.mean();
     Vertex vertex;
     for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>((a[i] + b[i]) / 2);
-    if (is_layered_) {
-      const auto [low, high] = inside_of<Real>(complex_.points()[corners[0]][N - 1],
-                                               complex_.points()[corners[table.corner_count - 1]][N - 1]);
-      vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
-    }
+    if (is_layered_) keep_between(corners[0], corners[table.corner_count - 1], vertex);
     return vertex;
   }
 
@@ -214,10 +311,52 @@ class ComplexWriter {
   const CellGroups& cells_;
   const CellSigns& signs_;
   const ContourNumbers& numbers_;
+  const PointGradients<N>* gradients_;
   double isovalue_, epsilon_;
   bool is_layered_, descends_;
   Contour<N, Real>& contour_;
 };
+
+/// The caps of a contour, if they are requested. Errors: TooLarge, Cancelled.
+template <int N>
+std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers, double isovalue,
+                                        const ExtractOptions& options, const Progress& progress) {
+  if (!options.close) return std::nullopt;
+  const CellGroups& cells = ComplexAccess::cells(complex);
+  BorderFacets found;
+  const BorderFacets* border = ComplexAccess::border(complex);
+  if (border == nullptr) {
+    found = find_border(complex.points().size(), cells, {options.work.threads, part_of(progress, 0.0, 0.8)});
+    border = &found;
+  }
+  return std::optional<ComplexCaps<N>>(std::in_place, cells, ComplexAccess::signs(complex), *border, complex.values(),
+                                       isovalue, options, numbers, part_of(progress, 0.8, 1.0));
+}
+
+/// Writes normals and positions of vertices, and simplices.
+template <class Real, int N>
+void write_contour(const Complex<N>& complex, const ContourNumbers& numbers, const ComplexCaps<N>* caps,
+                   double isovalue, const ExtractOptions& options, const Progress& progress,
+                   Contour<N, Real>& contour) {
+  const unsigned threads = options.work.threads;
+  const double start = options.normals == Normals::none ? 0.0 : 0.5;
+  std::optional<PointGradients<N>> gradients;
+  if (options.normals != Normals::none) {
+    std::vector<Index> others = corners_of_sides(complex, numbers);
+    if (caps != nullptr) others.insert(others.end(), caps->corners().begin(), caps->corners().end());
+    gradients.emplace(complex, numbers.edge_ends(), others, WorkOptions{threads, part_of(progress, 0.0, start)});
+    contour.normals.resize(numbers.size().vertices);
+  }
+  contour.direction = options.direction;
+  contour.vertices.resize(numbers.size().vertices);
+  contour.simplices.resize(numbers.size().simplices);
+  const Progress rest = part_of(progress, start, 1.0);
+  ComplexWriter<N, Real> writer(complex, numbers, gradients ? &*gradients : nullptr, isovalue, options, contour);
+  writer.write_edge_points({threads, part_of(rest, 0.0, 0.25)});
+  writer.write_polygon_centres({threads, part_of(rest, 0.25, 0.4)});
+  writer.write_cells({threads, part_of(rest, 0.4, 1.0)});
+  if (caps != nullptr) writer.write_caps(*caps);
+}
 
 /// Extracts the contour from all cells, or from those of `active`.
 template <class Real, int N>
@@ -229,20 +368,21 @@ Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, co
   // number
   Stopwatch watch;
   const CellGroups& cells = ComplexAccess::cells(complex);
+  const double numbered = options.close ? 0.3 : 0.6;
   const ContourNumbers numbers(cells, ComplexAccess::edges(complex), complex.values(), isovalue, options,
-                               part_of(progress, 0.0, 0.6), result.stats, active);
+                               part_of(progress, 0.0, numbered), result.stats, active);
   watch.add_to(result.stats.find_seconds);
   result.stats.find_seconds -= result.stats.classify_seconds;
+  const auto caps = find_caps<N>(complex, numbers, isovalue, options, part_of(progress, numbered, 0.6));
+  watch.add_to(result.stats.close_seconds);
   // write
-  contour.direction = options.direction;
-  contour.vertices.resize(numbers.size().vertices);
-  contour.simplices.resize(numbers.size().simplices);
-  ComplexWriter<N, Real> writer(complex, numbers, isovalue, options, contour);
-  writer.write_edge_points({options.work.threads, part_of(progress, 0.6, 0.7)});
-  writer.write_polygon_centres({options.work.threads, part_of(progress, 0.7, 0.75)});
-  writer.write_cells({options.work.threads, part_of(progress, 0.75, 1.0)});
-  if (const auto touching = numbers.vertices_at_missing(cells); !touching.empty())
+  write_contour<Real>(complex, numbers, caps ? &*caps : nullptr, isovalue, options, part_of(progress, 0.6, 1.0),
+                      contour);
+  if (auto touching = numbers.vertices_at_missing(cells); !touching.empty()) {
+    for (std::size_t v = numbers.size().vertices; v < contour.vertices.size(); ++v)
+      touching.push_back(static_cast<Index>(v));
     split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
+  }
   watch.add_to(result.stats.generate_seconds);
   return result;
 }
@@ -253,7 +393,7 @@ Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, co
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex, double isovalue,
                                                                           const ExtractOptions& options) {
-  detail::check_complex_options(isovalue, options);
+  detail::check_complex_options(N, isovalue, options);
   detail::check_range<Real>(complex);
   return detail::extract_cells<Real>(complex, isovalue, options, nullptr);
 }
@@ -267,7 +407,7 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
                 fmt::format("an index of {} cells and {} points; the complex has {} and {}", index.cell_count(),
                             index.point_count(), complex.cell_count(), complex.points().size()));
   if (index.has_missing()) return extract_with_stats<Real>(complex, isovalue, options);
-  detail::check_complex_options(isovalue, options);
+  detail::check_complex_options(N, isovalue, options);
   detail::check_range<Real>(complex);
   detail::Stopwatch watch;
   const std::vector<Index> active = index.find(isovalue);
@@ -281,15 +421,16 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
 template <int N>
 requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, double isovalue,
                                                      const ExtractOptions& options) {
-  detail::check_complex_options(isovalue, options);
+  detail::check_complex_options(N, isovalue, options);
   ExtractStats stats;
   const Progress& progress = options.work.progress;
   const auto is_missing = [](double value) { return std::isnan(value); };
   const bool may_extract =
       progress != nullptr && std::any_of(complex.values().begin(), complex.values().end(), is_missing);
   const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
+  const Progress counting = detail::part_of(progress, 0.0, may_extract ? 0.5 : 1.0);
   const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
-                                       options, detail::part_of(progress, 0.0, may_extract ? 0.5 : 1.0), stats);
+                                       options, detail::part_of(counting, 0.0, options.close ? 0.5 : 1.0), stats);
   // vertices where the contour touches itself at missing values are doubled
   if (!numbers.vertices_at_missing(cells).empty()) {
     ExtractOptions second_half = options;
@@ -297,8 +438,14 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
     const auto contour = extract<double>(complex, isovalue, second_half);
     return {contour.vertices.size(), contour.simplices.size()};
   }
+  ContourSize size = numbers.size();
+  if (const auto caps =
+          detail::find_caps<N>(complex, numbers, isovalue, options, detail::part_of(counting, 0.5, 1.0))) {
+    size.vertices += caps->vertex_count();
+    size.simplices += caps->simplices().size();
+  }
   detail::tell(progress, 1.0);  // without shared points, the numbers end below it
-  return numbers.size();
+  return size;
 }
 
 #define TEGL_INSTANTIATE_COMPLEX(N)                                                                               \

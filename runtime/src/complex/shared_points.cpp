@@ -45,7 +45,7 @@ SharedPoints number_shared_points(const CellTables& tables, const std::vector<Ac
                    std::size_t crossing = 0;
                    std::array<Index, 32> numbers{};
                    for (const ActiveCell& cell : blocks[b].cells) {
-                     const CellContour contour = cases[cell.signature];
+                     const CellContour contour = cases.of(cell.signature, cell.variant);
                      crossings.of_cell(b, cell, crossing, numbers.data());
                      for (unsigned j = 0; j < contour.list().shared_vertices; ++j, ++place)
                        uses[place] = {key_of(contour.mask(j) >> cases.table().corner_count, numbers.data()), place};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "meshes.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::test {
@@ -17,6 +18,19 @@ double ball(const std::array<double, N>& x) {
   double square = 0.0;
   for (const double each : x) square += each * each;
   return 0.7 - std::sqrt(square);
+}
+
+/// The image with the values of a grid's points in [-1, 1].
+template <int N>
+OwnedImage<double, N> image_of(const MeshData<N>& mesh, const std::vector<double>& values) {
+  Grid<N> grid;
+  for (int a = 0; a < N; ++a) {
+    const double step = 2.0 / static_cast<double>(mesh.sizes[a] - 1);
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < mesh.sizes[a]; ++i) coordinates.push_back(-1.0 + step * static_cast<double>(i));
+    grid.axes[a] = Axis::rectilinear(coordinates);
+  }
+  return {grid, Values<double>(values)};
 }
 
 /// Both triangulations with both fixed rules for ambiguous faces.

@@ -115,19 +115,6 @@ TEST(Complex, AreaAndVolumeConvergeWithOrderTwo) {
   }
 }
 
-/// The image with the values of a grid's points.
-template <int N>
-OwnedImage<double, N> image_of(const MeshData<N>& mesh, const std::vector<double>& values) {
-  Grid<N> grid;
-  for (int a = 0; a < N; ++a) {
-    const double step = 2.0 / static_cast<double>(mesh.sizes[a] - 1);
-    std::vector<double> coordinates;
-    for (std::size_t i = 0; i < mesh.sizes[a]; ++i) coordinates.push_back(-1.0 + step * static_cast<double>(i));
-    grid.axes[a] = Axis::rectilinear(coordinates);
-  }
-  return {grid, Values<double>(values)};
-}
-
 template <int N>
 void expect_contour_of_grid(const std::array<std::size_t, N>& sizes) {
   for (const bool around : {false, true}) {
@@ -540,9 +527,6 @@ TEST(Complex, BadValuesAndOptionsAreErrors) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refuse(ErrorCode::InvalidIsovalue, "nan", nan, [](ExtractOptions&) {});
   refuse(ErrorCode::InvalidArgument, "epsilon 0.5", 0.0, [](ExtractOptions& o) { o.epsilon = 0.5; });
-  refuse(ErrorCode::InvalidArgument, "low or high", 0.0, [](ExtractOptions& o) { o.ambiguity = Ambiguity::mean; });
-  refuse(ErrorCode::InvalidArgument, "close", 0.0, [](ExtractOptions& o) { o.close = true; });
-  refuse(ErrorCode::InvalidArgument, "normals", 0.0, [](ExtractOptions& o) { o.normals = Normals::differences; });
 }
 
 TEST(Complex, AnEmptyComplexHasAnEmptyContour) {

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "complex/complex_cases.hpp"
-#include "complex/lattice_cells.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
+#include "lattice/lattice_cells.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/measure.hpp"
 

@@ -6,7 +6,7 @@
 //
 // Based on: J. H. Conway and N. J. A. Sloane, Sphere Packings, Lattices and Groups, chapter 4 (the cells of D4 are
 // 16-cells, three for each sample; the cells of the face-centred cubic lattice D3 are octahedra and tetrahedra).
-#include "complex/lattice_cells.hpp"
+#include "lattice/lattice_cells.hpp"
 
 #include <algorithm>
 #include <initializer_list>

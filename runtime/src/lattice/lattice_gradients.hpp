@@ -11,9 +11,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "complex/lattice_cells.hpp"
-#include "complex/lattice_grid.hpp"
 #include "image/sample_source.hpp"
+#include "lattice/lattice_cells.hpp"
+#include "lattice/lattice_grid.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::detail {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Classifies the rows of a lattice, and counts its contour.
-#include "complex/lattice_rows.hpp"
+#include "lattice/lattice_rows.hpp"
 
 #include <algorithm>
 #include <atomic>

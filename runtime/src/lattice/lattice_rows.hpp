@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "complex/lattice_pattern.hpp"
 #include "image/sample_source.hpp"
+#include "lattice/lattice_pattern.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {

@@ -17,10 +17,10 @@
 #include "base/workers.hpp"
 #include "complex/contour_numbers.hpp"
 #include "complex/edge_alpha.hpp"
-#include "complex/lattice_gradients.hpp"
-#include "complex/lattice_rows.hpp"
 #include "image/row_source.hpp"
 #include "kernel/memory_output.hpp"
+#include "lattice/lattice_gradients.hpp"
+#include "lattice/lattice_rows.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
 
@@ -235,8 +235,13 @@ void check_lattice_options(double isovalue, ExtractOptions options) {
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
                 "normals on a lattice by a kernel, by context or to one side; expected differences");
+  if (options.close)
+    throw Error(ErrorCode::InvalidArgument, "close is set; expected false for the contour of a lattice");
+  if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
+    throw Error(ErrorCode::InvalidArgument,
+                "ambiguity resolved from the data; expected low or high for the contour of a lattice");
   options.normals = Normals::none;
-  check_complex_options(isovalue, options);
+  check_complex_options(N, isovalue, options);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Derives the edges of a lattice, and their places in its cells, from the cells.
-#include "complex/lattice_pattern.hpp"
+#include "lattice/lattice_pattern.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "complex/cell_groups.hpp"
-#include "complex/lattice_grid.hpp"
+#include "lattice/lattice_grid.hpp"
 #include "tegl/generated/cells.hpp"
 
 namespace tegl::detail {

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "complex/lattice_cells.hpp"
-#include "complex/lattice_grid.hpp"
+#include "lattice/lattice_cells.hpp"
+#include "lattice/lattice_grid.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {

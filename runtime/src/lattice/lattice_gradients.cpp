@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Least squares on the neighbours of a sample (see lattice_gradients.hpp).
-#include "complex/lattice_gradients.hpp"
+#include "lattice/lattice_gradients.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "complex/cell_contour.hpp"
-#include "complex/lattice_cells.hpp"
+#include "lattice/lattice_cells.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::detail {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The facets of cells, and those on the border of a complex: facets of one cell only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "complex/cell_groups.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl::detail {
+
+/// A facet of a shape: an edge, a polygon or a 3D cell.
+struct CellFacet {
+  tables::CellShape shape;              ///< of polygons and 3D cells; an edge has 2 corners
+  std::uint8_t corner_count;            ///< number of corners
+  std::array<std::uint8_t, 8> corners;  ///< of the cell, in the facet's own order
+  /// Whether the facet's own orientation, followed by a direction into the cell, is not that of the cell's reference
+  /// corners.
+  bool is_inverted;
+};
+
+/// The facets of a shape.
+[[nodiscard]] std::span<const CellFacet> facets_of(tables::CellShape shape);
+
+/// A facet of a cell.
+struct BorderFacet {
+  std::uint32_t group;
+  Index cell;          ///< in its group
+  std::uint8_t facet;  ///< number in facets_of
+};
+using BorderFacets = std::vector<BorderFacet>;
+
+/// The facets that belong to one cell only, by cell. O(F log f) time for F facets, at most f at a point; 24 bytes for
+/// each facet in 3D, 40 in 4D. Errors: Cancelled.
+[[nodiscard]] BorderFacets find_border(std::size_t points, const CellGroups& cells, const WorkOptions& work);
+
+}  // namespace tegl::detail

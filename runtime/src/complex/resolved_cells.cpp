@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cells whose ambiguous quadrilaterals are resolved from the data. Hexahedra have the resolved cubes of images, tunnels
+// included. In other cells each polygon is a disc: the lists of the low- or the high-connected alternative, or, if a
+// wedge has one quadrilateral of each, the only polygon, coned.
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "ambiguity/face_decision.hpp"
+#include "complex/cell_contour.hpp"
+#include "complex/edge_alpha.hpp"
+#include "image/cube_heights.hpp"
+#include "tegl/generated/tables.hpp"
+#include "tegl/tile/corners.hpp"
+#include "tile/extract_tables.hpp"
+#include "tile/variant_table.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+using tables::CellShape;
+
+/// The quadrilaterals of shapes that are not hexahedra, as corners: bit i is a coordinate of the quadrilateral.
+std::span<const std::array<std::uint8_t, 4>> quadrilaterals_of(CellShape shape) noexcept {
+  static constexpr std::array<std::uint8_t, 4> kBase[] = {{0, 1, 2, 3}};
+  static constexpr std::array<std::uint8_t, 4> kSides[] = {{0, 1, 3, 4}, {1, 2, 4, 5}, {2, 0, 5, 3}};
+  if (shape == CellShape::wedge) return kSides;
+  if (shape == CellShape::quadrilateral || shape == CellShape::pyramid) return kBase;
+  return {};
+}
+
+bool is_ambiguous_square(unsigned signature, const std::array<std::uint8_t, 4>& corners) noexcept {
+  unsigned bits = 0;
+  for (unsigned i = 0; i < 4; ++i) bits |= (signature >> corners[i] & 1u) << i;
+  return ambiguous_signatures<2>()[bits];
+}
+
+/// Lists of hexahedra: three for each entry of kTile3Resolved, then one for each signature that is not ambiguous.
+constexpr std::size_t kPlainHexahedra = 3 * 656;
+
+/// The edge of a cell between two corners.
+unsigned edge_between(const tables::CellTable& table, unsigned p, unsigned q) noexcept {
+  unsigned e = 0;
+  while (!((table.edges[2 * e] == p && table.edges[2 * e + 1] == q) ||
+           (table.edges[2 * e] == q && table.edges[2 * e + 1] == p)))
+    ++e;
+  return e;
+}
+
+/// The number of a wedge's list: corner `odd` of the upper triangle is unlike the others of its layer, as are two
+/// corners of the lower one; `joined` is the corner whose side with `odd` is high-connected.
+constexpr unsigned wedge_list(unsigned odd, unsigned joined, bool is_odd_high) noexcept {
+  return 4 * odd + (joined == (odd + 1) % 3 ? 2u : 0u) + (is_odd_high ? 1u : 0u);
+}
+
+}  // namespace
+
+ResolvedCells::ResolvedCells(CellShape shape, const tables::CellTable& table, Triangulation triangulation,
+                             FaceRule rule, double isovalue)
+    : shape_(shape), table_(table), rule_(rule), isovalue_(isovalue), ambiguous_(std::size_t{1} << table.corner_count) {
+  if (shape == CellShape::hexahedron) {
+    ambiguous_.assign(ambiguous_.size(), true);  // the others have other diagonals than in the plain table
+    add_hexahedra(triangulation);
+  } else {
+    for (unsigned s = 0; s < ambiguous_.size(); ++s)
+      for (const auto& corners : quadrilaterals_of(shape))
+        if (is_ambiguous_square(s, corners)) ambiguous_[s] = true;
+    if (shape == CellShape::wedge) add_wedges();
+  }
+  table_.element_of = nullptr;
+  table_.lists = lists_.data();
+  table_.simplices = simplices_.data();
+  table_.masks = masks_.data();
+}
+
+void ResolvedCells::add_hexahedra(Triangulation triangulation) {
+  for (unsigned e = 0; e < 12; ++e) {
+    const unsigned base = edge_base(3, e);
+    cube_edges_[e] = static_cast<std::uint8_t>(edge_between(table_, base, base | 1u << e / 4));
+  }
+  const auto edge_mask = [&](std::uint64_t edges) {
+    std::uint64_t mask = 0;
+    for (; edges != 0; edges &= edges - 1)
+      mask |= std::uint64_t{256} << cube_edges_[static_cast<std::size_t>(std::countr_zero(edges))];
+    return mask;
+  };
+  const auto& resolved = tables::kTile3Resolved;
+  lists_.resize(kPlainHexahedra + 256);
+  const auto add = [&](CubeKey key, tables::CellList& list) {
+    const SimplexList<3> cube(variant_table<3>(triangulation).tile, key.bits());
+    list = {static_cast<std::uint32_t>(simplices_.size() / 3),
+            static_cast<std::uint32_t>(masks_.size()),
+            static_cast<std::uint16_t>(cube.size()),
+            0,
+            cube.list().cone_vertices,
+            cube.list().side_vertices,
+            0};
+    std::vector<std::uint64_t> coned(cube.list().cone_vertices);  // the edges around each barycentre
+    for (unsigned q = 0; q < cube.size(); ++q)
+      for (unsigned j = 0; j < 3; ++j) {
+        const unsigned v = cube.stored(q, cube.reversed() && j > 0 ? 3 - j : j);
+        simplices_.push_back(v < 12 ? cube_edges_[cube.mapped(v)] : static_cast<std::uint8_t>(v));
+        const unsigned apex = cube.stored(q, 0);
+        if (v < 12 && apex >= 12 && apex - 12 < coned.size()) coned[apex - 12] |= std::uint64_t{1} << cube.mapped(v);
+      }
+    for (const std::uint64_t edges : coned) masks_.push_back(edge_mask(edges));
+    for (unsigned j = 0; j < cube.list().side_vertices; ++j)
+      masks_.push_back((cube.side_mask(j) & 255u) | edge_mask(cube.side_mask(j) >> 8));
+  };
+  for (unsigned signature = 0; signature < 256; ++signature) {
+    add(CubeKey(signature), lists_[kPlainHexahedra + signature]);
+    if (!ambiguous_signatures<3>()[signature]) continue;
+    const int squares = std::popcount(unsigned{resolved.ambiguous_squares[signature]});
+    for (unsigned r = 0; r < 1u << squares; ++r)
+      for (unsigned choice = 0; choice < 3; ++choice)
+        add(CubeKey(signature, r, static_cast<tile::Choice>(choice)),
+            lists_[3 * (resolved.first_entry[signature] + std::size_t{r}) + choice]);
+  }
+}
+
+void ResolvedCells::add_wedges() {
+  lists_.resize(12);
+  for (unsigned odd = 0; odd < 3; ++odd)
+    for (const unsigned joined : {(odd + 1) % 3, (odd + 2) % 3})
+      for (const bool is_odd_high : {false, true}) {
+        const unsigned a = joined, b = 3 - odd - joined, c = odd;
+        // The side of a and c separates the corners that are low, that of b and c the high ones, if c is high above.
+        // Otherwise the layers are exchanged, so that the lower triangle has the odd corner high.
+        const unsigned low = is_odd_high ? 0 : 3, up = 3 - low;
+        const std::array<std::array<unsigned, 2>, 7> around = {{{a + low, c + low},
+                                                                {c + low, c + up},
+                                                                {b + up, c + up},
+                                                                {a + up, c + up},
+                                                                {a + low, a + up},
+                                                                {b + low, b + up},
+                                                                {b + low, c + low}}};
+        const bool is_even = (b == (a + 1) % 3) == is_odd_high;
+        tables::CellList& list = lists_[wedge_list(odd, joined, is_odd_high)];
+        list = {static_cast<std::uint32_t>(simplices_.size() / 3),
+                static_cast<std::uint32_t>(masks_.size()),
+                7,
+                0,
+                1,
+                0,
+                0};
+        std::uint64_t mask = 0;
+        for (std::size_t i = 0; i < 7; ++i) {
+          const auto edge = [&](std::size_t k) {
+            return static_cast<std::uint8_t>(edge_between(table_, around[k % 7][0], around[k % 7][1]));
+          };
+          mask |= std::uint64_t{1} << (table_.corner_count + edge(i));
+          simplices_.push_back(static_cast<std::uint8_t>(table_.edge_count));
+          simplices_.push_back(is_even ? edge(i + 1) : edge(i));
+          simplices_.push_back(is_even ? edge(i) : edge(i + 1));
+        }
+        masks_.push_back(mask);
+      }
+}
+
+std::uint16_t ResolvedCells::variant(const double* values, unsigned signature) const noexcept {
+  if (shape_ == CellShape::hexahedron) {
+    const CubeKey key = cube_key(rule_, std::span<const double, 8>(values, 8), isovalue_, signature);
+    if (key.is_plain()) return static_cast<std::uint16_t>(2 + kPlainHexahedra + signature);
+    const unsigned entry = tables::kTile3Resolved.first_entry[signature] + key.resolution();
+    return static_cast<std::uint16_t>(2 + 3 * entry + static_cast<unsigned>(key.choice()));
+  }
+  unsigned faces = 0, high = 0;
+  unsigned joined = 0;  // of a wedge: the side that is high-connected
+  const auto quadrilaterals = quadrilaterals_of(shape_);
+  for (unsigned q = 0; q < quadrilaterals.size(); ++q) {
+    const auto& corners = quadrilaterals[q];
+    if (!is_ambiguous_square(signature, corners)) continue;
+    const std::array<double, 4> at = {values[corners[0]], values[corners[1]], values[corners[2]], values[corners[3]]};
+    ++faces;
+    if (!is_square_high(rule_, at, isovalue_)) continue;
+    ++high;
+    joined = q;
+  }
+  if (high == 0 || high == faces) return high == 0 ? 0 : 1;
+  unsigned odd = 0;  // the corner whose column is unlike the two others
+  const unsigned lower = signature & 7u;
+  while (lower != 1u << odd && lower != (7u ^ 1u << odd)) ++odd;
+  const unsigned other = joined == odd ? (odd + 1) % 3 : joined;
+  return static_cast<std::uint16_t>(2 + wedge_list(odd, other, (signature >> (3 + odd) & 1u) != 0));
+}
+
+std::array<double, 3> ResolvedCells::place(std::uint64_t mask, const std::array<double, 8>& values,
+                                           double epsilon) const noexcept {
+  std::uint32_t cube = static_cast<std::uint32_t>(mask & 255u);
+  for (unsigned e = 0; e < 12; ++e) cube |= static_cast<std::uint32_t>(mask >> (8 + cube_edges_[e]) & 1u) << (8 + e);
+  const auto on_edge = [&](unsigned e) {
+    const unsigned base = edge_base(3, e);
+    return edge_point<3>(e, alpha_of(values[base], values[base | 1u << e / 4], isovalue_, epsilon));
+  };
+  return cube_own_place(cube, on_edge, [&](std::uint32_t corners) {
+    CubeHeights heights{values, epsilon};
+    for (double& at : heights.at) at -= isovalue_;
+    return heights.level(corners);
+  });
+}
+
+}  // namespace tegl::detail
