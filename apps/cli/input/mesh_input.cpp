@@ -28,12 +28,12 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
                 fmt::format("{} with {}, which is a mesh; expected it with an image", refused.front(), file));
   extraction.refuse_tiling(fmt::format("{}, which is not an image", file));
   const ExtractOptions options = extraction.library_options(true);
-  const auto fail = [&](const char* option, const char* expected) {
+  const auto fail = [&](const std::string& option, const char* expected) {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
   };
   if (options.normals != Normals::none && options.normals != Normals::differences)
-    fail(fmt::format("--normals {}", extraction.normals()).c_str(), "--normals gradient, geometric or flat");
+    fail("--normals " + extraction.normals(), "--normals gradient, geometric or flat");
   if (extraction.polygon_triangulation()) fail("--triangulation of polygons", "compact or barycentric");
 }
 

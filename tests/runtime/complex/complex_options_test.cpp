@@ -17,6 +17,7 @@
 #include "invariants.hpp"
 #include "meshes.hpp"
 #include "tegl/complex.hpp"
+#include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
 
@@ -85,6 +86,22 @@ TEST(ComplexOptions, NoiseHasAClosedOrientedManifoldWithRulesThatReadTheData) {
         const auto contour = extract(complex, 0.5, options);
         expect_closed_manifold(contour);
         EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(complex, 0.5, options));
+      }
+  }
+}
+
+TEST(ComplexOptions, ContoursByRulesThatReadTheDataDoNotIntersectThemselvesInCellsWithFlatFaces) {
+  const MeshData<3> points = grid_points<3>({9, 9, 9});
+  for (const MeshData<3>& mesh : {cube_mesh(points, true), wedge_mesh(points), pyramid_mesh(points)}) {
+    const Complex<3> complex = complex_of(mesh, closed_noise(mesh, 17));
+    for (const Ambiguity rule : {Ambiguity::mean, Ambiguity::saddle})
+      for (const Triangulation t : {Triangulation::compact, Triangulation::barycentric}) {
+        ExtractOptions options;
+        options.ambiguity = rule;
+        options.triangulation = t;
+        const auto contour = extract<double>(complex, 0.5, options);
+        EXPECT_GT(contour.simplices.size(), 500u);
+        EXPECT_EQ(0u, find_intersections(contour).pair_count);
       }
   }
 }
