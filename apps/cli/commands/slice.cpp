@@ -480,13 +480,15 @@ class SliceCommand final : public Command {
     const double isovalue = options_.isovalue();
     refuse_options_of_images(file(), options_, images());
     Stopwatch watch;
-    const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), false);
+    MeshInput input = read_cells(files(), images(), bar.stage("read"));
     for (const std::string& text : input.mesh.remarks) remark(text);
     require_cuts(input.space_dim(), "mesh");
     const CutSpace space = space_of(input);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
     require_mesh_contour(input.mesh, isovalue, options_.allows_empty());
+    keep_times_of_cuts(input, results);
+    make_complex(input);
     const double read_seconds = watch.lap();
     for (ContourResult& result : results) {
       result.variable = input.mesh.variable;
@@ -501,6 +503,19 @@ class SliceCommand final : public Command {
         },
         results, bar);
     return results;
+  }
+
+  /// Drops the times of a mesh that no cut needs, if all cuts are across the time.
+  static void keep_times_of_cuts(MeshInput& input, const std::vector<ContourResult>& results) {
+    if (!input.is_moving()) return;
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (const ContourResult& result : results) {
+      if (result.cut->is_outside) continue;
+      if (!result.cut->across || *result.cut->across != input.mesh.dim) return;
+      first = std::min(first, result.cut->value);
+      last = std::max(last, result.cut->value);
+    }
+    if (first <= last) keep_times(input.mesh, first, last);
   }
 
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {

@@ -37,8 +37,7 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
   if (extraction.polygon_triangulation()) fail("--triangulation of polygons", "compact or barycentric");
 }
 
-MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
-                          bool several) {
+MeshInput read_cells(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress) {
   const CellMeshOptions options = images.cell_mesh_options(progress);
   const auto read = [&] {
     try {
@@ -48,10 +47,34 @@ MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOpti
       throw Error(error.code(), fmt::format("{} (choose it with --var)", error.what()));
     }
   };
-  MeshInput input{read(), AnyComplex(Complex<2>({}, std::span<const CellType>(), {}))};
-  input.complex = to_complex(input.mesh);
+  return {read(), AnyComplex(Complex<2>({}, std::span<const CellType>(), {}))};
+}
+
+void make_complex(MeshInput& input) { input.complex = to_complex(input.mesh); }
+
+MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
+                          bool several) {
+  MeshInput input = read_cells(files, images, progress);
+  make_complex(input);
   if (several) std::visit([](auto& complex) { complex.find_edges(); }, input.complex);
   return input;
+}
+
+void keep_times(CellMesh& mesh, double first, double last) {
+  const std::vector<double>& times = mesh.times;
+  // A slice at a time of the mesh touches the intervals on both sides.
+  const auto from = std::lower_bound(times.begin(), times.end(), first) - times.begin();
+  const auto to = std::upper_bound(times.begin(), times.end(), last) - times.begin();
+  const auto begin = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, from - 2));
+  const std::size_t end = std::min(times.size(), static_cast<std::size_t>(to) + 2);
+  if (begin == 0 && end == times.size()) return;
+  const auto keep = [&](std::vector<double>& list, std::size_t size) {
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(end * size), list.end());
+    list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(begin * size));
+  };
+  keep(mesh.values, mesh.values.size() / mesh.times.size());
+  if (mesh.points_move) keep(mesh.points, mesh.points.size() / mesh.times.size());
+  keep(mesh.times, 1);
 }
 
 CutSpace space_of(const MeshInput& input) {

@@ -24,16 +24,24 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
 struct MeshInput {
   CellMesh mesh;
   AnyComplex complex;
-  [[nodiscard]] int space_dim() const { return static_cast<int>(complex.index()) + 2; }
+  [[nodiscard]] int space_dim() const { return mesh.dim + (is_moving() ? 1 : 0); }
   [[nodiscard]] bool is_moving() const { return mesh.times.size() > 1; }
 };
 
 /// The space of the mesh; the extents of its axes are those of its points, then that of its times.
 CutSpace space_of(const MeshInput& input);
 
+/// Reads the files, without a complex.
+MeshInput read_cells(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress);
+/// Makes the complex.
+void make_complex(MeshInput& input);
 /// Reads the files and makes a complex of them, with its edges if there are `several` isovalues.
 MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress,
                           bool several);
+
+/// Drops the times of a moving mesh that slices at times from `first` to `last` do not depend on. Other times remain:
+/// the ends of the intervals of these times, and one more on each side, for gradients.
+void keep_times(CellMesh& mesh, double first, double last);
 
 /// Throws EmptyResult unless the values have both sides of the isovalue, or `allow_empty`. Returns a remark for a value
 /// on one side: empty.
