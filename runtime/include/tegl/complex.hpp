@@ -181,9 +181,10 @@ requires DimensionBetween<N, 2, 4>
 /// The result does not depend on the number of threads. Errors: InvalidIsovalue; InvalidArgument (epsilon, other
 /// options; a point beyond the range of Real, which is named); TooLarge (2^32 vertices or more); Cancelled.
 /// O(C + P + S) time for S simplices and P points. Memory beside the contour:
-/// - 2 bits per point, 8 to 16 bytes per active cell, 4 to 8 per cell with a missing corner, 8 per crossed edge;
+/// - 2 bits per point, 8 to 16 bytes per active cell, 4 to 8 per cell with a missing corner, 8 per crossed edge, 4 for
+///   each crossed edge of each active cell;
 /// - before find_edges: 8 bytes per point, and while the edges are sorted 8 for each crossed edge of each active cell;
-/// - after find_edges: 4 to 8 bytes for each crossed edge of each active cell, and 16 for each 64 edges of the complex;
+/// - after find_edges: 16 for each 64 edges of the complex while edges are numbered;
 /// - 4D: 32 to 64 bytes per barycentre in a common 3D face and 4 for each cell that has it; while they are sorted, 80
 ///   more for each cell that has it;
 /// - close: what find_border takes, unless it was called, and 40 to 72 bytes per simplex of the caps;

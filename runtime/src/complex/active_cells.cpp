@@ -72,8 +72,17 @@ void resolve(const CellGroup& group, const ResolvedCells& resolved, std::span<co
 
 void finish(const CellGroup& group, const CellCases& cases, std::span<const double> values, ActiveBlock& block) {
   if (cases.resolved() != nullptr) resolve(group, *cases.resolved(), values, block);
+  if (cases.is_plain()) {
+    for (const ActiveCell& cell : block.cells) {
+      const CellCases::Case& of = cases.of_signature(cell.signature);
+      block.crossings += of.crossings;
+      block.simplices += of.simplices;
+    }
+    return;
+  }
   for (const ActiveCell& cell : block.cells) {
     const tables::CellList& list = cases.of(cell.signature, cell.variant).list();
+    block.crossings += cases.crossing_count(cell.signature);
     block.simplices += list.simplex_count;
     block.shared += list.shared_vertices;
     block.own += list.added() - list.shared_vertices;

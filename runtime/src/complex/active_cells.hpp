@@ -37,7 +37,8 @@ struct ActiveCell {
 struct ActiveBlock {
   std::size_t group = 0;
   std::vector<ActiveCell> cells;
-  std::vector<Index> missing;  ///< cells with missing corners
+  std::vector<Index> missing;   ///< cells with missing corners
+  std::uint64_t crossings = 0;  ///< crossed edges, counted in each cell
   std::uint64_t simplices = 0;
   std::uint64_t shared = 0;  ///< vertices in common 3-faces, counted in each cell
   std::uint64_t own = 0;     ///< vertices of the cells' own

@@ -107,11 +107,18 @@ class ResolvedCells {
 /// The contours of a shape by signature.
 class CellCases {
  public:
+  /// A signature of a shape of up to 8 corners.
+  struct Case {
+    std::uint32_t first_edge = 0;     ///< in its crossed edges, ascending
+    std::uint32_t first_simplex = 0;  ///< in `ordinals`
+    std::uint8_t crossings = 0;       ///< number of crossed edges
+    std::uint8_t simplices = 0;       ///< number of simplices, if the shape is plain
+  };
+
   /// `table` must outlive this object.
   CellCases(const tables::CellTable& table, bool high_connected, std::shared_ptr<const ResolvedCells> resolved = {})
       : table_(&table), high_connected_(high_connected), resolved_(std::move(resolved)) {
-    if (table.corner_count > 8) return;  // many signatures: each is looked up when it occurs
-    for (unsigned s = 0; s < 1u << table.corner_count; ++s) crossed_.push_back(crossed_edges(table, s));
+    if (table.corner_count <= 8) add_cases();  // otherwise many signatures: each is looked up when it occurs
   }
   [[nodiscard]] const tables::CellTable& table() const noexcept { return *table_; }
   [[nodiscard]] CellContour operator[](unsigned signature) const noexcept {
@@ -125,18 +132,44 @@ class CellCases {
   }
   /// Null: ambiguous faces are resolved by a fixed rule.
   [[nodiscard]] const ResolvedCells* resolved() const noexcept { return resolved_.get(); }
+
+  /// Whether all vertices are on edges and depend on the signature alone. Then `of_signature` and `ordinals` have all
+  /// that there is to write.
+  [[nodiscard]] bool is_plain() const noexcept { return is_plain_; }
+  [[nodiscard]] const Case& of_signature(unsigned signature) const noexcept { return cases_[signature]; }
+  /// The vertices of a case's simplices, as numbers among its crossed edges. `flip`: the last two are exchanged.
+  [[nodiscard]] const std::uint8_t* ordinals(const Case& of, bool flip) const noexcept {
+    return ordinals_[flip ? 1 : 0].data() + of.first_simplex;
+  }
+
+  /// Number of crossed edges.
+  [[nodiscard]] unsigned crossing_count(unsigned signature) const noexcept {
+    if (cases_.empty()) return static_cast<unsigned>(std::popcount(crossed_edges(*table_, signature)));
+    return cases_[signature].crossings;
+  }
   /// Calls visit(edge) for the crossed edges, ascending.
   template <class Visit>
   void for_each_crossed(unsigned signature, const Visit& visit) const {
-    std::uint32_t edges = crossed_.empty() ? crossed_edges(*table_, signature) : crossed_[signature];
-    for (; edges != 0; edges &= edges - 1) visit(static_cast<unsigned>(std::countr_zero(edges)));
+    if (cases_.empty()) {
+      for (std::uint32_t edges = crossed_edges(*table_, signature); edges != 0; edges &= edges - 1)
+        visit(static_cast<unsigned>(std::countr_zero(edges)));
+      return;
+    }
+    const Case& of = cases_[signature];
+    const std::uint8_t* const edges = edges_.data() + of.first_edge;
+    for (unsigned k = 0; k < of.crossings; ++k) visit(unsigned{edges[k]});
   }
 
  private:
+  void add_cases();
+
   const tables::CellTable* table_;
   bool high_connected_;
+  bool is_plain_ = false;
   std::shared_ptr<const ResolvedCells> resolved_;
-  std::vector<std::uint32_t> crossed_;
+  std::vector<Case> cases_;          ///< by signature; empty for shapes of more corners
+  std::vector<std::uint8_t> edges_;  ///< the crossed edges of all cases
+  std::array<std::vector<std::uint8_t>, 2> ordinals_;
 };
 
 }  // namespace tegl::detail

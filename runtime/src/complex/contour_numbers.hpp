@@ -34,6 +34,9 @@ class ContourNumbers {
   [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
   [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept { return cases(group).table(); }
   [[nodiscard]] const CellCases& cases(std::size_t group) const noexcept { return tables_.of_group[group]; }
+  /// The vertices on crossed edges of a block's cells: one cell after the other, by edge.
+  [[nodiscard]] const Buffer<Index>& crossings(std::size_t block) const noexcept { return crossings_.of_block(block); }
+  [[nodiscard]] std::uint64_t first_simplex(std::size_t block) const noexcept { return first_simplex_[block]; }
   /// The barycentre of the polygon with these vertices in a common 3-face, or kNoPoint.
   [[nodiscard]] Index polygon(std::span<const Index> vertices) const;
 

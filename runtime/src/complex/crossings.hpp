@@ -23,32 +23,28 @@ class CrossingNumbers {
                   const ComplexEdges* edges, std::size_t points, const WorkOptions& work);
 
   /// The crossed edges, by number.
-  [[nodiscard]] const std::vector<EdgeEnds>& ends() const noexcept {
-    return edges_ == nullptr ? sorted_.ends() : ends_;
+  [[nodiscard]] const std::vector<EdgeEnds>& ends() const noexcept { return ends_; }
+
+  /// The numbers of the points on the crossed edges of all cells of block `b`: one cell after the other, by edge.
+  [[nodiscard]] const Buffer<Index>& of_block(std::size_t b) const noexcept { return of_blocks_[b]; }
+  /// Those of a cell, by edge. `crossing`: number of crossings in the block's cells before, 0 for the first; increased
+  /// by those of this cell.
+  void of_cell(std::size_t b, const ActiveCell& cell, std::size_t& crossing, Index* numbers) const noexcept {
+    const Index* next = of_blocks_[b].data() + crossing;
+    tables_.of_group[blocks_[b].group].for_each_crossed(cell.signature, [&](unsigned e) { numbers[e] = *next++; });
+    crossing = static_cast<std::size_t>(next - of_blocks_[b].data());
   }
 
-  /// The numbers of the points on the crossed edges of a cell of block `b`, by edge. `crossing`: number of crossings in
-  /// the block's cells before, 0 for the first; increased by those of this cell.
-  void of_cell(std::size_t b, const ActiveCell& cell, std::size_t& crossing, Index* numbers) const noexcept;
-
  private:
-  /// 64 edges: which are crossed, and how many before them are. Together, so that a look-up meets one cache line.
-  struct EdgeWord {
-    std::uint64_t crossed = 0;
-    std::uint64_t before = 0;
-  };
-
+  void sort(std::size_t points, const WorkOptions& work);
   void count_bits(const WorkOptions& work);
 
   const CellGroups& cells_;
   const CellTables& tables_;
   const std::vector<ActiveBlock>& blocks_;
   const ComplexEdges* edges_;
-  SortedEdges sorted_;          ///< edges not known: the crossed ones
-  std::vector<EdgeEnds> ends_;  ///< edges known: the crossed ones
-  /// edges known: the crossed ones of each block's cells, so that the numbers of all edges are read once only
-  std::vector<std::vector<Index>> of_blocks_;
-  std::vector<EdgeWord> words_;  ///< edges known: which are crossed
+  std::vector<EdgeEnds> ends_;
+  std::vector<Buffer<Index>> of_blocks_;
 };
 
 /// Throws TooLarge if there are more vertices than Index can number.

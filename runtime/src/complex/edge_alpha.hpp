@@ -9,12 +9,18 @@
 
 namespace tegl::detail {
 
+/// alpha_of if an end or the difference is infinite.
+inline double alpha_at_infinity(double from, double to, double isovalue) noexcept {
+  if (std::isinf(from) || std::isinf(to)) return !std::isinf(from) ? 0.0 : !std::isinf(to) ? 1.0 : 0.5;
+  return (isovalue / 2 - from / 2) / (to / 2 - from / 2);
+}
+
 /// Where the isovalue is on an edge: 0 at the first end, 1 at the second. Infinite values are treated as limits: the
 /// vertex is at the finite end, or at the middle between two infinities.
 inline double alpha_of(double from, double to, double isovalue, double epsilon) noexcept {
-  double alpha = (isovalue - from) / (to - from);
-  if (std::isinf(to - from)) alpha = (isovalue / 2 - from / 2) / (to / 2 - from / 2);
-  if (std::isinf(from) || std::isinf(to)) alpha = !std::isinf(from) ? 0.0 : !std::isinf(to) ? 1.0 : 0.5;
+  const double difference = to - from;
+  const double alpha =
+      std::isfinite(difference) ? (isovalue - from) / difference : alpha_at_infinity(from, to, isovalue);
   return std::clamp(alpha, epsilon, 1.0 - epsilon);
 }
 

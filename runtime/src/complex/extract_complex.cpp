@@ -103,6 +103,7 @@ class ComplexWriter {
   void write_cells(const WorkOptions& work) {
     for_each_block(
         numbers_.blocks().size(), 1, work.threads, work.progress, [&](std::size_t b, std::size_t, std::size_t) {
+          if (numbers_.cases(numbers_.blocks()[b].group).is_plain()) return write_plain_cells(b);
           numbers_.for_each_cell(b, [&](const ActiveCell& cell, std::uint64_t first, const CellContour& contour,
                                         const ContourNumbers::CellVertices& vertices) {
             const std::size_t group = numbers_.blocks()[b].group;
@@ -229,6 +230,23 @@ class ComplexWriter {
     Point gradient;
     for (std::size_t i = 0; i < N; ++i) gradient[i] = (1.0 - alpha) * at_from[i] + alpha * at_to[i];
     contour_.normals[number] = normal_of(gradient);
+  }
+
+  /// The simplices of a block of cells whose vertices are all on edges.
+  void write_plain_cells(std::size_t b) const noexcept {
+    const ActiveBlock& block = numbers_.blocks()[b];
+    const CellCases& cases = numbers_.cases(block.group);
+    const std::uint64_t* const inverted = signs_[block.group].data();
+    const Index* vertices = numbers_.crossings(b).data();
+    auto* simplex = contour_.simplices.data() + numbers_.first_simplex(b);
+    for (const ActiveCell& cell : block.cells) {
+      const CellCases::Case& of = cases.of_signature(cell.signature);
+      const bool is_inverted = (inverted[cell.cell >> 6] >> (cell.cell & 63u) & 1u) != 0;
+      const std::uint8_t* ordinal = cases.ordinals(of, is_inverted != descends_);
+      for (unsigned i = 0; i < of.simplices; ++i, ++simplex)
+        for (unsigned k = 0; k < N; ++k) (*simplex)[k] = vertices[*ordinal++];
+      vertices += of.crossings;
+    }
   }
 
   void write_simplices(bool is_inverted, std::uint64_t first, const CellContour& contour,
