@@ -3,10 +3,14 @@
 // Contours of meshes for Python.
 #include <fmt/format.h>
 
+#include <memory>
 #include <span>
+#include <utility>
+#include <variant>
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/delaunay.hpp"
 
@@ -35,30 +39,18 @@ struct MeshArguments {
   std::vector<CellType> types;
   std::span<const Index> corners;
   std::span<const double> values, times;
-  double level;
-  bool is_double;
   std::vector<std::string> axis_names;
 };
 
-template <int N>
-AnyContour contour_of(const Complex<N>& complex, const MeshArguments& mesh, const ExtractOptions& options) {
-  const auto named = [&](auto contour) -> AnyContour {
-    for (std::size_t a = 0; a < std::min(mesh.axis_names.size(), contour.axis_names.size()); ++a)
-      contour.axis_names[a] = mesh.axis_names[a];
-    return {std::move(contour), mesh.level};
-  };
-  if (mesh.is_double) return named(extract<double>(complex, mesh.level, options));
-  return named(extract<float>(complex, mesh.level, options));
-}
+using AnyComplex = std::variant<Complex<2>, Complex<3>, Complex<4>>;
 
 /// `points`: #P x N, or, if they move, #T x #P x N.
 template <int N>
-AnyContour contour_of_mesh(std::vector<std::array<double, N>> points, const MeshArguments& mesh,
-                           const ExtractOptions& options) {
+AnyComplex complex_of(std::vector<std::array<double, N>> points, const MeshArguments& mesh) {
   if (mesh.times.empty()) {
     Complex<N> complex(std::move(points), mesh.types, mesh.corners);
     complex.set_values(std::vector<double>(mesh.values.begin(), mesh.values.end()));
-    return contour_of(complex, mesh, options);
+    return complex;
   }
   if constexpr (N < 4) {
     const std::size_t count = mesh.values.size() / mesh.times.size();
@@ -67,10 +59,60 @@ AnyContour contour_of_mesh(std::vector<std::array<double, N>> points, const Mesh
         points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
     const Complex<N> complex(std::move(first), mesh.types, mesh.corners);
     const std::span<const std::array<double, N>> moving(points);
-    return contour_of(in_time<N>(complex, mesh.times, mesh.values, moves ? moving : moving.first(0)), mesh, options);
+    return in_time<N>(complex, mesh.times, mesh.values, moves ? moving : moving.first(0));
   } else {
     throw Error(ErrorCode::UnsupportedData, "times with a 4D mesh; expected a mesh in 2 or 3 dimensions");
   }
+}
+
+AnyComplex complex_of(const Doubles& points, const MeshArguments& mesh) {
+  const py::ssize_t dim = points.ndim() == 0 ? 0 : points.shape(points.ndim() - 1);
+  if (dim == 2) return complex_of<2>(points_of<2>(points), mesh);
+  if (dim == 3) return complex_of<3>(points_of<3>(points), mesh);
+  if (dim == 4) return complex_of<4>(points_of<4>(points), mesh);
+  throw Error(ErrorCode::UnsupportedData, fmt::format("points have {} coordinates; expected 2 to 4", dim));
+}
+
+MeshArguments arguments_of(const Types& types, const Numbers& corners, const Doubles& values, const Doubles& times,
+                           const std::vector<std::string>& axis_names) {
+  MeshArguments mesh{{}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), axis_names};
+  for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.types.push_back(static_cast<CellType>(type));
+  return mesh;
+}
+
+/// What a contour is made of, beside the mesh.
+struct ContourArguments {
+  double level;
+  bool is_double;
+  ExtractOptions options;
+  std::string normals;
+};
+
+/// `index`: null for a single contour.
+std::unique_ptr<AnyContour> contour_of(const AnyComplex& any, const CellIndex* index,
+                                       const std::vector<std::string>& axis_names, const ContourArguments& wanted) {
+  const auto named = [&](auto contour) {
+    for (std::size_t a = 0; a < std::min(axis_names.size(), contour.axis_names.size()); ++a)
+      contour.axis_names[a] = axis_names[a];
+    auto result = std::make_unique<AnyContour>();
+    *result = {std::move(contour), wanted.level};
+    add_shape_normals(*result, wanted.normals, wanted.options);
+    return result;
+  };
+  return std::visit(
+      [&](const auto& complex) {
+        const auto& [level, is_double, options, normals] = wanted;
+        if (index != nullptr)
+          return is_double ? named(extract<double>(complex, *index, level, options))
+                           : named(extract<float>(complex, *index, level, options));
+        return is_double ? named(extract<double>(complex, level, options))
+                         : named(extract<float>(complex, level, options));
+      },
+      any);
+}
+
+ContourArguments wanted_of(double level, bool is_double, const py::dict& arguments, Call& call) {
+  return {level, is_double, extract_options(arguments, call), arguments["normals"].cast<std::string>()};
 }
 
 std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& types, const Numbers& corners,
@@ -78,21 +120,42 @@ std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& typ
                                          const std::vector<std::string>& axis_names, double level, bool is_double,
                                          const py::dict& arguments, const py::object& progress) {
   Call call(progress);
-  const ExtractOptions options = extract_options(arguments, call);
-  const auto normals = arguments["normals"].cast<std::string>();
-  MeshArguments mesh{
-      {}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), level, is_double, axis_names};
-  for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.types.push_back(static_cast<CellType>(type));
-  const py::ssize_t dim = points.ndim() == 0 ? 0 : points.shape(points.ndim() - 1);
-  if (dim < 2 || dim > 4)
-    throw Error(ErrorCode::UnsupportedData, fmt::format("points have {} coordinates; expected 2 to 4", dim));
+  const ContourArguments wanted = wanted_of(level, is_double, arguments, call);
+  const MeshArguments mesh = arguments_of(types, corners, values, times, axis_names);
+  return call.run([&] { return contour_of(complex_of(points, mesh), nullptr, axis_names, wanted); });
+}
+
+/// A mesh with its edges and an interval tree of its cells.
+struct MeshIndex {
+  AnyComplex complex;
+  CellIndex index;
+  std::vector<std::string> axis_names;
+};
+
+std::unique_ptr<MeshIndex> make_index(const Doubles& points, const Types& types, const Numbers& corners,
+                                      const Doubles& values, const Doubles& times,
+                                      const std::vector<std::string>& axis_names, unsigned threads,
+                                      const py::object& progress) {
+  Call call(progress);
+  const MeshArguments mesh = arguments_of(types, corners, values, times, axis_names);
+  const WorkOptions work{threads, call.progress()};
   return call.run([&] {
-    auto contour = std::make_unique<AnyContour>(dim == 2   ? contour_of_mesh<2>(points_of<2>(points), mesh, options)
-                                                : dim == 3 ? contour_of_mesh<3>(points_of<3>(points), mesh, options)
-                                                           : contour_of_mesh<4>(points_of<4>(points), mesh, options));
-    add_shape_normals(*contour, normals, options);
-    return contour;
+    AnyComplex complex = complex_of(points, mesh);
+    CellIndex index = std::visit(
+        [&](auto& any) {
+          any.find_edges({work.threads, {}});
+          return CellIndex(any, work);
+        },
+        complex);
+    return std::make_unique<MeshIndex>(MeshIndex{std::move(complex), std::move(index), axis_names});
   });
+}
+
+std::unique_ptr<AnyContour> contour_of_index(const MeshIndex& mesh, double level, bool is_double,
+                                             const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ContourArguments wanted = wanted_of(level, is_double, arguments, call);
+  return call.run([&] { return contour_of(mesh.complex, &mesh.index, mesh.axis_names, wanted); });
 }
 
 /// The Delaunay cells of points, #C x (N + 1).
@@ -118,6 +181,19 @@ void bind_mesh(py::module_& m) {
   m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
         py::arg("times"), py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"),
         py::arg("progress"), doc::extract);
+  py::class_<MeshIndex>(m, "MeshIndex", doc::CellIndex)
+      .def(py::init(&make_index), py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
+           py::arg("times"), py::arg("axis_names"), py::arg("threads"), py::arg("progress"))
+      .def("contour", &contour_of_index, py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
+           doc::extract)
+      .def_property_readonly(
+          "cells",
+          [](const MeshIndex& mesh) {
+            return std::visit([](const auto& complex) { return complex.cell_count(); }, mesh.complex);
+          },
+          "Number of cells; over time of prisms.")
+      .def_property_readonly(
+          "memory", [](const MeshIndex& mesh) { return mesh.index.bytes(); }, "Bytes of the tree.");
 }
 
 }  // namespace tegl::python

@@ -21,7 +21,7 @@ from ._fields import fields, sample
 from ._filter import filter, most_stable_scale, scale_space
 from ._image import Image, contour, read, slice
 from ._index import Index, PickReport
-from ._mesh import Mesh, contour_mesh, contour_points, read_mesh
+from ._mesh import Mesh, MeshIndex, contour_mesh, contour_points, read_mesh
 from ._results import Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MeshReport, SimplifyStats
 from ._skimage import marching_cubes
 from ._tegl import Cancelled, __version__
@@ -29,8 +29,8 @@ from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, Tra
 
 __all__ = [
     "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",
-    "Intersections", "Measures", "Mesh", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph",
-    "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour", "contour_mesh",
-    "contour_points", "elements", "fields", "filter", "intersections", "load", "marching_cubes", "measure",
+    "Intersections", "Measures", "Mesh", "MeshIndex", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent",
+    "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour",
+    "contour_mesh", "contour_points", "elements", "fields", "filter", "intersections", "load", "marching_cubes", "measure",
     "most_stable_scale", "read", "read_mesh", "sample", "scale_space", "simplify", "slice", "track",
 ]

@@ -59,11 +59,69 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     The columns of the vertices are the columns of `points`, then the time. Errors: ValueError, with the library's message;
     TypeError for an argument of a wrong type; Cancelled if `progress` returns False.
     """
-    options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
-                                         close=close, epsilon=epsilon, normals=normals, threads=threads)
-    if options["normals"] not in ("", "gradient", "geometric", "flat"):
+    options = _options_of(triangulation=triangulation, ambiguity=ambiguity, direction=direction, close=close,
+                          epsilon=epsilon, normals=normals, threads=threads)
+    arguments = _arguments_of(points, cells, values, times)
+    if level is None:
+        raise TypeError("level are missing; expected points, cells, values and level, or a mesh and level")
+    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, progress)
+    if not allow_empty and not len(core.simplices):
+        _require_level(arguments[3], level)
+    return Contour._of(core, False)
+
+
+class MeshIndex:
+    """A mesh for contours at many levels: its edges and an interval tree of its cells, found once.
+
+    ::
+
+        index = tegl.MeshIndex(points, {"tetra": tetrahedra}, values)
+        surfaces = [index.contour(level) for level in (0.25, 0.5, 0.75)]
+
+    The mesh is copied. Meshes with missing values are searched cell by cell.
+    """
+
+    def __init__(self, points, cells=None, values=None, *, times=None, threads: int = 0,
+                 progress: Progress | None = None) -> None:
+        """Arguments as in `tegl.contour_mesh`."""
+        arguments = _arguments_of(points, cells, values, times)
+        all_values = arguments[3].ravel()
+        self._range = np.array([end(all_values, initial=np.nan) for end in (np.fmin.reduce, np.fmax.reduce)])
+        self._core = _tegl.MeshIndex(*arguments, _arguments.threads_of(threads), progress)
+
+    @property
+    def memory(self) -> int:
+        """Bytes of the interval tree."""
+        return self._core.memory
+
+    def __repr__(self) -> str:
+        return f"<tegl.MeshIndex of {self._core.cells} cells: {self.memory} bytes>"
+
+    def contour(self, level: float, *, dtype=np.float32, allow_empty: bool = False, progress: Progress | None = None,
+                **options: typing.Any) -> Contour:
+        """What `tegl.contour_mesh` of the mesh gives, byte by byte. Options as there: triangulation, normals, ..."""
+        chosen = _options_of(**options)
+        level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+        core = self._core.contour(level, _is_double(dtype), chosen, progress)
+        if not allow_empty and not len(core.simplices):
+            _require_level(self._range, level)
+        return Contour._of(core, False)
+
+
+def _options_of(normals=False, **options) -> dict:
+    """The options of `_tegl.extract_mesh`."""
+    chosen = _arguments.extract_options(normals=normals, **options)
+    if chosen["normals"] not in ("", "gradient", "geometric", "flat"):
         raise ValueError(f"normals of a mesh are {normals!r}; expected True, False, 'gradient', 'geometric' or 'flat'")
-    options["kernel"] = []
+    chosen["kernel"] = []
+    return chosen
+
+
+def _arguments_of(points, cells, values, times) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray,
+                                                         list[str]]:
+    """The arguments of `_tegl.extract_mesh` and `_tegl.MeshIndex` up to the names of the axes."""
+    axis_names: list[str] = []
     if hasattr(points, "points") and hasattr(points, "cells"):
         if cells is not None:
             raise TypeError("cells are given twice, by a mesh and alone; expected one of the two")
@@ -71,12 +129,9 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
             times = points.times
         axis_names = list(points.axis_names) if isinstance(points, Mesh) else []
         points, cells, values = _parts_of(points, values)
-    else:
-        axis_names = []
-    for name, given in (("cells", cells), ("values", values), ("level", level)):
+    for name, given in (("cells", cells), ("values", values)):
         if given is None:
             raise TypeError(f"{name} are missing; expected points, cells, values and level, or a mesh and level")
-    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     _require_unmasked("points", points)
     _require_unmasked("times", times)
     numbers = np.atleast_1d(_arguments.real("times", [] if times is None else times)).astype(np.float64)
@@ -88,10 +143,7 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     types, corners = _cells_of(cells, points.shape[-1])
     if axis_names and len(numbers):
         axis_names.append("t")
-    core = _tegl.extract_mesh(points, types, corners, values, numbers, axis_names, level, _is_double(dtype), options, progress)
-    if not allow_empty and not len(core.simplices):
-        _require_level(values, level)
-    return Contour._of(core, False)
+    return points, types, corners, values, numbers, axis_names
 
 
 @dataclasses.dataclass(frozen=True)

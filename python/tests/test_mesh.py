@@ -148,6 +148,26 @@ def test_caps_close_contours_at_the_border_and_normals_are_gradients():
     assert not tegl.contour_mesh(points, cells, values, 0.3).check().is_closed
 
 
+def test_an_index_gives_the_contours_of_the_mesh():
+    points, cells = tetrahedra(9)
+    values = ball(points)
+    for given in (dict(values=values), dict(values=[values, values - 0.2], times=[0.0, 1.0])):
+        index = tegl.MeshIndex(points, cells, **given)
+        assert index.memory > 0 and repr(index).startswith("<tegl.MeshIndex of ")
+        for level in (-0.3, 0.0, 0.2):
+            one = index.contour(level, normals=True, close=True)
+            other = tegl.contour_mesh(points, cells, level=level, normals=True, close=True, **given)
+            assert np.array_equal(one.vertices, other.vertices) and np.array_equal(one.simplices, other.simplices)
+            assert np.array_equal(one.normals, other.normals)
+        with pytest.raises(ValueError, match="level is 7.0; expected a level above"):
+            index.contour(7.0)
+        assert not len(index.contour(7.0, allow_empty=True).vertices)
+    with pytest.raises(TypeError, match="no argument is named 'colour'"):
+        index.contour(0.0, colour=1)
+    with pytest.raises(TypeError, match="values are missing"):
+        tegl.MeshIndex(points, cells)
+
+
 @pytest.mark.parametrize("change, error, text", [
     (dict(cells=[[0, 1, 2, 99999]]), ValueError, "cell 0: corner 3 is point 99999; expected a number below 27"),
     (dict(cells=[[0, 1, 2, -1]]), ValueError, "from -1 to 2"),
