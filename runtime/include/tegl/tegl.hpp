@@ -26,6 +26,7 @@
 #include "tegl/intersections.hpp"
 #include "tegl/layers.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/merge.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/pick.hpp"
 #include "tegl/polygons.hpp"

@@ -16,6 +16,7 @@
 #include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/workers.hpp"
+#include "mesh/contour_part.hpp"
 #include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 
@@ -29,51 +30,6 @@ template <int N, class Real>
 std::uint64_t rows_to_copy(const Contour<N, Real>& contour, std::uint64_t vertices, std::uint64_t simplices) {
   return vertices * (1 + (contour.normals.empty() ? 0 : 1) + contour.vertex_attributes.size()) +
          simplices * (1 + contour.simplex_attributes.size());
-}
-
-/// Copies the rows with these numbers.
-template <class Row>
-void gather(const Buffer<Row>& from, std::span<const Index> items, Buffer<Row>& to, detail::CountedProgress& copied) {
-  to.resize(items.size());
-  detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) to[i] = from[items[i]];
-    copied.add(end - first);
-  });
-}
-
-/// Appends the attributes of the items with these numbers.
-void gather_attributes(const std::vector<Attribute>& from, std::span<const Index> items, std::vector<Attribute>& to,
-                       detail::CountedProgress& copied) {
-  for (const Attribute& attribute : from) {
-    Attribute& copy = to.emplace_back(Attribute{attribute.name, attribute.unit, attribute.width, {}});
-    const auto width = static_cast<std::size_t>(attribute.width);
-    copy.values.resize(items.size() * width);
-    detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i)
-        std::copy_n(attribute.values.data() + items[i] * width, width, copy.values.data() + i * width);
-      copied.add(end - first);
-    });
-  }
-}
-
-/// The part of a contour with these vertices and simplices. `number`: by vertex of the contour, its new number.
-template <int N, class Real>
-Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<const Index> vertices,
-                                 std::span<const Index> simplices, const Buffer<Index>& number,
-                                 detail::CountedProgress& copied) {
-  Contour<N, Real> part;
-  part.axis_names = contour.axis_names;
-  part.axis_units = contour.axis_units;
-  part.direction = contour.direction;
-  part.periods = contour.periods;
-  gather(contour.vertices, vertices, part.vertices, copied);
-  if (!contour.normals.empty()) gather(contour.normals, vertices, part.normals, copied);
-  gather(contour.simplices, simplices, part.simplices, copied);
-  for (auto& simplex : part.simplices)
-    for (Index& v : simplex) v = number[v];
-  gather_attributes(contour.vertex_attributes, vertices, part.vertex_attributes, copied);
-  gather_attributes(contour.simplex_attributes, simplices, part.simplex_attributes, copied);
-  return part;
 }
 
 /// Vertex numbers of simplices, for any dimension.
@@ -308,7 +264,7 @@ requires DimensionBetween<N, 2, 5> std::vector<Contour<N, Real>> split_component
   for (Index label = 0; label < labels.count; ++label) {
     const std::span<const Index> members = vertices.of(label);
     for (std::size_t i = 0; i < members.size(); ++i) number[members[i]] = static_cast<Index>(i);
-    parts.push_back(part_of_contour(contour, members, simplices.of(label), number, copied));
+    parts.push_back(detail::part_of_contour(contour, members, simplices.of(label), number, copied));
   }
   detail::tell(progress, 1.0);
   return parts;
@@ -333,8 +289,8 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Cont
   detail::CountedProgress copied(copying, rows_to_copy(contour, vertices.size(), simplices.size()));
   Buffer<Index> number(contour.vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<Index>(i);
-  auto part =
-      part_of_contour(contour, std::span<const Index>(vertices), std::span<const Index>(simplices), number, copied);
+  auto part = detail::part_of_contour(contour, std::span<const Index>(vertices), std::span<const Index>(simplices),
+                                      number, copied);
   detail::tell(progress, 1.0);
   return part;
 }
