@@ -20,13 +20,21 @@ AxisWeights weights_of(const std::string& kind, double sigma) {
   return kind == "binomial" ? binomial_weights(sigma) : discrete_gaussian_weights(sigma);
 }
 
-/// `numbers`: sigmas or radii by axis, weights of a kernel, or an isovalue. `value`: sigma of the values.
+/// `numbers`: sigmas or radii by axis, weights of a kernel, or an isovalue. `value`: sigma of the values, or the time
+/// of a flow.
 template <int N>
 Filter filter_of(const Grid<N>& grid, const std::string& kind, const std::vector<double>& numbers,
                  const std::vector<std::size_t>& sizes, double value, bool in_samples) {
   if (kind == "contextual") return ContextualLowPass{numbers.at(0)};
   if (kind == "kernel") return Convolution{sizes, numbers};
   if (kind == "median") return MedianFilter{sizes};
+  if (kind == "curvature") {  // numbers: 1 for axes that take part, 0 for others
+    std::array<double, N> per_unit = to_array<N>("axes of the flow", numbers);
+    if (!in_samples) per_unit = sigmas_in_samples<N>(grid, per_unit);
+    CurvatureFlow flow{{}, value};
+    for (const double one : per_unit) flow.spacing.push_back(one == 0 ? 0.0 : 1 / one);
+    return flow;
+  }
   const std::array<double, N> given = to_array<N>("sigma", numbers);
   const std::array<double, N> sigmas = in_samples ? given : sigmas_in_samples<N>(grid, given);
   if (kind == "bilateral") return BilateralFilter{{sigmas.begin(), sigmas.end()}, value};

@@ -9,6 +9,7 @@
 #include "tegl/components.hpp"
 #include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/merge.hpp"
 #include "tegl/sample.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
@@ -279,6 +280,41 @@ py::tuple simplify_any(const AnyContour& contour, const py::dict& arguments, con
       contour.contour);
 }
 
+template <int N>
+py::dict to_dict(const MergeReport<N>& report) {
+  py::dict result;
+  put(result, "vertices_before", report.before.vertices);
+  put(result, "simplices_before", report.before.simplices);
+  put(result, "merged_vertices", report.merged_vertices);
+  put(result, "collapsed_simplices", report.collapsed_simplices);
+  put(result, "flat_simplices", report.flat_simplices);
+  put(result, "kept_flat_simplices", report.kept_flat_simplices);
+  put(result, "divided_simplices", report.divided_simplices);
+  put(result, "turned_simplices", report.turned_simplices);
+  put(result, "euler_before", report.euler_before);
+  put(result, "euler_after", report.euler_after);
+  put(result, "vanished_components", report.vanished_components);
+  put(result, "vanished", report.vanished);
+  put(result, "pinched_vertices", report.pinched_vertices);
+  put(result, "vertices", report.vertices);
+  put(result, "pinched_faces", report.pinched_faces);
+  put(result, "faces", report.faces);
+  return result;
+}
+
+py::tuple merge_any(const AnyContour& contour, double tolerance, std::size_t most_listed, unsigned threads,
+                    const py::object& progress) {
+  Call call(progress);
+  const MergeOptions options{tolerance, most_listed, {threads, call.progress()}};
+  return std::visit(
+      [&](const auto& c) -> py::tuple {
+        auto result = call.run([&] { return merge_vertices(c, options); });
+        auto merged = std::make_unique<AnyContour>(AnyContour{std::move(result.contour), contour.isovalue});
+        return py::make_tuple(std::move(merged), to_dict(result.report));
+      },
+      contour.contour);
+}
+
 Numbers automatic_scale_any(const AnyContour& contour) {
   return std::visit(
       []<int N, class Real>(const Contour<N, Real>& c) -> Numbers {
@@ -343,6 +379,8 @@ void bind_operations(py::module_& m) {
   m.def("select_components", &select_any, py::arg("contour"), py::arg("labels"), py::arg("keep"), py::arg("progress"),
         doc::select_components);
   m.def("simplify", &simplify_any, py::arg("contour"), py::arg("options"), py::arg("progress"), doc::simplify);
+  m.def("merge_vertices", &merge_any, py::arg("contour"), py::arg("tolerance"), py::arg("most_listed"),
+        py::arg("threads"), py::arg("progress"), doc::merge_vertices);
   m.def("automatic_scale", &automatic_scale_any, py::arg("contour"), doc::automatic_scale);
   m.def("sample", &sample_any, py::arg("contour"), py::arg("image"), py::arg("name"), py::arg("unit"),
         py::arg("threads"), py::arg("progress"), doc::sample);

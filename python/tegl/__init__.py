@@ -15,22 +15,23 @@ at the border of the array and at missing values. The contour of a 4D array can 
 """
 
 from . import _tegl
-from ._contour import (Components, Contour, check, components, elements, intersections, load, measure, simplify,
-                       track)
+from ._contour import (Components, Contour, check, components, elements, intersections, load, measure, merge_vertices,
+                       simplify, track)
 from ._fields import fields, sample
 from ._filter import filter, most_stable_scale, scale_space
 from ._image import Image, contour, read, slice
 from ._index import Index, PickReport
 from ._mesh import Mesh, MeshIndex, contour_mesh, contour_points, read_mesh
-from ._results import Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MeshReport, SimplifyStats
+from ._results import (Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MergeReport, MeshReport,
+                       SimplifyStats)
 from ._skimage import marching_cubes
 from ._tegl import Cancelled, __version__
 from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment
 
 __all__ = [
     "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",
-    "Intersections", "Measures", "Mesh", "MeshIndex", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent",
-    "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour",
+    "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport", "SimplifyStats", "Track",
+    "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components", "contour",
     "contour_mesh", "contour_points", "elements", "fields", "filter", "intersections", "load", "marching_cubes", "measure",
-    "most_stable_scale", "read", "read_mesh", "sample", "scale_space", "simplify", "slice", "track",
+    "merge_vertices", "most_stable_scale", "read", "read_mesh", "sample", "scale_space", "simplify", "slice", "track",
 ]

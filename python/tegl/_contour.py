@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _arguments, _export, _kinds, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
-from ._results import Component, CutMeasures, Elements, Intersections, Measures, MeshReport, SimplifyStats
+from ._results import Component, CutMeasures, Elements, Intersections, Measures, MergeReport, MeshReport, SimplifyStats
 from ._track import TrackGraph
 
 
@@ -389,6 +389,16 @@ class Contour:
         result = Contour._of(simplified, self._is_reversed, self._extent)
         return (result, SimplifyStats(**stats)) if is_reported else result
 
+    def merge_vertices(self, tolerance: float = 0.0, *, most_listed: int = 1000, threads: int = 0,
+                       progress: Progress | None = None) -> tuple[Contour, MergeReport]:
+        """The contour with vertices that coincide merged, and a report: see `tegl.merge_vertices`."""
+        merged, report = _tegl.merge_vertices(self._core, _arguments.as_number("tolerance", tolerance),
+                                              _arguments.as_whole("most_listed", most_listed, 0),
+                                              _arguments.threads_of(threads), progress)
+        places = np.array(report["vanished"], dtype=np.float64).reshape(-1, self.ndim)
+        report["vanished"] = places[:, ::-1] if self._is_reversed else places
+        return Contour._of(merged, self._is_reversed, self._extent), MergeReport(**report)
+
     def elements(self, *, by_cell: bool = False, threads: int = 0, progress: Progress | None = None) -> Elements:
         """Hypersurface elements: see `tegl.elements`."""
         core = self._core
@@ -611,6 +621,18 @@ def components(contour: Contour, *, threads: int = 0, progress: Progress | None 
     """The connected components of a contour: their labels and measures; contours of selected ones."""
     _arguments.core_of(contour)
     return Contour.components(contour, threads=threads, progress=progress)
+
+
+@_arguments.documents("merge_vertices", "MergeReport")
+def merge_vertices(contour: Contour, tolerance: float = 0.0, *, most_listed: int = 1000, threads: int = 0,
+                   progress: Progress | None = None) -> tuple[Contour, MergeReport]:
+    """A contour with vertices that coincide merged, without simplices of zero size, and a report of its pinches.
+
+    tolerance
+        Vertices at most this far apart are merged; 0: only vertices at equal positions.
+    """
+    _arguments.core_of(contour)
+    return Contour.merge_vertices(contour, tolerance, most_listed=most_listed, threads=threads, progress=progress)
 
 
 @_arguments.documents("elements", "elements_by_cell", "Elements")

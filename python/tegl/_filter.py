@@ -18,7 +18,7 @@ _SIGMAS = ("gaussian", "discrete_gaussian", "binomial", "bilateral")
 
 @_arguments.documents("filter_image")
 def filter(array, *, gaussian=None, discrete_gaussian=None, binomial=None, median=None, bilateral=None,
-           contextual: float | None = None, kernel=None, value_sigma: float | None = None, samples: bool = False,
+           contextual: float | None = None, curvature: float | None = None, kernel=None, value_sigma: float | None = None, samples: bool = False,
            border: _kinds.FilterBorder | Sequence[_kinds.FilterBorder] = "extended", fill: bool = False, spacing=None,
            origin=None, coords=None, affine=None, mask=None, axis_names: Sequence[str] | None = None,
            axis_units: Sequence[str] | None = None, time_axis: int | None = None, threads: int = 0,
@@ -32,6 +32,7 @@ def filter(array, *, gaussian=None, discrete_gaussian=None, binomial=None, media
         tegl.filter(scan, median=1)                                # a box of 3 samples along each axis
         tegl.filter(scan, bilateral=2, value_sigma=30)
         tegl.filter(mask, contextual=0.5)                          # for the contour at 0.5
+        tegl.filter(mask, curvature=2)                             # curvature flow of this duration
         tegl.filter(picture, kernel=[[1, 2, 1], [2, 4, 2], [1, 2, 1]])
 
     gaussian, discrete_gaussian, binomial, bilateral
@@ -40,12 +41,15 @@ def filter(array, *, gaussian=None, discrete_gaussian=None, binomial=None, media
         Radius of the box in samples: one number, or one for each axis.
     contextual
         The level of a contour whose steps are smoothed and whose details stay.
+    curvature
+        Duration of the curvature flow, in the square of the axes' unit: a ball of radius r gets the radius
+        sqrt(r**2 - 4 * curvature) in 3D. The time axis of an array of 4 axes does not take part.
     kernel
         Weights a with as many axes as the array, odd sizes, and the centre in the middle: sum of a[l] * array[x + l].
     value_sigma
         With `bilateral`: sigma of the values.
     samples
-        Whether sigmas count samples.
+        Whether sigmas, and the time of the flow, count samples.
     border
         Samples beyond the border: "extended" (as the nearest one), "cyclic" or "missing"; one word, or one for each axis.
     fill
@@ -57,32 +61,42 @@ def filter(array, *, gaussian=None, discrete_gaussian=None, binomial=None, media
     """
     given = {name: value for name, value in (
         ("gaussian", gaussian), ("discrete_gaussian", discrete_gaussian), ("binomial", binomial), ("median", median),
-        ("bilateral", bilateral), ("contextual", contextual), ("kernel", kernel)) if value is not None}
+        ("bilateral", bilateral), ("contextual", contextual), ("curvature", curvature),
+        ("kernel", kernel)) if value is not None}
     if len(given) != 1:
         raise ValueError(f"{' and '.join(given) or 'no filter'}; expected one of gaussian, discrete_gaussian, binomial, "
-                         "median, bilateral, contextual, kernel")
+                         "median, bilateral, contextual, curvature, kernel")
     kind, value = next(iter(given.items()))
     if (value_sigma is not None) != (kind == "bilateral"):
         raise ValueError("bilateral without value_sigma; expected the sigma of the values" if kind == "bilateral" else
                          f"value_sigma with {kind}; expected it with bilateral")
-    if _arguments.as_bool("samples", samples) and kind not in _SIGMAS:
+    if _arguments.as_bool("samples", samples) and kind not in (*_SIGMAS, "curvature"):
         raise ValueError(f"samples with {kind}, which has no sigma")
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   allow_curved=True, axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     numbers, sizes = _numbers(kind, value, prepared)
     with prepared.terms():
         result = _tegl.filter(prepared.image, kind.replace("_", "-"), numbers, sizes,
-                              0.0 if value_sigma is None else _arguments.as_number("value_sigma", value_sigma), samples,
+                              _value(value_sigma, curvature), samples,
                               _borders(border, prepared), _arguments.as_bool("fill", fill),
                               _arguments.as_whole("threads", threads, 0), progress)
     result = result.T if prepared.is_reversed else result
     return dataclasses.replace(array, array=result) if isinstance(array, Image) else result
 
 
+def _value(value_sigma: float | None, curvature: float | None) -> float:
+    """The number of the filter that is not by axis."""
+    if curvature is not None:
+        return _arguments.as_number("curvature", curvature)
+    return 0.0 if value_sigma is None else _arguments.as_number("value_sigma", value_sigma)
+
+
 def _numbers(kind: str, value, prepared: _arguments.Prepared) -> tuple[list[float], list[int]]:
     """Sigmas, weights or the level; and radii or sizes: both in the library's order of axes."""
     if kind == "contextual":
         return [_arguments.as_number(kind, value)], []
+    if kind == "curvature":
+        return [0.0 if prepared.ndim == 4 and axis == 3 else 1.0 for axis in range(prepared.ndim)], []
     if kind == "kernel":
         weights = np.asarray(value, dtype=np.float64)
         if weights.ndim != prepared.ndim:

@@ -182,6 +182,28 @@ class SimplifyStats:
     rounds: int
 
 
+@dataclasses.dataclass(frozen=True)
+class MergeReport:
+    """What merging vertices did, and where its result is no manifold. Vertex numbers are those of the result."""
+
+    vertices_before: int
+    simplices_before: int
+    merged_vertices: int  #: vertices replaced by another one
+    collapsed_simplices: int  #: dropped: they repeat a vertex
+    flat_simplices: int  #: dropped: of zero content with different vertices
+    kept_flat_simplices: int  #: of zero content, but without them there would be a gap
+    divided_simplices: int  #: divided beside dropped ones
+    turned_simplices: int  #: whose normal turned by more than 90 degrees
+    euler_before: int
+    euler_after: int
+    vanished_components: int  #: components without size, of which nothing is left
+    vanished: np.ndarray  #: where they were, a row each
+    pinched_vertices: int  #: vertices whose link is neither a sphere nor a ball
+    vertices: list[int]  #: these vertices, ascending
+    pinched_faces: int  #: vertices (2D), edges (3D) or triangles (4D) in more than two simplices
+    faces: list[list[int]]  #: the vertices of these faces
+
+
 def named_axis(names: Sequence[str], ndim: int, time_axis: int, at, axis, more: dict) -> tuple[int, typing.Any]:
     """The axis and the place of a cut; names of axes are removed from `more`."""
     if at is None and not any(names):

@@ -23,6 +23,7 @@
 #include "input/extraction.hpp"
 #include "input/mesh_input.hpp"
 #include "input/positions.hpp"
+#include "output/merging.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/io/active_tiles.hpp"
@@ -108,6 +109,7 @@ class ContourCommand final : public Command {
                     "image's axes")
         ->type_name("X,Y,Z[,T]");
     positions_.add_to(app());
+    merging_.add_to(app());
     attributes_.add_to(app());
     compress_.add_to(app());
     app().add_flag("--stream", stream_,
@@ -128,6 +130,7 @@ class ContourCommand final : public Command {
     ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
     require_tiling_options();
     require_positions();
+    require_merging();
     require_inputs();
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
@@ -210,8 +213,18 @@ class ContourCommand final : public Command {
     if (facets_) positions_.refuse("--facets");
     if (app().count("--pick") > 0) positions_.refuse("--pick");
     if (options_.polygon_triangulation()) positions_.refuse("a triangulation of polygons");
-    if (!options_.tiling().is_plain()) positions_.refuse("--periodic or --lattice");
+    const Tiling tiling = options_.tiling();
+    if (!tiling.is_plain() && !tiling.of_cells) positions_.refuse("--periodic or --lattice");
     positions_.require();
+  }
+
+  /// Refuses --merge with options of contours that are not in memory or have no simplices.
+  void require_merging() const {
+    if (is_streamed()) merging_.refuse("--stream");
+    if (facets_) merging_.refuse("--facets");
+    if (one_file_) merging_.refuse("--one-file");
+    if (!options_.tiling().periodic.empty()) merging_.refuse("--periodic");
+    (void)merging_.tolerance();
   }
 
   void require_one_file_of_several(std::size_t isovalues) const {
@@ -307,7 +320,7 @@ class ContourCommand final : public Command {
       result.mesh = extract_mesh_and_use<Mesh>(
           input, *result.isovalue, options, options_.single_precision(), [&](auto extraction) {
             result.stats = extraction.stats;
-            return with_additions(std::move(extraction.contour), options.work.threads, bar);
+            return with_additions(std::move(extraction.contour), options.work.threads, bar, result);
           });
       result.seconds.add(*result.stats);
       if (one_file_) continue;
@@ -335,7 +348,7 @@ class ContourCommand final : public Command {
     if (result.picked) return pick(image, options, bar, result);
     const auto finished = [&](auto extraction) {
       result.stats = extraction.stats;
-      return with_additions(std::move(extraction.contour), options.work.threads, bar);
+      return with_additions(std::move(extraction.contour), options.work.threads, bar, result);
     };
     const bool single_precision = options_.single_precision();
     if (const auto method = options_.polygon_triangulation())
@@ -344,7 +357,8 @@ class ContourCommand final : public Command {
           triangulated_polygons(
               image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
     else if (!positions_.are_linear())
-      result.mesh = extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision, finished);
+      result.mesh = extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision,
+                                                 options_.tiling().of_cells, finished);
     else
       result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, tiling_);
   }
@@ -375,8 +389,9 @@ class ContourCommand final : public Command {
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
     const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
-                              app().count("--pick") > 0 || !positions_.are_linear() || options_.wants_shape_normals() ||
-                              attributes_.wanted() || options_.polygon_triangulation();
+                              app().count("--pick") > 0 || !positions_.are_linear() || merging_.are_given() ||
+                              options_.wants_shape_normals() || attributes_.wanted() ||
+                              options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
 
@@ -405,7 +420,7 @@ class ContourCommand final : public Command {
       picked.distance = found.report.distance;
       picked.tiles = found.report.tiles;
       picked.components = found.report.components;
-      result.mesh = with_additions(std::move(found.contour), options.work.threads, bar);
+      result.mesh = with_additions(std::move(found.contour), options.work.threads, bar, result);
     };
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
       if (picked.point.size() != N)
@@ -422,9 +437,11 @@ class ContourCommand final : public Command {
     result.seconds.generate += watch.lap();
   }
 
-  /// The mesh of a contour with the normals and attributes of --normals and --attribute; unrolled if it has to be.
+  /// The mesh of a contour with the normals and attributes of --normals and --attribute; merged (--merge) or unrolled
+  /// if it has to be.
   template <class AnyContour>
-  Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
+  Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar, ContourResult& result) const {
+    if (merging_.are_given()) result.merging = merging_.merge(contour, {threads, bar.stage("merge")});
     options_.add_shape_normals(contour);
     attributes_.sample_to(contour, image_options(), threads, bar);
     return to_mesh(unrolled_for(std::move(contour), output_, unroll_));
@@ -437,7 +454,7 @@ class ContourCommand final : public Command {
     const WorkOptions reading{options.work.threads, bar.stage("index")};
     const auto keep = [&](ContourResult& result, auto extraction) {
       result.stats = extraction.stats;
-      result.mesh = with_additions(std::move(extraction.contour), options.work.threads, bar);
+      result.mesh = with_additions(std::move(extraction.contour), options.work.threads, bar, result);
     };
     Stopwatch watch;
     const auto of_owned = [&](const auto& owned) {
@@ -540,6 +557,7 @@ class ContourCommand final : public Command {
   }
 
   ExtractionOptions options_;
+  MergeArguments merging_;
   PositionArguments positions_;
   Tiling tiling_;  ///< with the image's curved grid
   PositionOptions placed_;

@@ -31,6 +31,7 @@ constexpr const char* kFilterExamples =
     "  tegl filter scan.mha --median 1 -o clean.nrrd\n"
     "  tegl filter scan.mha --bilateral 2 --value-sigma 30 -o clean.nrrd\n"
     "  tegl filter mask.nrrd --contextual 0.5 -o smooth.nrrd              (smooths steps, keeps details)\n"
+    "  tegl filter mask.nrrd --curvature 2 -o smooth.nrrd                 (removes details smaller than about 2)\n"
     "  tegl filter terrain.nrrd --kernel 3x3:1,2,1,2,4,2,1,2,1 --normalize -o smooth.nrrd\n"
     "The result has the grid of the image; its samples are float, or double for an image of doubles.";
 
@@ -89,7 +90,7 @@ class FilterCommand final : public Command {
     const char* help;
     const char* title;
   };
-  static constexpr std::array<Kind, 7> kKinds = {{
+  static constexpr std::array<Kind, 8> kKinds = {{
       {"gaussian", "SIGMA", "Gaussian; sigma in units of the axes, one number, or one for each axis",
        "Gaussian filter"},
       {"discrete-gaussian", "SIGMA", "discrete Gaussian, of which two in a row are one", "Discrete Gaussian filter"},
@@ -99,6 +100,10 @@ class FilterCommand final : public Command {
        "Bilateral filter"},
       {"contextual", "NUMBER", "low-pass filter for the contour at this isovalue: smooths its steps, keeps its details",
        "Contextual low-pass filter"},
+      {"curvature", "TIME",
+       "curvature flow of this duration, in the square of the axes' unit: a ball of radius r gets the radius "
+       "sqrt(r^2 - 4 TIME) in 3D; details vanish first",
+       "Curvature flow"},
       {"kernel", "SIZES:WEIGHTS",
        "convolution with any kernel: its odd sizes, the fastest axis first, and its weights, as in 3x1:-0.5,0,0.5",
        "Convolution"},
@@ -114,7 +119,7 @@ class FilterCommand final : public Command {
         .add_option("-o,--output", output_, std::string("the filtered image: ") + kImageFiles)
         ->type_name("FILE")
         ->required();
-    app().add_flag("--samples", samples_, "sigmas count samples, not units of the axes");
+    app().add_flag("--samples", samples_, "sigmas, and the time of --curvature, count samples, not units of the axes");
     time_option_ = app().add_option("--time-sigma", time_sigma_,
                                     "sigma along the time (the last of four axes, or an axis named t or time), in its "
                                     "unit; default: 0 if --gaussian and others have one number");
@@ -156,13 +161,15 @@ class FilterCommand final : public Command {
                          given.empty() ? "no filter" : fmt::format("{} together", fmt::join(given, " and ")),
                          fmt::join(known, ", ")));
     const bool has_sigma = kind_.ends_with("gaussian") || kind_ == "binomial" || kind_ == "bilateral";
-    if (samples_ && !has_sigma) refuse(fmt::format("--samples with {}, which has no sigma", option()));
+    if (samples_ && !has_sigma && kind_ != "curvature")
+      refuse(fmt::format("--samples with {}, which has no sigma", option()));
     if (time_option_->count() > 0 && !has_sigma)
       refuse(fmt::format("--time-sigma with {}; expected it with a sigma", option()));
     if ((value_option_->count() > 0) != (kind_ == "bilateral"))
       refuse(kind_ == "bilateral" ? "--bilateral without --value-sigma; expected the sigma of the values"
                                   : fmt::format("--value-sigma with {}; expected it with --bilateral", option()));
-    if (fill_ && kind_ == "contextual") refuse("--fill with --contextual, which leaves missing samples unchanged");
+    if (fill_ && (kind_ == "contextual" || kind_ == "curvature"))
+      refuse(fmt::format("--fill with {}, which leaves missing samples unchanged", option()));
     if (normalize_ && kind_ != "kernel")
       refuse(fmt::format("--normalize with {}; expected it with --kernel", option()));
   }
@@ -209,6 +216,7 @@ class FilterCommand final : public Command {
   Filter filter_of(const Grid<N>& grid) const {
     if (kind_ == "contextual") return ContextualLowPass{parse_finite("--contextual", value_)};
     if (kind_ == "kernel") return kernel(N);
+    if (kind_ == "curvature") return curvature_flow(grid);
     if (kind_ == "median") {
       MedianFilter filter;
       for (const double radius : per_axis(grid)) {
@@ -229,6 +237,23 @@ class FilterCommand final : public Command {
                                : kind_ == "binomial" ? binomial_weights(sigma)
                                                      : discrete_gaussian_weights(sigma));
     return filter;
+  }
+
+  /// The flow along all axes except the time.
+  template <int N>
+  Filter curvature_flow(const Grid<N>& grid) const {
+    CurvatureFlow flow{{}, parse_finite("--curvature", value_)};
+    if (flow.time < 0)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--curvature is {}; expected 0 or more", value_));
+    std::array<double, N> ones{};
+    for (std::size_t a = 0; a < N; ++a) ones[a] = is_time(grid.axes[a].name, a) ? 0.0 : 1.0;
+    try {
+      if (!samples_) ones = sigmas_in_samples<N>(grid, ones);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("{} (--samples: all steps have the length 1)", error.what()));
+    }
+    for (const double per_unit : ones) flow.spacing.push_back(per_unit == 0 ? 0.0 : 1 / per_unit);
+    return flow;
   }
 
   [[nodiscard]] Filter kernel(std::size_t axes) const {

@@ -16,6 +16,7 @@
 #include "base/units.hpp"
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
+#include "output/merging.hpp"
 #include "output/output.hpp"
 #include "tegl/intersections.hpp"
 
@@ -29,6 +30,7 @@ constexpr const char* kSimplifyExamples =
     "  tegl simplify skull.ply --ratio 0.1 -o tenth.ply\n"
     "  tegl simplify ocean.vtkhdf --count 20000 --scale auto -o small.vtkhdf\n"
     "  tegl simplify head.ply --method fast --ratio 0.05 -o preview.glb\n"
+    "  tegl simplify head.ply --merge -o merged.ply             (only merges vertices that coincide)\n"
     "Errors are distances: no point of either contour is farther than the error from the other. The result has the\n"
     "bound at each vertex as the attribute 'simplification_error'. --scale relates axes of different units.";
 
@@ -78,6 +80,7 @@ class SimplifyCommand final : public ContourInputCommand {
         .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
+    merging_.add_to(app());
     app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
     app().footer(kSimplifyExamples);
@@ -99,7 +102,12 @@ class SimplifyCommand final : public ContourInputCommand {
     result.output = output_;
     result.compression = compress_.compression();
     std::visit(
-        [&](const auto& contour) {
+        [&](auto& contour) {
+          if (merging_.are_given()) {
+            result.merging = merging_.merge(contour, {threads(), bar.stage("merge")});
+            result.mesh = to_mesh(std::move(contour));
+            return;
+          }
           auto [fewer, found] = simplified(contour, input, bar);
           stats = found;
           if (!no_check_) count_intersections(fewer, bar);
@@ -114,17 +122,24 @@ class SimplifyCommand final : public ContourInputCommand {
     // report
     bar.clear();
     if (json())
-      streams.out.write(dump(document(result, stats)));
+      streams.out.write(dump(result.merging ? to_json(result) : document(result, stats)));
     else if (!quiet())
-      streams.out.write(text(streams.out, result, stats, input));
+      streams.out.write(result.merging ? to_text(streams.out, result) : text(streams.out, result, stats, input));
     return allow_nonmanifold_ ? ExitCode::Ok : result.exit_code();
   }
 
  private:
   void require_goal() const {
+    if (merging_.are_given()) {
+      (void)merging_.tolerance();
+      for (const char* const goal : {"--ratio", "--count", "--max-error", "--max-curvature"})
+        if (app().count(goal) > 0) merging_.refuse(goal);
+      return;
+    }
     if (ratio_.empty() && count_.empty() && max_error_.empty() && max_curvature_.empty())
-      throw Error(ErrorCode::InvalidArgument,
-                  "no goal; expected --ratio, --count or --max-error (or --method facets with --max-curvature)");
+      throw Error(
+          ErrorCode::InvalidArgument,
+          "no goal; expected --ratio, --count or --max-error (or --method facets with --max-curvature), or --merge");
     if (no_bound_ && !max_error_.empty())
       throw Error(ErrorCode::InvalidArgument,
                   "--no-bound with --max-error, which needs the bound; expected one of the two");
@@ -211,10 +226,9 @@ class SimplifyCommand final : public ContourInputCommand {
     if (intersections_->pairs == 0) return report_line("intersect", "none");
     const double share =
         static_cast<double>(intersections_->intersecting) / static_cast<double>(intersections_->simplices);
-    return report_line("intersect",
-                       fmt::format("{} of {}, {:.2g} %{}", counted(intersections_->pairs, "pair", "pairs"),
-                                   counted_simplices(intersections_->dim, intersections_->intersecting), 100.0 * share,
-                                   keep_embedded_ ? "" : "; --keep-embedded causes none"));
+    return report_line("intersect", fmt::format("{} of {}, {:.2g} %{}", counted(intersections_->pairs, "pair", "pairs"),
+                                                counted_simplices(intersections_->dim, intersections_->intersecting),
+                                                100.0 * share, keep_embedded_ ? "" : "; --keep-embedded causes none"));
   }
 
   [[nodiscard]] std::uint64_t parse_count() const {
@@ -337,10 +351,10 @@ class SimplifyCommand final : public ContourInputCommand {
       if (!scale_.empty()) lines += report_line("scale", fmt::format("{:.4g}", fmt::join(used_scale_, ", ")));
     }
     lines += check_text(console, result.size(), result.report) + intersections_text();
-    lines += report_line(
-        "seconds", fmt::format("simplify {:.3f} + bound {:.3f} + others {:.3f}", stats.simplify_seconds,
-                               stats.measure_seconds,
-                               result.seconds.total() + (intersections_ ? intersections_->seconds : 0.0)));
+    lines +=
+        report_line("seconds", fmt::format("simplify {:.3f} + bound {:.3f} + others {:.3f}", stats.simplify_seconds,
+                                           stats.measure_seconds,
+                                           result.seconds.total() + (intersections_ ? intersections_->seconds : 0.0)));
     lines += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
     return lines;
   }
@@ -355,6 +369,7 @@ class SimplifyCommand final : public ContourInputCommand {
   bool no_check_ = false;
   std::optional<OfResult> intersections_;  ///< without --no-check
   CompressOption compress_;
+  MergeArguments merging_;
 };
 
 }  // namespace

@@ -86,12 +86,18 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
                                     "divide cells into simplices: kuhn or symmetric, in 2D and 3D also alternating, or "
                                     "hybrid (ambiguous cells only)")
                          ->check(CLI::IsMember({"kuhn", "alternating", "symmetric", "hybrid"})));
+  options_.push_back(app.add_option("--samples-are", samples_,
+                                    "cells: the contour runs along the faces between high and low cells and encloses "
+                                    "their exact volume; closed at the image border")
+                         ->check(CLI::IsMember({"points", "cells"}))
+                         ->capture_default_str());
 }
 
 Tiling ExtractionOptions::tiling() const {
+  if (samples_ == "cells") refuse_tiling_before_cells("--samples-are cells");
   if (!division_.empty()) refuse_tiling_before_division("--division " + division_);
   if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
-  Tiling tiling{periodic_, std::nullopt, std::nullopt, {}};
+  Tiling tiling{periodic_, std::nullopt, std::nullopt, {}, samples_ == "cells"};
   for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid})
     if (name_of(division) == division_) tiling.division = division;
   for (const Lattice lattice : {Lattice::triangular, Lattice::fcc, Lattice::bcc, Lattice::d4, Lattice::fcc_in_time})
@@ -106,6 +112,12 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
 }
 
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
+  refuse_tiling_before_cells(with);
+  if (samples_ == "cells")
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--samples-are cells with {}; expected one of the two", with));
+}
+
+void ExtractionOptions::refuse_tiling_before_cells(const std::string& with) const {
   refuse_tiling_before_division(with);
   if (!division_.empty())
     throw Error(ErrorCode::InvalidArgument,

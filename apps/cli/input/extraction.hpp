@@ -15,6 +15,7 @@
 #include "input/cuts.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
+#include "tegl/cells.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/division.hpp"
 #include "tegl/extract.hpp"
@@ -25,13 +26,16 @@
 
 namespace tegl::cli {
 
-/// The cells between samples, if the grid is periodic, curved or a lattice, or its cells are divided.
+/// The cells between samples, if the grid is periodic, curved or a lattice, its cells are divided, or samples are cells.
 struct Tiling {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   std::optional<Lattice> lattice = {};     ///< of --lattice
   std::optional<Division> division = {};   ///< of --division
   std::vector<CurvedAxis> curved = {};     ///< of the image's curved grid
-  [[nodiscard]] bool is_plain() const { return periodic.empty() && !lattice && !division && curved.empty(); }
+  bool of_cells = false;                   ///< of --samples-are cells
+  [[nodiscard]] bool is_plain() const {
+    return periodic.empty() && !lattice && !division && curved.empty() && !of_cells;
+  }
 };
 
 /// The options --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads,
@@ -42,11 +46,11 @@ class ExtractionOptions {
   /// polygons. This object must outlive the parse.
   void add_to(CLI::App& app, bool of_images_alone);
 
-  /// Adds --periodic, --lattice and --division to a command.
+  /// Adds --periodic, --lattice, --division and --samples-are to a command.
   void add_tiling_to(CLI::App& app);
-  /// The values of --periodic, --lattice and --division. Throws InvalidArgument if two are given.
+  /// The values of these options. Throws InvalidArgument if two are given.
   [[nodiscard]] Tiling tiling() const;
-  /// Throws InvalidArgument with --periodic, --lattice or --division. `with`: another option or a command.
+  /// Throws InvalidArgument with one of them. `with`: another option or a command.
   void refuse_tiling(const std::string& with) const;
 
   /// The names of the options that were given.
@@ -78,6 +82,8 @@ class ExtractionOptions {
 
  private:
   void refuse_periodic_with(const std::string& other) const;
+  /// The same for --periodic, --lattice and --division.
+  void refuse_tiling_before_cells(const std::string& with) const;
   /// The same for --periodic and --lattice.
   void refuse_tiling_before_division(const std::string& with) const;
 
@@ -86,6 +92,7 @@ class ExtractionOptions {
   std::vector<std::string> periodic_;
   std::string lattice_;
   std::string division_;
+  std::string samples_ = "points";
   std::string triangulation_ = "compact";
   std::string ambiguity_ = "low";
   std::string direction_ = "descent";
@@ -142,6 +149,10 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
       if (single_precision)
         return use(extract_curved_with_stats<float>(owned.view(), tiling.curved, isovalue, options));
       return use(extract_curved_with_stats<double>(owned.view(), tiling.curved, isovalue, options));
+    }
+    if (tiling.of_cells) {
+      if (single_precision) return use(extract_cells_with_stats<float>(owned.view(), isovalue, {}, options));
+      return use(extract_cells_with_stats<double>(owned.view(), isovalue, {}, options));
     }
     if (tiling.lattice) {
       if (single_precision)

@@ -9,6 +9,7 @@
 
 #include "base/progress.hpp"
 #include "input/commands.hpp"
+#include "tegl/cells.hpp"
 #include "tegl/positions.hpp"
 
 namespace tegl::cli {
@@ -39,11 +40,15 @@ class PositionArguments {
 };
 
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
-/// Extraction<N, double>.
+/// Extraction<N, double>. `of_cells`: the samples are cells.
 template <class Result, class Use>
 Result extract_placed_and_use(const AnyImage& image, double isovalue, const PositionOptions& positions,
-                              const ExtractOptions& options, bool single_precision, const Use& use) {
+                              const ExtractOptions& options, bool single_precision, bool of_cells, const Use& use) {
   const auto of_owned = [&](const auto& owned) -> Result {
+    if (of_cells) {
+      if (single_precision) return use(extract_cells_with_stats<float>(owned.view(), isovalue, positions, options));
+      return use(extract_cells_with_stats<double>(owned.view(), isovalue, positions, options));
+    }
     if (single_precision) return use(extract_placed_with_stats<float>(owned.view(), isovalue, positions, options));
     return use(extract_placed_with_stats<double>(owned.view(), isovalue, positions, options));
   };

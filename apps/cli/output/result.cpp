@@ -183,6 +183,7 @@ Json to_json(const ContourResult& result) {
                     {"components", result.picked->components}};
   // mesh and times
   add_check_keys(json, result.size(), result.report);
+  json["merge"] = result.merging ? to_json(*result.merging) : Json(nullptr);
   json["vertices_together"] = result.lost.count();
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
   json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);
@@ -219,6 +220,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
   }
   // mesh, times, output
+  if (result.merging) text += to_text(*result.merging);
   text += check_text(console, result.size(), result.report, result.wording);
   if (result.lost.count() > 0) text += report_line("in the file", console.red(result.lost.text()));
   text += report_line("seconds", seconds_text(result.seconds));

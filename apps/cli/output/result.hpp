@@ -12,6 +12,7 @@
 #include "base/console.hpp"
 #include "base/exit_codes.hpp"
 #include "output/lost_vertices.hpp"
+#include "output/merging.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io/meshes.hpp"
@@ -135,8 +136,9 @@ struct ContourResult {
   std::vector<double> isovalues;   ///< for several contours in one file
   std::optional<Cut> cut;
   std::optional<Picked> picked;
-  std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour, and for picks
-  std::optional<MeshReport> report;   ///< none with --no-check
+  std::optional<ExtractStats> stats;    ///< none for cuts of a saved contour, and for picks
+  std::optional<MeshReport> report;     ///< none with --no-check
+  std::optional<MergeSummary> merging;  ///< of --merge
   Mesh mesh;
   std::optional<MeshSize> streamed;             ///< for contours that were written without being in memory
   LostVertices lost;                            ///< vertices that coincide in the file
@@ -145,7 +147,13 @@ struct ContourResult {
   Wording wording;
 
   [[nodiscard]] MeshSize size() const { return streamed ? *streamed : size_of(mesh); }
-  [[nodiscard]] ExitCode exit_code() const { return report && has_faults(*report) ? ExitCode::Faults : ExitCode::Ok; }
+  /// Pinches are no fault if vertices were merged on request.
+  [[nodiscard]] ExitCode exit_code() const {
+    if (!report) return ExitCode::Ok;
+    MeshReport faults = *report;
+    if (merging) faults.nonmanifold_simplices = faults.bad_links = 0;
+    return has_faults(faults) ? ExitCode::Faults : ExitCode::Ok;
+  }
 };
 
 Json to_json(const ContourResult& result);

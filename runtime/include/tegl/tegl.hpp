@@ -6,6 +6,7 @@
 
 #include "tegl/active_tiles.hpp"
 #include "tegl/ambiguity.hpp"
+#include "tegl/cells.hpp"
 #include "tegl/check.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/components.hpp"

@@ -12,6 +12,27 @@
 #include "base/progress.hpp"
 #include "filter/layer_filter.hpp"
 
+namespace tegl {
+
+std::size_t step_count(const CurvatureFlow& flow) {
+  const auto refuse = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
+  double sum = 0;
+  for (const double h : flow.spacing) {
+    if (!(h >= 0) || std::isinf(h))
+      refuse(fmt::format("a step of the grid for the flow has the length {}; expected 0 or more", h));
+    if (h > 0) sum += 1 / (h * h);
+  }
+  if (sum == 0) refuse("a flow without an axis that takes part; expected a length above 0");
+  if (!(flow.time >= 0) || std::isinf(flow.time))
+    refuse(fmt::format("the time of the flow is {}; expected 0 or more", flow.time));
+  constexpr double kStable = 0.4, kMostSteps = 100000;
+  const double steps = std::ceil(flow.time * sum / kStable);
+  if (steps > kMostSteps) refuse(fmt::format("the flow takes {} steps; expected at most {}", steps, kMostSteps));
+  return static_cast<std::size_t>(steps);
+}
+
+}  // namespace tegl
+
 namespace tegl::detail {
 
 namespace {
@@ -84,6 +105,20 @@ void set_radii(FilterShape& shape, const ContextualLowPass& filter) {
   shape.radii.assign(shape.axes(), kContextRadius);
 }
 
+void set_radii(FilterShape& shape, const CurvatureFlow& filter) {
+  require_per_axis("lengths of steps for the flow", filter.spacing.size(), shape);
+  (void)step_count(filter);
+  for (const double h : filter.spacing) shape.radii.push_back(h > 0 ? 1 : 0);
+}
+
+/// The filters that are applied one after the other.
+std::vector<Filter> steps_of(const Filter& filter) {
+  const auto* const flow = std::get_if<CurvatureFlow>(&filter);
+  if (flow == nullptr) return {filter};
+  const std::size_t count = std::max<std::size_t>(1, step_count(*flow));
+  return std::vector<Filter>(count, CurvatureFlow{flow->spacing, flow->time / static_cast<double>(count)});
+}
+
 FilterShape checked_shape(const std::vector<std::size_t>& sizes, const Filter& filter, const FilterOptions& options) {
   FilterShape shape{sizes, options.borders, {}, options.fill_missing, options.work.threads};
   if (shape.borders.size() == 1) shape.borders.resize(shape.axes(), shape.borders[0]);
@@ -153,18 +188,36 @@ std::unique_ptr<LayerFilter<Real>> make_layer_filter(const std::vector<std::size
   return make_window_filter<Real>(std::move(shape), filter);
 }
 
+/// Filters all layers.
 template <class Real>
-void filter_samples(const FilterSamples& samples, const Filter& filter, const FilterOptions& options, Real* out) {
-  const auto layers = make_layer_filter<Real>(samples.sizes, filter, options);
-  const std::size_t count = layers->shape().layers();
-  const auto load = [&](std::size_t layer, Real* to) { load_layer(samples, layer, to); };
+void filter_all(LayerFilter<Real>& layers, typename LayerFilter<Real>::Load load, const Progress& progress, Real* out) {
+  const std::size_t count = layers.shape().layers();
   for (std::size_t first = 0; first < count;) {
-    tell(options.work.progress, static_cast<double>(first) / static_cast<double>(count));
-    const std::size_t now = std::min(layers->batch(), count - first);
-    layers->compute(first, now, load, true, out + first * layers->shape().layer_size());
+    tell(progress, static_cast<double>(first) / static_cast<double>(count));
+    const std::size_t now = std::min(layers.batch(), count - first);
+    layers.compute(first, now, load, true, out + first * layers.shape().layer_size());
     first += now;
   }
-  tell(options.work.progress, 1.0);
+  tell(progress, 1.0);
+}
+
+template <class Real>
+void filter_samples(const FilterSamples& samples, const Filter& filter, const FilterOptions& options, Real* out) {
+  const std::vector<Filter> steps = steps_of(filter);
+  std::vector<Real> before;  // the result of the step before
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto layers = make_layer_filter<Real>(samples.sizes, steps[i], options);
+    const std::size_t size = layers->shape().layer_size();
+    if (i > 0) before.assign(out, out + size * layers->shape().layers());
+    const auto load = [&](std::size_t layer, Real* to) {
+      if (i == 0) return load_layer(samples, layer, to);
+      std::copy_n(before.data() + layer * size, size, to);
+    };
+    const auto all = static_cast<double>(steps.size());
+    filter_all<Real>(*layers, load,
+                     part_of(options.work.progress, static_cast<double>(i) / all, static_cast<double>(i + 1) / all),
+                     out);
+  }
 }
 
 template <class Real>
@@ -177,14 +230,25 @@ void convert_samples(ValueType type, const void* from, std::size_t count, Real* 
 template <class Real>
 FilterOfLayers<Real>::FilterOfLayers(std::vector<std::size_t> sizes, const Filter& filter, const FilterOptions& options,
                                      Load load)
-    : filter_(make_layer_filter<Real>(sizes, filter, options)), load_(std::move(load)) {}
+    : load_(std::move(load)) {
+  for (const Filter& step : steps_of(filter)) steps_.push_back(make_layer_filter<Real>(sizes, step, options));
+}
 
 template <class Real>
 FilterOfLayers<Real>::~FilterOfLayers() = default;
 
 template <class Real>
 void FilterOfLayers<Real>::read(std::size_t layer, Real* to) {
-  filter_->compute(layer, 1, load_, false, to);
+  read(steps_.size() - 1, layer, to);
+}
+
+template <class Real>
+void FilterOfLayers<Real>::read(std::size_t step, std::size_t layer, Real* to) {
+  const auto load = [&](std::size_t from, Real* into) {
+    if (step == 0) return load_(from, into);
+    read(step - 1, from, into);
+  };
+  steps_[step]->compute(layer, 1, load, false, to);
 }
 
 template void filter_samples<float>(const FilterSamples&, const Filter&, const FilterOptions&, float*);

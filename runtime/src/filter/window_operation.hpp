@@ -40,5 +40,8 @@ template <class Real>
 std::unique_ptr<WindowOperation<Real>> make_operation(const FilterShape& shape, const BilateralFilter& filter);
 template <class Real>
 std::unique_ptr<WindowOperation<Real>> make_operation(const FilterShape& shape, const ContextualLowPass& filter);
+/// One step of the flow, of the duration filter.time.
+template <class Real>
+std::unique_ptr<WindowOperation<Real>> make_operation(const FilterShape& shape, const CurvatureFlow& filter);
 
 }  // namespace tegl::detail

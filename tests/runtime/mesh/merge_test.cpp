@@ -96,7 +96,7 @@ Merging<N, Real> expect_merged(Contour<N, Real> contour, double tolerance) {
   Attribute numbers{"number", "", 1, Buffer<double>(contour.simplices.size())};
   for (std::size_t s = 0; s < contour.simplices.size(); ++s) numbers.values[s] = static_cast<double>(s);
   contour.simplex_attributes = {numbers};
-  const Merging<N, Real> merging = merge_vertices(contour, {.tolerance = tolerance});
+  const Merging<N, Real> merging = merge_vertices(contour, {.tolerance = tolerance, .most_listed = SIZE_MAX});
   const MergeReport<N>& report = merging.report;
   // vertices and dropped simplices
   const std::vector<Index> kept = kept_by_definition(contour, tolerance);
