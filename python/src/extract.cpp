@@ -13,6 +13,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/cells.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/division.hpp"
 #include "tegl/lattice.hpp"
@@ -145,17 +146,24 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
 }
 
 template <class Real>
-AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& positions, double level,
+AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& positions, bool of_cells, double level,
                              const ExtractOptions& options) {
-  return visit_image(image, [&](const auto& view) -> AnyContour {
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
+    if (of_cells) {
+      if constexpr (N <= 4)
+        return {extract_cells<Real>(view, level, positions, options), level};
+      else
+        throw_dimension("an image of cells", N, "2 to 4 dimensions");
+    }
     return {extract_placed<Real>(view, level, positions, options), level};
   });
 }
 
-/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered".
+/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `of_cells`: samples are
+/// cells.
 std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule,
                                                const py::array_t<float, py::array::c_style>& values, double margin,
-                                               double last_axis_weight, double level, bool is_double,
+                                               double last_axis_weight, bool of_cells, double level, bool is_double,
                                                const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
@@ -170,8 +178,9 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
   positions.margin = margin;
   positions.last_axis_weight = last_axis_weight;
   return call.run([&] {
-    auto result = std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, level, options)
-                                                         : placed_contour_of<float>(image, positions, level, options));
+    auto result =
+        std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, of_cells, level, options)
+                                               : placed_contour_of<float>(image, positions, of_cells, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -366,8 +375,8 @@ void bind_extract(py::module_& m) {
   m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("level"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::extract_curved);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("margin"),
-        py::arg("last_axis_weight"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
-        doc::extract_placed);
+        py::arg("last_axis_weight"), py::arg("of_cells"), py::arg("level"), py::arg("double"), py::arg("options"),
+        py::arg("progress"), doc::extract_placed);
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),

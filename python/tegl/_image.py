@@ -16,7 +16,7 @@ from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
 
 
-@_arguments.documents("extract", "ExtractOptions", "Ambiguity", "extract_placed")
+@_arguments.documents("extract", "ExtractOptions", "Ambiguity", "extract_placed", "extract_cells")
 def contour(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
             axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
             time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
@@ -24,7 +24,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
             periodic=None, lattice: _kinds.Lattice | None = None, division: _kinds.Division | None = None,
-            positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0, curved=None) -> Contour:
+            positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0,
+            samples: _kinds.Samples = "points", curved=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
     array
@@ -95,6 +96,10 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
         array's samples. Where it is NaN, the array's own sample counts.
     time_weight
         For "relaxed": weight of the smoothing along the `time_axis` relative to the others; 0: each layer by itself.
+    samples
+        "points", or "cells": samples are small squares, cubes or tesseracts. The contour runs along the faces between high
+        and low cells and encloses their exact volume; with `positions` "relaxed" or "gravitation" it gets a smooth shape.
+        It is always closed. For 2 to 4 axes. See docs/cells.md.
     curved
         Coordinates of the samples of a curved grid, in place of `coords` of some axes: a dict of axes (names or numbers) and
         arrays of coordinates with as many axes as `array`, and size 1 along the axes on which they do not depend, such as
@@ -116,21 +121,26 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     weight = _arguments.as_number("time_weight", time_weight)
     if weight != 1 and positions != "relaxed":
         raise ValueError(f"time_weight is {time_weight!r} with positions {positions!r}; expected positions='relaxed'")
+    if _arguments.as_text("samples", samples) not in ("points", "cells"):
+        raise ValueError(f"samples is {samples!r}; expected 'points' or 'cells'")
+    of_cells = samples == "cells"
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
-                                          ("positions", None if positions == "linear" else positions), ("curved", curved))
+                                          ("samples" if of_cells else "positions",
+                                           None if positions == "linear" and not of_cells else positions),
+                                          ("curved", curved))
                  if value is not None]
         if len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         if division is not None:
             core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
                                          options, progress)
-        elif positions != "linear":
-            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, level, is_double, options,
-                                        progress)
+        elif positions != "linear" or of_cells:
+            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, of_cells, level, is_double,
+                                        options, progress)
         elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
                                          progress)

@@ -222,7 +222,9 @@ requires DimensionBetween<N, 2, 5>
 /// As filter_image, for an image that is read by layers: the same samples, computed when a layer is read. The source
 /// must outlive the result. Each of its layers is read once, in ascending order, if the result's are; with a cyclic
 /// border along the last axis, its last layers are read first, and some layers twice. Progress is not called. Memory:
-/// the layers along the last axis that the filter spans. Errors: those of filter_image and of the source.
+/// the layers along the last axis that the filter spans; for CurvatureFlow some layers for each of its steps. Errors:
+/// those of filter_image and of the source; UnsupportedData for CurvatureFlow of several steps with a cyclic border
+/// along the last axis.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::unique_ptr<LayerReader<FilteredValue<T>, N>> filter_layers(LayerReader<T, N>& source,

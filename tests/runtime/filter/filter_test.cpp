@@ -370,6 +370,130 @@ TEST(Filter, SameBytesForAnyNumberOfThreadsAndByLayers) {
     }
 }
 
+/// Mean distance of the contour's vertices from a point, in the world.
+template <int N>
+double mean_radius(const OwnedImage<double, N>& image, const std::array<double, N>& centre) {
+  const auto contour = extract<double>(image.view(), 0.0);
+  double sum = 0;
+  for (const auto& vertex : contour.vertices) {
+    double square = 0;
+    for (int a = 0; a < N; ++a) square += (vertex[a] - centre[a]) * (vertex[a] - centre[a]);
+    sum += std::sqrt(square);
+  }
+  return sum / static_cast<double>(contour.vertices.size());
+}
+
+/// A ball shrinks as r^2 = r0^2 - 2 (n - 1) t, also with steps of different lengths.
+template <int N>
+void expect_shrinking_ball(std::size_t size, double radius, double time, double precision) {
+  OwnedImage<double, N> image{Grid<N>(), {}};
+  std::array<double, N> centre;
+  CurvatureFlow flow{{}, time};
+  for (int a = 0; a < N; ++a) {
+    const double step = a == 1 ? 0.75 : 1.0;
+    image.grid.axes[a] =
+        Axis::uniform(static_cast<std::size_t>(std::lround(static_cast<double>(size) / step)), 0.0, step);
+    centre[a] = static_cast<double>(size) / 2 - 0.3;
+    flow.spacing.push_back(step);
+  }
+  std::vector<double> values(sample_count(image.grid));
+  for_each_sample<N>(image.grid, [&](std::size_t i, const std::array<std::size_t, N>& index) {
+    double square = 0;
+    for (int a = 0; a < N; ++a) square += std::pow(image.grid.axes[a][index[a]] - centre[a], 2);
+    values[i] = radius - std::sqrt(square);
+  });
+  image.values = std::move(values);
+  const double expected = std::sqrt(radius * radius - 2 * (N - 1) * time);
+  EXPECT_NEAR(mean_radius<N>(image, centre), radius, 0.01 * radius) << N;
+  EXPECT_NEAR(mean_radius<N>(filter_image(image.view(), flow), centre), expected, precision * expected) << N;
+}
+
+TEST(CurvatureFlow, BallsShrinkByTheSumOfTheirCurvatures) {
+  expect_shrinking_ball<2>(50, 20, 100, 0.01);
+  expect_shrinking_ball<3>(36, 14, 20, 0.01);
+  expect_shrinking_ball<4>(20, 8, 3, 0.015);
+}
+
+TEST(CurvatureFlow, KeepsConstantsPlanesAndTheRange) {
+  OwnedImage<float, 3> constant{Grid<3>::unit({6, 5, 4}), std::vector<float>(120, 3.5F)};
+  EXPECT_EQ(filter_image(constant.view(), CurvatureFlow{{1, 1, 1}, 5}).values, constant.values);
+  OwnedImage<double, 2> plane{Grid<2>::unit({30, 30}), std::vector<double>(900)};
+  for (std::size_t i = 0; i < 900; ++i) plane.values[i] = static_cast<double>(i % 30) + 2 * static_cast<double>(i / 30);
+  const auto same = filter_image(plane.view(), CurvatureFlow{{1, 1}, 0.4});
+  for (std::size_t y = 5; y < 25; ++y)
+    for (std::size_t x = 5; x < 25; ++x) EXPECT_NEAR(same.values[x + 30 * y], plane.values[x + 30 * y], 1e-12);
+  const auto rough = noise<float, 3>({20, 20, 20}, 3);
+  const auto smooth = filter_image(rough.view(), CurvatureFlow{{1, 1, 1}, 30});
+  const auto [least, most] = std::minmax_element(rough.values.begin(), rough.values.end());
+  const auto [low, high] = std::minmax_element(smooth.values.begin(), smooth.values.end());
+  EXPECT_GE(*low, *least);
+  EXPECT_LE(*high, *most);
+  EXPECT_LT(*high - *low, 0.5F * (*most - *least));
+  EXPECT_EQ(filter_image(rough.view(), CurvatureFlow{{1, 1, 1}, 0}).values, rough.values);
+}
+
+TEST(CurvatureFlow, CyclicBordersMoveWithTheImage) {
+  const auto image = noise<double, 2>({11, 9}, 5);
+  OwnedImage<double, 2> moved = image;
+  for (std::size_t y = 0; y < 9; ++y)
+    for (std::size_t x = 0; x < 11; ++x) moved.values[(x + 4) % 11 + 11 * ((y + 7) % 9)] = image.values[x + 11 * y];
+  const FilterOptions cyclic{{FilterBorder::cyclic}, false, {}};
+  const auto one = filter_image(image.view(), CurvatureFlow{{1, 2}, 3}, cyclic);
+  const auto other = filter_image(moved.view(), CurvatureFlow{{1, 2}, 3}, cyclic);
+  for (std::size_t y = 0; y < 9; ++y)
+    for (std::size_t x = 0; x < 11; ++x)
+      EXPECT_EQ(other.values[(x + 4) % 11 + 11 * ((y + 7) % 9)], one.values[x + 11 * y]);
+}
+
+TEST(CurvatureFlow, AxesWithoutALengthDoNotTakePart) {
+  const auto image = noise<double, 3>({9, 8, 3}, 6);
+  const auto all = filter_image(image.view(), CurvatureFlow{{1, 1, 0}, 2});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Image<double, 2> layer(image.values.data() + 72 * k, Grid<2>::unit({9, 8}));
+    const auto flat = filter_image(layer, CurvatureFlow{{1, 1}, 2});
+    EXPECT_TRUE(std::equal(flat.values.begin(), flat.values.end(), all.values.data() + 72 * k));
+  }
+}
+
+TEST(CurvatureFlow, GivesTheSameBytesByLayersAndForAnyNumberOfThreads) {
+  auto image = noise_with_missing<float, 3>(Grid<3>::unit({20, 15, 30}), 13, 0.01);
+  const CurvatureFlow flow{{1, 1, 1}, 1.5};
+  EXPECT_EQ(step_count(flow), 12u);
+  const auto bits = [](const auto& values) {
+    std::vector<std::uint32_t> result(values.size());
+    std::memcpy(result.data(), values.data(), 4 * result.size());
+    return result;
+  };
+  FunctionLayers<float, 3> source(
+      image.grid, [&](std::size_t k, float* to) { std::copy_n(image.values.data() + k * 300, 300, to); });
+  for (const FilterBorder border : {FilterBorder::extended, FilterBorder::missing}) {
+    const auto one = filter_image(image.view(), flow, {{border}, false, {1, {}}});
+    EXPECT_EQ(bits(one.values), bits(filter_image(image.view(), flow, {{border}, false, {3, {}}}).values));
+    for (std::size_t i = 0; i < one.values.size(); ++i)
+      EXPECT_EQ(std::isnan(one.values[i]), std::isnan(image.values[i]));
+    const auto layers = filter_layers(source, flow, {{border}, false, {2, {}}});
+    std::vector<float> streamed(image.values.size());
+    for (std::size_t k = 0; k < 30; ++k) layers->read(k, streamed.data() + k * 300);
+    layers->read(17, streamed.data() + 17 * 300);  // out of order
+    EXPECT_EQ(bits(one.values), bits(streamed));
+  }
+  expect_error(ErrorCode::UnsupportedData, "cyclic border along the last axis", [&] {
+    (void)filter_layers(source, flow, {{FilterBorder::cyclic}, false, {}});
+  });
+}
+
+TEST(CurvatureFlow, RefusesWhatIsNoFlow) {
+  const auto image = noise<float, 2>({5, 5}, 1);
+  const auto refuse = [&](const std::string& part, const CurvatureFlow& flow) {
+    expect_error(ErrorCode::InvalidArgument, part, [&] { (void)filter_image(image.view(), flow); });
+  };
+  refuse("3 lengths of steps for the flow; expected one for each of 2", {{1, 1, 1}, 1});
+  refuse("the time of the flow is -1", {{1, 1}, -1});
+  refuse("has the length -2", {{1, -2}, 1});
+  refuse("without an axis that takes part", {{0, 0}, 1});
+  refuse("expected at most 100000", {{1, 1}, 1e9});
+}
+
 TEST(Filter, LayersOfTheSourceAreReadOnceInOrder) {
   std::vector<std::size_t> read;
   FunctionLayers<std::uint16_t, 2> source(Grid<2>::unit({4, 30}), [&](std::size_t k, std::uint16_t* to) {
