@@ -54,6 +54,22 @@ TEST_F(FilterCommand, SigmasAreInUnitsOfTheAxes) {
   EXPECT_EQ(floats<3>(read_image(path("b.nrrd"))).values, floats<3>(output).values);
 }
 
+TEST_F(FilterCommand, CurvatureFlowIsInUnitsOfTheAxesAndLeavesTheTime) {
+  ASSERT_EQ(run_tegl({"filter", volume(), "--curvature", "0.5", "-o", path("a.nrrd"), "-q"}).exit, 0);
+  const ReadImageResult input = read_image(volume()), frames = read_image(film());
+  EXPECT_EQ(floats<3>(read_image(path("a.nrrd"))).values,
+            filter_image(floats<3>(input).view(), CurvatureFlow{{1, 2, 0.5}, 0.5}).values);
+  ASSERT_EQ(run_tegl({"filter", film(), "--curvature", "0.5", "--stream", "-o", path("b.nrrd"), "-q"}).exit, 0);
+  EXPECT_EQ(floats<4>(read_image(path("b.nrrd"))).values,
+            filter_image(floats<4>(frames).view(), CurvatureFlow{{1, 1, 1, 0}, 0.5}).values);
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--curvature", "-1"}, {"--curvature", "x"}, {"--curvature", "1", "--fill"}}) {
+    std::vector<std::string> arguments = {"filter", volume(), "-o", path("c.nrrd")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(run_tegl(arguments).exit, 2);
+  }
+}
+
 TEST_F(FilterCommand, TheTimeHasItsOwnSigma) {
   const auto filtered = [&](const std::vector<std::string>& options) {
     std::vector<std::string> arguments = {"filter", film(), "-o", path("a.nrrd"), "-q"};

@@ -100,6 +100,12 @@ class ScaleSpaceCommand final : public Command {
         ->type_name("FILE")
         ->required();
     app().add_flag("--samples", samples_, "sigmas count samples, not units of the axes");
+    app()
+        .add_option(
+            "--factors", factors_,
+            "sigma along each axis as a multiple of the scale: as in 1,1,0.5; 0: the axis is not smoothed, such as "
+            "a time")
+        ->type_name("NUMBERS");
     app().add_flag(
         "--laplacian", laplacian_,
         "not the smoothed values but the scale-normalised Laplacian, which is greatest at blobs of this scale");
@@ -159,6 +165,7 @@ class ScaleSpaceCommand final : public Command {
       ScaleSpaceOptions options;
       options.quantity = laplacian_ ? ScaleQuantity::laplacian : ScaleQuantity::values;
       options.in_samples = samples_;
+      options.factors = factors(N);
       options.filter.borders = {border_ == "extended" ? FilterBorder::extended
                                 : border_ == "cyclic" ? FilterBorder::cyclic
                                                       : FilterBorder::missing};
@@ -170,6 +177,22 @@ class ScaleSpaceCommand final : public Command {
       stream_image_result(measured, of_scales, bar, result);
       report(sigmas, measured.sizes(), result);
     }
+  }
+
+  /// The numbers of --factors; empty without the option.
+  [[nodiscard]] std::vector<double> factors(std::size_t axes) const {
+    std::vector<double> numbers;
+    if (factors_.empty()) return numbers;
+    for (const std::string_view part : split(factors_, ',')) {
+      numbers.push_back(parse_finite("--factors", part));
+      if (numbers.back() < 0)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--factors is {}; expected numbers of 0 or more", factors_));
+    }
+    if (numbers.size() != axes)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--factors has {}; expected {}, one for each axis",
+                                                          counted(numbers.size(), "number", "numbers"), axes));
+    return numbers;
   }
 
   void report(const std::vector<double>& sigmas, const std::vector<double>& sizes, ImageResult& result) const {
@@ -190,7 +213,7 @@ class ScaleSpaceCommand final : public Command {
                                                 number(stable.sigma), number(*isovalue_), stable.change));
   }
 
-  std::string sigmas_, output_, iso_;
+  std::string sigmas_, output_, iso_, factors_;
   std::string border_ = "extended";
   std::optional<double> isovalue_;
   unsigned threads_ = 0;

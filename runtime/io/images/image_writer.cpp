@@ -56,7 +56,8 @@ std::string ImageHead::axis_name(std::size_t axis) const {
 }  // namespace io_detail
 
 bool is_image_output(const std::filesystem::path& path) {
-  return io_detail::extension_of(path) == ".nrrd" || io_detail::is_netcdf_name(path);
+  const std::string extension = io_detail::extension_of(path);
+  return extension == ".nrrd" || extension == ".vti" || io_detail::is_netcdf_name(path);
 }
 
 namespace detail {
@@ -69,13 +70,14 @@ struct ImageFile::Parts {
 
 ImageFile::ImageFile(const std::filesystem::path& path, ValueType type, StoredGrid grid, const ImageInfo& info) {
   if (!is_image_output(path))
-    io_detail::fail(ErrorCode::UnsupportedFormat, path, "extension '{}'; expected .nrrd or .nc for an image",
+    io_detail::fail(ErrorCode::UnsupportedFormat, path, "extension '{}'; expected .nrrd, .nc or .vti for an image",
                     path.extension().string());
   io_detail::ImageHead head{std::move(grid), type, info, io_detail::bytes_of(type)};
   for (std::size_t a = 0; a + 1 < head.axes(); ++a) head.layer_bytes *= head.grid.axes[a].size();
   parts_ = std::make_unique<Parts>(path);
-  parts_->writer = io_detail::is_netcdf_name(path) ? io_detail::write_netcdf(parts_->pending, head)
-                                                   : io_detail::write_nrrd(parts_->pending, head);
+  parts_->writer = io_detail::is_netcdf_name(path)           ? io_detail::write_netcdf(parts_->pending, head)
+                   : io_detail::extension_of(path) == ".vti" ? io_detail::write_vti(parts_->pending, head)
+                                                             : io_detail::write_nrrd(parts_->pending, head);
 }
 
 ImageFile::~ImageFile() = default;

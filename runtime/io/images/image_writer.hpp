@@ -41,6 +41,7 @@ class LayerWriter {
 };
 
 std::unique_ptr<LayerWriter> write_nrrd(const PendingPath& file, const ImageHead& head);
+std::unique_ptr<LayerWriter> write_vti(const PendingPath& file, const ImageHead& head);
 std::unique_ptr<LayerWriter> write_netcdf(const PendingPath& file, const ImageHead& head);
 
 }  // namespace tegl::io_detail

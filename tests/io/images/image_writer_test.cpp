@@ -68,6 +68,32 @@ class ImageWriter : public testing::Test {
   TempDir dir_;
 };
 
+TEST_F(ImageWriter, VtiGivesValuesAndCoordinatesBack) {
+  const auto check = [&]<class T, int N>(OwnedImage<T, N> image) {
+    for (Axis& axis : image.grid.axes) axis.unit = "";  // not written
+    ImageInfo info;
+    info.variable = "a \"<&> b";
+    write_image(image.view(), path("a.vti"), info);
+    const ReadImageResult read = read_image(path("a.vti"));
+    expect_same(image, read, 1e-14);
+    EXPECT_EQ(read.info.variable, info.variable);
+  };
+  check(noise<float, 2>(named_grid<2>(), 2));
+  check(noise<double, 3>(named_grid<3>(), 3));
+  check(noise<std::int16_t, 3>(named_grid<3>(), 4));
+  check(noise<std::uint8_t, 3>(named_grid<3>(), 5));
+  auto turned = noise<float, 3>(named_grid<3>(), 6);
+  turned.grid.linear = {{{0.0, -2.0, 0.0}, {0.6, 0.0, 0.8}, {-0.8, 0.0, 0.6}}};
+  turned.grid.offset = {10.0, -20.0, 0.5};
+  check(turned);
+  auto uneven = noise<float, 3>(named_grid<3>(), 7);
+  uneven.grid.axes[0] = Axis::rectilinear({0.0, 1.0, 3.0, 4.0});
+  expect_error(ErrorCode::UnsupportedData, "uneven steps", [&] { write_image(uneven.view(), path("b.vti")); });
+  const auto film = noise<float, 4>(named_grid<4>(), 8);
+  expect_error(ErrorCode::UnsupportedData, "4 axes", [&] { write_image(film.view(), path("b.vti")); });
+  EXPECT_FALSE(fs::exists(path("b.vti")));
+}
+
 TEST_F(ImageWriter, NrrdAndNetcdfGiveTheImageBack) {
   for (const std::string name : {"a.nrrd", "a.nc"}) {
     const double tolerance = name == "a.nc" ? 0 : 1e-15;
@@ -143,7 +169,7 @@ TEST_F(ImageWriter, RefusesWhatAFormatCannotHold) {
   oblique.linear[0][1] = 0.5;
   expect_error(ErrorCode::UnsupportedData, "axis 'lon' is oblique, which netCDF cannot hold",
                [&] { write_noise<3>(oblique, path("a.nc")); });
-  expect_error(ErrorCode::UnsupportedFormat, "extension '.png'; expected .nrrd or .nc",
+  expect_error(ErrorCode::UnsupportedFormat, "extension '.png'; expected .nrrd, .nc or .vti",
                [&] { write_noise<3>(oblique, path("a.png")); });
   FunctionLayers<float, 3> failing(named_grid<3>(), [](std::size_t k, float* to) {
     if (k == 2) throw Error(ErrorCode::MalformedFile, "a source that fails");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Writing of images: NRRD and netCDF, from memory or layer by layer. Link with tegl::io; the rules for threads in
+// Writing of images: NRRD, netCDF and VTK, from memory or layer by layer. Link with tegl::io; the rules for threads in
 // tegl/io.hpp apply.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace tegl {
 
-/// Whether the extension is one of write_image: .nrrd, .nc (or .cdf).
+/// Whether the extension is one of write_image: .nrrd, .nc (or .cdf), .vti.
 [[nodiscard]] bool is_image_output(const std::filesystem::path& path);
 
 namespace detail {
@@ -61,7 +61,9 @@ StoredGrid stored_grid(const Grid<N>& grid) {
 /// .nrrd: NRRD0005 with raw values. Axes must be uniform. The world map becomes space directions; the last of four axes
 /// must be separate from the others then. The frames LPS, LAS and RAS are named in the file (read_image converts RAS
 /// and LAS to LPS). .nc, .cdf: netCDF in the format CDF-5, with the coordinates of each axis. The world map must keep
-/// the axes separate; it becomes part of the coordinates, and its frame is not written.
+/// the axes separate; it becomes part of the coordinates, and its frame is not written. .vti: VTK's ImageData, for
+/// other programs: 2D and 3D, uniform axes; the world map becomes origin, spacing and direction. Names of axes, units
+/// and frames are not written.
 ///
 /// Errors: UnsupportedFormat (another extension), UnsupportedData (a grid that the format cannot hold), WriteFailed,
 /// Cancelled, and those of the reader. No file is left after an error.

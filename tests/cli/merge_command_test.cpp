@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// --merge of tegl contour and tegl simplify, and --samples-are cells, run as in a shell.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "sample_files.hpp"
+#include "tegl/cells.hpp"
+#include "tegl/io.hpp"
+#include "tegl/merge.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class MergeCommand : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    // two balls that touch in the sample (6, 3, 3), which is the only one that equals the isovalue 0
+    const auto balls = [](const std::vector<double>& x) {
+      const double across = std::hypot(x[1] - 3, x[2] - 3);
+      return 2.3125 - std::min(std::hypot(x[0] - 3.6875, across), std::hypot(x[0] - 8.3125, across));
+    };
+    balls_ = write("balls.nii", nifti_bytes(sample({13, 7, 7}, balls), {1, 1, 1}));
+  }
+  [[nodiscard]] static RunResult run(std::vector<std::string> arguments) { return run_tegl(arguments); }
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& message) const {
+    const RunResult result = run_tegl(arguments);
+    EXPECT_NE(result.exit, 0);
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+  std::string balls_;
+};
+
+TEST_F(MergeCommand, ReportsThePinchOfTwoBalls) {
+  const RunResult plain = run({"contour", balls_, "--iso", "0", "-o", path("a.ply"), "--json"});
+  EXPECT_EQ(plain.exit, 0) << plain.err;
+  EXPECT_TRUE(plain.json()["merge"].is_null());
+  const RunResult merged = run({"contour", balls_, "--iso", "0", "--merge", "-o", path("b.ply"), "--json"});
+  EXPECT_EQ(merged.exit, 0) << merged.err;
+  const auto report = merged.json()["merge"];
+  EXPECT_EQ(report["tolerance"], 0.0);
+  EXPECT_EQ(report["pinched_vertices"], 1);
+  EXPECT_THAT(report["pinched_at"][0], ElementsAre(6, 3, 3));
+  EXPECT_EQ(report["pinched_faces"], 0);
+  EXPECT_EQ(report["euler_before"], 2);
+  EXPECT_EQ(report["euler_after"], 3);
+  EXPECT_EQ(merged.json()["bad_links"], 1);
+  EXPECT_EQ(merged.json()["degenerate_simplices"], 0);
+  // the same for a saved contour
+  const RunResult saved = run({"simplify", path("a.ply"), "--merge", "-o", path("c.ply"), "--json"});
+  EXPECT_EQ(saved.exit, 0) << saved.err;
+  EXPECT_EQ(saved.json()["merge"], report);
+  EXPECT_EQ(read_mesh(path("b.ply")).simplices, read_mesh(path("c.ply")).simplices);
+  const RunResult text = run({"contour", balls_, "--iso", "0", "--merge-within", "0.001", "-o", path("d.ply")});
+  EXPECT_EQ(text.exit, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("pinched      1 vertex"));
+}
+
+TEST_F(MergeCommand, RefusesOtherOptions) {
+  expect_refused({"contour", balls_, "--iso", "0", "--merge-within", "-1", "-o", path("a.ply")}, "expected 0 or more");
+  expect_refused({"contour", balls_, "--iso", "0", "--merge-within", "x", "-o", path("a.ply")}, "--merge-within");
+  expect_refused({"contour", balls_, "--iso", "0", "--merge", "--facets", "-o", path("a.vtu")},
+                 "--merge with --facets");
+  expect_refused({"contour", balls_, "--iso", "0,1", "--merge", "--one-file", "-o", path("a.ply")},
+                 "--merge with --one-file");
+  expect_refused({"contour", balls_, "--iso", "0", "--merge", "--stream", "-o", path("a.vtkhdf")},
+                 "--merge with --stream");
+  expect_refused({"simplify", balls_, "--iso", "0", "--merge", "--ratio", "0.5", "-o", path("a.ply")},
+                 "--merge with --ratio");
+}
+
+TEST_F(MergeCommand, CellsHaveTheirExactVolume) {
+  const ReadImageResult input = read_image(balls_);
+  const auto& image = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(input.image));
+  double high = 0;
+  for (const float value : image.values) high += value >= 1 ? 1 : 0;
+  const RunResult result =
+      run({"contour", balls_, "--iso", "1", "--samples-are", "cells", "-o", path("a.ply"), "--json"});
+  EXPECT_EQ(result.exit, 0) << result.err;
+  EXPECT_EQ(result.json()["boundary_simplices"], 0);
+  const RunResult measured = run({"measure", path("a.ply"), "--json"});
+  EXPECT_NEAR(measured.json()["content"].get<double>(), high, 1e-9 * high);
+  const RunResult direct = run({"measure", balls_, "--iso", "1", "--samples-are", "cells", "--json"});
+  EXPECT_NEAR(direct.json()["content"].get<double>(), high, 1e-9 * high);
+  const RunResult smooth = run({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--positions", "relaxed",
+                                "-o", path("b.ply"), "--json"});
+  EXPECT_EQ(smooth.exit, 0) << smooth.err;
+  EXPECT_NE(smooth.json()["simplices"], result.json()["simplices"]);
+  expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--stream", "-o", path("a.vtkhdf")},
+                 "--samples-are cells with --stream");
+  expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--lattice", "fcc", "-o", path("a.ply")},
+                 "--samples-are cells");
+  expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--normals", "-o", path("a.ply")},
+                 "normals from the image");
+  expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "boxes", "-o", path("a.ply")}, "boxes");
+}
+
+}  // namespace
+}  // namespace tegl::test
