@@ -26,17 +26,14 @@ std::unique_ptr<TrackGraph> track_any(const AnyContour& contour, double min_life
   return call.run([&] {
     return std::visit(
         [&]<int N, class Real>(const Contour<N, Real>& c) -> std::unique_ptr<TrackGraph> {
-          if constexpr (N <= 4)
-            return std::make_unique<TrackGraph>(track(c, options));
-          else
-            throw_dimension("tracking", N, "2 to 4 dimensions");
+          return std::make_unique<TrackGraph>(track(c, options));
         },
         contour.contour);
   });
 }
 
 /// All coordinates except the last, which is time.
-std::vector<double> place_of(const TrackGraph& graph, const std::array<double, 3>& place) {
+std::vector<double> place_of(const TrackGraph& graph, const std::array<double, 4>& place) {
   return to_list(place, static_cast<std::size_t>(std::max(graph.space_dim - 1, 0)));
 }
 

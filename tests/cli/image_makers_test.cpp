@@ -71,6 +71,40 @@ TEST_F(ImageMakers, OtherCommandsRunOverTheScale) {
   EXPECT_EQ(run_tegl({"track", scales, "--iso", "0", "-o", path("tracks.json"), "-q"}).exit, 0);
 }
 
+TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
+  const std::string volume = write("volume.nii", nifti_bytes(noise({9, 8, 7}, 1), {1, 2, 1}));
+  ASSERT_EQ(run_tegl({"scale-space", volume, "--sigmas", "0.5:2:3", "-o", path("a.nrrd"), "-q"}).exit, 0);
+  ASSERT_EQ(run_tegl({"contour", path("a.nrrd"), "--iso", "128", "-o", path("a.vtkhdf"), "-q"}).exit, 0);
+  const RunResult run =
+      run_tegl({"contour", volume, "--scale-space", "0.5:2:3", "--iso", "128", "-o", path("b.vtkhdf"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.json()["image_dim"], 4);
+  const Mesh from_file = read_mesh(path("a.vtkhdf")), direct = read_mesh(path("b.vtkhdf"));
+  EXPECT_EQ(from_file.simplices, direct.simplices);
+  ASSERT_EQ(from_file.coordinates.size(), direct.coordinates.size());
+  for (std::size_t i = 0; i < direct.coordinates.size(); ++i)
+    EXPECT_NEAR(from_file.coordinates[i], direct.coordinates[i], 1e-12);
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--scale-space", "2,1"},
+                                                  {"--scale-space", "0.5:2:3", "--stream"},
+                                                  {"--scale-space", "0.5:2:3", "--lattice", "fcc"}}) {
+    std::vector<std::string> arguments = {"contour", volume, "--iso", "128", "-o", path("c.vtkhdf")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(run_tegl(arguments).exit, 2);
+  }
+}
+
+TEST_F(ImageMakers, FactorsOfScalesAreByAxis) {
+  const std::string film = write("film.nii", nifti_bytes(noise({9, 8, 7}, 1), {1, 2, 1}));
+  ASSERT_EQ(run_tegl({"scale-space", film, "--sigmas", "1,2", "--factors", "1,1,0.5", "-o", path("a.nrrd"), "-q"}).exit,
+            0);
+  const auto image = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(read_image(film).image));
+  ScaleSpaceOptions options;
+  options.factors = {1, 1, 0.5};
+  EXPECT_EQ(floats<4>("a.nrrd").values, (ScaleSpaceLayers<float, 3>(image.view(), {1, 2}, options).all().values));
+  for (const char* const factors : {"1,1", "1,1,-1", "1,1,x"})
+    EXPECT_EQ(run_tegl({"scale-space", film, "--sigmas", "1,2", "--factors", factors, "-o", path("b.nrrd")}).exit, 2);
+}
+
 TEST_F(ImageMakers, SamplesOfALatticeAreContouredOnIt) {
   for (const char* const lattice : {"triangular", "fcc", "bcc", "d4", "fcc_in_time"}) {
     ASSERT_EQ(run_tegl({"sample", "ball", "--lattice", lattice, "--size", "12", "--set", "radius=0.6", "-o",

@@ -16,6 +16,7 @@
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
 #include "commands/facets.hpp"
+#include "commands/image_makers.hpp"
 #include "commands/streaming.hpp"
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
@@ -28,6 +29,7 @@
 #include "output/result.hpp"
 #include "tegl/io/active_tiles.hpp"
 #include "tegl/pick.hpp"
+#include "tegl/scale_space.hpp"
 
 namespace tegl::cli {
 
@@ -110,6 +112,11 @@ class ContourCommand final : public Command {
         ->type_name("X,Y,Z[,T]");
     positions_.add_to(app());
     merging_.add_to(app());
+    app()
+        .add_option("--scale-space", scale_space_,
+                    "contour the image smoothed at these scales, with the scale as one more axis, as by 'tegl "
+                    "scale-space': FIRST:LAST:COUNT or a list, in units of the axes")
+        ->type_name("SIGMAS");
     attributes_.add_to(app());
     compress_.add_to(app());
     app().add_flag("--stream", stream_,
@@ -131,6 +138,7 @@ class ContourCommand final : public Command {
     require_tiling_options();
     require_positions();
     require_merging();
+    require_scale_space();
     require_inputs();
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
@@ -203,7 +211,7 @@ class ContourCommand final : public Command {
   /// Whether no option is given that needs straight axes.
   [[nodiscard]] bool knows_curved_grids() const {
     return index_.empty() && app().count("--pick") == 0 && !options_.polygon_triangulation() && !attributes_.wanted() &&
-           positions_.are_linear();
+           positions_.are_linear() && sigmas_.empty();
   }
 
   /// Refuses --positions with options of functions that know linear positions only, and checks its own options.
@@ -216,6 +224,34 @@ class ContourCommand final : public Command {
     const Tiling tiling = options_.tiling();
     if (!tiling.is_plain() && !tiling.of_cells) positions_.refuse("--periodic or --lattice");
     positions_.require();
+  }
+
+  /// Refuses --scale-space with options that need the image itself, or layers of a file.
+  void require_scale_space() {
+    if (scale_space_.empty()) return;
+    sigmas_ = parse_sigmas("--scale-space", scale_space_);
+    const auto refuse = [&](bool given, const char* with) {
+      if (given)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--scale-space with {}; expected one of the two", with));
+    };
+    refuse(is_streamed(), "--stream");
+    refuse(!index_.empty(), "--index");
+    refuse(facets_, "--facets");
+    refuse(attributes_.wanted(), "--attribute");
+    refuse(!options_.tiling().is_plain() && !options_.tiling().of_cells, "--periodic, --lattice or --division");
+  }
+
+  /// Replaces an image by its scale space.
+  void make_scale_space(AnyImage& image, Progress progress) const {
+    ScaleSpaceOptions options;
+    options.filter.work = {options_.threads(), std::move(progress)};
+    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> AnyImage {
+      if constexpr (N <= 3)
+        return AnyImageN<N + 1>(ScaleSpaceLayers<T, N>(owned.view(), sigmas_, options).all());
+      else
+        throw Error(ErrorCode::UnsupportedData, "--scale-space of an image with 4 axes; expected 2 or 3");
+    };
+    image = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
   }
 
   /// Refuses --merge with options of contours that are not in memory or have no simplices.
@@ -261,6 +297,7 @@ class ContourCommand final : public Command {
   void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     Stopwatch watch;
     ReadImageResult input = read(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused);
+    if (!sigmas_.empty()) make_scale_space(input.image, bar.stage("scale space"));
     tiling_ = options_.tiling();
     remark(take_curved(input, file(), options_, tiling_));
     require_output_holds(results.front().output, image_dim(input.image) - 1);
@@ -296,8 +333,8 @@ class ContourCommand final : public Command {
   /// Options of this command that need an image.
   [[nodiscard]] std::vector<std::string> given_for_images() const {
     std::vector<std::string> given;
-    for (const char* const name :
-         {"--facets", "--stream", "--index", "--pick", "--positions", "--positions-image", "--last-axis-weight"})
+    for (const char* const name : {"--facets", "--stream", "--index", "--pick", "--positions", "--positions-image",
+                                   "--last-axis-weight", "--scale-space"})
       if (app().count(name) > 0) given.emplace_back(name);
     return given;
   }
@@ -390,7 +427,7 @@ class ContourCommand final : public Command {
     if (stream_ || !images().raw()) return stream_;
     const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
                               app().count("--pick") > 0 || !positions_.are_linear() || merging_.are_given() ||
-                              options_.wants_shape_normals() || attributes_.wanted() ||
+                              !scale_space_.empty() || options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
@@ -558,6 +595,8 @@ class ContourCommand final : public Command {
 
   ExtractionOptions options_;
   MergeArguments merging_;
+  std::string scale_space_;
+  std::vector<double> sigmas_;
   PositionArguments positions_;
   Tiling tiling_;  ///< with the image's curved grid
   PositionOptions placed_;

@@ -34,22 +34,6 @@ constexpr const char* kScaleSpaceExamples =
     "scale,\n"
     "and the most stable scale is reported, where its size changes least with log sigma.";
 
-/// Parses FIRST:LAST:COUNT, or a list of numbers.
-std::vector<double> parse_sigmas(const std::string& text) {
-  const std::vector<std::string_view> range = split(text, ':');
-  if (range.size() == 3) {
-    const double count = parse_finite("--sigmas", range[2]);
-    if (count != std::floor(count) || count < 2 || count > 10000)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--sigmas {} has the count {}; expected a whole number from 2 to 10000", text, range[2]));
-    return scale_sigmas(parse_finite("--sigmas", range[0]), parse_finite("--sigmas", range[1]),
-                        static_cast<std::size_t>(count));
-  }
-  std::vector<double> sigmas;
-  for (const std::string_view part : split(text, ',')) sigmas.push_back(parse_finite("--sigmas", part));
-  return sigmas;
-}
-
 /// Layers that are measured as they are read: the size of the contour at an isovalue.
 template <class Real, int N>
 class MeasuredLayers final : public LayerReader<Real, N> {
@@ -126,7 +110,7 @@ class ScaleSpaceCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     // validate options and files
-    const std::vector<double> sigmas = parse_sigmas(sigmas_);
+    const std::vector<double> sigmas = parse_sigmas("--sigmas", sigmas_);
     static_cast<void>(scale_axis(sigmas));
     if (!iso_.empty()) isovalue_ = parse_finite("--iso", iso_);
     require_inputs();
@@ -222,6 +206,23 @@ class ScaleSpaceCommand final : public Command {
 };
 
 }  // namespace
+
+std::vector<double> parse_sigmas(const char* option, const std::string& text) {
+  const std::vector<std::string_view> range = split(text, ':');
+  if (range.size() == 3) {
+    const double count = parse_finite(option, range[2]);
+    if (count != std::floor(count) || count < 2 || count > 10000)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("{} {} has the count {}; expected a whole number from 2 to 10000", option, text, range[2]));
+    return scale_sigmas(parse_finite(option, range[0]), parse_finite(option, range[1]),
+                        static_cast<std::size_t>(count));
+  }
+  std::vector<double> sigmas;
+  for (const std::string_view part : split(text, ',')) sigmas.push_back(parse_finite(option, part));
+  static_cast<void>(scale_axis(sigmas));
+  return sigmas;
+}
 
 std::unique_ptr<Command> make_scale_space_command(CLI::App& program) {
   return std::make_unique<ScaleSpaceCommand>(program);

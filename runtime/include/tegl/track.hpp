@@ -38,7 +38,7 @@ enum class TrackEventKind {
 struct TrackEvent {
   TrackEventKind kind = TrackEventKind::birth;  ///< what happens
   double time = 0;                              ///< last coordinate of `vertex`
-  std::array<double, 3> place{};                ///< other coordinates of `vertex`; space_dim - 1 of them
+  std::array<double, 4> place{};                ///< other coordinates of `vertex`; space_dim - 1 of them
   Index vertex = 0;                             ///< vertex of the contour where it happens
   bool at_border = false;                       ///< whether `vertex` lies in the contour's boundary
   std::vector<Index> in = {};                   ///< segments that end here, ascending
@@ -50,7 +50,7 @@ struct TrackEvent {
 /// 4D), or the part meets the image border.
 struct TrackHandle {
   double time = 0;                ///< last coordinate of `vertex`
-  std::array<double, 3> place{};  ///< other coordinates of `vertex`
+  std::array<double, 4> place{};  ///< other coordinates of `vertex`
   Index vertex = 0;               ///< vertex of the contour where it happens
   bool at_border = false;         ///< whether `vertex` lies in the contour's boundary
   Index segment = 0;              ///< the part that changes
@@ -61,13 +61,13 @@ struct TrackHandle {
 /// points on a line (N = 2).
 struct TrackSample {
   double time = 0;     ///< the value of the last coordinate
-  double measure = 0;  ///< area; N = 3: length; N = 2: number of points
-  /// Enclosed volume (N = 3: area), negative for a cavity. NaN if the part is open, for instance at the image border,
+  double measure = 0;  ///< area; N = 5: volume; N = 3: length; N = 2: number of points
+  /// Enclosed volume (N = 5: 4-volume; N = 3: area), negative for a cavity. NaN if the part is open, for instance at the image border,
   /// and for N = 2.
   double content = std::numeric_limits<double>::quiet_NaN();
-  std::array<double, 3> centroid{};  ///< of the surface, weighted by area
-  std::array<double, 3> lower{};     ///< minimum corner of the bounding box
-  std::array<double, 3> upper{};     ///< maximum corner of the bounding box
+  std::array<double, 4> centroid{};  ///< of the surface, weighted by area
+  std::array<double, 4> lower{};     ///< minimum corner of the bounding box
+  std::array<double, 4> upper{};     ///< maximum corner of the bounding box
 };
 
 /// A part between two events: an arc of the Reeb graph.
@@ -95,8 +95,8 @@ struct Track {
 /// The Reeb graph of the last coordinate on a contour.
 struct TrackGraph {
   int space_dim = 0;                           ///< N
-  std::array<std::string, 4> axis_names = {};  ///< of the contour
-  std::array<std::string, 4> axis_units = {};  ///< of the contour
+  std::array<std::string, 5> axis_names = {};  ///< of the contour
+  std::array<std::string, 5> axis_units = {};  ///< of the contour
   double first = 0;                            ///< time at which the data begin
   double last = 0;                             ///< time at which the data end
   std::vector<TrackEvent> events = {};         ///< by time, then vertex
@@ -164,11 +164,11 @@ struct TrackOptions {
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (a sweep that maintains the components of the cut);
 /// M. Liversage, thesis, 1994, §10.2.9 to §10.2.11 (uses of cuts at any time).
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
 /// The same, in less time, with the contour's incidence. Errors: also InvalidArgument if it is another contour's.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] TrackGraph track(const Contour<N, Real>& contour, const Incidence<N>& incidence,
                                const TrackOptions& options = {});
 

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json coordinates(const TrackGraph& graph, const std::array<double, 3>& place) {
+Json coordinates(const TrackGraph& graph, const std::array<double, 4>& place) {
   return std::vector<double>(place.begin(), place.begin() + (graph.space_dim - 1));
 }
 
@@ -92,7 +92,7 @@ std::string axis_columns(const TrackGraph& graph, const std::string& prefix) {
   return text;
 }
 
-std::string axis_fields(const TrackGraph& graph, const std::array<double, 3>& place) {
+std::string axis_fields(const TrackGraph& graph, const std::array<double, 4>& place) {
   std::string text;
   for (int a = 0; a + 1 < graph.space_dim; ++a) text += fmt::format(",{}", place[a]);
   return text;

@@ -17,7 +17,7 @@
 namespace tegl::detail {
 
 /// Finds the (N-2)-faces that are in one simplex only. Each simplex lists its vertices in ascending order. Use one
-/// object per thread. N = 2, 3, 4.
+/// object per thread. N = 2 to 5; for N = 5 always by sorting.
 template <int N>
 class SingleFaces {
  public:
@@ -36,6 +36,8 @@ class SingleFaces {
   void visit(Index v, std::span<const Index> star, const OnSingle& on_single) {
     if constexpr (N == 2) {
       if (star.size() == 1) on_single(star[0], simplices_[star[0]][0] == v ? 1 : 0);
+    } else if constexpr (N == 5) {
+      sort_faces(v, star, on_single);
     } else if (is_counted(v, star)) {
       for (unsigned a = 0; a < numbers_.size(); ++a)
         for (Set rest = once_[a] & ~twice_[a]; rest != 0; rest &= rest - 1)

@@ -223,8 +223,8 @@ class Builder {
     }
   }
 
-  [[nodiscard]] std::array<double, 3> place(Index v) const {
-    std::array<double, 3> result{};
+  [[nodiscard]] std::array<double, 4> place(Index v) const {
+    std::array<double, 4> result{};
     for (int a = 0; a < contour_.last_axis(); ++a) result[a] = contour_.coordinate(v, a);
     return result;
   }
@@ -297,12 +297,12 @@ TrackGraph track_with(const Contour<N, Real>& contour, const detail::IncidenceDa
 }  // namespace
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
+requires DimensionBetween<N, 2, 5> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
   return track_with<N, Real>(contour, nullptr, options);
 }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const Incidence<N>& incidence,
+requires DimensionBetween<N, 2, 5> TrackGraph track(const Contour<N, Real>& contour, const Incidence<N>& incidence,
                                                     const TrackOptions& options) {
   return track_with<N, Real>(contour, &incidence.data(), options);
 }
@@ -342,7 +342,7 @@ TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep)
   return result;
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                 \
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                            \
   template TrackGraph track(const Contour<N, Real>&, const TrackOptions&); \
   template TrackGraph track(const Contour<N, Real>&, const Incidence<N>&, const TrackOptions&);
 #include "base/instantiate.hpp"

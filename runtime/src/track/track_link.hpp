@@ -251,6 +251,8 @@ class SweptComplex {
                   passages_[v] = {sides.below, simplices_[sides.below].front(), sides.growth, 0};
                   continue;
                 }
+            // In 5D the level set's Euler characteristic may change at the border; the sweep computes by how much.
+            if (N == 5 && in_border_[v] != 0) continue;
             if (!scratch.sides.are_connected(v, star(v))) continue;
             passages_[v] = count_cells(v);
             if constexpr (N == 4)

@@ -24,14 +24,14 @@ struct PartSums {
   double directed = 0;           ///< of a wrapped contour: as PieceSums::directed
   double measure = 0;
   double content = 0;
-  std::array<double, 3> moment{};
-  std::array<double, 3> lower{kFar, kFar, kFar};
-  std::array<double, 3> upper{-kFar, -kFar, -kFar};
+  std::array<double, 4> moment{};
+  std::array<double, 4> lower{kFar, kFar, kFar, kFar};
+  std::array<double, 4> upper{-kFar, -kFar, -kFar, -kFar};
 
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
   /// `dim`: number of coordinates. `origin`: the point that the sums are relative to.
-  [[nodiscard]] TrackSample to_sample(double time, int dim, const std::array<double, 3>& origin) const {
+  [[nodiscard]] TrackSample to_sample(double time, int dim, const std::array<double, 4>& origin) const {
     TrackSample sample;
     sample.time = time;
     sample.measure = measure;
@@ -62,8 +62,10 @@ class CutCell {
       for (int i = 0; i < D; ++i) points_[count_][i] = corners[a][i] + share * (corners[b][i] - corners[a][i]);
       ++count_;
     };
+    low_ = low;
     for (int a = 0; a < low; ++a)
-      for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // cyclic order of a quadrilateral
+      for (int b = 0; b < N - low; ++b)
+        point(a, a % 2 == 0 || N == 5 ? low + b : N - 1 - b);  // N = 4: cyclic order of a quadrilateral
   }
 
   /// `normal`: normal of the simplex towards the low side, of any length. `across`: of a wrapped contour, as in
@@ -104,10 +106,34 @@ class CutCell {
       }
       return {size, size > 0 ? Place(moment / size) : points_[0]};
     }
+    if constexpr (D == 4) {
+      double size = 0;
+      Place moment = Place::Zero();
+      const auto add = [&](int i, int j, int k, int l) {
+        Eigen::Matrix<double, 4, 3> edges;
+        edges << points_[j] - points_[i], points_[k] - points_[i], points_[l] - points_[i];
+        const double volume = std::sqrt(std::max(0.0, (edges.transpose() * edges).determinant())) / 6.0;
+        size += volume;
+        moment += volume / 4.0 * (points_[i] + points_[j] + points_[k] + points_[l]);
+      };
+      if (count_ == 4) {
+        add(0, 1, 2, 3);
+      } else if (low_ == 2) {  // a prism between the triangles 0, 1, 2 and 3, 4, 5
+        add(0, 1, 2, 5);
+        add(0, 1, 4, 5);
+        add(0, 3, 4, 5);
+      } else {  // a prism between the triangles 0, 2, 4 and 1, 3, 5
+        add(0, 2, 4, 5);
+        add(0, 2, 3, 5);
+        add(0, 1, 3, 5);
+      }
+      return {size, size > 0 ? Place(moment / size) : points_[0]};
+    }
   }
 
-  std::array<Place, 4> points_;
+  std::array<Place, D == 4 ? 6 : 4> points_;
   int count_ = 0;
+  int low_ = 0;
 };
 
 }  // namespace tegl::detail

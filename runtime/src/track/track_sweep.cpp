@@ -115,7 +115,7 @@ class Sweeper {
       growth_ += (simplex.front() == v ? 1 : 0) - (simplex.back() == v ? 1 : 0);
     }
     star_.load(v);
-    if (star_.parts_below() == 1 && star_.parts_above() == 1 && !(N == 4 && star_.at_border()))
+    if (star_.parts_below() == 1 && star_.parts_above() == 1 && !(N >= 4 && star_.at_border()))
       pass(v, find_incoming(v).front(), 0);
     else
       visit_special(v);
@@ -546,7 +546,7 @@ class Sweeper {
   std::vector<std::size_t> starts_;  ///< by time: first of its simplices in `starting_`
   std::vector<Index> starting_;
   std::vector<Index> cut_;  ///< simplices cut at the previous sample time
-  std::array<double, 3> origin_{};
+  std::array<double, 4> origin_{};
   std::optional<PointOf<N - 1>> across_;  ///< of a wrapped contour: as in PieceSums
   std::vector<Index> slots_;              ///< by arc: its position in `sums_`
   std::vector<std::pair<Index, PartSums>> sums_;
@@ -559,7 +559,7 @@ SweepResult sweep(const Contour<N, Real>& contour, const IncidenceData<N>* incid
   return Sweeper<N>(SimplexView<N>(contour), incidence, contour.direction, options).run();
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \
   template SweepResult sweep(const Contour<N, Real>&, const IncidenceData<N>*, const TrackOptions&);
 #include "base/instantiate.hpp"
 

@@ -257,6 +257,14 @@ TEST(TrackNoise, In3dAgreesWithEveryCut) {
   }
 }
 
+TEST(TrackNoise, In5dAgreesWithEveryCut) {
+  for (const bool close : {false, true}) {
+    const auto image = test::noise<float, 5>({3, 3, 3, 3, 4}, close ? 3 : 2);
+    const auto contour = extract<double>(view_of(image), 0.75, {.close = close});
+    expect_consistent(contour, expect_right(contour));
+  }
+}
+
 TEST(TrackNoise, In4dAgreesWithEveryCut) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE(seed);

@@ -119,6 +119,37 @@ TEST(Track, ABallIsBornAndDies) {
   EXPECT_THAT(graph.tracks[0].segments, ElementsAre(0));
 }
 
+/// Two balls in 4D whose centres approach each other along the first axis: they touch when each is a radius from the
+/// origin, at the parameter 0.5.
+TEST(Track, BlobsOf4dMergeOverTheFifthAxis) {
+  Grid<5> grid;
+  grid.axes[0] = Axis::uniform(15, -1.75, 0.25);
+  for (int a = 1; a < 4; ++a) grid.axes[a] = Axis::uniform(5, -1.0, 0.5);
+  grid.axes[4] = Axis::uniform(8, 0.0, 1.0 / 7);
+  const auto centre = [](double parameter) { return 1.0 - 0.8 * parameter; };
+  const auto image = test::sample_field<double, 5>(grid, [&](const Point<5>& p) {
+    const double across = std::hypot(p[1], p[2], p[3]);
+    return 0.6 - std::min(std::hypot(p[0] - centre(p[4]), across), std::hypot(p[0] + centre(p[4]), across));
+  });
+  TrackOptions options;
+  options.times = {0.3};
+  const TrackGraph graph = track(extract<double>(view_of(image), 0.0), options);
+  EXPECT_EQ(graph.space_dim, 5);
+  ASSERT_THAT(kinds(graph), ElementsAre(Kind::begin, Kind::begin, Kind::merge, Kind::end));
+  EXPECT_NEAR(graph.events[2].time, 0.5, 1e-9);
+  ASSERT_EQ(graph.segments.size(), 3u);
+  for (int s = 0; s < 2; ++s) {
+    ASSERT_EQ(graph.segments[s].samples.size(), 1u);
+    const TrackSample& sample = graph.segments[s].samples[0];
+    EXPECT_EQ(graph.segments[s].euler_at_start, 0);  // spheres of three dimensions
+    EXPECT_NEAR(std::abs(sample.centroid[0]), centre(0.3), 0.05);
+    EXPECT_NEAR(sample.upper[3], 0.6, 0.1);
+    EXPECT_NEAR(sample.measure, graph.segments[1 - s].samples[0].measure, 1e-6);
+    EXPECT_GT(sample.content, 0);
+  }
+  EXPECT_LT(graph.segments[0].samples[0].centroid[0] * graph.segments[1].samples[0].centroid[0], 0);
+}
+
 TEST(Track, ContentIsThatOfTheHighSideWhicheverWayTheContourFaces) {
   const auto image = test::sample_field<double, 4>(space_time<4>(12, 1.3, 12, -1.3, 1.3), [](const Point<4>& p) {
     return 0.2 - std::abs(0.6 - std::hypot(p[0], std::hypot(p[1], p[2], p[3])));
