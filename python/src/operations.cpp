@@ -283,21 +283,21 @@ py::tuple simplify_any(const AnyContour& contour, const py::dict& arguments, con
 template <int N>
 py::dict to_dict(const MergeReport<N>& report) {
   py::dict result;
-  put(result, "vertices_before", report.before.vertices);
-  put(result, "simplices_before", report.before.simplices);
-  put(result, "merged_vertices", report.merged_vertices);
-  put(result, "collapsed_simplices", report.collapsed_simplices);
-  put(result, "flat_simplices", report.flat_simplices);
-  put(result, "kept_flat_simplices", report.kept_flat_simplices);
-  put(result, "divided_simplices", report.divided_simplices);
-  put(result, "turned_simplices", report.turned_simplices);
-  put(result, "euler_before", report.euler_before);
-  put(result, "euler_after", report.euler_after);
-  put(result, "vanished_components", report.vanished_components);
+  put(result, "vertices_before", report.counts.before.vertices);
+  put(result, "simplices_before", report.counts.before.simplices);
+  put(result, "merged_vertices", report.counts.merged_vertices);
+  put(result, "collapsed_simplices", report.counts.collapsed_simplices);
+  put(result, "flat_simplices", report.counts.flat_simplices);
+  put(result, "kept_flat_simplices", report.counts.kept_flat_simplices);
+  put(result, "divided_simplices", report.counts.divided_simplices);
+  put(result, "turned_simplices", report.counts.turned_simplices);
+  put(result, "euler_before", report.counts.euler_before);
+  put(result, "euler_after", report.counts.euler_after);
+  put(result, "vanished_components", report.counts.vanished_components);
   put(result, "vanished", report.vanished);
-  put(result, "pinched_vertices", report.pinched_vertices);
+  put(result, "pinched_vertices", report.counts.pinched_vertices);
   put(result, "vertices", report.vertices);
-  put(result, "pinched_faces", report.pinched_faces);
+  put(result, "pinched_faces", report.counts.pinched_faces);
   put(result, "faces", report.faces);
   return result;
 }

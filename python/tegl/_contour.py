@@ -623,7 +623,7 @@ def components(contour: Contour, *, threads: int = 0, progress: Progress | None 
     return Contour.components(contour, threads=threads, progress=progress)
 
 
-@_arguments.documents("merge_vertices", "MergeReport")
+@_arguments.documents("merge_vertices", "MergeCounts", "MergeReport")
 def merge_vertices(contour: Contour, tolerance: float = 0.0, *, most_listed: int = 1000, threads: int = 0,
                    progress: Progress | None = None) -> tuple[Contour, MergeReport]:
     """A contour with vertices that coincide merged, without simplices of zero size, and a report of its pinches.

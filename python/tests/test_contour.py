@@ -330,6 +330,21 @@ def test_periodic_axes_by_name_number_and_period():
     assert edges(periodic=0, close=True) == 0 and edges(close=True) == 0
 
 
+@pytest.mark.parametrize("shape", [(6, 7), (5, 6, 7), (4, 5, 4, 5)])
+def test_cells_have_their_exact_volume(shape):
+    mask = np.random.default_rng(3).random(shape) < 0.4
+    spacing = [0.5, 2.0, 1.5, 0.25][:len(shape)]
+    contour = tegl.contour(mask, 1, samples="cells", spacing=spacing, dtype=np.float64)
+    assert contour.check().is_closed
+    assert contour.measure().content == pytest.approx(mask.sum() * np.prod(spacing))
+    smooth = tegl.contour(mask, 1, samples="cells", positions="relaxed")
+    assert smooth.check().is_closed and len(smooth.simplices) < len(contour.simplices)
+    with pytest.raises(ValueError, match="expected 'points' or 'cells'"):
+        tegl.contour(mask, 1, samples="boxes")
+    with pytest.raises(ValueError, match="periodic with samples"):
+        tegl.contour(mask, 1, samples="cells", periodic="all")
+
+
 def test_positions_of_masks():
     z, y, x = np.ogrid[-1:1:24j, -1:1:26j, -1:1:25j]
     mask = x**2 + y**2 + z**2 < 0.5

@@ -49,6 +49,17 @@ def test_a_contextual_filter_keeps_sides():
     np.testing.assert_array_equal(tegl.filter(mask, contextual=0.5) >= 0.5, mask == 1)
 
 
+def test_balls_shrink_by_curvature_flow():
+    z, y, x = np.ogrid[-10:10:41j, -12:12:49j, -11:11:45j]
+    distance = 8 - np.sqrt(x**2 + y**2 + z**2)
+    flow = tegl.filter(distance, curvature=6, spacing=0.5)
+    content = tegl.contour(flow, 0, spacing=0.5).measure().content
+    assert content == pytest.approx(4 / 3 * np.pi * (64 - 24)**1.5, rel=0.02)
+    assert np.array_equal(tegl.filter(distance, curvature=1.5, samples=True), tegl.filter(distance, curvature=1.5))
+    with pytest.raises(ValueError, match="the time of the flow is -1"):
+        tegl.filter(distance, curvature=-1)
+
+
 def test_borders_by_axis():
     array = np.arange(12.0).reshape(3, 4)
     found = tegl.filter(array, kernel=[[0, 0, 0], [0, 0, 1], [0, 0, 0]], border=("extended", "cyclic"))

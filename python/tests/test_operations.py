@@ -97,7 +97,7 @@ def test_what_is_no_cut_is_said(balls, arguments, text):
 
 def test_dimensions_that_there_are_not_are_said():
     flat, five = tegl.contour(ball(2), 0.0), tegl.contour(ball(5, 5), 0.0)
-    for contour, call in ((flat, lambda c: c.slice(1)), (five, lambda c: c.track()), (five, lambda c: c.simplify(ratio=0.5)),
+    for contour, call in ((flat, lambda c: c.slice(1)), (five, lambda c: c.simplify(ratio=0.5)),
                           (five, lambda c: c.to_vtk()), (five, lambda c: c.save("five.vtkhdf")), (flat, lambda c: tegl.measure(c, at=1))):
         with pytest.raises(ValueError, match=f"{contour.ndim}D contour; expected"):
             call(contour)
@@ -339,6 +339,25 @@ def test_normals_of_simplices_have_the_columns_of_vertices_wherever_they_go(tmp_
 
 
 # Simplification.
+
+def test_merged_vertices_and_their_report():
+    z, y, x = np.ogrid[0:7, 0:7, 0:13]
+    across = np.hypot(y - 3, z - 3)
+    touching = 2.3125 - np.minimum(np.hypot(x - 3.6875, across), np.hypot(x - 8.3125, across))  # in (3, 3, 6)
+    contour = tegl.contour(touching, 0.0, dtype=np.float64)
+    merged, report = contour.merge_vertices()
+    assert (report.pinched_vertices, report.pinched_faces, report.euler_before, report.euler_after) == (1, 0, 2, 3)
+    assert merged.vertices[report.vertices[0]].tolist() == [3, 3, 6]
+    assert len(merged.vertices) == report.vertices_before - report.merged_vertices
+    assert merged.measure().content == pytest.approx(contour.measure().content)
+    assert_same(tegl.merge_vertices(contour, 0.0, threads=1)[0], merged)
+    single = np.zeros((4, 5, 6))
+    single[1, 2, 3] = 1
+    nothing, report = tegl.contour(single, 1).merge_vertices(most_listed=5)
+    assert len(nothing.simplices) == 0 and report.vanished_components == 1 and report.vanished.tolist() == [[1, 2, 3]]
+    with pytest.raises(ValueError, match="the tolerance is -1; expected a finite number, 0 or more"):
+        contour.merge_vertices(-1)
+
 
 def test_simplification_takes_the_ratio_first():
     contour = tegl.contour(ball(3, 31), 0.0, dtype=np.float64)

@@ -16,7 +16,7 @@
 #include "base/units.hpp"
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
-#include "output/merging.hpp"
+#include "input/merging.hpp"
 #include "output/output.hpp"
 #include "tegl/intersections.hpp"
 

@@ -16,7 +16,8 @@
 namespace tegl::cli {
 
 /// Formats of images, for help and errors.
-inline constexpr const char* kImageFiles = ".nrrd, .nc (netCDF), which also holds uneven axes, or .vti (VTK) in 2D and 3D";
+inline constexpr const char* kImageFiles =
+    ".nrrd, .nc (netCDF), which also holds uneven axes, or .vti (VTK) in 2D and 3D";
 
 /// Throws WriteFailed unless `output` is probably writable as an image: a known extension, an existing writable folder,
 /// not a directory, not one of the inputs.

@@ -53,6 +53,51 @@ std::string fault_text(const MeshReport& report) {
   return text;
 }
 
+Json merge_json(const MergeSummary& summary) {
+  const MergeCounts& counts = summary.counts;
+  Json json;
+  json["tolerance"] = summary.tolerance;
+  json["vertices_before"] = counts.before.vertices;
+  json["simplices_before"] = counts.before.simplices;
+  json["merged_vertices"] = counts.merged_vertices;
+  json["collapsed_simplices"] = counts.collapsed_simplices;
+  json["flat_simplices"] = counts.flat_simplices;
+  json["kept_flat_simplices"] = counts.kept_flat_simplices;
+  json["divided_simplices"] = counts.divided_simplices;
+  json["turned_simplices"] = counts.turned_simplices;
+  json["euler_before"] = counts.euler_before;
+  json["euler_after"] = counts.euler_after;
+  json["vanished_components"] = counts.vanished_components;
+  json["vanished_at"] = summary.vanished;
+  json["pinched_vertices"] = counts.pinched_vertices;
+  json["pinched_at"] = summary.vertices;
+  json["pinched_faces"] = counts.pinched_faces;
+  json["faces_at"] = summary.faces;
+  return json;
+}
+
+std::string merge_text(const MergeSummary& summary) {
+  const MergeCounts& counts = summary.counts;
+  const int dim = summary.simplex_dim;
+  const std::uint64_t dropped = counts.collapsed_simplices + counts.flat_simplices;
+  std::string text = report_line(
+      "merged", fmt::format("{} of {}; {} without size dropped", grouped(counts.merged_vertices),
+                            counted(counts.before.vertices, "vertex", "vertices"), counted_simplices(dim, dropped)));
+  if (counts.pinched_vertices > 0)
+    text += report_line("pinched", dim == 1 ? counted(counts.pinched_vertices, "vertex", "vertices")
+                                            : fmt::format("{}, {} in more than two {}",
+                                                          counted(counts.pinched_vertices, "vertex", "vertices"),
+                                                          counted_simplices(dim - 1, counts.pinched_faces),
+                                                          dim == 2 ? "triangles" : "tetrahedra"));
+  if (counts.vanished_components > 0)
+    text += report_line("vanished",
+                        counted(counts.vanished_components, "component without size", "components without size"));
+  if (counts.turned_simplices > 0)
+    text += report_line("turned", fmt::format("{}; a smaller --merge-within turns fewer",
+                                              counted_simplices(dim, counts.turned_simplices)));
+  return text;
+}
+
 }  // namespace
 
 std::string report_line(std::string_view label, std::string_view value) {
@@ -183,7 +228,7 @@ Json to_json(const ContourResult& result) {
                     {"components", result.picked->components}};
   // mesh and times
   add_check_keys(json, result.size(), result.report);
-  json["merge"] = result.merging ? to_json(*result.merging) : Json(nullptr);
+  json["merge"] = result.merging ? merge_json(*result.merging) : Json(nullptr);
   json["vertices_together"] = result.lost.count();
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
   json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);
@@ -220,7 +265,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
   }
   // mesh, times, output
-  if (result.merging) text += to_text(*result.merging);
+  if (result.merging) text += merge_text(*result.merging);
   text += check_text(console, result.size(), result.report, result.wording);
   if (result.lost.count() > 0) text += report_line("in the file", console.red(result.lost.text()));
   text += report_line("seconds", seconds_text(result.seconds));

@@ -12,7 +12,7 @@
 #include "base/console.hpp"
 #include "base/exit_codes.hpp"
 #include "output/lost_vertices.hpp"
-#include "output/merging.hpp"
+#include "output/merge_summary.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io/meshes.hpp"

@@ -26,10 +26,8 @@ struct MergeOptions {
   WorkOptions work = {};           ///< threads, progress
 };
 
-/// What `merge_vertices` did, and the places where its result is no manifold. Vertex numbers are those of the result.
-template <int N>
-requires DimensionBetween<N, 2, 5>
-struct MergeReport {
+/// Counts of what `merge_vertices` did.
+struct MergeCounts {
   ContourSize before = {};                ///< size of the contour
   ContourSize after = {};                 ///< size of the result
   std::uint64_t merged_vertices = 0;      ///< vertices replaced by another one
@@ -44,13 +42,21 @@ struct MergeReport {
   std::int64_t euler_after = 0;        ///< Euler characteristic of the result
   /// Components all of whose simplices were dropped: a single sample that equals the isovalue has one.
   std::uint64_t vanished_components = 0;
-  std::vector<std::array<double, N>> vanished = {};  ///< the first `most_listed`: where they were
   /// Vertices whose link is neither a sphere nor a ball, among those that are merged or beside merged ones.
   std::uint64_t pinched_vertices = 0;
-  std::vector<Index> vertices = {};  ///< the first `most_listed`, ascending
   /// (N-2)-faces in more than two simplices, at these vertices: vertices in 2D, edges in 3D, triangles in 4D.
   std::uint64_t pinched_faces = 0;
-  std::vector<std::array<Index, N - 1>> faces = {};  ///< the first `most_listed`, in ascending order of vertices
+};
+
+/// What `merge_vertices` did, and the places where its result is no manifold. Vertex numbers are those of the result.
+/// Lists have the first MergeOptions::most_listed items.
+template <int N>
+requires DimensionBetween<N, 2, 5>
+struct MergeReport {
+  MergeCounts counts = {};                           ///< complete counts
+  std::vector<std::array<double, N>> vanished = {};  ///< places of the vanished components
+  std::vector<Index> vertices = {};                  ///< the pinched vertices, ascending
+  std::vector<std::array<Index, N - 1>> faces = {};  ///< the pinched faces, in ascending order of vertices
 };
 
 /// A contour with merged vertices.

@@ -59,10 +59,10 @@ class Merger {
   Merging<N, Real> run() {
     detail::CoincidentVertices<N, Real> coincident(contour_.vertices, least_tolerance());
     kept_ = coincident.find(progress(0.0, 0.3));
-    result_.report.before = {contour_.vertices.size(), contour_.simplices.size()};
+    result_.report.counts.before = {contour_.vertices.size(), contour_.simplices.size()};
     const detail::Stars before = detail::make_stars<N>(simplex_rows(contour_), contour_.vertices.size(),
                                                        options_.work.threads, progress(0.3, 0.4));
-    result_.report.euler_before = euler_of<N>(simplex_rows(contour_), before, work(0.4, 0.5));
+    result_.report.counts.euler_before = euler_of<N>(simplex_rows(contour_), before, work(0.4, 0.5));
     collapse();
     list_vanished();
     const Buffer<std::uint8_t> is_changed = make_contour();
@@ -90,24 +90,24 @@ class Merger {
   /// Makes the list of simplices that stay.
   void collapse() {
     MergeReport<N>& report = result_.report;
-    for (std::size_t v = 0; v < kept_.size(); ++v) report.merged_vertices += kept_[v] != v ? 1 : 0;
+    for (std::size_t v = 0; v < kept_.size(); ++v) report.counts.merged_vertices += kept_[v] != v ? 1 : 0;
     parts_.reserve(contour_.simplices.size());
     for (std::size_t s = 0; s < contour_.simplices.size(); ++s) {
       Simplex simplex = contour_.simplices[s];
       for (Index& v : simplex) v = kept_[v];
       if (detail::is_collapsed<N>(simplex.data())) {
-        ++report.collapsed_simplices;
+        ++report.counts.collapsed_simplices;
         continue;
       }
-      if (has_turned(contour_.simplices[s], simplex)) ++report.turned_simplices;
+      if (has_turned(contour_.simplices[s], simplex)) ++report.counts.turned_simplices;
       parts_.push_back({simplex, static_cast<Index>(s)});
     }
     if constexpr (N == 2) return;  // segments of zero length repeat a vertex
     detail::FlatDivision<N, Real> division(parts_, contour_.vertices);
     division.run();
-    report.flat_simplices = division.dropped();
-    report.kept_flat_simplices = division.left();
-    report.divided_simplices = division.divided();
+    report.counts.flat_simplices = division.dropped();
+    report.counts.kept_flat_simplices = division.left();
+    report.counts.divided_simplices = division.divided();
     std::erase_if(parts_, [](const Part& part) { return part.is_dropped; });
     std::stable_sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) { return a.origin < b.origin; });
   }
@@ -136,7 +136,7 @@ class Merger {
       const Index label = labels.vertices[v];
       if (label == kNoComponent || is_left[label] != 0 || is_listed[label] != 0) continue;
       is_listed[label] = 1;
-      ++result_.report.vanished_components;
+      ++result_.report.counts.vanished_components;
       if (result_.report.vanished.size() >= options_.most_listed) continue;
       auto& place = result_.report.vanished.emplace_back();
       for (int a = 0; a < N; ++a) place[a] = static_cast<double>(contour_.vertices[v][a]);
@@ -180,7 +180,7 @@ class Merger {
       if (changes)
         for (const Index v : result_.contour.simplices[s]) is_changed[v] = 1;
     }
-    result_.report.after = {vertices.size(), simplices.size()};
+    result_.report.counts.after = {vertices.size(), simplices.size()};
     parts_ = {};
     return is_changed;
   }
@@ -190,7 +190,7 @@ class Merger {
     const std::span<const Index> rows = simplex_rows(result_.contour);
     const std::size_t count = result_.contour.vertices.size();
     const detail::Stars stars = detail::make_stars<N>(rows, count, options_.work.threads, progress(0.65, 0.7));
-    report.euler_after = euler_of<N>(rows, stars, work(0.7, 0.8));
+    report.counts.euler_after = euler_of<N>(rows, stars, work(0.7, 0.8));
     const detail::SimplexComplex<N - 1> complex{rows, count};
     std::vector<Index> bad;
     std::mutex mutex;
@@ -208,7 +208,7 @@ class Merger {
           }
         });
     std::sort(bad.begin(), bad.end());
-    report.pinched_vertices = bad.size();
+    report.counts.pinched_vertices = bad.size();
     for (const Index v : bad) count_faces_at(v, stars.of(v));
     bad.resize(std::min(bad.size(), options_.most_listed));
     report.vertices = std::move(bad);
@@ -231,7 +231,7 @@ class Merger {
     for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
       while (j < faces.size() && faces[j] == faces[i]) ++j;
       if (j - i <= 2) continue;
-      ++result_.report.pinched_faces;
+      ++result_.report.counts.pinched_faces;
       if (result_.report.faces.size() < options_.most_listed) result_.report.faces.push_back(faces[i]);
     }
   }

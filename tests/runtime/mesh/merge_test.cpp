@@ -107,14 +107,14 @@ Merging<N, Real> expect_merged(Contour<N, Real> contour, double tolerance) {
     for (const Index v : simplex) left.insert(kept[v]);
     collapsed += left.size() < N ? 1 : 0;
   }
-  EXPECT_EQ(report.merged_vertices, merged);
-  EXPECT_EQ(report.collapsed_simplices, collapsed);
-  EXPECT_EQ(report.before.vertices, contour.vertices.size());
-  EXPECT_EQ(report.before.simplices, contour.simplices.size());
-  EXPECT_EQ(report.after.vertices, merging.contour.vertices.size());
-  EXPECT_EQ(report.after.simplices, merging.contour.simplices.size());
-  if (report.flat_simplices == 0) {
-    EXPECT_EQ(report.after.simplices, report.before.simplices - collapsed);
+  EXPECT_EQ(report.counts.merged_vertices, merged);
+  EXPECT_EQ(report.counts.collapsed_simplices, collapsed);
+  EXPECT_EQ(report.counts.before.vertices, contour.vertices.size());
+  EXPECT_EQ(report.counts.before.simplices, contour.simplices.size());
+  EXPECT_EQ(report.counts.after.vertices, merging.contour.vertices.size());
+  EXPECT_EQ(report.counts.after.simplices, merging.contour.simplices.size());
+  if (report.counts.flat_simplices == 0) {
+    EXPECT_EQ(report.counts.after.simplices, report.counts.before.simplices - collapsed);
     for (std::size_t s = 0; s < merging.contour.simplices.size(); ++s) {
       const auto origin = static_cast<std::size_t>(merging.contour.simplex_attributes[0].values[s]);
       for (int j = 0; j < N; ++j)
@@ -123,14 +123,14 @@ Merging<N, Real> expect_merged(Contour<N, Real> contour, double tolerance) {
     }
   }
   // invariants
-  EXPECT_EQ(report.euler_before, euler_by_definition(contour));
-  EXPECT_EQ(report.euler_after, euler_by_definition(merging.contour));
+  EXPECT_EQ(report.counts.euler_before, euler_by_definition(contour));
+  EXPECT_EQ(report.counts.euler_after, euler_by_definition(merging.contour));
   const MeshReport checked = check(merging.contour);
-  EXPECT_EQ(report.pinched_vertices, checked.bad_links);
+  EXPECT_EQ(report.counts.pinched_vertices, checked.bad_links);
   EXPECT_EQ(report.vertices.size(), checked.bad_links);
-  EXPECT_EQ(report.pinched_faces, checked.nonmanifold_simplices);
+  EXPECT_EQ(report.counts.pinched_faces, checked.nonmanifold_simplices);
   EXPECT_EQ(checked.unused_vertices, 0u);
-  EXPECT_EQ(checked.degenerate_simplices, report.kept_flat_simplices);
+  EXPECT_EQ(checked.degenerate_simplices, report.counts.kept_flat_simplices);
   std::vector<std::array<Index, N - 1>> pinched;
   for (const auto& [face, counts] : incidences(merging.contour)) {
     EXPECT_EQ(counts.first % 2, 0) << "an odd number of simplices";
@@ -140,7 +140,7 @@ Merging<N, Real> expect_merged(Contour<N, Real> contour, double tolerance) {
   EXPECT_EQ(pinched, report.faces);
   // nothing with a size is lost
   if (tolerance == 0.0) {
-    EXPECT_EQ(report.turned_simplices, 0u);
+    EXPECT_EQ(report.counts.turned_simplices, 0u);
     EXPECT_NEAR(tegl::measure(merging.contour).size, tegl::measure(contour).size, 1e-6 * tegl::measure(contour).size);
     EXPECT_NEAR(tegl::measure(merging.contour).content.value_or(0), tegl::measure(contour).content.value_or(0),
                 1e-6 * tegl::measure(contour).size);
@@ -171,11 +171,11 @@ void expect_pinch_of_balls() {
   const auto image = touching_balls<N>();
   const auto contour = extract<double>(image.view(), 0.0);
   const auto [merged, report] = expect_merged(contour, 0.0);
-  EXPECT_EQ(report.pinched_vertices, 1u);
-  EXPECT_EQ(report.pinched_faces, N == 2 ? 1u : 0u);  // in 2D the vertex is the face
+  EXPECT_EQ(report.counts.pinched_vertices, 1u);
+  EXPECT_EQ(report.counts.pinched_faces, N == 2 ? 1u : 0u);  // in 2D the vertex is the face
   // a sphere becomes two spheres with a common point
-  EXPECT_EQ(report.euler_before, N % 2 == 1 ? 2 : 0);
-  EXPECT_EQ(report.euler_after, N % 2 == 1 ? 3 : -1);
+  EXPECT_EQ(report.counts.euler_before, N % 2 == 1 ? 2 : 0);
+  EXPECT_EQ(report.counts.euler_after, N % 2 == 1 ? 3 : -1);
   std::array<double, N> touch;
   touch.fill(3.0);
   touch[0] = 6.0;
@@ -202,8 +202,8 @@ void expect_double_sheet() {
   const auto [merged, report] = expect_merged(contour, 0.0);
   std::uint64_t samples = 1;
   for (int a = 1; a < N; ++a) samples *= 6;
-  EXPECT_EQ(report.after.vertices, samples);
-  EXPECT_EQ(report.vanished_components, 0u);
+  EXPECT_EQ(report.counts.after.vertices, samples);
+  EXPECT_EQ(report.counts.vanished_components, 0u);
   const double size = std::pow(5.0, N - 1);
   EXPECT_NEAR(tegl::measure(merged).size, 2 * size, 1e-4 * size);
 }
@@ -219,10 +219,10 @@ TEST(Merge, AllPlacesOfVanishedPartsAreListed) {
   image.values[2 + 5 * (2 + 5 * 2)] = 7;
   const auto [merged, report] = expect_merged(extract<float>(image.view(), 7.0), 0.0);
   EXPECT_TRUE(merged.vertices.empty());
-  EXPECT_EQ(report.vanished_components, 1u);
+  EXPECT_EQ(report.counts.vanished_components, 1u);
   EXPECT_EQ(report.vanished.at(0), (std::array{2.0, 2.0, 2.0}));
-  EXPECT_EQ(report.euler_before, 2);
-  EXPECT_EQ(report.euler_after, 0);
+  EXPECT_EQ(report.counts.euler_before, 2);
+  EXPECT_EQ(report.counts.euler_after, 0);
 }
 
 template <Value T, int N>
@@ -248,7 +248,7 @@ std::uint64_t expect_integers(std::size_t size, unsigned seed) {
   for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
     for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::saddle}) {
       const auto contour = extract<double>(image.view(), 2.0, {.triangulation = triangulation, .ambiguity = ambiguity});
-      pinches += expect_merged(contour, 0.0).report.pinched_vertices;
+      pinches += expect_merged(contour, 0.0).report.counts.pinched_vertices;
     }
   return pinches;
 }
