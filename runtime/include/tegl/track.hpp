@@ -62,8 +62,8 @@ struct TrackHandle {
 struct TrackSample {
   double time = 0;     ///< the value of the last coordinate
   double measure = 0;  ///< area; N = 5: volume; N = 3: length; N = 2: number of points
-  /// Enclosed volume (N = 5: 4-volume; N = 3: area), negative for a cavity. NaN if the part is open, for instance at the image border,
-  /// and for N = 2.
+  /// Enclosed volume (N = 5: 4-volume; N = 3: area), negative for a cavity. NaN if the part is open, for instance at
+  /// the image border, and for N = 2.
   double content = std::numeric_limits<double>::quiet_NaN();
   std::array<double, 4> centroid{};  ///< of the surface, weighted by area
   std::array<double, 4> lower{};     ///< minimum corner of the bounding box
