@@ -133,7 +133,7 @@ struct TrackOptions {
 [[nodiscard]] std::vector<double> even_times(double first, double last, std::size_t count);
 
 /// Follows the parts (connected components) of the cuts {last coordinate = t} of a contour for increasing t. N = 4:
-/// parts of moving surfaces; N = 3: parts of moving lines.
+/// parts of moving surfaces; N = 3: parts of moving lines; N = 5: parts of 4D contours over a parameter or a scale.
 ///
 /// The result is exactly the Reeb graph of the last coordinate t on the contour. Between two events, each segment is
 /// one component of the slice at t for every t; events are vertices of the contour, at their own t. A vertex can
