@@ -47,7 +47,9 @@ class CoincidentVertices {
   /// Boxes are twice the tolerance wide, so that the places within the tolerance lie in two boxes along each axis at
   /// most.
   [[nodiscard]] double along(double x) const noexcept {
-    return tolerance_ == 0.0 ? x : std::floor(x / (2.0 * tolerance_));
+    if (tolerance_ == 0.0) return x;
+    const double box = std::floor(x / (2.0 * tolerance_));
+    return std::isfinite(box) ? box : x;  // of a tolerance below the precision of numbers
   }
 
   [[nodiscard]] std::size_t slot(const Box& box) const noexcept {
