@@ -56,3 +56,9 @@ def test_docstrings_of_what_is_gone_fail_the_build(line, text, tmp_path):
         assert done.returncode == 0 and "How large a contour is." in (tmp_path / "docs.hpp").read_text()
     else:
         assert done.returncode != 0 and text in done.stderr and not (tmp_path / "docs.hpp").exists()
+
+
+def test_a_figure_of_the_thesis_is_drawn(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(pathlib.Path(tegl.__file__).parents[1])}
+    subprocess.run([sys.executable, SOURCE / "scripts/thesis_figures", "9.2", tmp_path], env=environment, check=True)
+    assert (tmp_path / "thesis_9_2.svg").read_bytes() == (SOURCE / "docs/images/thesis_9_2.svg").read_bytes()
