@@ -49,10 +49,12 @@ OwnedImage<std::uint8_t, N> mask(std::size_t size, const F& is_high) {
                                              [&](const Point<N>& x) { return is_high(x) ? 1.0 : 0.0; });
 }
 
-/// Sums of squared distances of vertices from a plane.
+/// Sums of squared distances of vertices from a plane, and from the parallel plane in the middle of all that give the
+/// same samples.
 struct Distances {
-  double sum = 0, count = 0;
+  double sum = 0, from_middle = 0, count = 0;
   [[nodiscard]] double root_mean_square() const { return std::sqrt(sum / count); }
+  [[nodiscard]] double root_mean_square_from_middle() const { return std::sqrt(from_middle / count); }
 };
 
 template <int N>
@@ -65,38 +67,54 @@ void add_plane(const Point<N>& normal, double offset, std::size_t size, Position
   };
   const auto image = mask<N>(size, [&](const Point<N>& x) { return height(x) >= 0; });
   const auto contour = extract_placed<double>(image.view(), 0.5, by(rule));
+  double lowest_high = std::numeric_limits<double>::infinity(), highest_low = -lowest_high;
+  test::for_each_sample<N>(image.grid, [&](std::size_t, const std::array<std::size_t, N>& x) {
+    const double h = height(x);
+    if (h >= 0)
+      lowest_high = std::min(lowest_high, h);
+    else
+      highest_low = std::max(highest_low, h);
+  });
+  const double in_the_middle = 0.5 * (lowest_high + highest_low);
   for (const auto& vertex : contour.vertices) {
     bool inner = true;
     for (const double x : vertex) inner = inner && std::abs(x - middle) < 0.8 * middle;
     if (!inner) continue;
-    distances.sum += height(vertex) * height(vertex);
+    const double h = height(vertex);
+    distances.sum += h * h;
+    distances.from_middle += (h - in_the_middle) * (h - in_the_middle);
     ++distances.count;
   }
 }
 
 void measure_planes(bool quick) {
   std::printf("root mean square distance from tilted lines and planes of binary samples, in voxels\n");
-  std::printf("rule,15 degrees,worst of 1 to 89 degrees except 45,at degrees,45 degrees,planes: mean,planes: worst\n");
+  std::printf("rule,15 degrees,worst of 1 to 89 degrees except 45,at degrees,45 degrees,planes: mean,planes: worst,");
+  std::printf("from the middle of the lines with these samples: worst,45 degrees,planes: worst\n");
   const std::size_t lines = quick ? 100 : 400, planes = quick ? 24 : 96;
   const std::array offsets = {0.0, 0.13, 0.29, 0.41, 0.57, 0.73, 0.88};
   for (const auto& [rule, name] : kOfMasks) {
-    double at_15 = 0, at_45 = 0, worst = 0;
+    double at_15 = 0, at_45 = 0, worst = 0, middle_at_45 = 0, worst_from_middle = 0;
     int worst_degrees = 0;
     for (int degrees = 1; degrees < 90; degrees += quick ? 7 : 1) {
       const double angle = degrees * std::numbers::pi / 180;
+      // exactly equal at 45 degrees, so that samples on the line are all high
+      const Point<2> normal = {degrees == 45 ? std::sqrt(0.5) : std::sin(angle),
+                               degrees == 45 ? std::sqrt(0.5) : std::cos(angle)};
       Distances distances;
-      for (const double offset : offsets)
-        add_plane<2>({std::sin(angle), std::cos(angle)}, offset, lines, rule, distances);
+      for (const double offset : offsets) add_plane<2>(normal, offset, lines, rule, distances);
       const double error = distances.root_mean_square();
       if (degrees == 15) at_15 = error;
       if (degrees == 45) at_45 = error;
+      if (degrees == 45) middle_at_45 = distances.root_mean_square_from_middle();
+      worst_from_middle = std::max(worst_from_middle, distances.root_mean_square_from_middle());
       if (degrees != 45 && error > worst) {
         worst = error;
         worst_degrees = degrees;
       }
     }
     std::mt19937_64 random(1994);
-    double sum = 0, worst_plane = 0;
+    double sum = 0, worst_plane = 0, worst_plane_from_middle = 0;
     const int count = quick ? 3 : 100;
     for (int i = 0; i < count; ++i) {
       Point<3> normal;
@@ -113,8 +131,10 @@ void measure_planes(bool quick) {
       add_plane<3>(normal, offsets[static_cast<std::size_t>(i) % offsets.size()], planes, rule, distances);
       sum += distances.root_mean_square();
       worst_plane = std::max(worst_plane, distances.root_mean_square());
+      worst_plane_from_middle = std::max(worst_plane_from_middle, distances.root_mean_square_from_middle());
     }
-    std::printf("%s,%.3f,%.3f,%d,%.3f,%.3f,%.3f\n", name, at_15, worst, worst_degrees, at_45, sum / count, worst_plane);
+    std::printf("%s,%.3f,%.3f,%d,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name, at_15, worst, worst_degrees, at_45,
+                sum / count, worst_plane, worst_from_middle, middle_at_45, worst_plane_from_middle);
   }
 }
 

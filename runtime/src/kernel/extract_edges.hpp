@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "image/vertex_moves.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
 #include "kernel/placement.hpp"
@@ -52,7 +53,12 @@ class EdgeWriter {
   using Firsts = std::array<Index, N>;
 
   EdgeWriter(const EdgeCrossings<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
-      : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
+      : source_(source),
+        moves_(dynamic_cast<const VertexMoves<N>*>(&source)),
+        placement_(placement),
+        shape_(shape),
+        strides_(source.strides()),
+        full_(full(shape.size(0))) {
     for (int a = 0; a < N; ++a) lists_[a].allocate(shape.size(0), a > 0 && a + 1 < N);
     segments_.reserve(most_segments(shape.size(0)));  // nothing may throw after construction
     if (placement.normals() == nullptr) return;
@@ -256,7 +262,20 @@ class EdgeWriter {
     points.end = list.end.data();
     points.out = out;
     placement_.edges(layer, points);
+    if (moves_ != nullptr) move_points(axis, edges, list.alphas.data(), out);
     return edges;
+  }
+
+  void move_points(int axis, const EdgesInRows& edges, const double* alphas, Vertex* out) const noexcept {
+    std::array<std::array<double, N>, kWordBits> moves;
+    for (std::size_t first = 0; first < edges.count; first += kWordBits) {
+      const std::size_t count = std::min(kWordBits, edges.count - first);
+      moves_->find_moves(run(axis).layer, axis, {edges.rows + first, edges.at + first, count}, alphas + first,
+                         moves.data());
+      Real* const to = out[first].data();
+      const double* const by = moves[0].data();
+      for (std::size_t i = 0; i < count * N; ++i) to[i] = static_cast<Real>(to[i] + by[i]);
+    }
   }
 
   /// Computes the normals of a piece after make_points.
@@ -295,6 +314,7 @@ class EdgeWriter {
   }
 
   const EdgeCrossings<N>& source_;
+  const VertexMoves<N>* moves_;  ///< null: vertices stay on their edges
   const Placement<N, Real>& placement_;
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;

@@ -35,24 +35,49 @@ class ContourNet {
     [[nodiscard]] Number point() const noexcept { return bits & (CriticalEdges<N>::kMost - 1); }
   };
 
-  ContourNet(const CriticalEdges<N>& edges, JoinsHigh<N> joins_high, unsigned threads);
+  /// `signs` and `edges` must be of the same samples; only `edges` must outlive this object.
+  ContourNet(const SampleSigns<N>& signs, const CriticalEdges<N>& edges, JoinsHigh<N> joins_high, unsigned threads);
 
   [[nodiscard]] const CriticalEdges<N>& edges() const noexcept { return edges_; }
   [[nodiscard]] Number size() const noexcept { return edges_.count(); }
   /// The neighbour of a point in curve c, on the side of decreasing (0) or increasing (1) coordinates of the other
   /// axis.
   [[nodiscard]] Link link(Number point, int c, int side) const noexcept {
-    return links_[(std::size_t{point} * kCurves + static_cast<std::size_t>(c)) * 2 + static_cast<std::size_t>(side)];
+    return link(place(point, c), static_cast<unsigned>(side));
   }
+  /// The place of a point's curve among all, by curve and then by point.
+  [[nodiscard]] std::size_t place(Number point, int c) const noexcept {
+    return static_cast<std::size_t>(c) * size() + point;
+  }
+  [[nodiscard]] Link link(std::size_t place, unsigned side) const noexcept { return links_[place * 2 + side]; }
   /// The other axis of curve c of a point on an edge along `axis`, and the inverse.
   static constexpr int other_axis(int axis, int c) noexcept { return c < axis ? c : c + 1; }
   static constexpr int curve_of(int axis, int other) noexcept { return other < axis ? other : other - 1; }
 
  private:
-  void link_row(int axis, std::size_t row, JoinsHigh<N> joins_high);
-
   const CriticalEdges<N>& edges_;
   Buffer<Link> links_;
 };
+
+/// What the links of a net are made from, and where they go.
+template <int N>
+struct NetRows {
+  const SampleSigns<N>& signs;
+  const CriticalEdges<N>& edges;
+  JoinsHigh<N> joins_high;
+  typename ContourNet<N>::Link* links;
+};
+
+/// Writes the links of all points on edges along `axis` in some rows (net_rows.cpp).
+template <int N>
+void link_rows(const NetRows<N>& net, int axis, std::size_t from, std::size_t end) noexcept;
+template <>
+void link_rows<2>(const NetRows<2>& net, int axis, std::size_t from, std::size_t end) noexcept;
+template <>
+void link_rows<3>(const NetRows<3>& net, int axis, std::size_t from, std::size_t end) noexcept;
+template <>
+void link_rows<4>(const NetRows<4>& net, int axis, std::size_t from, std::size_t end) noexcept;
+template <>
+void link_rows<5>(const NetRows<5>& net, int axis, std::size_t from, std::size_t end) noexcept;
 
 }  // namespace tegl::detail

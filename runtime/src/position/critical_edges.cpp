@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Numbers the critical edges of an image (see critical_edges.hpp).
+// Lists the critical edges of an image (see critical_edges.hpp).
 #include "position/critical_edges.hpp"
 
 #include <algorithm>
@@ -40,39 +40,45 @@ SampleSigns<N>::SampleSigns(const SampleClassifier<N>& samples, const Index& siz
 }
 
 template <int N>
-CriticalEdges<N>::CriticalEdges(const SampleClassifier<N>& samples, const Index& sizes, unsigned threads)
-    : SampleSigns<N>(samples, sizes, threads) {
-  const std::size_t rows = this->rows(), words = this->words();
-  // count by word, then sum over the words of a row and over all rows
+CriticalEdges<N>::CriticalEdges(const SampleSigns<N>& signs, unsigned threads) {
+  const std::size_t rows = signs.rows(), words = signs.words();
+  const auto in_grid = [&](int axis, std::size_t row) {
+    return axis == 0 || row / signs.stride(axis) % signs.sizes()[axis] + 1 < signs.sizes()[axis];
+  };
+  // count by row, then sum over all rows
   std::uint64_t total = 0;
   for (int a = 0; a < N; ++a) {
-    prefix_[a].resize(rows * words);
-    std::vector<std::uint64_t> of_row(rows);
+    first_[a].resize(rows + 1);
     for_each_part(rows, threads, {}, [&](std::size_t from, std::size_t end) {
       for (std::size_t row = from; row < end; ++row) {
-        const bool in_grid = a == 0 || row / this->stride(a) % sizes[a] + 1 < sizes[a];
         Number sum = 0;
-        for (std::size_t w = 0; w < words; ++w) {
-          prefix_[a][row * words + w] = sum;
-          sum += static_cast<Number>(std::popcount(this->critical(a, row, w, in_grid)));
-        }
-        of_row[row] = sum;
+        if (in_grid(a, row))
+          for (std::size_t w = 0; w < words; ++w)
+            if (const Word bits = signs.critical(a, row, w, true); bits != 0)
+              sum += static_cast<Number>(std::popcount(bits));
+        first_[a][row] = sum;
       }
     });
-    first_[a] = static_cast<Number>(total);
-    for (std::uint64_t& count : of_row) {
+    for (Number& first : first_[a]) {
       const std::uint64_t before = total;
-      total += count;
-      count = before;
+      total += first;
+      first = static_cast<Number>(before);
+      if (total > kMost)
+        throw Error(ErrorCode::TooLarge, fmt::format("{} critical edges or more; expected at most {}", total, kMost));
     }
-    if (total > kMost)
-      throw Error(ErrorCode::TooLarge, fmt::format("{} critical edges or more; expected at most {}", total, kMost));
-    for_each_part(rows, threads, {}, [&](std::size_t from, std::size_t end) {
-      for (std::size_t row = from; row < end; ++row)
-        for (std::size_t w = 0; w < words; ++w) prefix_[a][row * words + w] += static_cast<Number>(of_row[row]);
-    });
   }
-  count_ = static_cast<Number>(total);
+  // list
+  at_.resize(total);
+  for (int a = 0; a < N; ++a)
+    for_each_part(rows, threads, {}, [&](std::size_t from, std::size_t end) {
+      for (std::size_t row = from; row < end; ++row) {
+        if (!has_edges(a, row)) continue;
+        std::uint32_t* at = at_.data() + first_[a][row];
+        for (std::size_t w = 0; w < words; ++w)
+          for (Word rest = signs.critical(a, row, w, true); rest != 0; rest &= rest - 1)
+            *at++ = static_cast<std::uint32_t>(w * kWordBits) + static_cast<std::uint32_t>(std::countr_zero(rest));
+      }
+    });
 }
 
 template class SampleSigns<2>;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The critical edges of an image (edges of the grid with one high and one low end), numbered without a list: bits of
-// the samples and prefix sums of bit counts.
+// The critical edges of an image: edges of the grid with one high and one low end.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -12,6 +12,7 @@
 
 #include "image/bitplanes.hpp"
 #include "image/sample_source.hpp"
+#include "tegl/contour.hpp"
 
 namespace tegl::detail {
 
@@ -46,6 +47,13 @@ class SampleSigns {
   [[nodiscard]] bool is_missing(std::size_t row, std::size_t i) const noexcept {
     return !missing_.empty() && bit(missing_, row, i);
   }
+  /// The bits of the high samples of a row, and a word of zeros after them.
+  [[nodiscard]] const Word* high(std::size_t row) const noexcept { return high_.data() + row * (words_ + 1); }
+  [[nodiscard]] bool any_missing() const noexcept { return !missing_.empty(); }
+  /// Bits of the missing samples of a word.
+  [[nodiscard]] Word missing(std::size_t row, std::size_t w) const noexcept {
+    return missing_.empty() ? 0 : missing_[row * (words_ + 1) + w];
+  }
   /// Bits of the critical edges along `axis` that start at the 64 samples of a word. `in_grid`: whether the row has a
   /// neighbour along the axis (ignored for axis 0).
   [[nodiscard]] Word critical(int axis, std::size_t row, std::size_t w, bool in_grid) const noexcept {
@@ -63,7 +71,7 @@ class SampleSigns {
   }
 
  private:
-  [[nodiscard]] bool bit(const std::vector<Word>& bits, std::size_t row, std::size_t i) const noexcept {
+  [[nodiscard]] bool bit(const Buffer<Word>& bits, std::size_t row, std::size_t i) const noexcept {
     return (bits[row * (words_ + 1) + i / kWordBits] >> (i % kWordBits) & 1u) != 0;
   }
   /// Edges along axis 0 that start at the samples of word w.
@@ -77,38 +85,45 @@ class SampleSigns {
   std::array<std::size_t, N> strides_{};
   std::size_t rows_ = 1;
   std::size_t words_;
-  std::vector<Word> high_;     ///< rows x (words + 1); the last word of a row is 0
-  std::vector<Word> missing_;  ///< as high_; empty if no sample is missing
+  Buffer<Word> high_;     ///< rows x (words + 1); the last word of a row is 0
+  Buffer<Word> missing_;  ///< as high_; empty if no sample is missing
 };
 
-/// The critical edges of an image without missing ends. Edges are numbered by axis, then by row, then along the row.
-/// Memory: N/16 bytes per sample beside those of SampleSigns.
+/// The critical edges of an image without missing ends, listed by axis, then by row, then along the row. Memory: 4 N
+/// bytes per row and 4 bytes per edge.
 template <int N>
-class CriticalEdges : public SampleSigns<N> {
+class CriticalEdges {
  public:
-  using typename SampleSigns<N>::Index;
   using Number = std::uint32_t;
 
-  /// As SampleSigns. Throws TooLarge for more than kMost edges.
-  CriticalEdges(const SampleClassifier<N>& samples, const Index& sizes, unsigned threads);
+  /// Throws TooLarge for more than kMost edges. `threads`: 0 for all of the machine.
+  CriticalEdges(const SampleSigns<N>& signs, unsigned threads);
 
   static constexpr Number kMost = Number{1} << 30;
 
-  [[nodiscard]] Number count() const noexcept { return count_; }
+  [[nodiscard]] Number count() const noexcept { return static_cast<Number>(at_.size()); }
   /// Number of the first edge along `axis`; `axis` = N: the number of edges.
-  [[nodiscard]] Number first(int axis) const noexcept { return axis < N ? first_[axis] : count_; }
-  /// Number of the critical edge along `axis` from sample i of a row.
-  [[nodiscard]] Number number(int axis, std::size_t row, std::size_t i) const noexcept {
-    const std::size_t w = i / kWordBits;
-    const Word below = (Word{1} << (i % kWordBits)) - 1;
-    return prefix_[axis][row * this->words() + w] +
-           static_cast<Number>(std::popcount(this->critical(axis, row, w, true) & below));
+  [[nodiscard]] Number first(int axis) const noexcept { return axis < N ? first_[axis].front() : count(); }
+  /// Number of the first edge along `axis` in a row.
+  [[nodiscard]] Number first_in_row(int axis, std::size_t row) const noexcept { return first_[axis][row]; }
+  [[nodiscard]] bool has_edges(int axis, std::size_t row) const noexcept {
+    return first_[axis][row] != first_[axis][row + 1];
+  }
+  /// Number of the edge along `axis` from sample i of a row, which must be critical.
+  [[nodiscard]] Number number(int axis, std::size_t row, std::uint32_t i) const noexcept {
+    const auto from = at_.begin() + first_[axis][row], end = at_.begin() + first_[axis][row + 1];
+    return static_cast<Number>(std::lower_bound(from, end, i) - at_.begin());
+  }
+  /// As `number`, if the edge comes after edge `before` of the same row.
+  [[nodiscard]] Number number_after(Number before, std::uint32_t i) const noexcept {
+    do ++before;
+    while (at_[before] != i);
+    return before;
   }
 
  private:
-  std::array<std::vector<Number>, N> prefix_;  ///< by axis, row and word: number of the first edge
-  std::array<Number, N> first_{};
-  Number count_ = 0;
+  std::array<std::vector<Number>, N> first_;  ///< by axis and row, and the end of the last row
+  Buffer<std::uint32_t> at_;                  ///< by edge: its first sample in its row
 };
 
 }  // namespace tegl::detail

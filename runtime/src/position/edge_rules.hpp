@@ -23,16 +23,15 @@
 
 namespace tegl::detail {
 
-/// Edges that a rule gets at a time.
-inline constexpr std::size_t kMostEdgesAtOnce = 80;  // those of a 5-cube
-
 /// Linear interpolation of a second image, clamped to the sides of the samples.
 template <int N>
 class FilteredPositions final : public PositionsOnEdges<N> {
  public:
   /// `values`: axis 0 fastest. `epsilon`: as for `edge_alphas`.
-  FilteredPositions(const SampleSource<N>& samples, const Grid<N>& grid, std::span<const float> values, double epsilon)
+  FilteredPositions(const SampleSource<N>& samples, StartsHigh starts_high, const Grid<N>& grid,
+                    std::span<const float> values, double epsilon)
       : samples_(samples),
+        starts_high_(starts_high),
         values_(values),
         isovalue_(samples.isovalue()),
         below_(std::nextafter(isovalue_, -std::numeric_limits<double>::infinity())),
@@ -44,34 +43,49 @@ class FilteredPositions final : public PositionsOnEdges<N> {
     }
   }
 
-  void find(const GridEdge<N>* edges, std::size_t count, double* out) const noexcept override {
+  void find(const LayerEdges<N>& edges, double* out) const noexcept override {
+    constexpr std::size_t kMost = LayerEdges<N>::kMost;
     static constexpr auto kInOrder = [] {
-      std::array<std::uint32_t, kMostEdgesAtOnce> result{};
+      std::array<std::uint32_t, kMost> result{};
       std::iota(result.begin(), result.end(), 0u);
       return result;
     }();
-    static constexpr std::array<std::ptrdiff_t, kMostEdgesAtOnce> kOneRow{};
-    std::array<double, kMostEdgesAtOnce> from, to;
+    static constexpr std::array<std::ptrdiff_t, kMost> kOneRow{};
+    const std::size_t count = edges.edges.count;
+    // read both ends
+    std::array<double, kMost> from, to;
+    bool any_nan = false;
     for (std::size_t i = 0; i < count; ++i) {
-      std::size_t at = 0;
-      for (int a = 0; a < N; ++a) at += edges[i].start[a] * strides_[a];
-      const bool high = samples_.is_high(edges[i].start);
-      from[i] = clamped(edges[i].start, at, high);
-      SampleIndex<N> end = edges[i].start;
-      end[edges[i].axis] += 1;
-      to[i] = clamped(end, at + strides_[edges[i].axis], !high);
+      const float* const at = values_.data() + edges.row_of_all(i) * edges.rows.row_size() + edges.edges.at[i];
+      from[i] = at[0];
+      to[i] = at[strides_[edges.axis]];
+      any_nan |= std::isnan(from[i] + to[i]);
+    }
+    if (any_nan) replace_nans(edges, from.data(), to.data());
+    // clamp: the first end to the side of the higher or of the lower values, the second end to the other side
+    const Word high = starts_high_(edges.k, edges.edges);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_high = (high >> i & 1u) != 0;
+      const double first = from[i], second = to[i];
+      from[i] = is_high ? std::max(first, isovalue_) : std::min(first, below_);
+      to[i] = is_high ? std::min(second, below_) : std::max(second, isovalue_);
     }
     edge_alphas<double>({from.data(), to.data(), kOneRow.data(), kInOrder.data(), count, 1}, isovalue_, epsilon_, out);
   }
 
  private:
-  [[nodiscard]] double clamped(const SampleIndex<N>& index, std::size_t at, bool high) const noexcept {
-    double value = values_[at];
-    if (std::isnan(value)) value = samples_.value(index);
-    return high ? std::max(value, isovalue_) : std::min(value, below_);
+  /// Replaces values that are NaN by the image's own.
+  void replace_nans(const LayerEdges<N>& edges, double* from, double* to) const noexcept {
+    for (std::size_t i = 0; i < edges.edges.count; ++i) {
+      SampleIndex<N> index = edges.start(i);
+      if (std::isnan(from[i])) from[i] = samples_.value(index);
+      index[edges.axis] += 1;
+      if (std::isnan(to[i])) to[i] = samples_.value(index);
+    }
   }
 
   const SampleSource<N>& samples_;
+  StartsHigh starts_high_;
   std::span<const float> values_;
   double isovalue_;
   double below_;  ///< the largest number below the isovalue
@@ -86,8 +100,15 @@ class CustomPositions final : public PositionsOnEdges<N> {
   CustomPositions(const SampleSource<N>& samples, const PositionOptions& options)
       : samples_(samples), position_(options.custom) {}
 
-  void find(const GridEdge<N>* edges, std::size_t count, double* out) const noexcept override {
-    for (std::size_t i = 0; i < count; ++i) out[i] = ask(edges[i]);
+  void find(const LayerEdges<N>& edges, double* out) const noexcept override {
+    std::array<double, LayerEdges<N>::kMost> from, to;
+    for (std::size_t i = 0; i < edges.edges.count; ++i) {
+      SampleIndex<N> index = edges.start(i);
+      from[i] = samples_.value(index);
+      index[edges.axis] += 1;
+      to[i] = samples_.value(index);
+    }
+    for (std::size_t i = 0; i < edges.edges.count; ++i) out[i] = ask(from[i], to[i]);
   }
 
   /// Throws the first exception of the function, or an error if it returned NaN.
@@ -96,12 +117,9 @@ class CustomPositions final : public PositionsOnEdges<N> {
   }
 
  private:
-  [[nodiscard]] double ask(const GridEdge<N>& edge) const noexcept {
+  [[nodiscard]] double ask(double first, double second) const noexcept {
     if (failed_.load(std::memory_order_relaxed)) return 0.5;
     try {
-      SampleIndex<N> end = edge.start;
-      end[edge.axis] += 1;
-      const double first = samples_.value(edge.start), second = samples_.value(end);
       const double position = call_apart([&] { return position_(first, second, samples_.isovalue()); });
       if (std::isnan(position))
         throw Error(ErrorCode::InvalidArgument,

@@ -18,7 +18,15 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_placed_with_stats
   detail::check_positions(positions, samples, N);
   if (positions.rule == Positions::linear) return extract_with_stats<Real>(image, isovalue, options);
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  return detail::extract_placed_from<N, Real>(source, image.grid(), positions, options);
+  const auto threshold = detail::make_threshold<T>(isovalue);
+  const auto starts_high = [&](std::size_t k, const detail::EdgesInRows& edges) {
+    const T* const layer = image.data() + static_cast<std::ptrdiff_t>(k) * image.strides()[N - 1];
+    detail::Word bits = 0;
+    for (std::size_t i = 0; i < edges.count; ++i)
+      bits |= detail::Word{layer[edges.rows[i] + edges.at[i] * image.strides()[0]] >= threshold.value} << i;
+    return threshold.never ? detail::Word{0} : bits;
+  };
+  return detail::extract_placed_from<N, Real>(source, starts_high, image.grid(), positions, options);
 }
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                              \

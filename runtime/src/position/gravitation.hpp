@@ -9,124 +9,150 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdlib>
 #include <vector>
 
-#include "base/workers.hpp"
-#include "kernel/memory_output.hpp"
+#include "image/vertex_moves.hpp"
 #include "position/critical_edges.hpp"
+#include "position/placed_source.hpp"
 
 namespace tegl::detail {
 
-/// Output to a contour in memory whose vertices on edges are then moved.
-template <int N, class Real>
-class GravitationOutput final : public MemoryOutput<N, Real> {
+/// Linear positions, and how gravitation moves the vertices there.
+template <int N>
+class Gravitation final : public PositionsOnEdges<N> {
  public:
-  using typename ContourOutput<N, Real>::Vertex;
-
-  GravitationOutput(Contour<N, Real>& contour, const SampleSource<N>& samples, const Grid<N>& grid,
-                    const ExtractOptions& options, std::uint64_t max_vertices)
-      : MemoryOutput<N, Real>(contour, options.normals != Normals::none, max_vertices),
-        samples_(samples),
-        grid_(grid),
-        threads_(options.work.threads),
-        signs_(samples, grid.sizes(), options.work.threads) {}
-
-  [[nodiscard]] bool reads_numbers() const noexcept override { return true; }
-  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool /*lists_cubes*/) override {
-    for (int a = 0; a + 1 < N; ++a) see(a, k, shape, layer.edges[a]);
-  }
-  void see_slab(const RowShape<N>& shape, const Slab<N>& slab, bool /*lists_cubes*/) override {
-    see(N - 1, slabs_++, shape, slab.edges);
-  }
-
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
+  Gravitation(const SampleSource<N>& samples, const Grid<N>& grid, unsigned threads)
+      : samples_(samples), signs_(samples, grid.sizes(), threads), linear_(grid.linear), mapped_(grid.has_world_map()) {
     for (int a = 0; a < N; ++a)
-      for_each_part(runs_[a].size(), threads_, {}, [&](std::size_t from, std::size_t end) {
-        for (std::size_t i = from; i < end; ++i) move_run(a, runs_[a][i]);
-      });
-    MemoryOutput<N, Real>::finish(all, caps, nonmanifold);
+      for (std::size_t i = 0; i + 1 < grid.axes[a].size(); ++i)
+        steps_[a].push_back(grid.axes[a][i + 1] - grid.axes[a][i]);
+  }
+
+  void find(const LayerEdges<N>& edges, double* out) const noexcept override {
+    samples_.edge_alphas(edges.k, edges.axis, edges.edges, out);
+  }
+  /// As VertexMoves.
+  void find_moves(const LayerEdges<N>& edges, const double* alphas, std::array<double, N>* out) const noexcept {
+    Beside beside{};
+    for (std::size_t i = 0; i < edges.edges.count; ++i) {
+      if (i == 0 || edges.row[i] != edges.row[i - 1]) enter_row(edges, i, beside);
+      const std::size_t at = edges.edges.at[i];
+      Pulls pulls{};
+      if (signs_.any_missing())
+        find_pulls_by_sample(beside, at, pulls);
+      else
+        find_pulls(beside, at, pulls);
+      int all = 0;
+      for (const int pull : pulls) all += std::abs(pull);
+      const double each = std::min(alphas[i], 1.0 - alphas[i]) * kShares[static_cast<std::size_t>(all)];
+      for (int j = 0; j < N; ++j) {
+        const std::size_t to = j == 0 ? at : beside.index[j];
+        out[i][j] = pulls[j] == 0 ? 0.0 : each * pulls[j] * steps_[j][pulls[j] > 0 ? to : to - 1];
+      }
+      if (mapped_) out[i] = mapped(out[i]);
+    }
   }
 
  private:
   /// Vertices stay inside the double pyramid with the ends of the edge as tips, |d_1| + ... + |d_(N-1)| < distance from
   /// the nearer end. Then the corner of a tile is on the same side of all simplices around it.
   static constexpr double kInside = 0.999;
+  using Pulls = std::array<int, N>;
+  /// By the sum of all pulls: the move for a pull of 1, as a share of the distance from the nearer end.
+  static constexpr auto kShares = [] {
+    std::array<double, 2 * N - 1> shares{};
+    for (std::size_t all = 0; all < shares.size(); ++all)
+      shares[all] = all < 2 ? 0.5 : kInside / static_cast<double>(all);
+    return shares;
+  }();
 
-  /// The vertices on edges of a row along one axis.
-  struct Run {
-    Index first;
-    std::size_t row;
-    std::size_t bits;  ///< place in `bits_` of the edges that have vertices
+  /// The rows around the edges of a row.
+  struct Beside {
+    int axis = 0;
+    SampleIndex<N> index{};                ///< of the first sample of the row
+    std::array<std::size_t, 2> rows{};     ///< the rows of both ends
+    std::array<const Word*, 2> high{};     ///< bits of the high samples of both
+    std::array<std::ptrdiff_t, N> step{};  ///< by axis > 0: words to the next row; 0: along the edges, or at the border
   };
-
-  void see(int axis, std::size_t k, const RowShape<N>& shape, const EdgePlane& plane) {
-    for (std::size_t row = 0; row < shape.rows(); ++row) {
-      if (plane.count[row] == 0) continue;
-      runs_[axis].push_back({plane.first(row), k * shape.rows() + row, bits_.size()});
-      const auto from = plane.bits[0].begin() + static_cast<std::ptrdiff_t>(row * shape.words());
-      bits_.insert(bits_.end(), from, from + static_cast<std::ptrdiff_t>(shape.words()));
+  void enter_row(const LayerEdges<N>& edges, std::size_t i, Beside& beside) const noexcept {
+    beside.axis = edges.axis;
+    beside.index = edges.start(i);
+    const std::size_t row = edges.row_of_all(i);
+    beside.rows = {row, edges.axis == 0 ? row : row + signs_.stride(edges.axis)};
+    beside.high = {signs_.high(beside.rows[0]), signs_.high(beside.rows[1])};
+    // vertices on the border stay on it
+    for (int j = 1; j < N; ++j) {
+      const bool inside = j != edges.axis && beside.index[j] > 0 && beside.index[j] + 1 < signs_.sizes()[j];
+      beside.step[j] = inside ? signs_.high(signs_.stride(j)) - signs_.high(0) : 0;
     }
   }
+  [[nodiscard]] bool pulls_along_row(const Beside& beside, std::size_t at) const noexcept {
+    return beside.axis != 0 && at != 0 && at + 1 != signs_.sizes()[0];
+  }
 
-  void move_run(int axis, const Run& run) {
-    SampleIndex<N> index = signs_.index_of(run.row);
-    Index vertex = run.first;
-    for (std::size_t w = 0; w < signs_.words(); ++w)
-      for (Word rest = bits_[run.bits + w]; rest != 0; rest &= rest - 1, ++vertex) {
-        index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-        move(axis, run.row, index, this->contour().vertices[vertex]);
+  void find_pulls(const Beside& beside, std::size_t at, Pulls& pulls) const noexcept {
+    const auto bit = [](const Word* bits, std::size_t i) {
+      return static_cast<int>(bits[i / kWordBits] >> (i % kWordBits) & 1u);
+    };
+    const std::size_t end = beside.axis == 0 ? at + 1 : at;
+    const auto [lower, upper] = beside.high;
+    // for a high lower end; otherwise negative
+    if (pulls_along_row(beside, at))
+      pulls[0] = bit(lower, at + 1) - bit(lower, at - 1) - bit(upper, at + 1) + bit(upper, at - 1);
+    for (int j = 1; j < N; ++j)
+      if (const std::ptrdiff_t step = beside.step[j]; step != 0)
+        pulls[j] = bit(lower + step, at) - bit(lower - step, at) - bit(upper + step, end) + bit(upper - step, end);
+    const int sign = 2 * bit(lower, at) - 1;
+    for (int& pull : pulls) pull *= sign;
+  }
+  /// The same beside missing samples, which count as samples on the side of the end.
+  void find_pulls_by_sample(const Beside& beside, std::size_t at, Pulls& pulls) const noexcept {
+    const bool high = signs_.is_high(beside.rows[0], at);
+    for (int j = 0; j < N; ++j) {
+      if (j == 0 ? !pulls_along_row(beside, at) : beside.step[j] == 0) continue;
+      const std::size_t rows = j == 0 ? 0 : signs_.stride(j), along = j == 0 ? 1 : 0;
+      for (std::size_t end = 0; end < 2; ++end) {
+        const std::size_t row = beside.rows[end], place = beside.axis == 0 ? at + end : at;
+        const auto is_alike = [&](std::size_t r, std::size_t i) {
+          return signs_.is_missing(r, i) || signs_.is_high(r, i) == (high != (end == 1)) ? 1 : 0;
+        };
+        pulls[j] += is_alike(row + rows, place + along) - is_alike(row - rows, place - along);
       }
-  }
-
-  void move(int axis, std::size_t row, const SampleIndex<N>& index, Vertex& vertex) const {
-    const std::array<std::size_t, 2> rows = {row, axis == 0 ? row : row + signs_.stride(axis)};
-    const std::array<std::size_t, 2> at = {index[0], index[0] + (axis == 0 ? 1 : 0)};
-    std::array<int, N> pull{};
-    int all = 0;
-    for (int j = 0; j < N; ++j) {
-      // vertices on the border stay on it
-      if (j == axis || index[j] == 0 || index[j] + 1 == signs_.sizes()[j]) continue;
-      for (int e = 0; e < 2; ++e) pull[j] += is_alike(rows[e], at[e], j, 1) - is_alike(rows[e], at[e], j, -1);
-      all += std::abs(pull[j]);
-    }
-    if (all == 0) return;
-    const double reach = distance_of_nearer_end(axis, index);
-    const double each = std::min(0.5 * reach, kInside * reach / all);
-    for (int j = 0; j < N; ++j) {
-      const Axis& steps = grid_.axes[j];
-      if (pull[j] == 0) continue;
-      const std::size_t from = pull[j] > 0 ? index[j] : index[j] - 1;
-      const double shift = each * pull[j] * (steps[from + 1] - steps[from]);
-      for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(vertex[a] + grid_.linear[a][j] * shift);
     }
   }
-
-  /// Whether the neighbour of a sample along axis j, before or behind, is on the sample's side. Missing neighbours
-  /// count as such.
-  [[nodiscard]] int is_alike(std::size_t row, std::size_t i, int j, int direction) const {
-    const bool high = signs_.is_high(row, i);
-    const std::size_t step = j == 0 ? 1 : signs_.stride(j);
-    std::size_t& moved = j == 0 ? i : row;
-    moved = direction < 0 ? moved - step : moved + step;
-    return signs_.is_missing(row, i) || signs_.is_high(row, i) == high ? 1 : 0;
-  }
-
-  [[nodiscard]] double distance_of_nearer_end(int axis, const SampleIndex<N>& index) const {
-    double alpha = 0;
-    samples_.cell_alphas(index, 1u << axis, 1, &alpha);
-    return std::min(alpha, 1.0 - alpha);
+  [[nodiscard]] std::array<double, N> mapped(const std::array<double, N>& move) const noexcept {
+    std::array<double, N> result{};
+    for (int a = 0; a < N; ++a)
+      for (int b = 0; b < N; ++b) result[a] += linear_[a][b] * move[b];
+    return result;
   }
 
   const SampleSource<N>& samples_;
-  const Grid<N>& grid_;
-  unsigned threads_;
   SampleSigns<N> signs_;
-  std::array<std::vector<Run>, N> runs_;  ///< by axis
-  std::vector<Word> bits_;
-  std::size_t slabs_ = 0;
+  std::array<std::vector<double>, N> steps_;  ///< by axis and sample: to the next one
+  Matrix<N> linear_;
+  bool mapped_;
+};
+
+/// A source whose contour has vertices moved by gravitation.
+template <int N>
+class GravitationSource final : public PlacedSource<N>, public VertexMoves<N> {
+ public:
+  /// As PlacedSource.
+  GravitationSource(SampleSource<N>& samples, const LayerRows<N>& rows, const Axis& last_axis,
+                    const Gravitation<N>& gravitation, double epsilon)
+      : PlacedSource<N>(samples, rows, last_axis, gravitation, epsilon), gravitation_(gravitation) {}
+
+  void find_moves(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
+                  std::array<double, N>* out) const noexcept override {
+    typename PlacedSource<N>::Offsets offsets;
+    gravitation_.find_moves({this->rows(), k, axis, edges.rows, this->inner(edges, offsets)}, alphas, out);
+  }
+
+ private:
+  const Gravitation<N>& gravitation_;
 };
 
 }  // namespace tegl::detail

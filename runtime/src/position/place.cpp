@@ -37,10 +37,11 @@ void check_positions(const PositionOptions& positions, std::size_t samples, int 
 
 namespace {
 
-template <int N, class Real>
-Extraction<N, Real> extract_on_edges(SampleSource<N>& samples, const Grid<N>& grid,
-                                     const PositionsOnEdges<N>& positions, const ExtractOptions& options) {
-  PlacedSource<N> placed(samples, grid, positions, options.epsilon);
+template <int N, class Real, class Source = PlacedSource<N>, class Rule>
+Extraction<N, Real> extract_on_edges(SampleSource<N>& samples, const Grid<N>& grid, const Rule& rule,
+                                     const ExtractOptions& options) {
+  const LayerRows<N> rows(grid, samples.strides());
+  Source placed(samples, rows, grid.axes[N - 1], rule, options.epsilon);
   return extract_in_memory<N, Real>(placed, grid, options);
 }
 
@@ -58,28 +59,16 @@ Extraction<N, Real> extract_relaxed(SampleSource<N>& samples, const Grid<N>& gri
   return extract_on_edges<N, Real>(samples, grid, relaxed, rest);
 }
 
-template <int N, class Real>
-Extraction<N, Real> extract_by_gravitation(SampleSource<N>& samples, const Grid<N>& grid,
-                                           const ExtractOptions& options) {
-  Extraction<N, Real> result;
-  if constexpr (N <= 4) {
-    describe(grid, options, result.contour);
-    const ExtractPlan plan;
-    GravitationOutput<N, Real> output(result.contour, samples, grid, options, plan.max_vertices);
-    result.stats = extract_to(samples, grid, generated_tables<N>(options), options, plan, output);
-  }
-  return result;
-}
-
 }  // namespace
 
 template <int N, class Real>
-Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
-                                        const ExtractOptions& options) {
+Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, StartsHigh starts_high, const Grid<N>& grid,
+                                        const PositionOptions& positions, const ExtractOptions& options) {
   switch (positions.rule) {
     case Positions::filtered:
       return extract_on_edges<N, Real>(
-          samples, grid, FilteredPositions<N>(samples, grid, positions.filtered, options.epsilon), options);
+          samples, grid, FilteredPositions<N>(samples, starts_high, grid, positions.filtered, options.epsilon),
+          options);
     case Positions::custom: {
       const CustomPositions<N> rule(samples, positions);
       Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options);
@@ -87,7 +76,8 @@ Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>&
       return result;
     }
     case Positions::gravitation:
-      return extract_by_gravitation<N, Real>(samples, grid, options);
+      return extract_on_edges<N, Real, GravitationSource<N>>(
+          samples, grid, Gravitation<N>(samples, grid, options.work.threads), options);
     case Positions::relaxed:
       return extract_relaxed<N, Real>(samples, grid, positions, options);
     case Positions::linear:
@@ -96,9 +86,9 @@ Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, const Grid<N>&
   return extract_in_memory<N, Real>(samples, grid, options);
 }
 
-#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                                       \
-  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, const Grid<N>&, const PositionOptions&, \
-                                                            const ExtractOptions&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                           \
+  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, StartsHigh, const Grid<N>&, \
+                                                            const PositionOptions&, const ExtractOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -10,87 +10,138 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/function_ref.hpp"
 #include "image/sample_source.hpp"
 #include "tegl/grid.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 
-/// An edge of the grid.
+/// The rows of a layer of samples.
 template <int N>
-struct GridEdge {
-  SampleIndex<N> start;  ///< its lower end
-  int axis;
+class LayerRows {
+ public:
+  /// `strides`: steps between the samples of a layer.
+  LayerRows(const Grid<N>& grid, const typename EdgeCrossings<N>::Strides& strides) : row_size_(grid.axes[0].size()) {
+    std::size_t rows = 1;
+    for (int a = 1; a + 1 < N; ++a) {
+      numbers_[a] = static_cast<std::ptrdiff_t>(rows);
+      rows *= grid.axes[a].size();
+    }
+    starts_.resize(rows);
+    offsets_.resize(rows);
+    for (std::size_t row = 0; row < rows; ++row)
+      for (int a = 1; a + 1 < N; ++a) {
+        starts_[row][a] = row / static_cast<std::size_t>(numbers_[a]) % grid.axes[a].size();
+        offsets_[row] += static_cast<std::ptrdiff_t>(starts_[row][a]) * strides[a];
+      }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return starts_.size(); }
+  [[nodiscard]] std::size_t row_size() const noexcept { return row_size_; }
+  /// Rows between neighbours along the axes between the first and the last.
+  [[nodiscard]] const typename EdgeCrossings<N>::Strides& numbers() const noexcept { return numbers_; }
+  /// Offset of a row's first sample in its layer.
+  [[nodiscard]] std::ptrdiff_t offset(std::size_t row) const noexcept { return offsets_[row]; }
+  /// Index of sample i of a row of layer k.
+  [[nodiscard]] SampleIndex<N> index(std::size_t k, std::size_t row, std::size_t i) const noexcept {
+    SampleIndex<N> index = starts_[row];
+    index[0] = i;
+    index[N - 1] = k;
+    return index;
+  }
+
+ private:
+  std::size_t row_size_;
+  typename EdgeCrossings<N>::Strides numbers_{};
+  std::vector<SampleIndex<N>> starts_;  ///< by row: the index of its first sample in layer 0
+  std::vector<std::ptrdiff_t> offsets_;
 };
+
+/// Critical edges along one axis that start in layer k, at most kMost.
+template <int N>
+struct LayerEdges {
+  static constexpr std::size_t kMost = 64;
+  const LayerRows<N>& rows;
+  std::size_t k;
+  int axis;
+  const std::ptrdiff_t* row;  ///< by edge: the number of its row in the layer
+  EdgesInRows edges;          ///< the same edges as the image's own source addresses them
+
+  /// Index of the lower end.
+  [[nodiscard]] SampleIndex<N> start(std::size_t i) const noexcept {
+    return rows.index(k, static_cast<std::size_t>(row[i]), edges.at[i]);
+  }
+  /// Number of the row among those of all layers.
+  [[nodiscard]] std::size_t row_of_all(std::size_t i) const noexcept {
+    return k * rows.size() + static_cast<std::size_t>(row[i]);
+  }
+};
+
+/// For at most kWordBits edges in rows of layer k: whether their first ends are high, as bits.
+using StartsHigh = FunctionRef<Word(std::size_t k, const EdgesInRows& edges)>;
 
 /// A rule for positions on critical edges.
 template <int N>
 class PositionsOnEdges {
  public:
   /// The interpolation parameters of critical edges: 0 at the start, 1 at the other end. Called by several threads.
-  virtual void find(const GridEdge<N>* edges, std::size_t count, double* out) const noexcept = 0;
+  virtual void find(const LayerEdges<N>& edges, double* out) const noexcept = 0;
 
  protected:
   ~PositionsOnEdges() = default;
 };
 
 template <int N>
-class PlacedSource final : public SampleSource<N> {
+class PlacedSource : public SampleSource<N> {
  public:
   using Index = SampleIndex<N>;
 
   /// `samples` must have all layers in memory. All arguments must outlive this object.
-  PlacedSource(SampleSource<N>& samples, const Grid<N>& grid, const PositionsOnEdges<N>& positions, double epsilon)
-      : SampleSource<N>(row_numbers(grid), samples.isovalue(), grid.axes[N - 1], 0, true, samples.sample_bytes()),
+  PlacedSource(SampleSource<N>& samples, const LayerRows<N>& rows, const Axis& last_axis,
+               const PositionsOnEdges<N>& positions, double epsilon)
+      : SampleSource<N>(rows.numbers(), samples.isovalue(), last_axis, 0, true, samples.sample_bytes()),
         samples_(samples),
+        rows_(rows),
         positions_(positions),
-        epsilon_(epsilon) {
-    std::size_t rows = 1;
-    for (int a = 1; a + 1 < N; ++a) rows *= grid.axes[a].size();
-    starts_.resize(rows);
-    inner_rows_.resize(rows);
-    for (std::size_t row = 0; row < rows; ++row) {
-      for (int a = 1; a + 1 < N; ++a) {
-        starts_[row][a] = row / static_cast<std::size_t>(this->strides()[a]) % grid.axes[a].size();
-        inner_rows_[row] += static_cast<std::ptrdiff_t>(starts_[row][a]) * samples.strides()[a];
-      }
-    }
-  }
+        epsilon_(epsilon) {}
 
+  /// The steps of this source are numbers of rows, so that the offset of a row is its number in its layer.
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept override {
-    std::array<GridEdge<N>, kAtOnce> block;
-    for (std::size_t first = 0; first < edges.count; first += kAtOnce) {
-      const std::size_t count = std::min(kAtOnce, edges.count - first);
-      for (std::size_t i = 0; i < count; ++i) {
-        block[i] = {starts_[static_cast<std::size_t>(edges.rows[first + i])], axis};
-        block[i].start[0] = edges.at[first + i];
-        block[i].start[N - 1] = k;
-      }
-      find(block.data(), count, out + first);
-    }
+    for (std::size_t first = 0; first < edges.count; first += kAtOnce)
+      find(k, axis, {edges.rows + first, edges.at + first, std::min(kAtOnce, edges.count - first)}, out + first);
   }
-
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept override {
-    if (edges == 0) return;
     const auto dim = static_cast<unsigned>(std::popcount(axes));
     std::array<int, N> axis_of{};
     for (unsigned rest = axes, j = 0; rest != 0; rest &= rest - 1, ++j) axis_of[j] = std::countr_zero(rest);
-    // gather
-    std::array<GridEdge<N>, N << (N - 1)> block;
-    std::array<double, N << (N - 1)> found;
-    std::size_t count = 0;
-    for (std::uint32_t rest = edges; rest != 0; rest &= rest - 1, ++count) {
-      const auto e = static_cast<unsigned>(std::countr_zero(rest));
-      const unsigned corner = edge_base(dim, e);
-      block[count] = {base, axis_of[e >> (dim - 1)]};
-      for (unsigned j = 0; j < dim; ++j) block[count].start[axis_of[j]] += corner >> j & 1u;
+    std::ptrdiff_t base_row = 0;
+    for (int a = 1; a + 1 < N; ++a) base_row += static_cast<std::ptrdiff_t>(base[a]) * this->strides()[a];
+    std::array<std::ptrdiff_t, kAtOnce> rows;
+    std::array<std::uint32_t, kAtOnce> at;
+    std::array<double, kAtOnce> found;
+    while (edges != 0) {
+      // the edges along one axis in one layer
+      const auto first = static_cast<unsigned>(std::countr_zero(edges));
+      const int axis = axis_of[first >> (dim - 1)];
+      std::size_t count = 0, layer = 0;
+      std::uint32_t rest = edges;
+      for (; rest != 0; rest &= rest - 1, ++count) {
+        const auto e = static_cast<unsigned>(std::countr_zero(rest));
+        const unsigned corner = edge_base(dim, e);
+        std::array<std::size_t, N> up{};
+        for (unsigned j = 0; j < dim; ++j) up[axis_of[j]] = corner >> j & 1u;
+        if (count == 0) layer = up[N - 1];
+        if (axis_of[e >> (dim - 1)] != axis || up[N - 1] != layer) break;
+        at[count] = static_cast<std::uint32_t>(base[0] + up[0]);
+        rows[count] = base_row;
+        for (int a = 1; a + 1 < N; ++a)
+          if (up[a] != 0) rows[count] += this->strides()[a];
+      }
+      find(base[N - 1] + layer, axis, {rows.data(), at.data(), count}, found.data());
+      for (const double* next = found.data(); edges != rest; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
     }
-    find(block.data(), count, found.data());
-    // scatter
-    const double* next = found.data();
-    for (std::uint32_t rest = edges; rest != 0; rest &= rest - 1) out[std::countr_zero(rest)] = *next++;
   }
-
   [[nodiscard]] double value(const Index& index) const noexcept override { return samples_.value(index); }
   void corner_values(const Index& base, unsigned axes, double* out) const noexcept override {
     samples_.corner_values(base, axes, out);
@@ -116,25 +167,24 @@ class PlacedSource final : public SampleSource<N> {
     return samples_.values_around(index, steps);
   }
 
+ protected:
+  static constexpr std::size_t kAtOnce = LayerEdges<N>::kMost;
+
+  using Offsets = std::array<std::ptrdiff_t, kAtOnce>;
+
+  /// Addresses edges as the wrapped source does.
+  [[nodiscard]] EdgesInRows inner(const EdgesInRows& edges, Offsets& offsets) const noexcept {
+    for (std::size_t i = 0; i < edges.count; ++i) offsets[i] = rows_.offset(static_cast<std::size_t>(edges.rows[i]));
+    return {offsets.data(), edges.at, edges.count};
+  }
+  [[nodiscard]] const LayerRows<N>& rows() const noexcept { return rows_; }
+
  private:
-  static constexpr std::size_t kAtOnce = 64;
-
-  /// The steps of this source along an axis are numbers of rows, so that an offset is the number of a row in its layer.
-  static typename EdgeCrossings<N>::Strides row_numbers(const Grid<N>& grid) {
-    typename EdgeCrossings<N>::Strides strides{};
-    std::ptrdiff_t stride = 1;
-    for (int a = 1; a + 1 < N; ++a) {
-      strides[a] = stride;
-      stride *= static_cast<std::ptrdiff_t>(grid.axes[a].size());
-    }
-    return strides;
+  void find(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept {
+    Offsets offsets;
+    positions_.find({rows_, k, axis, edges.rows, inner(edges, offsets)}, out);
+    for (std::size_t i = 0; i < edges.count; ++i) out[i] = std::clamp(out[i], epsilon_, 1.0 - epsilon_);
   }
-
-  void find(const GridEdge<N>* edges, std::size_t count, double* out) const noexcept {
-    positions_.find(edges, count, out);
-    for (std::size_t i = 0; i < count; ++i) out[i] = std::clamp(out[i], epsilon_, 1.0 - epsilon_);
-  }
-
   double corner_heights(const Index& base, unsigned axes, double* out) const noexcept override {
     samples_.corner_values(base, axes, out);
     const std::size_t corners = std::size_t{1} << std::popcount(axes);
@@ -146,9 +196,8 @@ class PlacedSource final : public SampleSource<N> {
   static std::uint64_t gather_around(const SampleGradients<N>& samples, const EdgeSurroundings<N>& around,
                                      const EdgesInRows& edges, Calc* out) noexcept {
     const auto& placed = static_cast<const PlacedSource&>(samples);
-    std::array<std::ptrdiff_t, kEdgesAtOnce> rows;
-    for (std::size_t i = 0; i < edges.count; ++i) rows[i] = placed.inner_rows_[static_cast<std::size_t>(edges.rows[i])];
-    const EdgesInRows inner{rows.data(), edges.at, edges.count};
+    Offsets offsets;
+    const EdgesInRows inner = placed.inner(edges, offsets);
     if constexpr (std::is_same_v<Calc, float>)
       return placed.samples_.around_edges_in_float()(placed.samples_, around, inner, out);
     else
@@ -156,10 +205,9 @@ class PlacedSource final : public SampleSource<N> {
   }
 
   SampleSource<N>& samples_;
+  const LayerRows<N>& rows_;
   const PositionsOnEdges<N>& positions_;
   double epsilon_;
-  std::vector<Index> starts_;               ///< by row of a layer: its first sample
-  std::vector<std::ptrdiff_t> inner_rows_;  ///< by row of a layer: its offset in the wrapped source
 };
 
 }  // namespace tegl::detail

@@ -11,7 +11,7 @@
 
 #include "base/progress.hpp"
 #include "base/workers.hpp"
-#include "position/straight_segment.hpp"
+#include "position/curve_lines.hpp"
 
 namespace tegl::detail {
 
@@ -33,13 +33,10 @@ class PlaneCurves {
   using Net = ContourNet<N>;
   using Number = typename Net::Number;
   using Side = typename Net::Side;
-  /// By point and curve: a sum of weighted positions, and its weight.
-  struct Fit {
-    float sum = 0, weight = 0;
-  };
 
-  /// `weight`: of all fits in these planes.
-  PlaneCurves(const Net& net, const std::array<int, 2>& axes, float weight, Fit* fits)
+  /// `weight`: of all fits in these planes. `fits`: by curve and point, the sum of weighted positions and their weight;
+  /// must be 0.
+  PlaneCurves(const Net& net, const std::array<int, 2>& axes, float weight, float* fits)
       : net_(net), axes_(axes), weight_(weight), fits_(fits) {}
 
   void fit_all() {
@@ -47,10 +44,10 @@ class PlaneCurves {
     const CriticalEdges<N>& edges = net_.edges();
     // open curves from their ends, then closed ones
     for (const bool closed : {false, true})
-      for (int j = 0; j < 2; ++j)
+      for (int j = 0; j < 2; ++j) {
+        const int c = Net::curve_of(axes_[j], axes_[1 - j]);
         for (Number p = edges.first(axes_[j]); p < edges.first(axes_[j] + 1); ++p) {
-          const int c = Net::curve_of(axes_[j], axes_[1 - j]);
-          if (fit(p, c).weight != 0) continue;
+          if (weight_at(p, c) != 0) continue;
           if (closed)
             follow(p, j, 1, true);
           else if (net_.link(p, c, 0).side() == Side::none)
@@ -58,74 +55,60 @@ class PlaneCurves {
           else if (net_.link(p, c, 1).side() == Side::none)
             follow(p, j, 0, false);
         }
+      }
   }
 
  private:
-  [[nodiscard]] Fit& fit(Number p, int c) noexcept {
-    return fits_[std::size_t{p} * Net::kCurves + static_cast<std::size_t>(c)];
-  }
+  [[nodiscard]] float weight_at(Number p, int c) const noexcept { return fits_[2 * net_.place(p, c) + 1]; }
 
   /// Lists a curve from a point on an edge along axes_[j], leaving it on `side`, and fits it.
   void follow(Number start, int j, int side, bool closed) {
+    const std::array<std::size_t, 2> curves = {net_.place(0, Net::curve_of(axes_[0], axes_[1])),
+                                               net_.place(0, Net::curve_of(axes_[1], axes_[0]))};
     fits_of_.clear();
-    steps_.clear();
+    lines_.clear();
+    // Without branches that depend on the shape of the curve, which are hard to predict.
+    auto of_axis = static_cast<unsigned>(j), to = static_cast<unsigned>(side);
     Number p = start;
     do {
-      const int c = Net::curve_of(axes_[j], axes_[1 - j]);
-      fits_of_.push_back(&fit(p, c));
-      // the curve crosses the edge along the other axis
-      steps_.push_back(j == 0 ? (side == 1 ? GridStep::up : GridStep::down)
-                              : (side == 1 ? GridStep::right : GridStep::left));
-      const auto link = net_.link(p, c, side);
+      const std::size_t at = curves[of_axis] + p;
+      fits_of_.push_back(at);
+      // The curve crosses the edge along the other axis.
+      lines_.push_back(static_cast<GridStep>(2 - 2 * to + 1 - of_axis));
+      const auto link = net_.link(at, to);
       if (link.side() == Side::none) break;
       p = link.point();
-      if (link.side() != Side::across) {
-        // The square lies above an edge at the lower end, and is left on the other side.
-        j = 1 - j;
-        side = link.side() == Side::lower ? 0 : 1;
-      }
+      // A square with the edge at its lower end lies above that edge, and is left on the other side.
+      const auto beside = static_cast<unsigned>(link.side());
+      of_axis ^= (beside + 1) >> 1;
+      to = beside == 0 ? to : beside - 1;
     } while (!closed || p != start);
-    fit_curve(closed);
-  }
-
-  void fit_curve(bool closed) {
-    const std::size_t count = steps_.size();
-    const auto step = [&](std::size_t i) { return steps_[i < count ? i : i - count]; };
-    for (std::size_t first = 0; first < count;) {
-      StraightSegment segment;
-      std::size_t end = first;
-      while (segment.size() < count && (closed || end < count) && segment.add(step(end))) ++end;
-      typename StraightSegment::Offsets offsets(segment);
-      const float weight = weight_ * static_cast<float>(segment.precision());
-      for (std::size_t i = first; i < end; ++i) {
-        Fit& fit = *fits_of_[i < count ? i : i - count];
-        fit.sum += weight * static_cast<float>(0.5 + offsets.next(step(i)));
-        fit.weight += weight;
-      }
-      if (!closed && end == count) break;
-      first += std::max<std::size_t>(1, segment.size() / 3);
+    lines_.fit(closed, weight_);
+    for (std::size_t i = 0; i < fits_of_.size(); ++i) {
+      const LineFit fit = lines_[i];
+      fits_[2 * fits_of_[i]] = fit.sum;
+      fits_[2 * fits_of_[i] + 1] = fit.weight;
     }
   }
 
   const Net& net_;
   std::array<int, 2> axes_;
   float weight_;
-  Fit* fits_;
-  std::vector<Fit*> fits_of_;
-  std::vector<GridStep> steps_;
+  float* fits_;
+  std::vector<std::size_t> fits_of_;  ///< by step: place of its fit
+  CurveLines lines_;
 };
 
 /// Positions from fits: their mean, each weighted by its precision; the middle if there are none.
 template <int N>
-void take_fits(const std::vector<typename PlaneCurves<N>::Fit>& fits, const Limits& limits, unsigned threads,
-               Buffer<float>& places) {
+void take_fits(const float* fits, const Limits& limits, unsigned threads, Buffer<float>& places) {
   constexpr std::size_t kCurves = ContourNet<N>::kCurves;
   for_each_part(places.size(), threads, {}, [&](std::size_t from, std::size_t end) {
     for (std::size_t p = from; p < end; ++p) {
       float sum = 0, weight = 0;
       for (std::size_t c = 0; c < kCurves; ++c) {
-        sum += fits[p * kCurves + c].sum;
-        weight += fits[p * kCurves + c].weight;
+        sum += fits[2 * (c * places.size() + p)];
+        weight += fits[2 * (c * places.size() + p) + 1];
       }
       places[p] = weight > 0 ? limits.clamped(sum / weight) : 0.5f;
     }
@@ -138,25 +121,27 @@ template <int N>
 [[gnu::always_inline]] inline float above_chord(const ContourNet<N>& net, const float* places, std::size_t p, int c,
                                                 float& weight) noexcept {
   using Side = typename ContourNet<N>::Side;
-  std::array<float, 2> u{}, v{};  // position along the edge, and distance across it
-  for (int side = 0; side < 2; ++side) {
-    const auto link = net.link(static_cast<std::uint32_t>(p), c, side);
-    if (link.side() == Side::none) {
-      weight = 0;
-      return 0;
-    }
-    const float other = places[link.point()];
-    const bool across = link.side() == Side::across;
-    u[side] = across ? other : static_cast<float>(link.side() == Side::upper);
-    v[side] = across ? 1.0f : side == 1 ? other : 1.0f - other;
+  // by side, as factors, because branches would be hard to predict
+  constexpr std::array<float, 3> kAcross = {1.0f, 0.0f, 0.0f}, kUpper = {0.0f, 0.0f, 1.0f};
+  const auto before = net.link(static_cast<std::uint32_t>(p), c, 0),
+             after = net.link(static_cast<std::uint32_t>(p), c, 1);
+  if (before.side() == Side::none || after.side() == Side::none) {
+    weight = 0;
+    return 0;
   }
-  return places[p] - (u[0] * v[1] + u[1] * v[0]) / (v[0] + v[1]);
+  const auto side_0 = static_cast<std::size_t>(before.side()), side_1 = static_cast<std::size_t>(after.side());
+  const float other_0 = places[before.point()], other_1 = places[after.point()];
+  // position along the edge, and distance across it
+  const float u_0 = kAcross[side_0] * other_0 + kUpper[side_0], u_1 = kAcross[side_1] * other_1 + kUpper[side_1];
+  const float v_0 = kAcross[side_0] + (1.0f - kAcross[side_0]) * (1.0f - other_0);
+  const float v_1 = kAcross[side_1] + (1.0f - kAcross[side_1]) * other_1;
+  return places[p] - (u_0 * v_1 + u_1 * v_0) / (v_0 + v_1);
 }
 
 /// Moves all points towards the chords of their curves, or away from them if `factor` is negative.
 template <int N>
-void smooth(const ContourNet<N>& net, const Buffer<float>& places, float factor, const Limits& limits,
-            float last_axis_weight, const WorkOptions& work, Buffer<float>& next) {
+void smooth(const ContourNet<N>& net, const float* places, float factor, const Limits& limits, float last_axis_weight,
+            const WorkOptions& work, float* next) {
   const CriticalEdges<N>& edges = net.edges();
   for_each_part(net.size(), work.threads, work.progress, [&](std::size_t from, std::size_t end) {
     for (int axis = 0; axis < N; ++axis) {
@@ -168,7 +153,7 @@ void smooth(const ContourNet<N>& net, const Buffer<float>& places, float factor,
         float sum = 0, all = 0;
         for (int c = 0; c < ContourNet<N>::kCurves; ++c) {
           float weight = weights[c];
-          sum += above_chord(net, places.data(), p, c, weight) * weight;
+          sum += above_chord(net, places, p, c, weight) * weight;
           all += weight;
         }
         next[p] = all > 0 ? limits.clamped(places[p] - factor * sum / all) : places[p];
@@ -186,26 +171,26 @@ Buffer<float> relaxed_positions(const ContourNet<N>& net, const RelaxationOption
   const auto last_axis_weight = static_cast<float>(options.last_axis_weight);
   const unsigned threads = options.work.threads;
   Buffer<float> places(net.size());
+  Buffer<float> fits(2 * std::size_t{net.size()} * ContourNet<N>::kCurves);
   // lines, by planes in parallel
-  {
-    std::vector<typename PlaneCurves<N>::Fit> fits(std::size_t{net.size()} * ContourNet<N>::kCurves);
-    std::vector<std::array<int, 2>> planes;
-    for (int a = 0; a < N; ++a)
-      for (int b = a + 1; b < N; ++b) planes.push_back({a, b});
-    for_each_item(planes.size(), threads, part_of(options.work.progress, 0.0, kFitShare), [&](std::size_t i) {
-      const float weight = planes[i][1] == N - 1 ? last_axis_weight : 1.0f;
-      PlaneCurves<N>(net, planes[i], weight, fits.data()).fit_all();
-    });
-    take_fits<N>(fits, limits, threads, places);
-  }
-  // smoothing
-  Buffer<float> next(net.size());
+  std::fill(fits.begin(), fits.end(), 0.0f);
+  std::vector<std::array<int, 2>> planes;
+  for (int a = 0; a < N; ++a)
+    for (int b = a + 1; b < N; ++b) planes.push_back({a, b});
+  for_each_item(planes.size(), threads, part_of(options.work.progress, 0.0, kFitShare), [&](std::size_t i) {
+    const float weight = planes[i][1] == N - 1 ? last_axis_weight : 1.0f;
+    PlaneCurves<N>(net, planes[i], weight, fits.data()).fit_all();
+  });
+  take_fits<N>(fits.data(), limits, threads, places);
+  // smoothing, in two passes a round: from `places` to the memory of the fits, and back
   const int passes = 2 * options.rounds;
+  float* from = places.data();
+  float* to = fits.data();
   for (int pass = 0; pass < passes; ++pass) {
     const auto share = [&](int i) { return kFitShare + (1.0 - kFitShare) * i / passes; };
-    smooth(net, places, pass % 2 == 0 ? kTowards : kAway, limits, last_axis_weight,
-           {threads, part_of(options.work.progress, share(pass), share(pass + 1))}, next);
-    std::swap(places, next);
+    smooth(net, from, pass % 2 == 0 ? kTowards : kAway, limits, last_axis_weight,
+           {threads, part_of(options.work.progress, share(pass), share(pass + 1))}, to);
+    std::swap(from, to);
   }
   return places;
 }

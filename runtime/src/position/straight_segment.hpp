@@ -64,41 +64,21 @@ class StraightSegment {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return count_; }
-  /// Squared length of the segment's direction (b, a): lines that separate as the segment does differ by at most the
-  /// inverse of the length.
-  [[nodiscard]] double precision() const noexcept { return static_cast<double>(a_ * a_ + b_ * b_); }
-
-  /// Follows the steps of the segment again, and finds for each the distance of the line from the middle of the step,
-  /// across the step. The line has the direction of the segment and the middle of the middles of all steps.
-  class Offsets {
-   public:
-    explicit Offsets(const StraightSegment& segment) noexcept
-        : segment_(segment),
-          mean_((static_cast<double>(segment.a_) * static_cast<double>(segment.sum_.x) -
-                 static_cast<double>(segment.b_) * static_cast<double>(segment.sum_.y)) /
-                static_cast<double>(segment.count_)) {}
-
-    /// The offset along the positive axis across `step`, which is the next step of the segment.
-    [[nodiscard]] double next(GridStep step) noexcept {
-      const unsigned turn = (static_cast<unsigned>(step) - segment_.first_) & 3u;
-      Point next = at_;
-      (turn == 0 ? next.x : next.y) += 1;
-      const auto doubled = static_cast<double>(segment_.rest(at_) + segment_.rest(next));
-      at_ = next;
-      if (turn != 0) {
-        const double along = 0.5 * (mean_ - doubled) / static_cast<double>(segment_.a_);
-        return segment_.first_ < 2 ? along : -along;
-      }
-      const double across = 0.5 * (doubled - mean_) / static_cast<double>(segment_.b_);
-      const unsigned up = (segment_.first_ + (segment_.turn_ == 0 ? 1u : segment_.turn_)) & 3u;
-      return up < 2 ? across : -across;
-    }
-
-   private:
-    const StraightSegment& segment_;
-    double mean_;  ///< doubled
-    Point at_{};
+  /// The direction and the place of a segment. In the frame of its first two directions, the direction is (b, a). With
+  /// rest(x, y) = a x - b y, the line consists of the points with 2 rest = doubled_mean: it passes through the mean of
+  /// the middles of all steps.
+  struct Line {
+    std::int32_t a = 0, b = 1;
+    float doubled_mean = 0;
+    /// Squared length of the direction: lines that separate as the segment does differ by at most the inverse of the
+    /// length.
+    [[nodiscard]] float precision() const noexcept { return static_cast<float>(a * a + b * b); }
   };
+  [[nodiscard]] Line line() const noexcept {
+    const double sum =
+        static_cast<double>(a_) * static_cast<double>(sum_.x) - static_cast<double>(b_) * static_cast<double>(sum_.y);
+    return {a_, b_, static_cast<float>(sum / static_cast<double>(count_))};
+  }
 
  private:
   [[nodiscard]] std::int32_t rest(const Point& p) const noexcept { return a_ * p.x - b_ * p.y; }

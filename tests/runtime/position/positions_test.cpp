@@ -7,12 +7,14 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <random>
 
 #include "errors.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
+#include "position/curve_lines.hpp"
 #include "position/straight_segment.hpp"
 #include "tegl/check.hpp"
 #include "tegl/intersections.hpp"
@@ -431,6 +433,57 @@ TEST(Gravitation, StaysInTheDoublePyramidAndOnTheBorder) {
     }
 }
 
+/// Compares all vertices on edges of a mask (samples 0 and 1, or missing) with the formula.
+void expect_gravitation(const OwnedImage<float, 3>& image) {
+  const auto view = image.view();
+  const auto linear = extract<double>(view, 0.5);
+  const auto moved = extract_placed<double>(view, 0.5, by(Positions::gravitation));
+  std::size_t off = 0;
+  for (std::size_t v = 0; v < linear.vertices.size(); ++v) {
+    auto expected = linear.vertices[v];
+    std::array<std::size_t, 3> low{};
+    int axis = -1, halves = 0;
+    for (int a = 0; a < 3; ++a) {
+      low[a] = static_cast<std::size_t>(expected[a]);
+      if (expected[a] == std::floor(expected[a])) continue;
+      axis = a;
+      ++halves;
+    }
+    if (halves != 1) continue;  // inside a cell
+    std::array<int, 3> pull{};
+    int all = 0;
+    for (int j = 0; j < 3; ++j) {
+      if (j == axis || low[j] == 0 || low[j] + 1 == view.size(j)) continue;
+      for (const std::size_t up : {0u, 1u}) {
+        auto end = low;
+        end[axis] += up;
+        const auto alike = [&](std::size_t at) {
+          auto beside = end;
+          beside[j] = at;
+          return std::isnan(view(beside)) || view(beside) == view(end) ? 1 : 0;
+        };
+        pull[j] += alike(low[j] + 1) - alike(low[j] - 1);
+      }
+      all += std::abs(pull[j]);
+    }
+    for (int j = 0; j < 3; ++j) expected[j] += pull[j] * (all > 1 ? 0.4995 / all : 0.25);
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(moved.vertices[v][a], expected[a], 1e-12) << v;
+    off += all > 0 ? 1 : 0;
+  }
+  EXPECT_GT(off, 100u);
+}
+
+TEST(Gravitation, IsItsFormulaAlsoBesideMissingSamples) {
+  // rows of more than a word
+  OwnedImage<float, 3> image{Grid<3>::unit({70, 7, 6}), std::vector<float>(70 * 7 * 6)};
+  std::mt19937_64 random(5);
+  for (float& value : image.values) value = static_cast<float>(random() % 2);
+  expect_gravitation(image);
+  for (float& value : image.values)
+    if (random() % 20 == 0) value = std::numeric_limits<float>::quiet_NaN();
+  expect_gravitation(image);
+}
+
 // ---- digital straight segments ----
 
 /// Whether a line separates the pixels on both sides of a path, by trying many.
@@ -468,6 +521,72 @@ TEST(StraightSegment, AllPathsOfTenStepsAreRecognised) {
       steps.push_back((path >> i & 1u) != 0 ? detail::GridStep::up : detail::GridStep::right);
       straight = segment.add(steps.back());
       EXPECT_EQ(straight, has_line(steps)) << path << " after " << i + 1 << " steps";
+    }
+  }
+}
+
+/// The fits of lines to a curve by their definition: each segment found step by step, each distance from coordinates.
+std::vector<detail::LineFit> direct_fits(const std::vector<detail::GridStep>& steps, bool closed) {
+  const std::size_t count = steps.size();
+  std::vector<detail::LineFit> fits(count);
+  constexpr std::array<std::array<int, 2>, 4> kMoves = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  for (std::size_t first = 0; first < count;) {
+    detail::StraightSegment segment;
+    while (segment.size() < count && (closed || first + segment.size() < count) &&
+           segment.add(steps[(first + segment.size()) % count])) {
+    }
+    // the mean of the middles of the steps, and the direction: (b, a) in the frame of the first two directions
+    std::array<int, 2> sum{}, at{}, along{}, across{};
+    along = kMoves[static_cast<std::size_t>(steps[first])];
+    for (std::size_t i = 0; i < segment.size(); ++i) {
+      const auto& move = kMoves[static_cast<std::size_t>(steps[(first + i) % count])];
+      if (move != along) across = move;
+      for (std::size_t a = 0; a < 2; ++a) {
+        sum[a] += 2 * at[a] + move[a];
+        at[a] += move[a];
+      }
+    }
+    const auto line = segment.line();
+    std::array<double, 2> direction{};
+    for (std::size_t a = 0; a < 2; ++a) direction[a] = line.b * along[a] + line.a * across[a];
+    at = {};
+    for (std::size_t i = 0; i < segment.size(); ++i) {
+      const auto& move = kMoves[static_cast<std::size_t>(steps[(first + i) % count])];
+      const std::size_t free = move[0] != 0 ? 1 : 0, other = 1 - free;
+      const double size = static_cast<double>(segment.size());
+      const double ahead = 0.5 * (2 * at[other] + move[other] - sum[other] / size);
+      const double offset = 0.5 * sum[free] / size + ahead * direction[free] / direction[other] - at[free];
+      fits[(first + i) % count].sum += static_cast<float>((0.5 + offset) * line.precision());
+      fits[(first + i) % count].weight += line.precision();
+      for (std::size_t a = 0; a < 2; ++a) at[a] += move[a];
+    }
+    if (!closed && first + segment.size() == count) break;
+    first += std::max<std::size_t>(1, segment.size() / 3);
+  }
+  return fits;
+}
+
+TEST(StraightSegment, LinesOfCurvesAreThoseOfTheirSegments) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 200; ++i) {
+    // noise, or long digital lines in all quadrants
+    const unsigned quadrant = random() % 4, noise = i % 2 == 0 ? 4 : 0;
+    const double slope = static_cast<double>(random() % 1000) / 1000;
+    detail::CurveLines lines;
+    std::vector<detail::GridStep> steps;
+    for (std::size_t j = 0; j < 3 + random() % 300; ++j) {
+      const double k = static_cast<double>(j);
+      unsigned turn = std::floor((k + 1) * slope) != std::floor(k * slope) ? 1 : 0;
+      if (noise != 0 && random() % 5 == 0) turn = static_cast<unsigned>(random() % noise);
+      steps.push_back(static_cast<detail::GridStep>((quadrant + turn) % 4));
+      lines.push_back(steps.back());
+    }
+    const bool closed = random() % 2 == 0;
+    lines.fit(closed, 1.0f);
+    const auto expected = direct_fits(steps, closed);
+    for (std::size_t j = 0; j < steps.size(); ++j) {
+      EXPECT_NEAR(lines[j].weight, expected[j].weight, 1e-5 * expected[j].weight);
+      EXPECT_NEAR(lines[j].sum, expected[j].sum, 1e-4 * expected[j].weight) << i << " at " << j;
     }
   }
 }

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Fits lines to a curve (see curve_lines.hpp). Most segments are short, and come from a table.
+#include "position/curve_lines.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace tegl::detail {
+
+namespace {
+
+/// The segments of up to kSteps steps, by the bits of their turns: whether a step's axis is not that of the first step.
+class ShortSegments {
+ public:
+  static constexpr std::size_t kSteps = 10;
+
+  ShortSegments() {
+    for (std::uint32_t bits = 0; bits < std::uint32_t{1} << kSteps; bits += 2) {
+      StraightSegment segment;
+      while (segment.size() < kSteps &&
+             segment.add((bits >> segment.size() & 1u) != 0 ? GridStep::up : GridStep::right))
+        lines_[place(bits, segment.size())] = segment.line();
+      sizes_[bits] = static_cast<std::uint8_t>(segment.size());
+    }
+  }
+  /// The number of steps of the longest segment with these turns; kSteps: as many or more.
+  [[nodiscard]] std::size_t size(Word turns) const noexcept { return sizes_[turns & (sizes_.size() - 1)]; }
+  /// The line of the segment of `size` steps.
+  [[nodiscard]] const StraightSegment::Line& line(Word turns, std::size_t size) const noexcept {
+    return lines_[place(turns, size)];
+  }
+
+ private:
+  static std::size_t place(Word turns, std::size_t size) noexcept {
+    const std::size_t end = std::size_t{1} << size;
+    return end | (turns & (end - 1));
+  }
+
+  std::array<std::uint8_t, std::size_t{1} << kSteps> sizes_{};
+  std::array<StraightSegment::Line, std::size_t{1} << (kSteps + 1)> lines_{};
+};
+
+const ShortSegments& short_segments() {
+  static const ShortSegments segments;
+  return segments;
+}
+
+bool is_positive(GridStep step) noexcept { return step == GridStep::right || step == GridStep::up; }
+
+}  // namespace
+
+void CurveLines::fit(bool closed, float weight) {
+  const std::size_t count = steps_.size();
+  prepare(closed ? 2 * count : count);
+  for (std::size_t first = 0; first < count;) {
+    const Segment segment = segment_from(first, closed ? count : count - first);
+    add(first, segment, weight);
+    if (!closed && first + segment.size == count) break;
+    first += std::max<std::size_t>(1, segment.size / 3);
+  }
+  // steps after the last one are those from the first one on
+  for (std::size_t i = count; i < fits_.size(); ++i) {
+    fits_[i - count].sum += fits_[i].sum;
+    fits_[i - count].weight += fits_[i].weight;
+  }
+}
+
+void CurveLines::prepare(std::size_t count) {
+  const std::size_t listed = steps_.size();
+  steps_.resize(count);
+  for (std::size_t i = listed; i < count; ++i) steps_[i] = steps_[i - listed];
+  vertical_.assign(count / kWordBits + 2, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    vertical_[i / kWordBits] |= Word{static_cast<unsigned>(steps_[i]) & 1u} << (i % kWordBits);
+  ends_.resize(count);
+  auto end = static_cast<std::uint32_t>(count);
+  std::array<std::uint32_t, 4> next;  // by direction
+  next.fill(end);
+  for (std::size_t i = count; i-- > 0;) {
+    const auto direction = static_cast<unsigned>(steps_[i]);
+    end = std::min(end, next[direction ^ 2u]);
+    next[direction] = static_cast<std::uint32_t>(i);
+    ends_[i] = end;
+  }
+  fits_.assign(count, LineFit{});
+}
+
+CurveLines::Segment CurveLines::segment_from(std::size_t first, std::size_t most) const noexcept {
+  const ShortSegments& table = short_segments();
+  most = std::min<std::size_t>(most, ends_[first] - first);
+  const Word bits = turns(first);
+  const std::size_t size = std::min(table.size(bits), most);
+  if (size < ShortSegments::kSteps || most == size) return {size, table.line(bits, size)};
+  StraightSegment segment;
+  while (segment.size() < most && segment.add(steps_[first + segment.size()])) {
+  }
+  return {segment.size(), segment.line()};
+}
+
+void CurveLines::add(std::size_t first, const Segment& segment, float weight) noexcept {
+  const StraightSegment::Line& line = segment.line;
+  Word bits = turns(first);
+  weight *= line.precision();
+  // The line's distance from the middle of a step, across the step: along the positive axis, times the weight.
+  std::array<std::int32_t, 2> moves = {line.a, -line.b};
+  std::array<float, 2> factors = {0.5f * weight / static_cast<float>(line.b), 0.0f};
+  if (line.a != 0) {
+    std::size_t turn = first + 1;
+    while ((static_cast<unsigned>(steps_[turn]) & 1u) == (static_cast<unsigned>(steps_[first]) & 1u)) ++turn;
+    if (!is_positive(steps_[turn])) factors[0] = -factors[0];
+    factors[1] = (is_positive(steps_[first]) ? -0.5f : 0.5f) * weight / static_cast<float>(line.a);
+  }
+  std::int32_t rest = 0;  // a x - b y at the start of a step
+  for (std::size_t i = 0; i < segment.size; ++i, bits >>= 1) {
+    if (i != 0 && i % kWordBits == 0) {
+      bits = turns(first + i);
+      if (((static_cast<unsigned>(steps_[first + i]) ^ static_cast<unsigned>(steps_[first])) & 1u) != 0) bits = ~bits;
+    }
+    const std::size_t turned = bits & 1u;
+    const std::int32_t move = moves[turned];
+    LineFit& fit = fits_[first + i];
+    fit.sum += 0.5f * weight + (static_cast<float>(2 * rest + move) - line.doubled_mean) * factors[turned];
+    fit.weight += weight;
+    rest += move;
+  }
+}
+
+}  // namespace tegl::detail
