@@ -8,6 +8,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/normals.hpp"
 
 namespace tegl::python {
 
@@ -92,14 +93,9 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
                                        {"decider", Ambiguity::decider}});
   result.direction = named<GradientDirection>("direction", text("direction"), gradient_directions());
   const std::string normals = text("normals");
-  result.normals = normals == "gradient"   ? Normals::differences
-                   : normals == "sobel"    ? Normals::sobel
-                   : normals == "prewitt"  ? Normals::prewitt
-                   : normals == "context"  ? Normals::context
-                   : normals == "forward"  ? Normals::forward
-                   : normals == "backward" ? Normals::backward
-                   : normals == "kernel"   ? Normals::kernel
-                                           : Normals::none;
+  // geometric and flat normals are computed later
+  for (const Normals kind : kNormals)
+    if (name_of(kind) == normals) result.normals = kind;
   result.kernel.weights = py::cast<std::vector<double>>(arguments["kernel"]);
   result.close = py::cast<bool>(arguments["close"]);
   result.epsilon = py::cast<double>(arguments["epsilon"]);

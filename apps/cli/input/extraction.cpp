@@ -185,13 +185,9 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
                                                 : Ambiguity::decider;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
-  options.normals = normals_ == "gradient"   ? Normals::differences
-                    : normals_ == "sobel"    ? Normals::sobel
-                    : normals_ == "prewitt"  ? Normals::prewitt
-                    : normals_ == "context"  ? Normals::context
-                    : normals_ == "forward"  ? Normals::forward
-                    : normals_ == "backward" ? Normals::backward
-                                             : Normals::none;
+  // geometric and flat normals are computed later
+  for (const Normals kind : kNormals)
+    if (name_of(kind) == normals_) options.normals = kind;
   options.work.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {

@@ -3,11 +3,25 @@
 // Normals of existing contours: from their geometry, or from the gradient of an image.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <string_view>
+
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
+
+/// All kinds of normals, in order.
+inline constexpr std::array kNormals = {Normals::none,    Normals::differences, Normals::sobel,   Normals::prewitt,
+                                        Normals::forward, Normals::backward,    Normals::context, Normals::kernel};
+/// The name of a kind, as options have it: "gradient" for `differences`, otherwise the name here.
+[[nodiscard]] constexpr std::string_view name_of(Normals kind) noexcept {
+  constexpr std::array<std::string_view, kNormals.size()> kNames = {"none",    "gradient", "sobel",   "prewitt",
+                                                                    "forward", "backward", "context", "kernel"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
 
 /// The weight of a simplex in the normal of one of its vertices. area: length, area or volume of the simplex. angle:
 /// its angle at the vertex (N = 4: solid angle), which does not depend on how a flat facet is divided into simplices.
@@ -61,5 +75,15 @@ template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Buffer<double> normal_uncertainty(const Image<T, N>& image, const Contour<N, Real>& contour,
                                                 const WorkOptions& work = {});
+
+namespace detail {
+
+/// As normal_uncertainty, for the vertices at which `result` is NaN.
+template <Value T, int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+void complete_uncertainty(const Image<T, N>& image, const Contour<N, Real>& contour, const WorkOptions& work,
+                          Buffer<double>& result);
+
+}  // namespace detail
 
 }  // namespace tegl

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/stopwatch.hpp"
-#include "image/row_source.hpp"
 #include "extract/uncertainty.hpp"
+#include "image/row_source.hpp"
 #include "kernel/extract_in_memory.hpp"
 #include "kernel/tile_selection.hpp"
 #include "search/index_file.hpp"
@@ -49,9 +49,8 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
   detail::ExtractPlan plan;
   plan.selection = &selection;
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options, plan);
+  auto result = detail::extract_with_uncertainty<N, Real>(source, image.grid(), image, options, plan);
   result.stats.find_seconds += seconds;
-  detail::add_uncertainty(image, options, result.contour);
   return result;
 }
 

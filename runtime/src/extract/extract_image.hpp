@@ -22,14 +22,10 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_with_stats(const 
       detail::TurnedLayers<T, N> layers(image, options.work.threads);
       detail::LayerRing<T, N> ring(layers);
       detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
-      auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options);
-      detail::add_uncertainty(image, options, result.contour);
-      return result;
+      return detail::extract_with_uncertainty<N, Real>(source, image.grid(), image, options);
     }
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  auto result = detail::extract_in_memory<N, Real>(source, image.grid(), options);
-  detail::add_uncertainty(image, options, result.contour);
-  return result;
+  return detail::extract_with_uncertainty<N, Real>(source, image.grid(), image, options);
 }
 
 template <Coordinate Real, Value T, int N>

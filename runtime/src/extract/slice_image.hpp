@@ -73,8 +73,7 @@ Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, 
   ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
   plan.keeps_off_layers = at_layer;
   if (!is_last) plan.part = {axis, layers.first};
-  auto extracted = extract_in_memory<N, Real>(source, slab.grid(), options, plan);
-  add_uncertainty(image, options, extracted.contour);
+  const auto extracted = extract_with_uncertainty<N, Real>(source, slab.grid(), image, options, plan);
   // At a layer, the limit from below is the layer's contour, whichever way the normal points.
   return {slice(extracted.contour, at_layer ? Hyperplane<N>::across(axis, at) : hyperplane), extracted.stats};
 }

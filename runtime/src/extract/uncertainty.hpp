@@ -3,19 +3,28 @@
 // The attribute of contours in memory whose normals are those of the context.
 #pragma once
 
+#include <utility>
+
+#include "kernel/extract_in_memory.hpp"
 #include "tegl/normals.hpp"
 
 namespace tegl::detail {
 
-/// Adds the vertex attribute "normal_uncertainty" if `options` ask for normals by context. Not in 5D.
-template <class Real, Value T, int N>
-void add_uncertainty(const Image<T, N>& image, const ExtractOptions& options, Contour<N, Real>& contour) {
-  if constexpr (N <= 4)
-    if (options.normals == Normals::context) {
-      const WorkOptions work{options.work.threads, {}};
-      contour.vertex_attributes.push_back(
-          Attribute{"normal_uncertainty", "", 1, normal_uncertainty<T, N, Real>(image, contour, work)});
-    }
+/// As extract_in_memory from the samples of `image`. If `options` ask for normals by context, except in 5D, adds the
+/// vertex attribute "normal_uncertainty", which the fits of the normals give too.
+template <int N, class Real, Value T>
+Extraction<N, Real> extract_with_uncertainty(SampleSource<N>& source, const Grid<N>& grid, const Image<T, N>& image,
+                                             const ExtractOptions& options, ExtractPlan plan = {}) {
+  if (N > 4 || options.normals != Normals::context) return extract_in_memory<N, Real>(source, grid, options, plan);
+  VertexUncertainty uncertainty;
+  plan.uncertainty = &uncertainty;
+  auto result = extract_in_memory<N, Real>(source, grid, options, plan);
+  if constexpr (N <= 4) {
+    uncertainty.resize(result.contour.vertices.size());
+    complete_uncertainty<T, N, Real>(image, result.contour, {options.work.threads, {}}, uncertainty.values());
+    result.contour.vertex_attributes.push_back(Attribute{"normal_uncertainty", "", 1, std::move(uncertainty.values())});
+  }
+  return result;
 }
 
 }  // namespace tegl::detail

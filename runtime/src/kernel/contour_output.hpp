@@ -103,8 +103,27 @@ class ContourOutput {
   virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) = 0;
 };
 
+/// The uncertainty of normals by context, by number of the vertex. NaN where the extraction does not write it: at
+/// vertices inside cells and on caps.
+class VertexUncertainty {
+ public:
+  /// Makes room for vertices, between parts of the extraction.
+  void resize(std::size_t count) {
+    const std::size_t before = values_.size();
+    values_.resize(count);
+    for (std::size_t v = before; v < count; ++v) values_[v] = std::numeric_limits<double>::quiet_NaN();
+  }
+  /// Any thread; each vertex once.
+  void set(Index vertex, double value) noexcept { values_[vertex] = value; }
+  [[nodiscard]] Buffer<double>& values() noexcept { return values_; }
+
+ private:
+  Buffer<double> values_;
+};
+
 /// Parameters of an extraction other than the user's options.
 struct ExtractPlan {
+  VertexUncertainty* uncertainty = nullptr;  ///< where that of normals by context goes; null: nowhere
   std::uint64_t max_vertices = kMaxVertices;
   unsigned closed_axes = ~0u;  ///< bit a: whether options.close closes the borders across axis a
   unsigned seam_axes = 0;      ///< bit a: the last layer across axis a repeats the first one

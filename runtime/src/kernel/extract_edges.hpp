@@ -52,10 +52,12 @@ class EdgeWriter {
   using Counts = std::array<std::uint32_t, N>;
   using Firsts = std::array<Index, N>;
 
-  EdgeWriter(const EdgeCrossings<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
+  EdgeWriter(const EdgeCrossings<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape,
+             VertexUncertainty* uncertainty)
       : source_(source),
         moves_(dynamic_cast<const VertexMoves<N>*>(&source)),
         placement_(placement),
+        uncertainty_(uncertainty),
         shape_(shape),
         strides_(source.strides()),
         full_(full(shape.size(0))) {
@@ -280,14 +282,24 @@ class EdgeWriter {
 
   /// Computes the normals of a piece after make_points.
   void make_normals(int axis, std::size_t first, const EdgesInRows& edges, Vertex* out) noexcept {
+    const auto segment_of = [&](std::size_t i) -> const Segment& {
+      return *std::find_if(segments_.begin(), segments_.end(),
+                           [&](const Segment& s) { return s.axis == axis && first + i - s.first < s.count; });
+    };
     const auto start_of = [&](std::size_t i) {
-      const Segment& segment = *std::find_if(segments_.begin(), segments_.end(), [&](const Segment& s) {
-        return s.axis == axis && first + i - s.first < s.count;
-      });
-      auto start = start_in(segment.row, axis);
+      auto start = start_in(segment_of(i).row, axis);
       start[0] = edges.at[i];
       return start;
     };
+    if (uncertainty_ != nullptr) {
+      for (std::size_t i = 0; i < edges.count; ++i) {
+        const Segment& segment = segment_of(i);
+        const auto normal = placement_.normals()->on_edge_by_context(start_of(i), axis, lists_[axis].alphas[i]);
+        out[i] = normal.vector;
+        uncertainty_->set(static_cast<Index>(segment.vertex + (first + i - segment.first)), normal.uncertainty);
+      }
+      return;
+    }
     placement_.normals()->edges(start_in(segments_.front().row, axis), axis, edges, lists_[axis].alphas.data(),
                                 *normals_, out, start_of);
   }
@@ -316,6 +328,7 @@ class EdgeWriter {
   const EdgeCrossings<N>& source_;
   const VertexMoves<N>* moves_;  ///< null: vertices stay on their edges
   const Placement<N, Real>& placement_;
+  VertexUncertainty* uncertainty_;  ///< null: not requested
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;
   std::size_t full_;

@@ -73,6 +73,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         output_(output),
         reporter_(options.work.progress, grid.axes[N - 1].size() - 1),
         inverted_(options.ambiguity == Ambiguity::high),
+        uncertainty_(plan.uncertainty),
         max_vertices_(plan.max_vertices),
         max_vertices_at_once_(plan.max_vertices_at_once),
         selection_(plan.selection),
@@ -86,7 +87,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         nonmanifold_(shape_, counter_),
         workers_(options.work.threads,
                  [this] {
-                   return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
+                   return Scratch{counter_.make_scratch(), {source_, placement_, shape_, uncertainty_}};
                  }),
         ahead_(workers_.count() > 1 && source.are_in_memory()),
         batch_(plan.batch == 0
@@ -142,6 +143,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     // generate; if possible, classify the next batch in parallel
     part_.done = static_cast<double>(end) / static_cast<double>(slabs);
     const auto room = output_.open(part_);
+    if (uncertainty_ != nullptr) uncertainty_->resize(part_.end_vertex);
     if (ahead_ && end < slabs) {
       const double share = generate_ahead(first, end, std::min(slabs, end + batch_), room);
       watch.share_between(stats_.classify_seconds, share, stats_.generate_seconds);
@@ -480,6 +482,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   ContourOutput<N, Real>& output_;
   ProgressReporter reporter_;
   bool inverted_;
+  VertexUncertainty* uncertainty_;  ///< null: not requested
   std::uint64_t max_vertices_;
   std::uint64_t max_vertices_at_once_;
   const TileSelection* selection_;

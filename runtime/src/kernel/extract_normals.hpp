@@ -99,6 +99,20 @@ class NormalWriter {
     return normal(gradient);
   }
 
+  /// A normal with its uncertainty.
+  struct ContextNormal {
+    Vertex vector;
+    double uncertainty;
+  };
+  /// As on_edge, for normals by context.
+  [[nodiscard]] ContextNormal on_edge_by_context(Index index, int axis, double alpha) const noexcept {
+    ContextGradient<N> here = context_at(index, {axis, 1});
+    ++index[axis];
+    const ContextGradient<N> there = context_at(index, {axis, -1});
+    for (int a = 0; a < N; ++a) here.gradient[a] = (1.0 - alpha) * here.gradient[a] + alpha * there.gradient[a];
+    return {normal(here.gradient), (1.0 - alpha) * here.uncertainty + alpha * there.uncertainty};
+  }
+
   /// Uncertainty of the context's gradient at one end of an edge, or at a sample.
   [[nodiscard]] double uncertainty_at(const Index& index, EdgeFrom edge) const noexcept {
     return context_at(index, edge).uncertainty;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/periods.hpp"
 #include "base/workers.hpp"
@@ -134,13 +135,14 @@ GridEdge edge_of(detail::CellPlace<N>& place) noexcept {
 }
 
 /// Calls `on_edge(vertex, first sample, edge)` for the vertices on edges of the grid, if `wants_edges`, and
-/// `in_cell(vertex, place)` for the others. Vertices outside of the grid are left out. Compiled once for all value
-/// types.
-template <int N, class Real, class OnEdge, class InCell>
+/// `in_cell(vertex, place)` for the others. Vertices outside of the grid are left out, and those that are not `wanted`.
+/// Compiled once for all value types.
+template <int N, class Real, class OnEdge, class InCell, class Wanted>
 void visit_places(const Grid<N>& grid, const Contour<N, Real>& contour, const WorkOptions& work, bool wants_edges,
-                  const OnEdge& on_edge, const InCell& in_cell) {
+                  const OnEdge& on_edge, const InCell& in_cell, const Wanted& wanted) {
   const detail::GridLocator<N> locator(grid);
   detail::for_each_item(contour.vertices.size(), work.threads, work.progress, [&](std::size_t v) {
+    if (!wanted(v)) return;
     detail::CellPlace<N> place;
     if (!locator.find(detail::widened_point<N>(contour.vertices[v]), place)) return;
     if (wants_edges) {
@@ -167,10 +169,11 @@ void interpolate_gradients(const detail::NormalWriter<N, Real>& writer, const Gr
       },
       [&](std::size_t v, const detail::CellPlace<N>& place) {
         normals[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
-      });
+      },
+      [](std::size_t) { return true; });
 }
 
-/// The uncertainty at all vertices, interpolated as the gradients are.
+/// The uncertainty at all vertices at which it is NaN, interpolated as the gradients are. 1 outside of the grid.
 template <int N, class Real>
 void find_uncertainty(const detail::NormalWriter<N, Real>& writer, const Grid<N>& grid, const Contour<N, Real>& contour,
                       const WorkOptions& work, Buffer<double>& result) {
@@ -194,7 +197,10 @@ void find_uncertainty(const detail::NormalWriter<N, Real>& writer, const Grid<N>
           }
           if (weight > 0.0) result[v] += weight * writer.uncertainty_at(index, {});
         }
-      });
+      },
+      [&](std::size_t v) { return std::isnan(result[v]); });
+  for (double& value : result)
+    if (std::isnan(value)) value = 1.0;
 }
 
 }  // namespace
@@ -238,11 +244,18 @@ template <Value T, int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> Buffer<double> normal_uncertainty(const Image<T, N>& image,
                                                                      const Contour<N, Real>& contour,
                                                                      const WorkOptions& work) {
-  const detail::ImageSource<T, N> source(image, 0.0, 0.0);
-  Buffer<double> result(contour.vertices.size(), 1.0);
-  find_uncertainty(detail::NormalWriter<N, Real>(source, image.grid(), contour.direction, Normals::context, {}),
-                   image.grid(), contour, work, result);
+  Buffer<double> result(contour.vertices.size(), std::numeric_limits<double>::quiet_NaN());
+  detail::complete_uncertainty<T, N, Real>(image, contour, work, result);
   return result;
+}
+
+template <Value T, int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+void detail::complete_uncertainty(const Image<T, N>& image, const Contour<N, Real>& contour, const WorkOptions& work,
+                                  Buffer<double>& result) {
+  const ImageSource<T, N> source(image, 0.0, 0.0);
+  find_uncertainty(NormalWriter<N, Real>(source, image.grid(), contour.direction, Normals::context, {}), image.grid(),
+                   contour, work, result);
 }
 
 #define TEGL_INSTANTIATE_CONTOURS(N, Real)                                                                      \
@@ -255,7 +268,9 @@ requires DimensionBetween<N, 2, 4> Buffer<double> normal_uncertainty(const Image
   template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(                               \
       const Image<T, N>&, const Contour<N, Real>&, Normals, const WorkOptions&, const GradientKernel&); \
   template Buffer<double> normal_uncertainty<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&,   \
-                                                         const WorkOptions&);
+                                                         const WorkOptions&);                           \
+  template void detail::complete_uncertainty<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&,   \
+                                                         const WorkOptions&, Buffer<double>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl
