@@ -12,9 +12,10 @@ from ._arguments import Progress
 
 
 @_arguments.documents("make_field", "make_expression")
-def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int = 3, limits: tuple[float, float] = (-1.0, 1.0),
-           parameters: Mapping[str, float] | None = None, seed: int = 0, expression: bool | None = None,
-           lattice: _kinds.Lattice | None = None, threads: int = 0, progress: Progress | None = None) -> np.ndarray:
+def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = None,
+           limits: tuple[float, float] = (-1.0, 1.0), parameters: Mapping[str, float] | None = None, seed: int = 0,
+           expression: bool | None = None, lattice: _kinds.Lattice | None = None, threads: int = 0,
+           progress: Progress | None = None) -> np.ndarray:
     """Samples of a field: an array with the axes (t, z, y, x), float32.
 
     ::
@@ -27,16 +28,24 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int = 3, limits
     field
         A name of `tegl.fields()`, or an expression.
     shape, ndim
-        The number of samples along each axis, or one number for all of `ndim` axes.
+        The number of samples along each axis, or one number for all of `ndim` (default: 3) axes.
     limits
         Coordinates of the first and the last sample along each axis.
+    parameters, seed
+        Parameters of a field by name, see `tegl.fields()`; the seed of "metaballs" and "noise". Not for expressions.
     expression
         Whether `field` is an expression; by default, if it is not a word.
     lattice
         The lattice of the samples: odd layers are shifted (see `tegl.contour`). The step between layers is then
         the regular lattice's, and the last coordinate along their axis differs.
     """
-    sizes = [shape] * _arguments.as_whole("ndim", ndim, 2) if isinstance(shape, (int, np.integer)) else list(shape)
+    axis_count = None if ndim is None else _arguments.as_whole("ndim", ndim, 2)
+    if isinstance(shape, (int, np.integer)):
+        sizes = [shape] * (3 if axis_count is None else axis_count)
+    else:
+        sizes = list(shape)
+        if axis_count not in (None, len(sizes)):
+            raise ValueError(f"ndim is {axis_count}, but shape has {len(sizes)} axes; expected the same number")
     sizes = [_arguments.as_whole("shape", size, 2) for size in sizes]
     if not 2 <= len(sizes) <= 5:
         raise ValueError(f"shape has {len(sizes)} axes; expected 2 to 5")
@@ -54,6 +63,10 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int = 3, limits
             axes[across] = (axes[across][0], first, axes[0][2] * steps[lattice])
     given = [(_arguments.as_text("a parameter", name), _arguments.as_number(f"parameters[{name!r}]", value))
              for name, value in (parameters or {}).items()]
+    if is_expression and given:
+        raise ValueError("parameters with an expression; expected them with the name of a field")
+    if is_expression and seed != 0:
+        raise ValueError(f"seed {seed} with an expression; expected it with \"metaballs\" or \"noise\"")
     return _tegl.sample_field(text, is_expression, axes, given, _arguments.as_whole("seed", seed, 0), lattice or "",
                               _arguments.as_whole("threads", threads, 0), progress).T
 

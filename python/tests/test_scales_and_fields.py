@@ -84,6 +84,17 @@ def test_errors_of_samples(arguments, message):
         tegl.sample(*arguments)
 
 
+@pytest.mark.parametrize("arguments, options, message", [
+    (("x + y",), {"parameters": {"a": 1}}, "parameters with an expression"),
+    (("x + y",), {"seed": 3}, "seed 3 with an expression"),
+    (("gyroid",), {"seed": 3}, "'gyroid' with the seed 3; expected 0"),
+    (("ball", (3, 4)), {"ndim": 3}, "ndim is 3, but shape has 2 axes"),
+])
+def test_options_of_samples_that_would_be_ignored(arguments, options, message):
+    with pytest.raises(ValueError, match=message):
+        tegl.sample(*arguments, **options)
+
+
 def test_errors_of_scales():
     with pytest.raises(ValueError, match="expected ascending scales"):
         tegl.scale_space(np.zeros((4, 4)), [2, 1])

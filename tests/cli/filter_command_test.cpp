@@ -130,6 +130,11 @@ TEST_F(FilterCommand, NamesWhatIsWrong) {
   refused({"--gaussian", "wide"}, "wide", 2);
   refused({"--gaussian", "-1"}, "--gaussian is -1; expected 0 or more", 2);
   refused({"--gaussian", "1", "--time-sigma", "1"}, "no axis is a time", 2);
+  refused({"--gaussian", "1", "--time-sigma", "-2"}, "no axis is a time", 2);
+  const RunResult negative =
+      run_tegl({"filter", film(), "--gaussian", "1", "--time-sigma", "-2", "-o", path("a.nrrd")});
+  EXPECT_EQ(negative.exit, 2);
+  EXPECT_THAT(negative.err, HasSubstr("--time-sigma is -2; expected 0 or more"));
   refused({"--median", "0.5"}, "--median is 0.5; expected whole numbers", 2);
   refused({"--median", "1", "--samples"}, "--samples with --median, which has no sigma", 2);
   refused({"--median", "1", "--value-sigma", "1"}, "expected it with --bilateral", 2);

@@ -13,8 +13,10 @@
 namespace tegl::test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 class ImageMakers : public ProgramTest {
  protected:
@@ -139,7 +141,9 @@ TEST_F(ImageMakers, NameWhatIsWrong) {
   expect_refused({"scale-space", picture, "--sigmas", "1:2:1.5", "-o", out}, "has the count 1.5", 2);
   expect_refused({"scale-space", picture, "--sigmas", "2,1", "-o", out}, "expected ascending scales", 2);
   expect_refused({"scale-space", picture, "--sigmas", "1,2,3", "-o", out}, "has uneven steps, which NRRD cannot hold",
-                 4);
+                 6);
+  EXPECT_THAT(run_tegl({"scale-space", picture, "--sigmas", "1,2,3", "-o", out}).err,
+              AllOf(HasSubstr("out.nrrd"), Not(HasSubstr("a.nrrd"))));
   expect_refused({"sample", "cube", "-o", out}, "no field 'cube'; expected ball", 2);
   expect_refused({"sample", "ball", "--set", "size=3", "-o", out}, "has no parameter 'size'; expected radius", 2);
   expect_refused({"sample", "ball", "--set", "radius", "-o", out}, "--set is 'radius'; expected NAME=NUMBER", 2);
@@ -149,6 +153,8 @@ TEST_F(ImageMakers, NameWhatIsWrong) {
   expect_refused({"sample", "ball", "--lattice", "d4", "--dim", "3", "-o", out},
                  "--lattice d4 with --dim 3; expected 4", 2);
   expect_refused({"sample", "x +", "--set", "a=1", "-o", out}, "--set with an expression", 2);
+  expect_refused({"sample", "x + 1", "--seed", "0", "-o", out}, "--seed with an expression; expected it with", 2);
+  expect_refused({"sample", "gyroid", "--seed", "7", "-o", out}, "--seed with gyroid, which has no random numbers", 2);
   EXPECT_THAT(files(), ElementsAre("a.nrrd", "film.nii"));
 }
 

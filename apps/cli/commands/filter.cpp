@@ -189,14 +189,16 @@ class FilterCommand final : public Command {
     if (times == 0 && time_option_->count() > 0)
       throw Error(ErrorCode::InvalidArgument, "--time-sigma, but no axis is a time; expected an axis named t or time");
     for (std::size_t a = 0, next = 0; a < N; ++a) {
-      if (is_time(grid.axes[a].name, a) && (given.size() != N || time_option_->count() > 0)) {
+      const bool from_time = is_time(grid.axes[a].name, a) && (given.size() != N || time_option_->count() > 0);
+      if (from_time) {
         result[a] = time_option_->count() > 0 ? parse_finite("--time-sigma", time_sigma_) : 0.0;
         if (given.size() == N) ++next;
       } else {
         result[a] = given.size() == 1 ? given[0] : given[next++];
       }
       if (result[a] < 0)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("{} is {}; expected 0 or more", name, number(result[a])));
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("{} is {}; expected 0 or more", from_time ? "--time-sigma" : name, number(result[a])));
     }
     return result;
   }

@@ -80,7 +80,7 @@ class SampleCommand final : public Command {
         ->allow_extra_args(false)
         ->type_name("NAME=NUMBER");
     app()
-        .add_option("--seed", seed_, "of the places of metaballs, and of noise")
+        .add_option("--seed", seed_, "of the places of metaballs, and of noise; not for other fields")
         ->check(whole_number(0, std::uint64_t{1} << 62))
         ->type_name("NUMBER")
         ->capture_default_str();
@@ -126,7 +126,16 @@ class SampleCommand final : public Command {
     }
     const bool is_name =
         std::all_of(field_.begin(), field_.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
-    if (is_name && field_.size() > 1) return make_field(field_, dim, parameters, seed_);
+    if (is_name && field_.size() > 1) {
+      for (const FieldInfo& known : fields())
+        if (known.name == field_ && !known.has_seed && app().count("--seed") > 0)
+          throw Error(
+              ErrorCode::InvalidArgument,
+              fmt::format("--seed with {}, which has no random numbers; expected it with metaballs or noise", field_));
+      return make_field(field_, dim, parameters, seed_);
+    }
+    if (app().count("--seed") > 0)
+      throw Error(ErrorCode::InvalidArgument, "--seed with an expression; expected it with metaballs or noise");
     if (!parameters.empty())
       throw Error(ErrorCode::InvalidArgument, "--set with an expression; expected it with the name of a field");
     return make_expression(field_, dim);

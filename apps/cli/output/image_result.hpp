@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,15 +58,42 @@ void write_image_result(const Image<T, N>& image, const ImageInfo& info, Progres
   result.write_seconds = watch.lap();
 }
 
+/// Layers that keep the error of reading them, to tell it from errors of the output.
+template <Value T, int N>
+class WatchedLayers final : public LayerReader<T, N> {
+ public:
+  explicit WatchedLayers(LayerReader<T, N>& layers) : layers_(layers) {}
+  [[nodiscard]] const Grid<N>& grid() const noexcept override { return layers_.grid(); }
+  void read(std::size_t k, T* to) override {
+    try {
+      layers_.read(k, to);
+    } catch (...) {
+      error_ = std::current_exception();
+      throw;
+    }
+  }
+  [[nodiscard]] const std::exception_ptr& error() const noexcept { return error_; }
+
+ private:
+  LayerReader<T, N>& layers_;
+  std::exception_ptr error_;
+};
+
 /// Writes an image layer by layer, each computed when it is written, and completes the result. Errors of the reader
-/// keep their codes.
+/// keep their codes; others are WriteFailed, as those of write_image_result.
 template <Value T, int N>
 void stream_image_result(LayerReader<T, N>& layers, const ImageInfo& info, ProgressBar& bar, ImageResult& result) {
   Stopwatch watch;
   for (const Axis& axis : layers.grid().axes) result.sizes.push_back(axis.size());
   result.type = kValueType<T>;
-  write_layers(layers, result.output, info, {0, bar.stage("stream")});
-  result.output_bytes = std::filesystem::file_size(result.output);
+  WatchedLayers<T, N> watched(layers);
+  const WorkOptions work{0, bar.stage("stream")};
+  try {
+    result.output_bytes = write_file(result.output, [&] { write_layers(watched, result.output, info, work); });
+  } catch (const Error&) {
+    if (watched.error()) std::rethrow_exception(watched.error());
+    throw;
+  }
   result.make_seconds = watch.lap();
 }
 

@@ -34,6 +34,7 @@ struct FieldInfo {
   int least_dim = 2;                            ///< lowest dimension
   int most_dim = 5;                             ///< highest dimension
   std::vector<FieldParameter> parameters = {};  ///< in the order of the documentation
+  bool has_seed = false;                        ///< whether it depends on a seed
 };
 
 /// The fields of make_field.
@@ -65,7 +66,8 @@ class Field {
 
 /// A field of `fields()` in `dim` dimensions, with these parameters instead of the defaults. Fields are made for
 /// coordinates from -1 to 1, and positive inside: their contour is at 0, except orbitals. `seed`: of the places of
-/// metaballs and of noise. Errors: InvalidArgument (another name, dimension, or parameter; a value out of its range).
+/// metaballs and of noise. Errors: InvalidArgument (another name, dimension, or parameter; a value out of its range; a
+/// seed other than 0 for another field).
 [[nodiscard]] Field make_field(std::string_view name, int dim,
                                const std::vector<std::pair<std::string, double>>& parameters = {},
                                std::uint64_t seed = 0);

@@ -46,6 +46,8 @@ template <class Real>
 void scale_space_layer(const FilterSamples& samples, std::span<const double> sigmas, ScaleQuantity quantity,
                        const FilterOptions& options, Real* out);
 void require_factors(std::span<const double> factors, std::size_t axes);
+/// Throws InvalidArgument if an axis whose factor is not 0 has uneven steps.
+void require_even_steps(std::span<const Axis> axes, std::span<const double> factors);
 }  // namespace detail
 
 /// The scale space of an image as layers along a last axis, the scale_axis: layer k is the image smoothed by the
@@ -74,7 +76,10 @@ class ScaleSpaceLayers final : public LayerReader<FilteredValue<T>, N + 1> {
     }
     std::array<double, N> unit{};
     for (int a = 0; a < N; ++a) unit[a] = options_.factors[a];
-    if (!options_.in_samples) unit = sigmas_in_samples<N>(image.grid(), unit);
+    if (!options_.in_samples) {
+      detail::require_even_steps(image.grid().axes, options_.factors);
+      unit = sigmas_in_samples<N>(image.grid(), unit);
+    }
     in_samples_.assign(unit.begin(), unit.end());
   }
 

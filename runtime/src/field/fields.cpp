@@ -216,7 +216,8 @@ const std::vector<KnownField>& known_fields() {
         5,
         {{"count", 200, "number of bumps"},
          {"width", 0, "sigma; 0: 0.035 in 2D, 0.081 in 3D, 0.1 in 4D and 5D"},
-         {"level", 0.5, "subtracted from the sum"}}},
+         {"level", 0.5, "subtracted from the sum"}},
+        true},
        &make_metaballs},
       {{"gyroid", "the gyroid: sum of sin(k x) cos(k y) over neighbouring axes", 2, 5, {periods}}, &make_gyroid},
       {{"primitive", "Schwarz's P surface: sum of cosines", 2, 5, {periods}},
@@ -275,7 +276,7 @@ const std::vector<KnownField>& known_fields() {
          {"m2", 0, "4D"},
          {"extent", 0, "Bohr radii at a coordinate of 1; 0: 2 n^2 + 4"}}},
        &make_orbital_field},
-      {{"noise", "independent samples, uniform from -0.5 to 0.5", 2, 5, {}}, &make_noise},
+      {{"noise", "independent samples, uniform from -0.5 to 0.5", 2, 5, {}, true}, &make_noise},
   };
   return known;
 }
@@ -301,6 +302,8 @@ Field make_field(std::string_view name, int dim, const std::vector<std::pair<std
   if (dim < found->info.least_dim || dim > found->info.most_dim)
     refuse(fmt::format("the field '{}' in {} dimensions; expected {} to {}", name, dim, found->info.least_dim,
                        found->info.most_dim));
+  if (seed != 0 && !found->info.has_seed)
+    refuse(fmt::format("the field '{}' with the seed {}; expected 0, as it has no random numbers", name, seed));
   FieldRequest request{dim, found->info.parameters, seed};
   for (const auto& [parameter, value] : parameters) {
     std::string known;

@@ -84,6 +84,16 @@ void require_factors(std::span<const double> factors, std::size_t axes) {
       throw Error(ErrorCode::InvalidArgument, fmt::format("a factor of the scale is {}; expected 0 or more", factor));
 }
 
+void require_even_steps(std::span<const Axis> axes, std::span<const double> factors) {
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (factors[a] != 0 && !axes[a].is_uniform())
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("the scale is in units of the axes, but the steps of axis {} '{}' differ; expected scales "
+                      "in samples, or the factor 0 for it",
+                      a, axes[a].name));
+}
+
 std::vector<double> scaled_sigmas(double sigma, std::span<const double> in_samples) {
   std::vector<double> result;
   for (const double one : in_samples) result.push_back(sigma * one);

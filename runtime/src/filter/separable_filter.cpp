@@ -62,10 +62,17 @@ class SeparableFilter final : public LayerFilter<Real> {
   using Base::place;
   using Base::shape;
 
-  std::vector<std::vector<Real>> weights_;  ///< by axis
-  std::vector<std::size_t> within_;         ///< axes within a layer that are filtered
-  bool normalised_ = true;                  ///< all weights are at least 0
-  double gain_ = 1;                         ///< sum of all weights
+  /// Weights along an axis that are not 0: a sample without weight counts as little if it is NaN or infinite.
+  struct Taps {
+    std::vector<Real> weights;
+    std::vector<std::size_t> places;  ///< from 0 to twice the radius
+  };
+  static Taps taps_of(const AxisWeights& along);
+
+  std::vector<Taps> taps_;           ///< by axis
+  std::vector<std::size_t> within_;  ///< axes within a layer that are filtered
+  bool normalised_ = true;           ///< all weights are at least 0
+  double gain_ = 1;                  ///< sum of all weights
   std::vector<RingLayer<Real>> ring_;
   std::vector<std::vector<Real>> from_, other_, masks_, mask_other_;
   std::vector<Real> whole_;
@@ -77,8 +84,7 @@ SeparableFilter<Real>::SeparableFilter(FilterShape given, const SeparableConvolu
     : Base(std::move(given)), ring_(Base::ring_size()) {
   for (std::size_t a = 0; a < shape().axes(); ++a) {
     const AxisWeights& along = filter.weights[a];
-    weights_.emplace_back(along.begin(), along.end());
-    if (along.empty()) weights_.back() = {Real{1}};
+    taps_.push_back(taps_of(along));
     double sum = 0;
     for (const double weight : along) {
       normalised_ = normalised_ && weight >= 0;
@@ -90,6 +96,19 @@ SeparableFilter<Real>::SeparableFilter(FilterShape given, const SeparableConvolu
   }
   normalised_ = normalised_ && gain_ > 0;
   outside_.assign(kBlock, normalised_ ? Real{0} : std::numeric_limits<Real>::quiet_NaN());
+}
+
+template <class Real>
+typename SeparableFilter<Real>::Taps SeparableFilter<Real>::taps_of(const AxisWeights& along) {
+  if (along.empty()) return {{Real{1}}, {0}};
+  Taps taps;
+  for (std::size_t t = 0; t < along.size(); ++t) {
+    if (along[t] == 0) continue;
+    taps.weights.push_back(static_cast<Real>(along[t]));
+    taps.places.push_back(t);
+  }
+  if (taps.weights.empty()) return {{Real{0}}, {along.size() / 2}};
+  return taps;
 }
 
 template <class Real>
@@ -167,13 +186,13 @@ template <class Real>
 void SeparableFilter<Real>::pass_along_rows(const std::vector<LayerJob<Real>>& jobs, std::size_t pass) {
   const std::size_t width = shape().sizes[0];
   const std::size_t rows = shape().layer_size() / width;
-  const std::vector<Real>& weights = weights_[0];
+  const Taps& taps = taps_[0];
   const auto radius = static_cast<std::ptrdiff_t>(shape().radii[0]);
   for_items(jobs.size() * rows, 8, [&](std::size_t item, Scratch& scratch) {
     const auto [source, target] = ends(jobs[item / rows], pass);
     const Real* const row = source + (item % rows) * width;
     std::vector<Real>& padded = scratch.first;
-    padded.resize(width + weights.size() - 1);
+    padded.resize(width + 2 * shape().radii[0]);
     for (std::ptrdiff_t i = 0; i < radius; ++i) {
       const auto outside = [&](std::ptrdiff_t at) {
         const std::ptrdiff_t index = source_index(at, width, shape().borders[0]);
@@ -183,9 +202,10 @@ void SeparableFilter<Real>::pass_along_rows(const std::vector<LayerJob<Real>>& j
       padded[static_cast<std::size_t>(i + radius) + width] = outside(i + static_cast<std::ptrdiff_t>(width));
     }
     std::copy_n(row, width, padded.begin() + radius);
-    scratch.lines.resize(weights.size());
-    for (std::size_t t = 0; t < weights.size(); ++t) scratch.lines[t] = padded.data() + t;
-    weighted_lines(scratch.lines.data(), weights.data(), weights.size(), width, target + (item % rows) * width);
+    scratch.lines.clear();
+    for (const std::size_t t : taps.places) scratch.lines.push_back(padded.data() + t);
+    weighted_lines(scratch.lines.data(), taps.weights.data(), scratch.lines.size(), width,
+                   target + (item % rows) * width);
   });
 }
 
@@ -198,7 +218,7 @@ void SeparableFilter<Real>::pass_across_rows(const std::vector<LayerJob<Real>>& 
   const std::size_t outer = shape().layer_size() / (inner * lines);
   const std::size_t blocks = block_count(inner, kBlock);
   const std::size_t groups = block_count(lines, kLines);
-  const std::vector<Real>& weights = weights_[axis];
+  const Taps& taps = taps_[axis];
   const auto radius = static_cast<std::ptrdiff_t>(shape().radii[axis]);
   for_items(jobs.size() * outer * blocks * groups, 1, [&](std::size_t item, Scratch& scratch) {
     const std::size_t group = item % groups;
@@ -206,14 +226,15 @@ void SeparableFilter<Real>::pass_across_rows(const std::vector<LayerJob<Real>>& 
     const std::size_t start = (item / (groups * blocks) % outer) * inner * lines + block * kBlock;
     const auto [source, target] = ends(jobs[item / (groups * blocks * outer)], pass);
     const std::size_t width = std::min(kBlock, inner - block * kBlock);
-    scratch.lines.resize(weights.size());
     for (std::size_t j = group * kLines; j < std::min(lines, (group + 1) * kLines); ++j) {
-      for (std::size_t t = 0; t < weights.size(); ++t) {
+      scratch.lines.clear();
+      for (const std::size_t t : taps.places) {
         const std::ptrdiff_t at =
             source_index(static_cast<std::ptrdiff_t>(j + t) - radius, lines, shape().borders[axis]);
-        scratch.lines[t] = at < 0 ? outside_.data() : source + start + static_cast<std::size_t>(at) * inner;
+        scratch.lines.push_back(at < 0 ? outside_.data() : source + start + static_cast<std::size_t>(at) * inner);
       }
-      weighted_lines(scratch.lines.data(), weights.data(), weights.size(), width, target + start + j * inner);
+      weighted_lines(scratch.lines.data(), taps.weights.data(), scratch.lines.size(), width,
+                     target + start + j * inner);
     }
   });
 }
@@ -251,13 +272,13 @@ void SeparableFilter<Real>::put(std::size_t first, std::size_t count, Real* out)
 template <class Real>
 void SeparableFilter<Real>::put_block(std::size_t layer, std::size_t at, std::size_t width, bool masked,
                                       Scratch& scratch, Real* out) {
-  const std::vector<Real>& weights = weights_.back();
+  const std::vector<Real>& weights = taps_.back().weights;
   const auto radius = static_cast<std::ptrdiff_t>(shape().radii.back());
   scratch.lines.resize(weights.size());
   scratch.more_lines.resize(weights.size());
   for (std::size_t t = 0; t < weights.size(); ++t) {
     std::size_t slot = 0;
-    if (!in_ring(static_cast<std::ptrdiff_t>(layer + t) - radius, slot)) {
+    if (!in_ring(static_cast<std::ptrdiff_t>(layer + taps_.back().places[t]) - radius, slot)) {
       scratch.lines[t] = scratch.more_lines[t] = outside_.data();
       continue;
     }

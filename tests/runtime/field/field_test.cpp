@@ -155,6 +155,8 @@ TEST(Field, RefusesWhatItDoesNotKnow) {
   refuse("radius is nan; expected a finite number", "ball", 3, {{"radius", std::nan("")}});
   refuse("count is 0; expected a whole number from 1", "metaballs", 3, {{"count", 0}});
   refuse("n = 2, l = 2, m = 0; expected", "orbital", 3, {{"n", 2}, {"l", 2}});
+  expect_error(ErrorCode::InvalidArgument, "the field 'gyroid' with the seed 7; expected 0",
+               [] { static_cast<void>(make_field("gyroid", 3, {}, 7)); });
   const Field ball = make_field("ball", 3);
   expect_error(ErrorCode::InvalidArgument, "a field in 3 dimensions on a grid in 2", [&] {
     static_cast<void>(sample_field(ball, Grid<2>::unit({3, 3})));

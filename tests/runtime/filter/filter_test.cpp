@@ -189,6 +189,26 @@ TEST(Filter, SeparableConvolutionIsNormalisedAtMissingSamples) {
     }
 }
 
+TEST(Filter, SamplesWithoutWeightMayBeNaNOrInfinite) {
+  // a shift of one sample along each axis in turn, with weights of both signs: missing samples are not normalised
+  auto image = noise<double, 3>({6, 5, 4}, 12);
+  const std::size_t strides[] = {1, 6, 30};
+  const std::size_t middle = 2 + 6 * 2 + 30 * 2;
+  image.values[middle] = std::numeric_limits<double>::quiet_NaN();
+  image.values[middle + 1] = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    SeparableConvolution filter;
+    filter.weights.resize(3);
+    filter.weights[axis] = {-1, 0, 0};
+    const auto result = filter_image(image.view(), filter, {{FilterBorder::extended}, true, {}});
+    for (std::size_t i = 0; i < image.values.size(); ++i) {
+      const double before =
+          i / strides[axis] % image.grid.axes[axis].size() == 0 ? image.values[i] : image.values[i - strides[axis]];
+      EXPECT_TRUE(result.values[i] == -before || (std::isnan(result.values[i]) && std::isnan(before))) << i;
+    }
+  }
+}
+
 TEST(Filter, BordersMayDifferByAxis) {
   const auto image = noise<double, 2>({6, 5}, 9);
   const FilterOptions options{{FilterBorder::cyclic, FilterBorder::extended}, false, {}};

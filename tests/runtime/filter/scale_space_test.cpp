@@ -172,6 +172,12 @@ TEST(ScaleSpace, RefusesWhatIsNoScale) {
   };
   refuse("3 factors of the scale; expected one for each of 2 axes", {1, 1, 1});
   refuse("a factor of the scale is -1", {1, -1});
+  auto uneven = image;
+  uneven.grid.axes[1] = Axis::rectilinear({0, 1, 2, 4});
+  uneven.grid.axes[1].name = "depth";
+  expect_error(ErrorCode::InvalidArgument, "the steps of axis 1 'depth' differ; expected scales in samples", [&] {
+    ScaleSpaceLayers<float, 2>(uneven.view(), {1, 2});
+  });
 }
 
 }  // namespace
