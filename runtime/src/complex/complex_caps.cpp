@@ -134,7 +134,7 @@ void ComplexCaps<N>::cut(const Facet& facet, std::span<const std::uint8_t> aroun
 }
 
 template <int N>
-void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& table) requires(N == 3) {
+void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& table) {
   const tables::RegionList& list = table.lists[facet.high];
   const auto shared = [&](unsigned v) {
     if (v < 4) return CapVertex::corner(facet.points[v]);
@@ -160,7 +160,7 @@ void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& ta
 }
 
 template <int N>
-typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet) const requires(N == 4) {
+typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet) const {
   Boundary boundary;
   std::vector<std::array<CapVertex, 2>> segments;
   for (const CellFacet& face : facets_of(facet.of.shape)) {
@@ -197,7 +197,7 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
 }
 
 template <int N>
-void ComplexCaps<N>::add_regions(const Facet& facet) requires(N == 4) {
+void ComplexCaps<N>::add_regions(const Facet& facet) {
   const Boundary boundary = boundary_of(facet);
   // regions: parts that have vertices in common
   std::map<CapVertex, Index> numbers;
@@ -213,7 +213,7 @@ void ComplexCaps<N>::add_regions(const Facet& facet) requires(N == 4) {
   for (const Triangle& triangle : boundary.triangles) {
     // the first vertex may be a polygon's barycentre, which is not in `numbers`
     const CapVertex centre = centres[sets.find(numbers[triangle[1]])];
-    add_simplex({centre, triangle[0], triangle[1], triangle[2]}, facet.flip);
+    if constexpr (N == 4) add_simplex({centre, triangle[0], triangle[1], triangle[2]}, facet.flip);
   }
 }
 

@@ -69,9 +69,9 @@ class ComplexCaps {
   };
 
   void add_facet(const Facet& facet);
-  void add_table(const Facet& facet, const tables::RegionTable& table) requires(N == 3);
-  [[nodiscard]] Boundary boundary_of(const Facet& facet) const requires(N == 4);
-  void add_regions(const Facet& facet) requires(N == 4);
+  void add_table(const Facet& facet, const tables::RegionTable& table);
+  [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
+  void add_regions(const Facet& facet);
   [[nodiscard]] CapVertex on_edge(Index p, Index q) const;
   /// Adds the high parts of a polygon with corners `around`, and the contour's segments in it, against their direction
   /// around the parts.
