@@ -115,6 +115,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   put(result, "value_name", read.info.value_name);
   put(result, "world_frame", read.info.world_frame);
   result["axis_directions"] = directions_of(read.info);
+  result["samples_are_cells"] = read.info.samples_are_cells;
   py::list curved;
   for (const CurvedAxis& one : read.info.curved)
     curved.append(py::make_tuple(one.axis, one.along,

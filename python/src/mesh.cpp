@@ -151,8 +151,8 @@ std::unique_ptr<MeshIndex> make_index(const Doubles& points, const Types& types,
   });
 }
 
-std::unique_ptr<AnyContour> contour_of_index(const MeshIndex& mesh, double level, bool is_double,
-                                             const py::dict& arguments, const py::object& progress) {
+std::unique_ptr<AnyContour> contour_of_mesh_index(const MeshIndex& mesh, double level, bool is_double,
+                                                  const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ContourArguments wanted = wanted_of(level, is_double, arguments, call);
   return call.run([&] { return contour_of(mesh.complex, &mesh.index, mesh.axis_names, wanted); });
@@ -184,8 +184,8 @@ void bind_mesh(py::module_& m) {
   py::class_<MeshIndex>(m, "MeshIndex", doc::CellIndex)
       .def(py::init(&make_index), py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
            py::arg("times"), py::arg("axis_names"), py::arg("threads"), py::arg("progress"))
-      .def("contour", &contour_of_index, py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
-           doc::extract)
+      .def("contour", &contour_of_mesh_index, py::arg("level"), py::arg("double"), py::arg("options"),
+           py::arg("progress"), doc::extract)
       .def_property_readonly(
           "cells",
           [](const MeshIndex& mesh) {

@@ -99,7 +99,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     samples
         "points", or "cells": samples are small squares, cubes or tesseracts. The contour runs along the faces between high
         and low cells and encloses their exact volume; with `positions` "relaxed" or "gravitation" it gets a smooth shape.
-        It is always closed. For 2 to 4 axes. See docs/cells.md.
+        It is always closed. For 2 to 4 axes. "file": as `Image.samples_are_cells` says. See docs/cells.md.
     curved
         Coordinates of the samples of a curved grid, in place of `coords` of some axes: a dict of axes (names or numbers) and
         arrays of coordinates with as many axes as `array`, and size 1 along the axes on which they do not depend, such as
@@ -121,9 +121,11 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     weight = _arguments.as_number("time_weight", time_weight)
     if weight != 1 and positions != "relaxed":
         raise ValueError(f"time_weight is {time_weight!r} with positions {positions!r}; expected positions='relaxed'")
-    if _arguments.as_text("samples", samples) not in ("points", "cells"):
-        raise ValueError(f"samples is {samples!r}; expected 'points' or 'cells'")
-    of_cells = samples == "cells"
+    if _arguments.as_text("samples", samples) not in ("points", "cells", "file"):
+        raise ValueError(f"samples is {samples!r}; expected 'points', 'cells' or 'file'")
+    if samples == "file" and not isinstance(array, Image):
+        raise ValueError(f"samples is 'file' for a {type(array).__name__}; expected an image from tegl.read")
+    of_cells = samples == "cells" or (samples == "file" and array.samples_are_cells)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
@@ -302,6 +304,7 @@ class Image:
     axis_directions: tuple[_kinds.AxisDirection, ...]
     #: coordinates of a curved grid, by axis: see `tegl.contour`; those axes have indices as `coords`. {}: straight axes
     curved: dict[int, np.ndarray] = dataclasses.field(repr=False, default_factory=dict)
+    samples_are_cells: bool = False  #: whether the file says that the samples are cells, for `samples="file"`
     _axes: tuple = dataclasses.field(repr=False, default=())
 
     def __repr__(self) -> str:
@@ -425,7 +428,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         curved[ndim - 1 - axis if is_reversed else axis] = values.T if is_reversed else values
         names[axis], units[axis] = name or names[axis], unit or units[axis]
     return Image(array=array, coords=coords, axis_names=tuple(names)[turn],
-                 axis_units=tuple(units)[turn], curved=curved, affine=affine, time_axis=0 if is_reversed else ndim - 1,
+                 axis_units=tuple(units)[turn], curved=curved, samples_are_cells=found["samples_are_cells"], affine=affine, time_axis=0 if is_reversed else ndim - 1,
                  value_name=found["value_name"], value_unit=found["value_unit"], format=found["format"],
                  variable=found["variable"], variables=tuple(found["variables"]), world_frame=found["world_frame"],
                  axis_directions=tuple(found["axis_directions"] or ["unknown"] * ndim)[turn], _axes=axes)

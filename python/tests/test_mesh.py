@@ -380,3 +380,18 @@ def test_curved_grids_of_netcdf_files(tmp_path):
     assert tegl.contour(image.array, 17.0).vertices[:, 2].max() < 15  # indices
     with pytest.raises(ValueError, match="curved grid"):
         tegl.slice(image, 17.0, at=1)
+
+
+def test_samples_are_cells_if_the_file_says_so(tmp_path):
+    mask = np.zeros((4, 4, 4), np.uint8)
+    mask[1:3, 1:3, 1:3] = 1
+    header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n{}\n"
+    for centers, content in (("centers: cell cell cell\n", 8), ("", None)):
+        (tmp_path / "mask.nrrd").write_bytes(header.format(centers).encode() + mask.tobytes())
+        image = tegl.read(tmp_path / "mask.nrrd")
+        assert image.samples_are_cells == (content is not None)
+        if content:
+            assert image.contour(1, samples="file").measure().content == pytest.approx(content)
+        assert image.contour(1, samples="file").check().is_closed
+    with pytest.raises(ValueError, match="samples is 'file' for a ndarray"):
+        tegl.contour(mask, 1, samples="file")

@@ -3,6 +3,8 @@
 // --merge of tegl contour and tegl simplify, and --samples-are cells, run as in a shell.
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "sample_files.hpp"
@@ -99,6 +101,22 @@ TEST_F(MergeCommand, CellsHaveTheirExactVolume) {
   expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--normals", "-o", path("a.ply")},
                  "normals from the image");
   expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "boxes", "-o", path("a.ply")}, "boxes");
+}
+
+TEST_F(MergeCommand, SamplesAreCellsIfTheFileSaysSo) {
+  const Samples mask = sample({5, 5, 5}, [](const std::vector<double>& x) {
+    return std::abs(x[0] - 2) + std::abs(x[1] - 2) + std::abs(x[2] - 2) < 1.5 ? 1.0 : 0.0;
+  });
+  for (const char* const centers : {"cell cell cell", "cell node cell", "node node node"}) {
+    const std::string image = write("mask.nrrd", nrrd_bytes(mask, fmt::format("centers: {}\n", centers)));
+    const bool are_cells = std::string_view(centers) == "cell cell cell";
+    EXPECT_EQ(run({"info", image, "--json"}).json()["samples_are"], are_cells ? "cells" : "points");
+    const RunResult run_file = run({"measure", image, "--iso", "1", "--samples-are", "file", "--json"});
+    ASSERT_EQ(run_file.exit, 0) << run_file.err;
+    EXPECT_EQ(std::abs(run_file.json()["content"].get<double>() - 7) < 1e-9, are_cells) << centers;
+    const RunResult points = run({"measure", image, "--iso", "1", "--json"});
+    EXPECT_LT(points.json()["content"].get<double>(), 6.0) << "points are the default";
+  }
 }
 
 }  // namespace

@@ -299,7 +299,7 @@ class ContourCommand final : public Command {
     ReadImageResult input = read(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused);
     if (!sigmas_.empty()) make_scale_space(input.image, bar.stage("scale space"));
     tiling_ = options_.tiling();
-    remark(take_curved(input, file(), options_, tiling_));
+    remark(take_grid(input, file(), options_, tiling_));
     require_output_holds(results.front().output, image_dim(input.image) - 1);
     for (ContourResult& result : results) {
       result.input = inputs();
@@ -395,7 +395,7 @@ class ContourCommand final : public Command {
               image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
     else if (!positions_.are_linear())
       result.mesh = extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision,
-                                                 options_.tiling().of_cells, finished);
+                                                 tiling_.of_cells, finished);
     else
       result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, tiling_);
   }

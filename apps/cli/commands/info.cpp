@@ -130,6 +130,7 @@ Json to_json(const Description& description, const InputFiles& input) {
   Json& axes = json["axes"] = Json::array();
   for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
   json["periodic"] = description.around;
+  json["samples_are"] = info.samples_are_cells ? "cells" : "points";
   Json& curved = json["curved"] = Json::array();
   for (const CurvedAxis& one : info.curved) curved.push_back(one.name);
   json["world_frame"] = info.world_frame;
@@ -228,7 +229,8 @@ std::string values_text(const Console& console, const Description& description) 
   const ValueStatistics& values = description.values;
   const std::string unit = description.info.value_unit.empty() ? "" : " " + description.info.value_unit;
   std::string text =
-      report_line("samples", fmt::format("{}, {} missing", grouped(values.samples), grouped(values.missing)));
+      report_line("samples", fmt::format("{}, {} missing{}", grouped(values.samples), grouped(values.missing),
+                                         description.info.samples_are_cells ? "; they are cells" : ""));
   if (values.infinite > 0)
     text += report_line("", fmt::format("{} infinite, excluded below", grouped(values.infinite)));
   if (values.finite() == 0) return text + report_line("values", "none: all samples are missing or infinite");

@@ -57,8 +57,9 @@ CutAxis cut_axis_of(const CurvedAxis& one) {
 
 }  // namespace
 
-std::string take_curved(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
-                        Tiling& tiling) {
+std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
+                      Tiling& tiling) {
+  if (options.samples_are_as_in_file()) tiling.of_cells = input.info.samples_are_cells;
   if (input.info.curved.empty()) return "";
   options.refuse_tiling("the curved grid of " + file);
   tiling.curved = std::move(input.info.curved);
@@ -232,7 +233,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   ExtractOptions options = options_.library_options();
   Tiling tiling = options_.tiling();
   ReadImageResult input = read(bar.stage("read"), keep_image ? CurvedGrids::refused : CurvedGrids::allowed);
-  remark(take_curved(input, file(), options_, tiling));
+  remark(take_grid(input, file(), options_, tiling));
   result.file = inputs();
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue, allows_empty());

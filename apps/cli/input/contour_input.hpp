@@ -28,10 +28,11 @@ AnyContour to_any_contour(Mesh&& mesh);
 /// `read_mesh`.
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 
-/// Moves the coordinates of a curved grid to the tiling. Returns a remark on its folds, or an empty text. Throws
-/// InvalidArgument for options that choose other tilings.
-std::string take_curved(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
-                        Tiling& tiling);
+/// Takes what the file says of its cells to the tiling: whether samples are cells, if the options ask for it, and the
+/// coordinates of a curved grid. Returns a remark on folds of the grid, or an empty text. Throws InvalidArgument for
+/// options that choose other tilings.
+std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
+                      Tiling& tiling);
 
 /// Reads a saved contour with finite coordinates. Throws EmptyResult if it has no simplices, unless `allow_empty`.
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty);

@@ -86,15 +86,17 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
                                     "divide cells into simplices: kuhn or symmetric, in 2D and 3D also alternating, or "
                                     "hybrid (ambiguous cells only)")
                          ->check(CLI::IsMember({"kuhn", "alternating", "symmetric", "hybrid"})));
-  options_.push_back(app.add_option("--samples-are", samples_,
-                                    "cells: the contour runs along the faces between high and low cells and encloses "
-                                    "their exact volume; closed at the image border")
-                         ->check(CLI::IsMember({"points", "cells"}))
-                         ->capture_default_str());
+  options_.push_back(
+      app.add_option("--samples-are", samples_,
+                     "cells: the contour runs along the faces between high and low cells and encloses "
+                     "their exact volume; closed at the image border. file: cells, if the file says that "
+                     "they are")
+          ->check(CLI::IsMember({"points", "cells", "file"}))
+          ->capture_default_str());
 }
 
 Tiling ExtractionOptions::tiling() const {
-  if (samples_ == "cells") refuse_tiling_before_cells("--samples-are cells");
+  if (samples_ != "points") refuse_tiling_before_cells("--samples-are " + samples_);
   if (!division_.empty()) refuse_tiling_before_division("--division " + division_);
   if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
   Tiling tiling{periodic_, std::nullopt, std::nullopt, {}, samples_ == "cells"};
@@ -113,8 +115,9 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
 
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
   refuse_tiling_before_cells(with);
-  if (samples_ == "cells")
-    throw Error(ErrorCode::InvalidArgument, fmt::format("--samples-are cells with {}; expected one of the two", with));
+  if (samples_ != "points")
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--samples-are {} with {}; expected one of the two", samples_, with));
 }
 
 void ExtractionOptions::refuse_tiling_before_cells(const std::string& with) const {

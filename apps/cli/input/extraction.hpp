@@ -26,13 +26,14 @@
 
 namespace tegl::cli {
 
-/// The cells between samples, if the grid is periodic, curved or a lattice, its cells are divided, or samples are cells.
+/// The cells between samples, if the grid is periodic, curved or a lattice, its cells are divided, or samples are
+/// cells.
 struct Tiling {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   std::optional<Lattice> lattice = {};     ///< of --lattice
   std::optional<Division> division = {};   ///< of --division
   std::vector<CurvedAxis> curved = {};     ///< of the image's curved grid
-  bool of_cells = false;                   ///< of --samples-are cells
+  bool of_cells = false;                   ///< of --samples-are
   [[nodiscard]] bool is_plain() const {
     return periodic.empty() && !lattice && !division && curved.empty() && !of_cells;
   }
@@ -52,6 +53,8 @@ class ExtractionOptions {
   [[nodiscard]] Tiling tiling() const;
   /// Throws InvalidArgument with one of them. `with`: another option or a command.
   void refuse_tiling(const std::string& with) const;
+  /// Whether the file decides if its samples are cells.
+  [[nodiscard]] bool samples_are_as_in_file() const { return samples_ == "file"; }
 
   /// The names of the options that were given.
   [[nodiscard]] std::vector<std::string> given() const;

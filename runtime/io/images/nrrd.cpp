@@ -378,6 +378,19 @@ NrrdHeader parse_header(const Text& text, bool allow_outside_paths, const fs::pa
   return header;
 }
 
+/// The centering of each axis of the file, "cell" or "node"; empty: not given.
+std::vector<std::string> centerings_of(const NrrdFields& fields, std::size_t axes, const fs::path& path) {
+  return words_per_axis(fields, fields.contains("centers") ? "centers" : "centerings", axes, path);
+}
+
+/// Whether the samples of all axes of an image are at the centres of cells.
+bool are_cells(const NrrdFields& fields, const NrrdHeader& header, const fs::path& path) {
+  const auto centers = centerings_of(fields, header.sizes.size(), path);
+  for (std::size_t a = 0; a < centers.size(); ++a)
+    if (header.sizes[a] > 1 && (!header.list_axis || *header.list_axis != a) && centers[a] != "cell") return false;
+  return true;
+}
+
 /// Steps and origins of axes without directions: from spacings, else from the range of the axis.
 void scalar_geometry(const NrrdFields& fields, NrrdHeader& header, std::vector<double>& steps,
                      std::vector<double>& origins, const fs::path& path) {
@@ -385,7 +398,7 @@ void scalar_geometry(const NrrdFields& fields, NrrdHeader& header, std::vector<d
   steps = per_axis(fields, "spacings", n, path);
   origins = per_axis(fields, "axismins", n, path);
   const auto ends = per_axis(fields, "axismaxs", n, path);
-  const auto centers = words_per_axis(fields, fields.contains("centers") ? "centers" : "centerings", n, path);
+  const auto centers = centerings_of(fields, n, path);
   for (std::size_t a = 0; a < n; ++a) {
     const bool cell = centers[a] == "cell";
     const double intervals = static_cast<double>(header.sizes[a]) - (cell ? 0.0 : 1.0);
@@ -519,6 +532,7 @@ StoredImage open_nrrd(const fs::path& path, bool allow_outside_paths) {
   StoredImage image;
   image.grid = make_grid(text.fields, header, image.info.world_frame, path);
   image.info.format = "NRRD";
+  image.info.samples_are_cells = are_cells(text.fields, header, path);
   image.info.stored_type = parse_value_type(header.type.name);
   image.info.value_unit = optional_field(text.fields, "sampleunits");
   std::erase(image.info.value_unit, '"');

@@ -152,7 +152,8 @@ std::unique_ptr<OpenVtkImage> open_vtk(const fs::path& path, const ReadImageOpti
   info.variable = options.variable.empty() ? image->variable.name : options.variable;
   info.variables = scalar_names(image->all);
   info.stored_type = parse_value_type(image->variable.type);
-  if (image->variable.on_cells)
+  info.samples_are_cells = image->variable.on_cells;
+  if (info.samples_are_cells)
     info.remarks.push_back(
         fmt::format("'{}' has values of cells: the samples are at the cells' centres", info.variable));
   drop_trailing_axes(image->grid, info);

@@ -138,6 +138,7 @@ void put_info(Packer& packer, const ImageInfo& info) {
     packer.text(curved.name);
     packer.text(curved.unit);
   });
+  packer.number(static_cast<std::uint64_t>(info.samples_are_cells));
   put_texts(packer, info.remarks);
 }
 
@@ -157,6 +158,7 @@ ImageInfo get_info(Unpacker& unpacker) {
     curved.unit = unpacker.text();
     return curved;
   });
+  info.samples_are_cells = unpacker.number<std::uint64_t>() != 0;
   get_texts(unpacker, info.remarks);
   return info;
 }

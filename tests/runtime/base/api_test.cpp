@@ -232,7 +232,7 @@ static_assert(of_2_to_5_only<3, 5>([]<int N>() { return Sliced<Contour<N>>; }));
 static_assert(of_2_to_5_only<3, 5>([]<int N>() { return SlicedOften<Contour<N>>; }));
 static_assert(of_2_to_5_only<3, 5>([]<int N>() { return ImageSliced<Image<float, N>>; }));
 static_assert(of_2_to_5_only<3, 5>([]<int N>() { return CutsMeasured<Contour<N>>; }));
-static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Tracked<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 5>([]<int N>() { return Tracked<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Simplified<Contour<N>, N>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Scaled<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 5>([]<int N>() { return AxesScaled<Contour<N>>; }));

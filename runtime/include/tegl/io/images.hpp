@@ -43,6 +43,9 @@ struct ImageInfo {
   /// netCDF: coordinates in arrays of two or more dimensions (CF conventions, section 5.2), for tegl/curved.hpp. The
   /// grid has indices on these axes. Empty if the grid's axes are straight.
   std::vector<CurvedAxis> curved = {};
+  /// VTK: values of cells; NRRD: `centers: cell` on all axes. The samples then lie at the centres of cells, which
+  /// tegl/cells.hpp makes contours of.
+  bool samples_are_cells = false;
   std::vector<std::string> remarks = {};  ///< DICOM: skipped files, uneven slice distances; else empty
 };
 
