@@ -103,7 +103,7 @@ TEST(Cells, OfASingleCornerAreManifolds) {
   }
   std::mt19937 random(5);
   for (int i = 0; i < 60; ++i) {
-    const unsigned signature = random() % 65535 + 1;
+    const auto signature = static_cast<unsigned>(random() % 65535 + 1);
     OwnedImage<std::uint8_t, 4> image{Grid<4>::unit({2, 2, 2, 2}), std::vector<std::uint8_t>(16)};
     for (unsigned v = 0; v < 16; ++v) image.values[v] = signature >> v & 1u ? 60 : 0;
     const auto contour = extract_cells<double>(image.view(), 50.0);
