@@ -442,7 +442,8 @@ class Contour:
         order, and the same world coordinates; its grid may differ. Later cuts, splits and simplifications of the contour
         inherit the attribute, and so do its elements.
         """
-        prepared = _arguments.prepare(array, **{"time_axis": self.time_axis, **grid})
+        given: dict[str, typing.Any] = {"time_axis": self.time_axis, **grid}
+        prepared = _arguments.prepare(array, **given)
         if prepared.is_reversed != self._is_reversed:
             raise ValueError(f"the array has another time_axis than the contour; expected {self.time_axis}")
         if prepared.names != self.axis_names and sorted(prepared.names) == sorted(self.axis_names):

@@ -122,7 +122,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     if weight != 1 and positions != "relaxed":
         raise ValueError(f"time_weight is {time_weight!r} with positions {positions!r}; expected positions='relaxed'")
     if _arguments.as_text("samples", samples) not in ("points", "cells", "file"):
-        raise ValueError(f"samples is {samples!r}; expected 'points', 'cells' or 'file'")
+        raise ValueError(f"samples is {samples!r}; expected one of 'points', 'cells', 'file'")
     if samples == "file" and not isinstance(array, Image):
         raise ValueError(f"samples is 'file' for a {type(array).__name__}; expected an image from tegl.read")
     of_cells = samples == "cells" or (samples == "file" and array.samples_are_cells)
@@ -302,10 +302,10 @@ class Image:
     world_frame: str  #: such as "RAS"; "" if there is none
     #: direction of growing coordinates of each axis, from the file: "up", "down" (depths, pressures) or "unknown"
     axis_directions: tuple[_kinds.AxisDirection, ...]
+    _axes: tuple = dataclasses.field(repr=False, default=())
     #: coordinates of a curved grid, by axis: see `tegl.contour`; those axes have indices as `coords`. {}: straight axes
     curved: dict[int, np.ndarray] = dataclasses.field(repr=False, default_factory=dict)
     samples_are_cells: bool = False  #: whether the file says that the samples are cells, for `samples="file"`
-    _axes: tuple = dataclasses.field(repr=False, default=())
 
     def __repr__(self) -> str:
         """Three lines: values, axes, source."""

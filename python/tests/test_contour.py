@@ -339,7 +339,7 @@ def test_cells_have_their_exact_volume(shape):
     assert contour.measure().content == pytest.approx(mask.sum() * np.prod(spacing))
     smooth = tegl.contour(mask, 1, samples="cells", positions="relaxed")
     assert smooth.check().is_closed and len(smooth.simplices) < len(contour.simplices)
-    with pytest.raises(ValueError, match="expected 'points' or 'cells'"):
+    with pytest.raises(ValueError, match="expected one of 'points', 'cells', 'file'"):
         tegl.contour(mask, 1, samples="boxes")
     with pytest.raises(ValueError, match="periodic with samples"):
         tegl.contour(mask, 1, samples="cells", periodic="all")

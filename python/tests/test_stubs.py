@@ -90,6 +90,7 @@ def test_the_names_of_options_are_the_librarys():
              "Division": lambda: tegl.contour(volume, 0.0, division="?"),
              "Direction": lambda: tegl.contour(volume, 0.0, direction="?"),
              "FilterBorder": lambda: tegl.filter(volume, median=1, border="?"),
+             "Samples": lambda: tegl.contour(volume, 0.0, samples="?"),
              "Positions": lambda: tegl.contour(volume, 0.0, positions="?"),
              "Gradient": lambda: tegl.contour(volume, 0.0, gradient="?"),
              "SimplifyMethod": lambda: contour.simplify(0.5, method="?"),

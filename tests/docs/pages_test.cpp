@@ -15,6 +15,7 @@
 #include "tegl/active_tiles.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
@@ -215,6 +216,30 @@ TEST(Guides, TasksTakeAFewLines) {
   // [/progress]
   EXPECT_EQ(tegl::extract(image, 0.0, options).simplices, contour.simplices);
   EXPECT_GT(fraction, 0.0);
+}
+
+TEST(OtherTilings, ACurvedGridHasArraysOfCoordinates) {
+  const tegl::Grid<3> grid = tegl::Grid<3>::unit({12, 10, 5});
+  std::vector<double> longitudes, latitudes;
+  for (int j = 0; j < 10; ++j)
+    for (int i = 0; i < 12; ++i) {
+      longitudes.push_back(150.0 + i + 0.1 * j);
+      latitudes.push_back(-20.0 + j - 0.2 * i);
+    }
+  std::vector<float> values;
+  for (int k = 0; k < 5; ++k)
+    for (std::size_t at = 0; at < longitudes.size(); ++at)
+      values.push_back(static_cast<float>(18.0 - std::hypot(longitudes[at] - 156, latitudes[at] + 16)));
+  const tegl::Image<float, 3> image(values.data(), grid);
+  // [curved]
+  // Axes 0 and 1 have coordinates in arrays of both indices, axis 0 fastest. Axis 2 keeps the grid's own coordinates.
+  const std::vector<tegl::CurvedAxis> curved = {{0, 0b011, longitudes, "lon", "degrees_east"},
+                                                {1, 0b011, latitudes, "lat"}};
+  const auto surface = tegl::extract_curved(image, curved, 15.0);
+  // [/curved]
+  ASSERT_FALSE(surface.vertices.empty());
+  EXPECT_EQ(surface.axis_names[0], "lon");
+  for (const auto& vertex : surface.vertices) EXPECT_NEAR(std::hypot(vertex[0] - 156, vertex[1] + 16), 3.0, 0.1);
 }
 
 }  // namespace
