@@ -382,6 +382,7 @@ class ContourCommand final : public Command {
   /// Extracts the contour of one isovalue, without an index.
   void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     options.work.progress = bar.stage("contour");
+    if (tiling_.of_cells) result.wording.no_size = "cells touch; --merge drops most of them";
     if (result.picked) return pick(image, options, bar, result);
     const auto finished = [&](auto extraction) {
       result.stats = extraction.stats;

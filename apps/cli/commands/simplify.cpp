@@ -226,7 +226,7 @@ class SimplifyCommand final : public ContourInputCommand {
     if (intersections_->pairs == 0) return report_line("intersect", "none");
     const double share =
         static_cast<double>(intersections_->intersecting) / static_cast<double>(intersections_->simplices);
-    return report_line("intersect", fmt::format("{} of {}, {:.2g} %{}", counted(intersections_->pairs, "pair", "pairs"),
+    return report_line("intersect", fmt::format("{} of {}, {:.3g} %{}", counted(intersections_->pairs, "pair", "pairs"),
                                                 counted_simplices(intersections_->dim, intersections_->intersecting),
                                                 100.0 * share, keep_embedded_ ? "" : "; --keep-embedded causes none"));
   }

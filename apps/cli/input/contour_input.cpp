@@ -81,9 +81,11 @@ Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
   const auto others = mesh.coordinates.end() - first - 1 - std::count_if(first + 1, mesh.coordinates.end(), is_finite);
   throw Error(
       ErrorCode::MalformedFile,
-      fmt::format("a coordinate of vertex {} is {}, and {} other vertices have such coordinates; expected finite ones",
+      fmt::format("a coordinate of vertex {} is {}{}; expected finite ones",
                   (first - mesh.coordinates.begin()) / mesh.space_dim, std::isnan(*first) ? std::abs(*first) : *first,
-                  others));  // NaN is printed without its sign
+                  others == 0 ? ""
+                              : fmt::format(", and {} are not finite",
+                                            counted(others, "other", "others"))));  // NaN is printed without its sign
 }
 
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty) {

@@ -3,6 +3,7 @@
 // Finds vertices at the same place, or within a tolerance.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -25,7 +26,14 @@ class CoincidentVertices {
       : vertices_(vertices),
         tolerance_(tolerance),
         next_(vertices.size(), kNone),
-        first_(std::bit_ceil(vertices.size() + 1), kNone) {}
+        first_(std::bit_ceil(vertices.size() + 1), kNone) {
+    std::array<double, N> largest{};
+    for (const auto& vertex : vertices)
+      for (int a = 0; a < N; ++a) largest[a] = std::fmax(largest[a], std::abs(static_cast<double>(vertex[a])));
+    // A place, and the place and the tolerance added to it, may be rounded: boxes are much wider than that.
+    for (int a = 0; a < N; ++a)
+      width_[a] = std::max(2.5 * tolerance, 16.0 * std::numeric_limits<double>::epsilon() * largest[a]);
+  }
 
   /// By vertex: the nearest vertex before it that stays, if it is within the tolerance; else itself.
   [[nodiscard]] Buffer<Index> find(const Progress& progress) {
@@ -44,12 +52,12 @@ class CoincidentVertices {
   static constexpr Index kNone = std::numeric_limits<Index>::max();
   using Box = std::array<double, N>;
 
-  /// Boxes are twice the tolerance wide, so that the places within the tolerance lie in two boxes along each axis at
-  /// most.
-  [[nodiscard]] double along(double x) const noexcept {
+  /// Boxes are more than twice as wide as the tolerance, so that the places within the tolerance lie in two boxes along
+  /// each axis at most.
+  [[nodiscard]] double along(int axis, double x) const noexcept {
     if (tolerance_ == 0.0) return x;
-    const double box = std::floor(x / (2.0 * tolerance_));
-    return std::isfinite(box) ? box : x;  // of a tolerance below the precision of numbers
+    const double box = std::floor(x / width_[axis]);
+    return std::isfinite(box) ? box : x;
   }
 
   [[nodiscard]] std::size_t slot(const Box& box) const noexcept {
@@ -72,7 +80,7 @@ class CoincidentVertices {
 
   void insert(Index v) noexcept {
     Box box;
-    for (int a = 0; a < N; ++a) box[a] = along(static_cast<double>(vertices_[v][a]));
+    for (int a = 0; a < N; ++a) box[a] = along(a, static_cast<double>(vertices_[v][a]));
     Index& first = first_[slot(box)];
     next_[v] = first;
     first = v;
@@ -82,8 +90,8 @@ class CoincidentVertices {
     Box low, high;
     for (int a = 0; a < N; ++a) {
       const auto x = static_cast<double>(place[a]);
-      low[a] = along(x - tolerance_);
-      high[a] = along(x + tolerance_);
+      low[a] = along(a, x - tolerance_);
+      high[a] = along(a, x + tolerance_);
     }
     Index best = kNone;
     double least = tolerance_ * tolerance_;
@@ -109,8 +117,9 @@ class CoincidentVertices {
 
   std::span<const std::array<Real, N>> vertices_;
   double tolerance_;
-  std::vector<Index> next_;   ///< by vertex that stays: the next one in its slot
-  std::vector<Index> first_;  ///< by slot
+  std::array<double, N> width_{};  ///< of a box, by axis
+  std::vector<Index> next_;        ///< by vertex that stays: the next one in its slot
+  std::vector<Index> first_;       ///< by slot
 };
 
 }  // namespace tegl::detail

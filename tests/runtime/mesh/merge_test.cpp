@@ -275,6 +275,18 @@ TEST(Merge, AToleranceMergesByTheDefinition) {
   expect_merged(extract<double>(four.view(), 1.9), 0.12);
 }
 
+/// The tolerance of 4D contours may be as small as the rounding of another coordinate.
+TEST(Merge, EqualVerticesAreMergedWhateverTheSizesOfTheirCoordinates) {
+  for (const double last : {7.0, 9.0, 10.0, 11.0, 12.0, 1e-3})
+    for (double x = 64.5; x < 360.0; x += 1.0) {
+      Contour<4, double> contour;
+      contour.vertices = {{x, 3, 2, 1}, {x, 3, 2, last},  {x, 3, 3, 1},     {x, 4, 2, 1},
+                          {x, 3, 2, 1}, {x - 1, 3, 2, 1}, {x + 1, 3, 1, 1}, {x, 2, 2, 1}};
+      contour.simplices = {{0, 1, 2, 3}, {4, 5, 6, 7}};
+      EXPECT_EQ(merge_vertices(contour).report.counts.merged_vertices, 1u) << x << " " << last;
+    }
+}
+
 TEST(Merge, DoesNotDependOnThreads) {
   const auto image = few_integers<std::uint8_t, 3>(24, 9);
   const auto contour = extract<float>(image.view(), 2.0, {.normals = Normals::differences});
