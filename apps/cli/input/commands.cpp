@@ -3,6 +3,8 @@
 // Implements the base class of the commands: FILE, common options, and reading of the input.
 #include "input/commands.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <utility>
 
