@@ -177,8 +177,11 @@ void add_several(Subject<T>& subject, std::vector<Operation>& list) {
 
 template <Value T>
 void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
-  list.push_back({"`sample` (the image itself)",
-                  [&] { return counted(sample(subject.image, subject.contour, "value").values.size(), "values"); }});
+  list.push_back({"`sample` (the image itself)", [&] {
+                    return counted(
+                        sample(subject.image, subject.contour, "value", "", subject.work_options()).values.size(),
+                        "values");
+                  }});
   list.push_back({"`elements`", [&] {
                     const auto all = elements(subject.contour, subject.work_options());
                     return fmt::format("{} elements, not closed by {:.2g}", all.normals.size(),
