@@ -103,7 +103,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     curved
         Coordinates of the samples of a curved grid, in place of `coords` of some axes: a dict of axes (names or numbers) and
         arrays of coordinates with as many axes as `array`, and size 1 along the axes on which they do not depend, such as
-        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Default: those of an image from `tegl.read`.
+        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Default: the image's own, from `tegl.read`.
         See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;

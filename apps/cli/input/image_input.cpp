@@ -119,7 +119,7 @@ void ImageOptions::add_to(CLI::App& app) {
       app.add_flag("--cells-to-points", cells_to_points_,
                    "meshes: values of cells become values of points, by the mean of the cells at a point"));
   options_.push_back(
-      app.add_flag("--index-grid", index_grid_, "netCDF: indices as coordinates, in place of those of a curved grid"));
+      app.add_flag("--index-grid", index_grid_, "netCDF: indices in place of the coordinates of a curved grid"));
   add_raw_to(app);
 }
 

@@ -4,7 +4,7 @@
 // latitude in arrays of two dimensions.
 //
 // The contour is made on the grid of the indices, and each vertex then gets a place between the samples' coordinates.
-// So the topology, and what is proved about it, are those of an image with straight axes.
+// So the topology is the same as on straight axes, with what is proved about it.
 #pragma once
 
 #include <array>
@@ -68,8 +68,8 @@ requires DimensionBetween<N, 2, 4>
 }
 
 /// Extracts the contour of an image whose samples have coordinates of their own. Simplices, with their vertex numbers,
-/// are those of `extract` on the indices, reversed if the grid has the other orientation; so the contour faces the side
-/// of ExtractOptions::direction in space. The image's grid gives the sizes, the coordinates of axes that are not
+/// equal the ones of `extract` on the indices, reversed if the grid has the other orientation; so the contour faces the
+/// side of ExtractOptions::direction in space. The image's grid gives the sizes, the coordinates of axes that are not
 /// curved, and names and units.
 ///
 /// A contour on a grid without folds (`find_folds`) is embedded if the cells of the grid are; with folds, parts

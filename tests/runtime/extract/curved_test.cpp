@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours on curved grids: those of the mesh of the grid's cells, measures, normals, orientation, folds.
+// Contours on curved grids: compared with meshes of the grid's cells; measures, normals, orientation, folds.
 #include "tegl/curved.hpp"
 
 #include <gtest/gtest.h>
@@ -94,38 +94,23 @@ std::vector<std::array<std::array<double, N>, N>> sorted_places(const Contour<N,
 }
 
 /// The cells of a grid as a mesh.
-Complex<2> mesh_of(const CurvedImage<2>& curved) {
+template <int N>
+Complex<N> mesh_of(const CurvedImage<N>& curved) {
   const auto sizes = curved.image.grid.sizes();
-  std::vector<std::array<double, 2>> points;
+  std::vector<std::array<double, N>> points;
   for (std::size_t i = 0; i < curved.count(); ++i) points.push_back(curved.place(i));
+  const auto row = static_cast<Index>(sizes[0]), layer = static_cast<Index>(sizes[0] * sizes[1]);
   std::vector<Index> corners;
-  for (std::size_t y = 0; y + 1 < sizes[1]; ++y)
-    for (std::size_t x = 0; x + 1 < sizes[0]; ++x) {
-      const auto at = static_cast<Index>(y * sizes[0] + x);
-      const auto up = static_cast<Index>(at + sizes[0]);
-      corners.insert(corners.end(), {at, at + 1, up + 1, up});
-    }
-  const std::vector<CellType> types(corners.size() / 4, CellType::quadrilateral);
-  Complex<2> complex(std::move(points), types, corners);
-  complex.set_values(std::vector<double>(curved.image.values.begin(), curved.image.values.end()));
-  return complex;
-}
-
-Complex<3> mesh_of(const CurvedImage<3>& curved) {
-  const auto sizes = curved.image.grid.sizes();
-  std::vector<std::array<double, 3>> points;
-  for (std::size_t i = 0; i < curved.count(); ++i) points.push_back(curved.place(i));
-  std::vector<Index> corners;
-  for (std::size_t z = 0; z + 1 < sizes[2]; ++z)
+  for (std::size_t z = 0; z < (N == 2 ? 1 : sizes[N - 1] - 1); ++z)
     for (std::size_t y = 0; y + 1 < sizes[1]; ++y)
-      for (std::size_t x = 0; x + 1 < sizes[0]; ++x) {
-        const auto at = static_cast<Index>((z * sizes[1] + y) * sizes[0] + x);
-        const auto up = static_cast<Index>(at + sizes[0]);
-        const auto layer = static_cast<Index>(sizes[0] * sizes[1]);
-        corners.insert(corners.end(), {at, at + 1, up + 1, up, at + layer, at + 1 + layer, up + 1 + layer, up + layer});
-      }
-  const std::vector<CellType> types(corners.size() / 8, CellType::hexahedron);
-  Complex<3> complex(std::move(points), types, corners);
+      for (std::size_t x = 0; x + 1 < sizes[0]; ++x)
+        for (Index side = 0; side < (N == 2 ? 1u : 2u); ++side) {
+          const auto at = static_cast<Index>((z + side) * layer + y * row + x);
+          corners.insert(corners.end(), {at, at + 1, at + row + 1, at + row});
+        }
+  const std::vector<CellType> types(corners.size() / (1u << N),
+                                    N == 2 ? CellType::quadrilateral : CellType::hexahedron);
+  Complex<N> complex(std::move(points), types, corners);
   complex.set_values(std::vector<double>(curved.image.values.begin(), curved.image.values.end()));
   return complex;
 }
