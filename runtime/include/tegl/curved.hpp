@@ -76,7 +76,7 @@ requires DimensionBetween<N, 2, 4>
 /// overlap.
 ///
 /// Errors: as `extract`; InvalidGrid for a curved axis that the image does not have or has twice, an `along` without it
-/// or with an axis that the image does not have, another number of values, infinite values, and a grid with a world
+/// or with an axis that the image does not have, another number of values, and a grid with a world
 /// map; UnsupportedData where the contour needs an unknown coordinate: make the image's values there NaN. Time: as
 /// `extract`, and O(V). Precision: places between samples are rounded to Real as indices.
 template <Coordinate Real = float, Value T, int N>

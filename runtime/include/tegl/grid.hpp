@@ -88,7 +88,7 @@ struct Grid {
 struct CurvedAxis {
   int axis = 0;        ///< which coordinate of the vertices this is, and the axis of the image that it stands for
   unsigned along = 0;  ///< bit a: the coordinate differs along axis a of the image; bit `axis` is set
-  /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN: unknown.
+  /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN or infinite: unknown.
   std::vector<double> values = {};
   std::string name = {};  ///< of the coordinate, such as "lon"; empty: as the image's axis
   std::string unit = {};  ///< of the coordinate; empty: as the image's axis

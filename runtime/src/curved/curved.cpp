@@ -4,8 +4,10 @@
 #include "tegl/curved.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -28,6 +30,7 @@ class Mover {
   Mover(const Grid<N>& grid, std::span<const CurvedAxis> curved)
       : map_(grid, curved), indices_(index_grid<N>(grid, curved)), locator_(indices_) {
     is_straight_and_needed_ = (map_.along() & ~map_.curved()) != 0;
+    for (int a = 0; a < N; ++a) steps_[a] = map_.is_curved(a) ? indices_.axes[a].step() : 0.0;
   }
 
   /// The place of a point of the index grid.
@@ -38,10 +41,10 @@ class Mover {
       return place;
     }
     for (int a = 0; a < N; ++a) {
-      if ((map_.curved() >> a & 1u) == 0) continue;
-      const double index = point[a] * indices_.axes[a].step();
-      place.base[a] = static_cast<std::size_t>(index > 0.0 ? index : 0.0);
-      place.share[a] = index - static_cast<double>(place.base[a]);
+      const double index = std::max(point[a] * steps_[a], 0.0);
+      const auto base = static_cast<std::int64_t>(index);  // to unsigned numbers the conversion has branches
+      place.base[a] = static_cast<std::size_t>(base);
+      place.share[a] = index - static_cast<double>(base);
     }
     return place;
   }
@@ -82,6 +85,7 @@ class Mover {
   }
 
   detail::CurvedMap<N> map_;
+  std::array<double, N> steps_{};  ///< of the indices, 1 or -1; 0 along straight axes
   Grid<N> indices_;
   detail::GridLocator<N> locator_;
   bool is_straight_and_needed_ = false;  ///< whether curved coordinates differ along an axis with its own coordinates
@@ -175,7 +179,7 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Re
       const std::array<double, N> indices = detail::widened_point<N>(contour.vertices[v]);
       const std::array<double, N> point = mover.moved(indices);
       bool is_known = true;
-      for (int a = 0; a < N; ++a) is_known = is_known && !std::isnan(point[a]);
+      for (int a = 0; a < N; ++a) is_known = is_known && std::isfinite(point[a]);
       if (!is_known) {
         detail::lower_to(unknown, v);
         continue;
