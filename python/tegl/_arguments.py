@@ -429,7 +429,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             time_axis=None, allow_curved: bool = False) -> Prepared:
     """The library's view of an array. Values are copied only if the type or a mask requires it."""
     if not allow_curved and getattr(data, "curved", None):
-        raise ValueError("an image with a curved grid, which only tegl.contour and filters know; expected its `array`, with "
+        raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected its `array`, with "
                          "indices as coordinates, or a contour")
     if isinstance(data, (str, os.PathLike)):
         raise TypeError(f"{data!r} is a path; expected an array, or tegl.read({data!r})")

@@ -142,7 +142,7 @@ def scale_space(array, sigmas, *, laplacian: bool = False, factors=None, samples
     For arrays of 2 to 4 axes. The scale is the first axis of the result, or the last one with `time_axis=-1`.
     """
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  allow_curved=True, axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
+                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     scales = _arguments.as_numbers("sigmas", sigmas)
     along = [] if factors is None else prepared.turned(_arguments.as_numbers("factors", factors))
     with prepared.terms():

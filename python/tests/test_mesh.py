@@ -378,8 +378,10 @@ def test_curved_grids_of_netcdf_files(tmp_path):
     assert np.abs(np.hypot(tube.vertices[:, 2] - 182, tube.vertices[:, 1] - 17) - 3).max() < 0.1
     assert tube.axis_names == ("time", "lat", "lon")
     assert tegl.contour(image.array, 17.0).vertices[:, 2].max() < 15  # indices
-    with pytest.raises(ValueError, match="curved grid"):
-        tegl.slice(image, 17.0, at=1)
+    for refused in (lambda: tegl.slice(image, 17.0, at=1), lambda: tegl.scale_space(image, [1, 2]), lambda: tegl.Index(image)):
+        with pytest.raises(ValueError, match="curved grid"):
+            refused()
+    assert tegl.filter(image, gaussian=1).contour(17.0).vertices[:, 2].min() > 170
 
 
 def test_samples_are_cells_if_the_file_says_so(tmp_path):
