@@ -419,7 +419,7 @@ struct CurvedVariable {
 /// The variables that the attribute "coordinates" names and that differ along two or more axes of the image, by
 /// meaning.
 std::map<Coordinate, CurvedVariable> curved_variables(const NcFile& file, const NcVariable& of,
-                                                      const VariableGrid& grid) {
+                                                      const VariableGrid& grid, std::vector<std::string>& remarks) {
   std::map<Coordinate, CurvedVariable> result;
   const std::string names = file.text(of, "coordinates");
   const std::vector<NcVariable> all = file.variables();
@@ -437,7 +437,15 @@ std::map<Coordinate, CurvedVariable> curved_variables(const NcFile& file, const 
         one.axes.push_back(static_cast<std::size_t>(axis - grid.dimensions.begin()));
         one.along |= 1u << one.axes.back();
       }
-      if (is_known && one.axes.size() >= 2) result.emplace(coordinate_of(file, variable), std::move(one));
+      if (!is_known || variable.dimensions.size() < 2) continue;
+      const Coordinate meaning = coordinate_of(file, variable);
+      if (one.axes.size() >= 2)
+        result.emplace(meaning, std::move(one));
+      else if (one.axes.size() == 1 && meaning != Coordinate::other)
+        remarks.push_back(
+            fmt::format("the coordinate '{}' is not used: one index is read of its other dimensions; the axis "
+                        "'{}' has indices or its own coordinates",
+                        variable.name, grid.grid.axes[one.axes.front()].name));
     }
   result.erase(Coordinate::other);
   return result;
@@ -487,10 +495,10 @@ std::vector<double> read_curved(const NcFile& file, const NcVariable& of, const 
 /// The curved axes of the image; the grid then has indices there. Longitude and latitude are used if their axes have no
 /// coordinate variables of their own.
 std::vector<CurvedAxis> find_curved(const NcFile& file, const NcVariable& variable, const NcSlab& slab,
-                                    VariableGrid& grid) {
+                                    VariableGrid& grid, std::vector<std::string>& remarks) {
   std::vector<Axis>& axes = grid.grid.axes;
   std::vector<CurvedAxis> result;
-  const auto variables = curved_variables(file, variable, grid);
+  const auto variables = curved_variables(file, variable, grid, remarks);
   const auto add = [&](const CurvedVariable& one, std::size_t axis) {
     Axis indices = Axis::uniform(axes[axis].size());
     indices.name = axes[axis].name;
@@ -635,7 +643,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   const NcFile file(path, options.work.progress, options.allow_outside_paths);
   Found found = find_variable(file, options);
   VariableGrid grid = read_grid(file, found.variable, found.slab);
-  found.info.curved = find_curved(file, found.variable, found.slab, grid);
+  found.info.curved = find_curved(file, found.variable, found.slab, grid, found.info.remarks);
   found.info.axis_directions = std::move(grid.directions);
   // values
   RawImage image;
@@ -657,7 +665,7 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
   Found found = find_variable(*file, options);
   file->require_stored(found.variable, found.slab);
   VariableGrid grid = read_grid(*file, found.variable, found.slab);
-  found.info.curved = find_curved(*file, found.variable, found.slab, grid);
+  found.info.curved = find_curved(*file, found.variable, found.slab, grid, found.info.remarks);
   found.info.axis_directions = grid.directions;
   const Packing packing = read_packing(*file, found.variable);
   expect_memory(2 * file->chunk_bytes(found.variable, sizeof(double)));

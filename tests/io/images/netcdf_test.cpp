@@ -587,6 +587,12 @@ TEST(NetCdf, CoordinatesInArraysAreCurvedAxes) {
     EXPECT_TRUE(std::isnan(image.values[7]) && std::isnan(image.values[67])) << "unknown depth";
     EXPECT_EQ(image.values[8], 8);
   }
+  ReadImageOptions section;
+  section.fixed = {{"eta", 1}};
+  const ReadImageResult cut = read_image(dir / "a.nc", section);
+  ASSERT_EQ(cut.info.curved.size(), 1U);
+  EXPECT_EQ(cut.info.curved[0].name, "depth");
+  EXPECT_EQ(cut.info.remarks.size(), 2U) << "longitude and latitude along one axis";
   // A dimension with a coordinate variable of its own is straight.
   write_curved(dir / "b.nc", 0, true);
   const ReadImageResult read = read_image(dir / "b.nc");

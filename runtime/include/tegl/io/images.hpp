@@ -46,7 +46,7 @@ struct ImageInfo {
   /// VTK: values of cells; NRRD: `centers: cell` on all axes. The samples then lie at the centres of cells, which
   /// tegl/cells.hpp makes contours of.
   bool samples_are_cells = false;
-  std::vector<std::string> remarks = {};  ///< DICOM: skipped files, uneven slice distances; else empty
+  std::vector<std::string> remarks = {};  ///< DICOM: skipped files, uneven slice distances; coordinates that are not used
 };
 
 /// An image and its metadata.
