@@ -97,32 +97,8 @@ double CurvedMap<N>::main_orientation() const {
 }
 
 template <int N>
-typename CurvedMap<N>::Corners CurvedMap<N>::corners_of(const CellPlace<N>& place, unsigned along) const noexcept {
-  Corners corners;
-  corners.index[0] = place.base;
-  corners.weight[0] = 1.0;
-  corners.count = 1;
-  for (int a = 0; a < N; ++a) {
-    const double share = place.share[a];
-    if ((along >> a & 1u) == 0 || share == 0.0) continue;
-    if (share == 1.0) {
-      for (unsigned i = 0; i < corners.count; ++i) ++corners.index[i][a];
-      continue;
-    }
-    for (unsigned i = 0; i < corners.count; ++i) {
-      corners.index[corners.count + i] = corners.index[i];
-      ++corners.index[corners.count + i][a];
-      corners.weight[corners.count + i] = corners.weight[i] * share;
-      corners.weight[i] *= 1.0 - share;
-    }
-    corners.count *= 2;
-  }
-  return corners;
-}
-
-template <int N>
 void CurvedMap<N>::move_inside(const CellPlace<N>& place, std::array<double, N>& point) const noexcept {
-  const Corners corners = corners_of(place, along_);
+  const CellCorners<N> corners = weighted_corners<N>(place, along_);
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     double sum = 0.0;
     for (unsigned i = 0; i < corners.count; ++i) sum += corners.weight[i] * value(k, corners.index[i]);
@@ -153,7 +129,7 @@ double CurvedMap<N>::difference(std::size_t k, const SampleIndex& index, int a) 
 template <int N>
 Matrix<N> CurvedMap<N>::derivatives(const CellPlace<N>& place) const noexcept {
   Matrix<N> result{};
-  const Corners corners = corners_of(place, along_);
+  const CellCorners<N> corners = weighted_corners<N>(place, along_);
   for (std::size_t k = 0; k < axes_.size(); ++k)
     for (int a = 0; a < N; ++a) {
       if ((axes_[k].along >> a & 1u) == 0) continue;

@@ -60,13 +60,6 @@ class CurvedMap {
   [[nodiscard]] Matrix<N> derivatives(const CellPlace<N>& place) const noexcept;
 
  private:
-  /// The samples around a place, with their weights.
-  struct Corners {
-    std::array<SampleIndex, std::size_t{1} << N> index;
-    std::array<double, std::size_t{1} << N> weight;
-    unsigned count = 0;
-  };
-
   [[nodiscard]] double value(std::size_t k, const SampleIndex& index) const noexcept {
     std::size_t at = 0;
     for (int a = 0; a < N; ++a) at += index[a] * strides_[k][a];
@@ -74,8 +67,6 @@ class CurvedMap {
   }
   /// For places between more than two samples.
   void move_inside(const CellPlace<N>& place, std::array<double, N>& point) const noexcept;
-  /// The samples with weights other than 0, as coordinates do not differ along other axes.
-  [[nodiscard]] Corners corners_of(const CellPlace<N>& place, unsigned along) const noexcept;
   [[nodiscard]] double difference(std::size_t k, const SampleIndex& index, int a) const noexcept;
 
   std::span<const CurvedAxis> axes_;

@@ -26,6 +26,39 @@ struct CellPlace {
   std::array<double, N> share;
 };
 
+/// The samples around a place that have a weight in the multilinear interpolation.
+template <int N>
+struct CellCorners {
+  std::array<std::array<std::size_t, N>, std::size_t{1} << N> index;
+  std::array<double, std::size_t{1} << N> weight;
+  unsigned count = 0;
+};
+
+/// The corners with weights other than 0; along axes that are not in the set `along`, only those at the cell's base.
+template <int N>
+CellCorners<N> weighted_corners(const CellPlace<N>& place, unsigned along = (1u << N) - 1) noexcept {
+  CellCorners<N> corners;
+  corners.index[0] = place.base;
+  corners.weight[0] = 1.0;
+  corners.count = 1;
+  for (int a = 0; a < N; ++a) {
+    const double share = place.share[a];
+    if ((along >> a & 1u) == 0 || share == 0.0) continue;
+    if (share == 1.0) {
+      for (unsigned i = 0; i < corners.count; ++i) ++corners.index[i][a];
+      continue;
+    }
+    for (unsigned i = 0; i < corners.count; ++i) {
+      corners.index[corners.count + i] = corners.index[i];
+      ++corners.index[corners.count + i][a];
+      corners.weight[corners.count + i] = corners.weight[i] * share;
+      corners.weight[i] *= 1.0 - share;
+    }
+    corners.count *= 2;
+  }
+  return corners;
+}
+
 /// The inverse matrix.
 template <int N>
 Matrix<N> inverse_of(const Matrix<N>& matrix);

@@ -187,16 +187,9 @@ void find_uncertainty(const detail::NormalWriter<N, Real>& writer, const Grid<N>
       },
       [&](std::size_t v, const detail::CellPlace<N>& place) {
         result[v] = 0.0;
-        for (unsigned corner = 0; corner < 1u << N; ++corner) {
-          double weight = 1.0;
-          auto index = place.base;
-          for (int a = 0; a < N; ++a) {
-            const bool is_upper = (corner >> a & 1u) != 0;
-            weight *= is_upper ? place.share[a] : 1.0 - place.share[a];
-            index[a] += is_upper ? 1 : 0;
-          }
-          if (weight > 0.0) result[v] += weight * writer.uncertainty_at(index, {});
-        }
+        const detail::CellCorners<N> corners = detail::weighted_corners<N>(place);
+        for (unsigned i = 0; i < corners.count; ++i)
+          result[v] += corners.weight[i] * writer.uncertainty_at(corners.index[i], {});
       },
       [&](std::size_t v) { return std::isnan(result[v]); });
   for (double& value : result)
