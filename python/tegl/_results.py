@@ -184,7 +184,7 @@ class SimplifyStats:
 
 @dataclasses.dataclass(frozen=True)
 class MergeReport:
-    """What merging vertices did, and where its result is no manifold. Vertex numbers are those of the result."""
+    """What merging vertices did, and where its result is no manifold. Vertex numbers refer to the result."""
 
     vertices_before: int
     simplices_before: int

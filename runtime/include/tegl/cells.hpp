@@ -34,11 +34,11 @@ requires DimensionBetween<N, 2, 4>
 /// share an edge or a vertex are separated (Ambiguity::low) or joined (high) as `extract` separates or joins samples;
 /// then several vertices lie at the same place, and the contour is an oriented manifold. In 4D, if a corner's contour
 /// is a solid torus, the contour of the image is made of doubled cells instead: it has the same faces, and also
-/// simplices of zero size. With `relaxed` and `gravitation`, the contour is that of `extract_placed` for the cells'
+/// simplices of zero size. With `relaxed` and `gravitation`, the contour equals `extract_placed` for the cells'
 /// centres: vertices lie on the edges between the centres of high and low cells, or beside them.
 ///
 /// `options`: `ambiguity` low or high; `direction` and `work`; with `relaxed` and `gravitation` also `triangulation`
-/// and `epsilon`. `close` is ignored. Errors: those of `extract`; UnsupportedData for other rules of positions,
+/// and `epsilon`. `close` is ignored. Errors: as `extract`; UnsupportedData for other rules of positions,
 /// other rules for ambiguities, and normals from the image. Memory besides the contour: one byte per sample, and for
 /// `linear` the facets (tegl/facet_hierarchy.hpp). Thread-safe; the result does not depend on the number of threads.
 template <Coordinate Real = float, Value T, int N>

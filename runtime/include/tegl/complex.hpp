@@ -174,7 +174,7 @@ requires DimensionBetween<N, 2, 4>
 ///   tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous.
 /// - close: caps are the high part of the complex's border, the facets of one cell only. Without missing values, the
 ///   contour is then closed if the border is a manifold. Facets of cells with missing corners have no caps.
-/// - normals: differences. The gradient at a point is that of the linear function that best fits the differences to
+/// - normals: differences. The gradient at a point belongs to the linear function that best fits the differences to
 ///   the points at the other ends of its edges, by least squares weighted by the inverse squares of the distances. At
 ///   the points of a grid it is the mean of forward and backward difference quotients, as for images. Normals are
 ///   interpolated linearly along edges; vertices that cells add have the mean of normals.

@@ -48,7 +48,7 @@ struct MergeCounts {
   std::uint64_t pinched_faces = 0;
 };
 
-/// What `merge_vertices` did, and the places where its result is no manifold. Vertex numbers are those of the result.
+/// What `merge_vertices` did, and the places where its result is no manifold. Vertex numbers refer to the result.
 /// Lists have the first MergeOptions::most_listed items.
 template <int N>
 requires DimensionBetween<N, 2, 5>
@@ -69,7 +69,7 @@ struct Merging {
 
 /// Merges vertices that coincide. Each vertex is replaced by the nearest one before it that stays, if this is within
 /// the tolerance (the first of equally near ones). Vertices that stay keep their positions, normals and attributes. So
-/// no vertex moves by more than the tolerance. Simplices that then repeat a vertex are dropped, as are those of zero
+/// no vertex moves by more than the tolerance. Simplices that then repeat a vertex are dropped, also simplices of zero
 /// content if no gap opens, and vertices without simplices. The others keep their order and orientation.
 ///
 /// The result has no gaps that the contour has not: each (N-2)-face lies in an even number of simplices, if it did, and
