@@ -34,6 +34,7 @@
 #include "five_intersections.hpp"
 #include "run_program.hpp"
 #include "support/interpolant_distance.hpp"
+#include "support/nested_tiles.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
@@ -62,6 +63,7 @@ struct Settings {
   bool lists = false;       ///< the tiles with intersections
   bool has_shapes = false;  ///< counts tiles of balls and others
   bool is_bias = false;
+  bool is_nested = false;                 ///< only tiles that are filled by nested copies, with their random choices
   bool has_copies = false;                ///< only contours with copies of corners are tested
   bool is_searched = false;               ///< only signatures whose table entry is searched, not proved
   std::vector<std::uint64_t> signatures;  ///< the signatures to sample; if empty, all with a contour
@@ -180,15 +182,22 @@ Counts count_part(const Settings& settings, std::uint64_t first, std::uint64_t e
   constexpr std::uint64_t kActive = (std::uint64_t{1} << kCorners) - 2;  // signatures with a contour
   std::seed_seq seeds{settings.seed, settings.seed >> 32, first, first >> 32};
   std::mt19937_64 bits(seeds);
-  const ExtractOptions extraction = settings.extraction();
+  ExtractOptions extraction = settings.extraction();
+  [[maybe_unused]] test::NestedTiles nested(settings.triangulation);
+  [[maybe_unused]] detail::ResolvedKey key;
+  if (settings.is_nested)
+    extraction.estimator.choose = [&](const AmbiguousFace& face) { return test::choice_of(key, face); };
   const Grid<N> grid = unit_grid<N>(2);
   [[maybe_unused]] std::conditional_t<(N < 5), bench::TilePairs<N>, int> all_pairs{};
   Counts counts;
   for (std::uint64_t tile = first; tile < end; ++tile) {
     // middle positions have no other freedom than the signature: all in turn
     const std::uint64_t number = settings.positions == Positions::middle ? tile : bits();
-    const std::uint64_t signature =
-        settings.signatures.empty() ? 1 + number % kActive : settings.signatures[number % settings.signatures.size()];
+    if (settings.is_nested) key = nested(bits);
+    const std::uint64_t signature = settings.is_nested ? key.signature
+                                    : settings.signatures.empty()
+                                        ? 1 + number % kActive
+                                        : settings.signatures[number % settings.signatures.size()];
     std::array<double, kCorners> values;
     for (std::size_t v = 0; v < kCorners; ++v)
       values[v] = (signature >> v & 1u) != 0 ? difference(settings, bits) : -difference(settings, bits);
@@ -307,6 +316,7 @@ constexpr const char* kUsage =
     "  --threads T               0: all of the machine\n"
     "  --seed S                  of the random numbers\n"
     "  --searched                4D low or high: only signatures whose table entry is searched, not proved\n"
+    "  --nested                  4D custom: only tiles that are filled by nested copies, with random choices\n"
     "  --copies                  tests only contours with copies of corners inside the cell\n"
     "  --list                    lists the tiles with pairs or flat simplices, with their values\n"
     "  --shapes                  3D, 4D: counts tiles whose components all are balls, and others, separately\n"
@@ -332,11 +342,12 @@ Settings parsed(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view option = argv[i];
     if (option == "--list" || option == "--shapes" || option == "--bias" || option == "--searched" ||
-        option == "--copies") {
+        option == "--copies" || option == "--nested") {
       (option == "--list"     ? settings.lists
        : option == "--shapes" ? settings.has_shapes
        : option == "--bias"   ? settings.is_bias
        : option == "--copies" ? settings.has_copies
+       : option == "--nested" ? settings.is_nested
                               : settings.is_searched) = true;
       continue;
     }
@@ -366,6 +377,10 @@ Settings parsed(int argc, char** argv) {
   }
   if (settings.dimension == 5 && (settings.has_shapes || settings.is_bias))
     throw Error(ErrorCode::InvalidArgument, "--shapes, --bias; expected --dimension 3 or 4");
+  if (settings.is_nested && (settings.dimension != 4 || settings.ambiguity != Ambiguity::custom || settings.is_bias ||
+                             settings.positions == Positions::middle))
+    throw Error(ErrorCode::InvalidArgument,
+                "--nested; expected --dimension 4, --ambiguity custom and random positions, without --bias");
   if (settings.is_bias && (settings.is_searched || settings.lists || settings.has_shapes || settings.has_copies))
     throw Error(ErrorCode::InvalidArgument, "--bias; expected without --searched, --list, --shapes and --copies");
   return settings;

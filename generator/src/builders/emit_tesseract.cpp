@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <functional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/determinant.hpp"
 #include "base/error.hpp"
 #include "builders/cube_facets.hpp"
 #include "builders/cube_lists.hpp"
@@ -145,9 +149,54 @@ std::string corner_sets(std::size_t count, std::size_t per_line, const std::func
   return rows(count, per_line, [&](std::size_t i) { return fmt::format("{:#06x}", set(static_cast<unsigned>(i))); });
 }
 
+using FourPoint = std::array<int, 4>;
+
+/// Sets of points above and below the hyperplane through corners, as masks: `above` and `below` are the corners, and
+/// the bits of `points` follow. Coordinates of points are in thousandths of an edge.
+std::pair<std::uint32_t, std::uint32_t> with_points(std::uint32_t above, std::uint32_t below,
+                                                    std::span<const FourPoint> points) {
+  const auto corner = [](unsigned v) {
+    FourPoint point{};
+    for (unsigned a = 0; a < 4; ++a) point[a] = static_cast<int>(v >> a & 1u) * 1000;
+    return point;
+  };
+  const auto minus = [](const FourPoint& p, const FourPoint& q) {
+    return FourPoint{p[0] - q[0], p[1] - q[1], p[2] - q[2], p[3] - q[3]};
+  };
+  std::vector<unsigned> inside;
+  for (unsigned v = 0; v < 16; ++v)
+    if (((above | below) >> v & 1u) == 0) inside.push_back(v);
+  const FourPoint base = corner(inside[0]);
+  const auto height = [&](const FourPoint& normal, const FourPoint& point) {
+    std::int64_t sum = 0;
+    for (unsigned a = 0; a < 4; ++a) sum += std::int64_t{normal[a]} * (point[a] - base[a]);
+    return sum;
+  };
+  for (std::size_t i = 1; i < inside.size(); ++i)
+    for (std::size_t j = 1; j < i; ++j)
+      for (std::size_t k = 1; k < j; ++k) {
+        std::array<FourPoint, 3> directions = {minus(corner(inside[i]), base), minus(corner(inside[j]), base),
+                                               minus(corner(inside[k]), base)};
+        for (FourPoint& direction : directions)
+          for (int& x : direction) x /= 1000;
+        FourPoint normal = cross_product(directions, 4);
+        if (normal == FourPoint{}) continue;
+        const bool turn = height(normal, corner(static_cast<unsigned>(std::countr_zero(above)))) < 0;
+        for (std::size_t p = 0; p < points.size(); ++p) {
+          const std::int64_t at = turn ? -height(normal, points[p]) : height(normal, points[p]);
+          if (at > 0) above |= 0x10000u << p;
+          if (at < 0) below |= 0x10000u << p;
+        }
+        return {above, below};
+      }
+  throw std::logic_error("a hyperplane that its corners do not span");
+}
+
 /// Hyperplanes through corners that divide the tesseract. Those with few corners on one side divide most pairs of
-/// components, which lie around few corners, so they come first.
+/// components, which lie around few corners, so they come first. After the corners: ResolvedTesseract::kCentre,
+/// kMeanTarget.
 std::string dividers() {
+  constexpr std::array<FourPoint, 2> kPoints = {{{500, 500, 500, 500}, {487, 497, 507, 517}}};
   const Lattice lattice(TileKind::cube, 4);
   const EmbeddingProof proof(lattice.tile(4));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> planes;
@@ -159,10 +208,10 @@ std::string dividers() {
   std::stable_sort(planes.begin(), planes.end(),
                    [&](const auto& a, const auto& b) { return smaller_side(a) < smaller_side(b); });
   return rows(planes.size(), 4, [&](std::size_t i) {
-    const auto [above, below] = planes[i];
+    const auto [above, below] = with_points(planes[i].first, planes[i].second, kPoints);
     std::uint32_t inside = 0;
     for (unsigned e = 0; e < 32; ++e) inside |= (ends_of(e) & (above | below)) == 0 ? 1u << e : 0u;
-    return fmt::format("{{{:#06x}, {:#06x}, {:#010x}}}", above, below, inside);
+    return fmt::format("{{{:#07x}, {:#07x}, {:#010x}}}", above, below, inside);
   });
 }
 
@@ -242,6 +291,7 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                  {"find_parts", filled(parts, {{"add_cubes", add_all}})},
                  {"triangles_of_part", edges ? "triangles_of_cubes_.data() + 4 * std::size_t{of_part.first_triangle}"
                                              : "cubes_.triangles(of_part)"},
+                 {"nested", std::string(template_text("builder4_nested.cpp"))},
                  {"cone_all", edges ? std::string(template_text("builder4_edges_cone.cpp"))
                                     : filled("builder4_cone.cpp", {{"add_cubes", for_cubes("add({});")}})},
                  {"find_connected", edges ? std::string(template_text("builder4_edges_connected.cpp"))

@@ -302,7 +302,7 @@ class TileWriter {
     if constexpr (N == 4)
       if (filling.own_vertices != 0) {
         const EdgePlaces<N, kAll> alphas(source_, index, signature);
-        ResolvedPlaces shared(alphas, cubes, tile.lists);
+        ResolvedPlaces shared(alphas, estimator_->triangulation(), tile.lists);
         const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
           const TilePoint<N> place = shared.own_vertex(filling, j);

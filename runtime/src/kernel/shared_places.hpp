@@ -167,12 +167,17 @@ class SharedPlaces<4> {
   std::array<TilePoint<4>, kShared> places_;  ///< cache: many simplices request each position
 };
 
-/// Positions of the vertices that a 4D tile shares, for tiles combined from their cubes (ResolvedTesseract),
-/// barycentric triangulation. Cubes use the arithmetic of the cubes of 3D images.
+/// Positions of the vertices that a 4D tile shares, for tiles combined from their cubes (ResolvedTesseract). Cubes use
+/// the arithmetic of the cubes of 3D images.
 class ResolvedPlaces {
  public:
-  ResolvedPlaces(const EdgePlaces<4, 15>& edges, const ResolvedCubes& cubes, const ResolvedCubes::Lists& lists) noexcept
-      : edges_(edges), cubes_(cubes), lists_(lists), rays_(edges.rays()) {}
+  ResolvedPlaces(const EdgePlaces<4, 15>& edges, Triangulation triangulation,
+                 const ResolvedCubes::Lists& lists) noexcept
+      : edges_(edges),
+        triangulation_(triangulation),
+        cubes_(ResolvedCubes::instance(triangulation)),
+        lists_(lists),
+        rays_(edges.rays()) {}
 
   const TilePoint<4>& operator()(unsigned v) noexcept {
     if ((known_ >> v & 1u) == 0) find(v);
@@ -185,11 +190,11 @@ class ResolvedPlaces {
     if ((mask & ResolvedTesseract::kIsBarycentre) != 0) return barycentre(filling, ResolvedTesseract::kFirstOwn + j);
     TilePoint<4> place;
     if ((mask & ResolvedTesseract::kIsDouble) != 0) {
-      place = (*this)(static_cast<unsigned>(mask & ~ResolvedTesseract::kIsDouble));
+      place = (*this)(static_cast<unsigned>(mask & 0xffu));
       for (double& x : place) x = 0.25 + 0.5 * x;
+      repeat(place, mask);
       return place;
     }
-    constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
     if (is_corner(mask)) {  // the most frequent copies
       if (!has_corner_levels_) find_corner_levels(filling);
       const auto v = static_cast<unsigned>(std::countr_zero(mask));
@@ -198,13 +203,17 @@ class ResolvedPlaces {
       return place;
     }
     const auto on_edge = [&](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
-    place = mask_place<4>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), on_edge, true, rays_);
-    for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
-      for (double& x : place) x = repeated_coordinate(x);
+    place = mask_place<4>(mask & ~ResolvedTesseract::kRepeats, std::identity(), on_edge, true, rays_);
+    repeat(place, mask);
     return place;
   }
 
  private:
+  static void repeat(TilePoint<4>& place, std::uint64_t mask) noexcept {
+    for (std::uint64_t i = (mask & ResolvedTesseract::kRepeats) >> ResolvedTesseract::kRepeat; i != 0; --i)
+      for (double& x : place) x = repeated_coordinate(x);
+  }
+
   /// Position of own vertex `apex` of a filling: area-weighted mean of the triangles that it is joined with.
   [[nodiscard]] TilePoint<4> barycentre(const ResolvedView& filling, unsigned apex) noexcept {
     Weighted<4> sum, plain;  // `plain`: for a sphere shrunk to a point
@@ -245,7 +254,7 @@ class ResolvedPlaces {
   }
 
   void find_cube(unsigned cube) noexcept {
-    const SimplexList<3> list(variant_table<3>(Triangulation::barycentric).tile, cubes_.key(lists_[cube]));
+    const SimplexList<3> list(variant_table<3>(triangulation_).tile, cubes_.key(lists_[cube]));
     std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points{};
     own_places<3>(
         list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data(),
@@ -258,6 +267,7 @@ class ResolvedPlaces {
   }
 
   const EdgePlaces<4, 15>& edges_;
+  Triangulation triangulation_;
   const ResolvedCubes& cubes_;
   const ResolvedCubes::Lists& lists_;
   CellRays<4, 4> rays_;

@@ -22,6 +22,7 @@
 #include "swapped_squares.hpp"
 #include "swapped_vertices.hpp"
 #include "tesseract_checks.hpp"
+#include "turned_copy.hpp"
 #include "wrong_corners.hpp"
 #include "wrong_edges.hpp"
 #include "wrong_end.hpp"
@@ -154,6 +155,27 @@ TEST(FaultyBuilder, OfConesThatMeetIsFound) {
     ++found;
   }
   EXPECT_EQ(3, found);
+}
+
+/// Nested copies with the orientation of the copy around them. The right ones pass all checks.
+TEST(FaultyBuilder, OfNestedCopiesIsFound) {
+  GeneralTesseract general;
+  builders::edges::turned_copy::ResolvedTesseract wrong;
+  builders::ResolvedTesseract right;
+  RandomKeys keys(6);
+  int nested = 0, found = 0;
+  for (int i = 0; i < 200000 && nested < 100; ++i) {
+    ResolvedKey key = keys();
+    key.low_cubes = key.high_cubes = 0;
+    key.tile = Choice::separate;
+    right.find(key);
+    if (!right.is_nested()) continue;
+    ++nested;
+    EXPECT_EQ(fault_of_tesseract(right, general, key, Triangulation::compact, false), "");
+    found += fault_of_tesseract(wrong, general, key, Triangulation::compact, false).empty() ? 0 : 1;
+  }
+  EXPECT_EQ(nested, 100);
+  EXPECT_EQ(found, 100);
 }
 
 /// Whether the numbers of a fault that changes only masks differ from those by table.

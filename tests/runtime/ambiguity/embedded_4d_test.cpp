@@ -13,6 +13,7 @@
 #include "estimators.hpp"
 #include "fields.hpp"
 #include "interpolant_distance.hpp"
+#include "nested_tiles.hpp"
 #include "share.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/intersections.hpp"
@@ -57,6 +58,43 @@ TEST(Embedded4d, RandomTilesDoNotIntersectThemselves) {
                                 << static_cast<int>(triangulation) << ", spread " << spread << ": " << hit.pairs
                                 << " pairs, " << hit.flat << " flat tetrahedra";
       }
+}
+
+/// Of tiles that are filled by nested copies.
+TilesHit count_nested_tiles(Triangulation triangulation, double spread, int tiles) {
+  std::mt19937_64 bits(1994);
+  const auto unit = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
+  NestedTiles random_tile(triangulation);
+  detail::ResolvedKey key;
+  ExtractOptions options;
+  options.ambiguity = Ambiguity::custom;
+  options.triangulation = triangulation;
+  options.estimator.choose = [&](const AmbiguousFace& face) { return choice_of(key, face); };
+  options.work.threads = 1;
+  TilesHit result;
+  std::vector<double> values(16);
+  for (int i = 0; i < tiles; ++i) {
+    key = random_tile(bits);
+    for (unsigned v = 0; v < 16; ++v) {
+      const double size = spread > 0 ? std::exp(spread * (2 * unit() - 1)) : unit();
+      values[v] = (key.signature >> v & 1u) != 0 ? size : -size;
+    }
+    const auto found =
+        find_intersections(extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options));
+    result.tiles += found.is_embedded() ? 0 : 1;
+    result.pairs += found.pair_count;
+    result.flat += found.flat;
+  }
+  return result;
+}
+
+TEST(Embedded4d, NestedCopiesDoNotIntersect) {
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+    for (const double spread : {0.0, 3.45}) {
+      const TilesHit hit = count_nested_tiles(triangulation, spread, static_cast<int>(unless_sanitized(400, 40)));
+      EXPECT_EQ(hit.tiles, 0) << "triangulation " << static_cast<int>(triangulation) << ", spread " << spread << ": "
+                              << hit.pairs << " pairs, " << hit.flat << " flat tetrahedra";
+    }
 }
 
 /// Tests the signatures first, first + step, ... with all points in the middle of edges.
