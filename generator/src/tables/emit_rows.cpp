@@ -83,7 +83,13 @@ std::string row_initialiser(const RowTables& rows, const std::string& suffix, co
 }
 
 EmittedFile emit_variants(const TableSet& set) {
-  std::string text = opening(set, fmt::format("The {}-tile with resolved ambiguities.", set.dim));
+  std::string what = fmt::format("The {}-tile with resolved ambiguities.", set.dim);
+  for (const VariantTables& table : set.variants)
+    if (table.embedded != 0)
+      what += fmt::format(" {}: {} lists proved to be embedded for all positions.",
+                          triangulation_name(table.tile.triangulation), table.embedded);
+  if (set.variants.empty()) what += " Sets of signatures and faces, no simplices.";
+  std::string text = opening(set, what);
   std::string definitions;
   for (const VariantTables& table : set.variants) variants(text, table, definitions);
   text += "\n}  // namespace\n" + definitions;
