@@ -56,6 +56,7 @@ TEST_F(PeriodicCommand, ABallAcrossTheSeamIsOneComponentAlsoFromASavedContour) {
   const nlohmann::json components = run_json({"components", saved});
   EXPECT_EQ(components["count"], 1);
   EXPECT_EQ(components["components"], direct["components"]);
+  EXPECT_EQ(run_json({"check", "--intersections", saved})["intersections"]["pairs"], 0);
   const nlohmann::json measure = run_json({"measure", saved});
   EXPECT_NEAR(measure["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 125, 15);
 }

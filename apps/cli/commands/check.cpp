@@ -16,6 +16,7 @@
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/intersections.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::cli {
 
@@ -132,7 +133,9 @@ class IntersectionSearch {
           throw Error(ErrorCode::InvalidArgument, fmt::format("--tile is {}; expected positive numbers", tile_));
       if (!origin_.empty()) options.tiles->origin = of_axes<N>("--tile-origin", origin_);
     }
-    const Intersections<N> found = find_intersections(contour, options);
+    // unrolled, a simplex across the end of an axis has copies of vertices, not other numbers
+    const Intersections<N> found = contour.periods.empty() ? find_intersections(contour, options)
+                                                           : find_intersections(unroll(contour).contour, options);
     dim_ = N - 1;
     pairs_ = found.pair_count;
     intersecting_ = found.intersecting;
