@@ -24,6 +24,17 @@ namespace {
 struct TilesHit {
   int tiles = 0;
   std::uint64_t pairs = 0, flat = 0;
+
+  /// Adds the tile with the values of 16 corners, at isovalue 0.
+  void add(const std::vector<double>& values, const ExtractOptions& options) {
+    IntersectionOptions<4> alone;
+    alone.work.threads = 1;
+    const auto found = find_intersections(
+        extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options), alone);
+    tiles += found.is_embedded() ? 0 : 1;
+    pairs += found.pair_count;
+    flat += found.flat;
+  }
 };
 
 /// `spread`: differences from the isovalue have the size exp(+-spread) at most; 0: uniform ones.
@@ -40,11 +51,7 @@ TilesHit count_random_tiles(Ambiguity ambiguity, Triangulation triangulation, do
       const double size = spread > 0 ? std::exp(spread * (2 * unit() - 1)) : unit();
       value = (bits() & 1u) != 0 ? size : -size;
     }
-    const auto found =
-        find_intersections(extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options));
-    result.tiles += found.is_embedded() ? 0 : 1;
-    result.pairs += found.pair_count;
-    result.flat += found.flat;
+    result.add(values, options);
   }
   return result;
 }
@@ -79,11 +86,7 @@ TilesHit count_nested_tiles(Triangulation triangulation, double spread, int tile
       const double size = spread > 0 ? std::exp(spread * (2 * unit() - 1)) : unit();
       values[v] = (key.signature >> v & 1u) != 0 ? size : -size;
     }
-    const auto found =
-        find_intersections(extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options));
-    result.tiles += found.is_embedded() ? 0 : 1;
-    result.pairs += found.pair_count;
-    result.flat += found.flat;
+    result.add(values, options);
   }
   return result;
 }
@@ -103,17 +106,11 @@ TilesHit count_middle_tiles(Ambiguity ambiguity, Triangulation triangulation, un
   options.ambiguity = ambiguity;
   options.triangulation = triangulation;
   options.work.threads = 1;
-  IntersectionOptions<4> alone;
-  alone.work.threads = 1;
   TilesHit result;
   std::vector<double> values(16);
   for (unsigned signature = first; signature < 65'535; signature += step) {
     for (unsigned v = 0; v < 16; ++v) values[v] = (signature >> v & 1u) != 0 ? 1.0 : -1.0;
-    const auto found = find_intersections(
-        extract<double>(Image<double, 4>(values.data(), Grid<4>::unit({2, 2, 2, 2})), 0.0, options), alone);
-    result.tiles += found.is_embedded() ? 0 : 1;
-    result.pairs += found.pair_count;
-    result.flat += found.flat;
+    result.add(values, options);
   }
   return result;
 }
