@@ -49,10 +49,12 @@ class Mover {
     return place;
   }
 
-  /// The point in space; NaN where coordinates are unknown.
-  [[nodiscard]] std::array<double, N> moved(std::array<double, N> point) const noexcept {
-    map_.move(place_of(point), point);
-    return point;
+  /// Moves points to space; NaN where coordinates are unknown.
+  void move(detail::CurvedBlock& block) const noexcept {
+    for (int a = 0; a < N && !is_straight_and_needed_; ++a)
+      if (steps_[a] != 0.0) detail::find_places(block, a, steps_[a]);
+    if (is_straight_and_needed_) locate_all(block);
+    map_.move(block);
   }
 
   /// The normal in space of one on the index grid: the gradient g becomes the solution x of J^T x = g.
@@ -76,6 +78,18 @@ class Mover {
   }
 
  private:
+  void locate_all(detail::CurvedBlock& block) const noexcept {
+    for (std::size_t i = 0; i < block.count; ++i) {
+      std::array<double, N> point;
+      for (int a = 0; a < N; ++a) point[a] = block.point[a][i];
+      const detail::CellPlace<N> place = place_of(point);
+      for (int a = 0; a < N; ++a) {
+        block.base[a][i] = static_cast<double>(place.base[a]);
+        block.share[a][i] = place.share[a];
+      }
+    }
+  }
+
   /// The step of the index grid along an axis.
   [[nodiscard]] double step_at(int a, const detail::CellPlace<N>& place) const noexcept {
     const Axis& axis = indices_.axes[a];
@@ -175,20 +189,30 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Re
   // The first vertex without a place keeps its indices, for the message.
   std::atomic<std::size_t> unknown{vertices};
   detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) {
-      const std::array<double, N> indices = detail::widened_point<N>(contour.vertices[v]);
-      const std::array<double, N> point = mover.moved(indices);
-      bool is_known = true;
-      for (int a = 0; a < N; ++a) is_known = is_known && std::isfinite(point[a]);
-      if (!is_known) {
-        detail::lower_to(unknown, v);
-        continue;
+    detail::CurvedBlock block;
+    for (std::size_t first = from; first < to; first += block.kMost) {
+      block.count = std::min(to - first, block.kMost);
+      for (int a = 0; a < N; ++a) {
+        for (std::size_t i = 0; i < block.count; ++i)
+          block.point[a][i] = static_cast<double>(contour.vertices[first + i][a]);
+        std::fill(block.point[a].begin() + block.count, block.point[a].end(), 0.0);
       }
-      if (!contour.normals.empty()) {
-        const auto normal = mover.turned(indices, detail::widened_point<N>(contour.normals[v]));
-        for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
+      mover.move(block);
+      for (std::size_t i = 0; i < block.count; ++i) {
+        const std::size_t v = first + i;
+        bool is_known = true;
+        for (int a = 0; a < N; ++a) is_known = is_known && std::isfinite(block.point[a][i]);
+        if (!is_known) {
+          detail::lower_to(unknown, v);
+          continue;
+        }
+        if (!contour.normals.empty()) {
+          const auto normal =
+              mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
+          for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
+        }
+        for (int a = 0; a < N; ++a) contour.vertices[v][a] = static_cast<Real>(block.point[a][i]);
       }
-      for (int a = 0; a < N; ++a) contour.vertices[v][a] = static_cast<Real>(point[a]);
     }
   });
   if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));

@@ -2,7 +2,9 @@
 #include "curved/curved_map.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
@@ -97,13 +99,32 @@ double CurvedMap<N>::main_orientation() const {
 }
 
 template <int N>
-void CurvedMap<N>::move_inside(const CellPlace<N>& place, std::array<double, N>& point) const noexcept {
-  const CellCorners<N> corners = weighted_corners<N>(place, along_);
+void CurvedMap<N>::move(CurvedBlock& block) const noexcept {
+  find_edges(block, along_);  // nearly all places are on an edge
   for (std::size_t k = 0; k < axes_.size(); ++k) {
-    double sum = 0.0;
-    for (unsigned i = 0; i < corners.count; ++i) sum += corners.weight[i] * value(k, corners.index[i]);
-    point[axes_[k].axis] = sum;
+    CurvedArray array{axes_[k].values.data(), {}};
+    std::copy(strides_[k].begin(), strides_[k].end(), array.strides.begin());
+    CurvedBlock::Numbers& out = block.point[axes_[k].axis];
+    interpolate(block, array, out);
+    for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      CellPlace<N> place{};
+      for (int a = 0; a < N; ++a) {
+        if ((along_ >> a & 1u) == 0) continue;
+        place.base[a] = static_cast<std::size_t>(block.base[a][i]);
+        place.share[a] = block.share[a][i];
+      }
+      out[i] = inside(k, place);
+    }
   }
+}
+
+template <int N>
+double CurvedMap<N>::inside(std::size_t k, const CellPlace<N>& place) const noexcept {
+  const CellCorners<N> corners = weighted_corners<N>(place, along_);
+  double sum = 0.0;
+  for (unsigned i = 0; i < corners.count; ++i) sum += corners.weight[i] * value(k, corners.index[i]);
+  return sum;
 }
 
 template <int N>

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 
+#include "curved/curved_block.hpp"
 #include "image/locate.hpp"
 #include "tegl/curved.hpp"
 
@@ -36,25 +37,8 @@ class CurvedMap {
   /// The orientation of most of some cells that are spread over the grid: 1 or -1.
   [[nodiscard]] double main_orientation() const;
 
-  /// Replaces the curved coordinates of a point by those of its place in the grid.
-  void move(const CellPlace<N>& place, std::array<double, N>& point) const noexcept {
-    // Nearly all places are on an edge: between two samples.
-    int edge = -1;
-    int edges = 0;
-    for (int a = 0; a < N; ++a) {
-      const bool is_between = (along_ >> a & 1u) != 0 && place.share[a] != 0.0;
-      edges += is_between ? 1 : 0;
-      edge = is_between ? a : edge;
-    }
-    const double share = edges == 0 ? 0.0 : place.share[edge];
-    if (edges > 1 || share == 1.0) return move_inside(place, point);
-    for (std::size_t k = 0; k < axes_.size(); ++k) {
-      const double* at = axes_[k].values.data();
-      for (int a = 0; a < N; ++a) at += place.base[a] * strides_[k][a];
-      const std::size_t step = edges == 0 ? 0 : strides_[k][edge];
-      point[axes_[k].axis] = step == 0 ? *at : (1.0 - share) * *at + share * at[step];
-    }
-  }
+  /// Replaces the curved coordinates of points by those of their places in the grid.
+  void move(CurvedBlock& block) const noexcept;
   /// The derivatives by index, derivatives[c][a], of coordinate c along axis a, at a place: central differences between
   /// samples, interpolated. Only those of curved coordinates are set, the others are 0.
   [[nodiscard]] Matrix<N> derivatives(const CellPlace<N>& place) const noexcept;
@@ -65,8 +49,8 @@ class CurvedMap {
     for (int a = 0; a < N; ++a) at += index[a] * strides_[k][a];
     return axes_[k].values[at];
   }
-  /// For places between more than two samples.
-  void move_inside(const CellPlace<N>& place, std::array<double, N>& point) const noexcept;
+  /// The coordinate of axes_[k] at a place between any number of samples.
+  [[nodiscard]] double inside(std::size_t k, const CellPlace<N>& place) const noexcept;
   [[nodiscard]] double difference(std::size_t k, const SampleIndex& index, int a) const noexcept;
 
   std::span<const CurvedAxis> axes_;

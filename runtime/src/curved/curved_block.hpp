@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Places of many points in a curved grid, and coordinates at places, by vector instructions.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tegl::detail {
+
+/// Some points, and their places in the grid. Arrays by axis; only axes along which coordinates differ need bases and
+/// shares. Points after the last one are 0, as whole vectors are read.
+struct CurvedBlock {
+  static constexpr std::size_t kMost = 64;  ///< a multiple of all numbers of lanes
+  static constexpr std::size_t kMostAxes = 4;
+  using Numbers = std::array<double, kMost>;
+  std::size_t count = 0;
+  std::array<Numbers, kMostAxes> point{}, share{};
+  std::array<Numbers, kMostAxes> base{};  ///< whole numbers, exact as the arrays have fewer than 2^53 samples
+  /// Of places on an edge: the share along it.
+  Numbers edge_share{};
+  std::uint64_t inside = 0;  ///< bit i: place i is not on an edge, or at its second end
+};
+
+/// An array of coordinates: the distance of neighbours along each axis, 0 along axes that it does not have.
+struct CurvedArray {
+  const double* values;
+  std::array<std::size_t, CurvedBlock::kMostAxes> strides;
+};
+
+/// Sets bases and shares along an axis of indices that are step, 2 step, ..., for a step of 1 or -1.
+void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept;
+/// Sets edge_share and inside; `along`: bits of the axes that have shares.
+void find_edges(CurvedBlock& block, unsigned along) noexcept;
+/// Coordinates at the places, except those inside; `out` may be an array of the block's points.
+void interpolate(const CurvedBlock& block, const CurvedArray& array, CurvedBlock::Numbers& out) noexcept;
+
+}  // namespace tegl::detail
