@@ -105,6 +105,18 @@ class Mover {
   bool is_straight_and_needed_ = false;  ///< whether curved coordinates differ along an axis with its own coordinates
 };
 
+/// The first point with a coordinate that is not finite; block.count if there is none.
+template <int N>
+std::size_t first_unknown(const detail::CurvedBlock& block) noexcept {
+  std::size_t i = 0;
+  if (detail::are_finite(block, N)) return block.count;
+  for (bool is_known = true; i < block.count; ++i) {
+    for (int a = 0; a < N; ++a) is_known = is_known && std::isfinite(block.point[a][i]);
+    if (!is_known) break;
+  }
+  return i;
+}
+
 template <int N>
 [[noreturn]] void throw_unknown(const Mover<N>& mover, const std::array<double, N>& point) {
   const detail::CellPlace<N> place = mover.place_of(point);
@@ -198,21 +210,17 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Re
         std::fill(block.point[a].begin() + block.count, block.point[a].end(), 0.0);
       }
       mover.move(block);
-      for (std::size_t i = 0; i < block.count; ++i) {
-        const std::size_t v = first + i;
-        bool is_known = true;
-        for (int a = 0; a < N; ++a) is_known = is_known && std::isfinite(block.point[a][i]);
-        if (!is_known) {
-          detail::lower_to(unknown, v);
-          continue;
-        }
-        if (!contour.normals.empty()) {
-          const auto normal =
-              mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
-          for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
-        }
-        for (int a = 0; a < N; ++a) contour.vertices[v][a] = static_cast<Real>(block.point[a][i]);
+      if (const std::size_t i = first_unknown<N>(block); i < block.count) {
+        detail::lower_to(unknown, first + i);
+        continue;
       }
+      for (std::size_t v = first; v < first + block.count && !contour.normals.empty(); ++v) {
+        const auto normal =
+            mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
+        for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
+      }
+      for (std::size_t i = 0; i < block.count; ++i)
+        for (int a = 0; a < N; ++a) contour.vertices[first + i][a] = static_cast<Real>(block.point[a][i]);
     }
   });
   if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));

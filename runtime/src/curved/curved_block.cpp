@@ -49,25 +49,38 @@ void edges(CurvedBlock& block, unsigned along) {
   }
 }
 
-void coordinates(const CurvedBlock& block, const CurvedArray& array, CurvedBlock::Numbers& out) {
+void coordinates(CurvedBlock& block, const CurvedArrays& arrays) {
   const BlockTag d;
   const hn::RebindToSigned<BlockTag> di;
   const auto one = hn::Set(d, 1.0);
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     auto at = hn::Zero(d), step = hn::Zero(d);
     for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a) {
-      if (array.strides[a] == 0) continue;
-      const auto stride = hn::Set(d, static_cast<double>(array.strides[a]));
+      if (arrays.strides[a] == 0) continue;
+      const auto stride = hn::Set(d, static_cast<double>(arrays.strides[a]));
       at = hn::MulAdd(hn::LoadU(d, block.base[a].data() + i), stride, at);
       const auto share = hn::LoadU(d, block.share[a].data() + i);
       step = hn::Add(step, hn::IfThenElseZero(hn::Ne(share, hn::Zero(d)), stride));
     }
-    const auto here = hn::GatherIndex(d, array.values, hn::ConvertTo(di, at));
-    const auto next = hn::GatherIndex(d, array.values, hn::ConvertTo(di, hn::Add(at, step)));
+    const auto first = hn::ConvertTo(di, at), second = hn::ConvertTo(di, hn::Add(at, step));
     // the weights 1 and 0 for a coordinate that does not differ along the edge
     const auto share = hn::IfThenElseZero(hn::Ne(step, hn::Zero(d)), hn::LoadU(d, block.edge_share.data() + i));
-    hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d, out.data() + i);
+    for (std::size_t k = 0; k < arrays.count; ++k) {
+      const auto here = hn::GatherIndex(d, arrays.values[k], first);
+      const auto next = hn::GatherIndex(d, arrays.values[k], second);
+      hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d,
+                 block.point[arrays.axis[k]].data() + i);
+    }
   }
+}
+
+bool finite(const CurvedBlock& block, std::size_t axes) {
+  const BlockTag d;
+  auto sum = hn::Zero(d);  // 0 times infinity or NaN is NaN
+  for (std::size_t a = 0; a < axes; ++a)
+    for (std::size_t i = 0; i < block.count; i += hn::Lanes(d))
+      sum = hn::MulAdd(hn::Zero(d), hn::LoadU(d, block.point[a].data() + i), sum);
+  return hn::AllTrue(d, hn::Eq(sum, sum));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -81,6 +94,7 @@ namespace tegl::detail {
 HWY_EXPORT(places);
 HWY_EXPORT(edges);
 HWY_EXPORT(coordinates);
+HWY_EXPORT(finite);
 
 void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept {
   HWY_DYNAMIC_DISPATCH(places)(block, axis, step);
@@ -88,8 +102,12 @@ void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept {
 
 void find_edges(CurvedBlock& block, unsigned along) noexcept { HWY_DYNAMIC_DISPATCH(edges)(block, along); }
 
-void interpolate(const CurvedBlock& block, const CurvedArray& array, CurvedBlock::Numbers& out) noexcept {
-  HWY_DYNAMIC_DISPATCH(coordinates)(block, array, out);
+bool are_finite(const CurvedBlock& block, std::size_t axes) noexcept {
+  return HWY_DYNAMIC_DISPATCH(finite)(block, axes);
+}
+
+void interpolate(CurvedBlock& block, const CurvedArrays& arrays) noexcept {
+  HWY_DYNAMIC_DISPATCH(coordinates)(block, arrays);
 }
 
 }  // namespace tegl::detail

@@ -23,17 +23,22 @@ struct CurvedBlock {
   std::uint64_t inside = 0;  ///< bit i: place i is not on an edge, or at its second end
 };
 
-/// An array of coordinates: the distance of neighbours along each axis, 0 along axes that it does not have.
-struct CurvedArray {
-  const double* values;
-  std::array<std::size_t, CurvedBlock::kMostAxes> strides;
+/// Arrays of coordinates with the same axes.
+struct CurvedArrays {
+  using Strides = std::array<std::size_t, CurvedBlock::kMostAxes>;
+  Strides strides{};  ///< distance of neighbours along each axis; 0 along axes that the arrays do not have
+  std::size_t count = 0;
+  std::array<const double*, CurvedBlock::kMostAxes> values{};
+  std::array<std::size_t, CurvedBlock::kMostAxes> axis{};  ///< of each array's coordinates
 };
 
 /// Sets bases and shares along an axis of indices that are step, 2 step, ..., for a step of 1 or -1.
 void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept;
 /// Sets edge_share and inside; `along`: bits of the axes that have shares.
 void find_edges(CurvedBlock& block, unsigned along) noexcept;
-/// Coordinates at the places, except those inside; `out` may be an array of the block's points.
-void interpolate(const CurvedBlock& block, const CurvedArray& array, CurvedBlock::Numbers& out) noexcept;
+/// Whether the coordinates of all points, along the first axes, are finite.
+bool are_finite(const CurvedBlock& block, std::size_t axes) noexcept;
+/// Replaces coordinates of points by those at their places, except places inside.
+void interpolate(CurvedBlock& block, const CurvedArrays& arrays) noexcept;
 
 }  // namespace tegl::detail

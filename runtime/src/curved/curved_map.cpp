@@ -47,6 +47,12 @@ CurvedMap<N>::CurvedMap(const Grid<N>& grid, std::span<const CurvedAxis> curved)
       strides_[k][a] = stride;
       stride *= sizes_[a];
     }
+    CurvedArrays::Strides strides{};
+    std::copy(strides_[k].begin(), strides_[k].end(), strides.begin());
+    auto same = std::find_if(arrays_.begin(), arrays_.end(), [&](const auto& of) { return of.strides == strides; });
+    if (same == arrays_.end()) same = arrays_.insert(same, {.strides = strides});
+    same->values[same->count] = axes_[k].values.data();
+    same->axis[same->count++] = static_cast<std::size_t>(axes_[k].axis);
   }
 }
 
@@ -101,21 +107,16 @@ double CurvedMap<N>::main_orientation() const {
 template <int N>
 void CurvedMap<N>::move(CurvedBlock& block) const noexcept {
   find_edges(block, along_);  // nearly all places are on an edge
-  for (std::size_t k = 0; k < axes_.size(); ++k) {
-    CurvedArray array{axes_[k].values.data(), {}};
-    std::copy(strides_[k].begin(), strides_[k].end(), array.strides.begin());
-    CurvedBlock::Numbers& out = block.point[axes_[k].axis];
-    interpolate(block, array, out);
-    for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      CellPlace<N> place{};
-      for (int a = 0; a < N; ++a) {
-        if ((along_ >> a & 1u) == 0) continue;
-        place.base[a] = static_cast<std::size_t>(block.base[a][i]);
-        place.share[a] = block.share[a][i];
-      }
-      out[i] = inside(k, place);
+  for (const CurvedArrays& arrays : arrays_) interpolate(block, arrays);
+  for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    CellPlace<N> place{};
+    for (int a = 0; a < N; ++a) {
+      if ((along_ >> a & 1u) == 0) continue;
+      place.base[a] = static_cast<std::size_t>(block.base[a][i]);
+      place.share[a] = block.share[a][i];
     }
+    for (std::size_t k = 0; k < axes_.size(); ++k) block.point[axes_[k].axis][i] = inside(k, place);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "curved/curved_block.hpp"
 #include "image/locate.hpp"
@@ -54,6 +55,7 @@ class CurvedMap {
   [[nodiscard]] double difference(std::size_t k, const SampleIndex& index, int a) const noexcept;
 
   std::span<const CurvedAxis> axes_;
+  std::vector<CurvedArrays> arrays_;                     ///< those of axes_, by the axes that they have
   std::array<std::array<std::size_t, N>, N> strides_{};  ///< of the arrays; 0 along other axes
   SampleIndex sizes_;
   unsigned curved_ = 0;
