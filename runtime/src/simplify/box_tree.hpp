@@ -141,7 +141,7 @@ class BoxTree {
     for (Index i = node.first; i < node.end; ++i) {
       const Index s = order_[i];
       if (boxes_[i].square_distance(p) >= best.distance * best.distance) continue;
-      const double distance = distance_to_simplex<N>(p, simplices_[s], N);
+      const double distance = distance_to_simplex<N>(p, simplices_[s], N, best.distance);
       if (distance < best.distance) best = {distance, s};
     }
     if (node.end != 0) return;

@@ -52,6 +52,19 @@ class Frame {
     for (int k = 0; k < N; ++k) result[k] = dot(way, basis_[k]);
     return result;
   }
+  /// The corners of a simplex in the frame, by axis: a row of N corners for each of the N coordinates.
+  [[nodiscard]] CornersN<N> to_frame_by_axis(const CornersN<N>& corners) const {
+    CornersN<N> way;
+    for (int a = 0; a < N; ++a)
+      for (int i = 0; i < N; ++i) way[a][i] = corners[i][a] - origin_[a];
+    CornersN<N> result;
+    for (int k = 0; k < N; ++k) {
+      for (int i = 0; i < N; ++i) result[k][i] = way[0][i] * basis_[k][0];
+      for (int a = 1; a < N; ++a)
+        for (int i = 0; i < N; ++i) result[k][i] += way[a][i] * basis_[k][a];
+    }
+    return result;
+  }
   [[nodiscard]] PointN<N> to_space(const PointN<N>& x) const {
     PointN<N> result = origin_;
     for (int k = 0; k < N; ++k)
@@ -127,6 +140,24 @@ class Prism {
   [[nodiscard]] double inside(int side, const PointN<N>& x) const {
     double sum = -offsets_[side];
     for (int k = 0; k < D; ++k) sum += normals_[side][k] * x[k];
+    return sum;
+  }
+  /// Bit i: corner i of a simplex, by axis, is beyond the side.
+  [[nodiscard]] unsigned corners_beyond(int side, const CornersN<N>& at) const {
+    PointN<N> sum;
+    for (int i = 0; i < N; ++i) sum[i] = at[0][i] * normals_[side][0] - offsets_[side];
+    for (int k = 1; k < D; ++k)
+      for (int i = 0; i < N; ++i) sum[i] += at[k][i] * normals_[side][k];
+    unsigned bits = 0;
+    for (int i = 0; i < N; ++i) bits |= static_cast<unsigned>(sum[i] < 0.0) << i;
+    return bits;
+  }
+  /// Heights of the corners of a simplex, by axis.
+  [[nodiscard]] PointN<N> heights(const CornersN<N>& at) const {
+    PointN<N> sum;
+    for (int i = 0; i < N; ++i) sum[i] = at[D][i] - level_;
+    for (int k = 0; k < D; ++k)
+      for (int i = 0; i < N; ++i) sum[i] -= at[k][i] * slope_[k];
     return sum;
   }
   /// Height of a point above the simplex (for a thin simplex, above a level through it).

@@ -119,22 +119,23 @@ class PrismWalk {
   bool step(std::size_t number, const Frame<N>& frame, const CornersN<N>& part, const Prism<N>& prism, double rough,
             double limit) {
     const Index t = visited_[number];
+    const CornersN<N> at = frame.to_frame_by_axis(to_[t]);
+    // Facets whose corners are all beyond one side of the prism are outside of it.
+    constexpr unsigned kAll = (1u << N) - 1;
+    unsigned outside = 0;
+    for (int side = 0; side < prism.sides(); ++side) {
+      const unsigned beyond = prism.corners_beyond(side, at);
+      if (beyond == kAll) return true;  // a start outside the prism
+      const unsigned rest = kAll & ~beyond;
+      if ((rest & (rest - 1)) == 0) outside |= rest;
+    }
+    const PointN<N> heights = prism.heights(at);
+    double low = *std::min_element(heights.begin(), heights.end());
+    double high = *std::max_element(heights.begin(), heights.end());
     Link link;
     link.simplex = t;
-    std::array<std::uint32_t, N> beyond;  // by corner: the sides of the prism that it is outside of
-    std::uint32_t everywhere = ~0u;
-    double low = kFailed, high = -kFailed;
-    for (int i = 0; i < N; ++i) {
-      link.at[i] = frame.to_frame(to_[t][i]);
-      beyond[i] = 0;
-      for (int side = 0; side < prism.sides(); ++side)
-        beyond[i] |= static_cast<std::uint32_t>(prism.inside(side, link.at[i]) < 0.0) << side;
-      everywhere &= beyond[i];
-      const double height = prism.height(link.at[i]);
-      low = std::min(low, height);
-      high = std::max(high, height);
-    }
-    if (everywhere != 0) return true;  // a start outside the prism
+    for (int i = 0; i < N; ++i)
+      for (int k = 0; k < N; ++k) link.at[i][k] = at[k][i];
     const auto bound_of = [&] { return std::max(high - prism.low(), prism.high() - low); };
     if (bound_of() > rough) {
       const auto [least, largest] = heights_of_plane<N>(link.at, part, prism);
@@ -150,10 +151,7 @@ class PrismWalk {
     link.bound = bound_of();
     chain_.push_back(link);
     for (int i = 0; i < N; ++i) {
-      std::uint32_t outside = ~0u;
-      for (int j = 0; j < N; ++j)
-        if (j != i) outside &= beyond[j];
-      if (outside != 0 || is_beside<N>(link.at, i, part)) continue;
+      if ((outside >> i & 1u) != 0 || is_beside<N>(link.at, i, part)) continue;
       const Index next = neighbours_.across(t, i);
       if (next != FacetNeighbours<N>::kNone)
         visit(next);
