@@ -209,11 +209,11 @@ void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
 
 template <Value T>
 void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
-  const auto simplified = [&](SimplifyMethod method) {
+  const auto simplified = [&](SimplifyMethod method, bool measure = false) {
     SimplifyOptions<4> options;
     options.method = method;
     options.ratio = 0.2;
-    options.measure = false;  // the row of `deviation` measures that
+    options.measure = measure;  // the row of `deviation` measures the bound alone
     options.work = subject.work_options();
     options.scale = automatic_scale(subject.contour);
     subject.simplified = simplify(subject.contour, options).contour;
@@ -222,7 +222,9 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`simplify` to a fifth, `facets`", [simplified] { return simplified(SimplifyMethod::facets); }});
   list.push_back({"`simplify` to a fifth, `vertices`", [simplified] { return simplified(SimplifyMethod::vertices); }});
   list.push_back({"`simplify` to a fifth, `quadric`", [simplified] { return simplified(SimplifyMethod::quadric); }});
-  list.push_back({"`deviation` from that (`simplify`), and back", [&] {
+  list.push_back({"`simplify` to a fifth, `quadric`, with its bound",
+                  [simplified] { return simplified(SimplifyMethod::quadric, true); }});
+  list.push_back({"`deviation` from the `quadric` one (`simplify`), and back", [&] {
                     DeviationOptions<4> options;
                     options.work = subject.work_options();
                     options.scale = automatic_scale(subject.contour);

@@ -18,7 +18,8 @@ struct DeviationOptions {
   /// Coordinates are multiplied by these factors before distances are measured, to make axes of different units
   /// comparable.
   std::array<double, N> scale = detail::all_one<N>();
-  /// Bounds below this are not refined further, which saves time. All bounds stay valid.
+  /// Bounds below this, or below half of the largest known distance, are not refined further, which saves time. If it
+  /// is 0, bounds below the largest known distance are not refined. All bounds stay valid.
   double enough = 0.0;
   WorkOptions work = {};  ///< threads and progress
 };
@@ -34,17 +35,19 @@ struct Deviation {
 /// The one-sided Hausdorff distance; call it in both directions for the symmetric one. N = 2, 3, 4; Real: float or
 /// double.
 ///
-/// Method. Above each simplex of `from`, along its normal, the simplices of `to` are grouped by height. A group without
-/// a border there that covers one point of the simplex covers all of it (by topology, without comparing sizes), so the
-/// group's height bounds the distance. If there is no such group, for instance next to borders, the
-/// distances of the corners from one simplex of `to` bound those of all points between, because this distance is
-/// convex. A simplex with a loose bound is halved, up to 24 times; those with the largest bounds up to 400 times.
+/// Method. A simplex that is not much larger than the largest distance is bounded in up to 48 parts: each by the
+/// distances of its corners from one simplex of `to`, because this distance is convex, or by the distance of its middle
+/// and its radius. Above each other simplex of `from`, along its normal, the simplices of `to` are grouped by height. A
+/// group without a border there that covers one point of the simplex covers all of it (by topology, without comparing
+/// sizes), so the group's height bounds the distance. If there is no such group, for instance next to borders, the
+/// distances of the corners bound those of all points between. A simplex with a loose bound is halved, up to 24 times;
+/// those with the largest bounds up to 400 times.
 ///
 /// So the bound holds up to the rounding of coordinates, with any gaps, folds or flat simplices; 1e-11 of an edge is
-/// added if the rim of a simplex has to be excluded. It is at most 1.25 times the distance of some point of its
-/// simplex, or half of `least` (or `enough`), or a fiftieth of the longest edge, unless the limit of halvings was
-/// reached: that happens for contours that are rough at the scale of their simplices. Groups are recognised if
-/// orientations are consistent; coincident vertices count as one.
+/// added to most. The bound of a simplex is at most 1.25 times the distance of one of its points, or `least` (with
+/// `enough`: that or half of `least`), or a fiftieth of the longest edge, unless the limit of halvings was reached:
+/// that happens for contours that are rough at the scale of their simplices. Groups are recognised if orientations are
+/// consistent; coincident vertices count as one.
 ///
 /// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range, a coordinate that is not
 /// finite), Cancelled. Time: about O(S log S) for contours that are close to each other. Memory: about 300 bytes for

@@ -72,7 +72,8 @@ struct SimplifyOptions {
   std::array<double, N> scale = detail::all_one<N>();
   /// Whether to compute error bounds, as vertex attribute "simplification_error". Always done if max_error is given.
   /// With count or ratio only, the smallest maximum error that reaches the count is searched for, usually in 5 to 35
-  /// rounds, at most 171 (except with `fast`). Without bounds there is one round, with up to 40 times the error.
+  /// rounds, at most 171. Exceptions are `fast`, and `quadric` beyond 50 000 simplices: one round, in the order of the
+  /// mean squared distance. Without bounds there is one round for all methods. One round has up to 40 times the error.
   bool measure = true;
   /// Only for `fast`, InvalidArgument for other methods: accept non-manifold results.
   bool allow_nonmanifold = false;
@@ -145,10 +146,11 @@ struct Simplification {
 /// same corners; or the result of `fast` is not a manifold), Cancelled.
 ///
 /// Time: O(S log S), about 2 microseconds per triangle and 3 per tetrahedron (facets, vertices: several times that).
-/// Error bounds take as long for triangles; for tetrahedra about 6 microseconds each, plus about 30 for each
-/// one of the result. This is per round: up to 12 rounds with `max_error`, usually 5 to 35 with a count (a third of
-/// those without bounds), with both as many as for each. If no round keeps max_error, the result is the original
-/// contour and SimplifyStats::end reports it. Memory: about 200 bytes per simplex.
+/// Error bounds take as long for triangles; for tetrahedra about 2 microseconds each, plus about 15 for each one of the
+/// result, and several times as long if errors are much smaller than edges. This is per round: up to 12 rounds with
+/// `max_error`; with a count 1 (`fast`, large contours) or usually 5 to 35 (a third of those without bounds); with both
+/// as many as for each. If no round keeps max_error, the result is the original contour and SimplifyStats::end reports
+/// it. Memory: about 200 bytes per simplex.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Simplification<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace tegl::detail {
 
@@ -69,6 +70,32 @@ PointN<N> normal_of(const CornersN<N>& corners) {
     return {f[1] * zt - f[2] * yt + f[3] * yz, -(f[0] * zt - f[2] * xt + f[3] * xz), f[0] * yt - f[1] * xt + f[3] * xy,
             -(f[0] * yz - f[1] * xz + f[2] * xy)};
   }
+}
+
+/// The centroid.
+template <int N>
+PointN<N> middle_of(const CornersN<N>& corners) {
+  PointN<N> middle{};
+  for (const PointN<N>& corner : corners)
+    for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
+  return middle;
+}
+
+/// The positions of the ends of the longest edge, the smaller one first.
+template <int N>
+std::pair<int, int> ends_of_longest_edge(const CornersN<N>& corners) {
+  std::pair<int, int> ends = {0, 1};
+  double longest = -1.0;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < i; ++j) {
+      const PointN<N> edge = minus(corners[i], corners[j]);
+      const double square = dot(edge, edge);
+      if (square > longest) {
+        longest = square;
+        ends = {j, i};
+      }
+    }
+  return ends;
 }
 
 template <int N>
@@ -138,8 +165,8 @@ Projected<N> project_onto_hull(const PointN<N>& p, const std::array<PointN<N>, N
   return result;
 }
 
-/// Distance of a point from the convex hull of `count` points (count <= N). If it is not below `most`, the result is any
-/// number that is at least `most`.
+/// Distance of a point from the convex hull of `count` points (count <= N). If it is not below `most`, the result is
+/// any number that is at least `most`.
 ///
 /// If the projection onto the affine hull has negative barycentric coordinates, the nearest point lies on a face
 /// opposite to a corner with such a coordinate: these faces are tested recursively, down to points. A flat simplex is

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A bounding volume hierarchy of simplices for range and nearest-neighbour queries: a binary tree of boxes, split at
-// the median along the longest axis.
+// A bounding volume hierarchy of simplices for range and nearest-neighbour queries: a binary tree of boxes over
+// simplices in the order of a space-filling curve (C. Lauterbach et al., Fast BVH construction on GPUs, 2009).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "base/radix_sort.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "tegl/contour.hpp"
 
@@ -58,15 +58,16 @@ template <int N>
 class BoxTree {
  public:
   explicit BoxTree(std::span<const CornersN<N>> simplices) : simplices_(simplices), order_(simplices.size()) {
-    std::iota(order_.begin(), order_.end(), Index{0});
     boxes_.resize(simplices.size());
     for (std::size_t s = 0; s < simplices.size(); ++s)
       for (const PointN<N>& corner : simplices[s]) boxes_[s].add(corner);
-    if (!order_.empty()) build(0, static_cast<Index>(order_.size()));
+    sort_along_curve();
     std::vector<Box<N>> in_order;  // in the order of the leaves
     in_order.reserve(boxes_.size());
     for (const Index s : order_) in_order.push_back(boxes_[s]);
     boxes_.swap(in_order);
+    nodes_.reserve(boxes_.size());
+    if (!order_.empty()) build(0, static_cast<Index>(order_.size()));
   }
 
   /// Calls visit(simplex) for every simplex whose box is within `reach` of the box along every axis.
@@ -104,25 +105,45 @@ class BoxTree {
   Index build(Index first, Index end) {
     const auto number = static_cast<Index>(nodes_.size());
     nodes_.emplace_back();
-    Box<N> box;
-    for (Index i = first; i < end; ++i) box.add(boxes_[order_[i]]);
-    nodes_[number].box = box;
     if (end - first <= kLeafSize) {
-      nodes_[number].first = first;
-      nodes_[number].end = end;
+      Box<N> box;
+      for (Index i = first; i < end; ++i) box.add(boxes_[i]);
+      nodes_[number] = {box, first, end, 0};
       return number;
     }
-    int axis = 0;
-    for (int a = 1; a < N; ++a)
-      if (box.high[a] - box.low[a] > box.high[axis] - box.low[axis]) axis = a;
     const Index middle = first + (end - first) / 2;
-    const auto key = [&](Index s) { return boxes_[s].low[axis] + boxes_[s].high[axis]; };
-    std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + end,
-                     [&](Index a, Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
     build(first, middle);
     const Index right = build(middle, end);
-    nodes_[number].right = right;
+    Box<N> box = nodes_[number + 1].box;
+    box.add(nodes_[right].box);
+    nodes_[number] = {box, 0, 0, right};
     return number;
+  }
+
+  /// Orders the simplices by the middles of their boxes, along the curve that interleaves the bits of the coordinates.
+  void sort_along_curve() {
+    constexpr unsigned kBits = std::min(16, 64 / N);
+    constexpr double kMostCells = (1u << kBits) - 1;
+    Box<N> all;
+    for (const Box<N>& box : boxes_) all.add(box);
+    struct Keyed {
+      std::uint64_t key;
+      Index simplex;
+    };
+    std::vector<Keyed> keyed(boxes_.size());
+    for (Index s = 0; s < boxes_.size(); ++s) {
+      std::array<std::uint64_t, N> cell{};
+      for (int a = 0; a < N; ++a) {
+        const double share = (0.5 * (boxes_[s].low[a] + boxes_[s].high[a]) - all.low[a]) / (all.high[a] - all.low[a]);
+        if (share > 0.0) cell[a] = static_cast<std::uint64_t>(std::min(1.0, share) * kMostCells);
+      }
+      std::uint64_t key = 0;
+      for (unsigned bit = kBits; bit-- > 0;)
+        for (int a = 0; a < N; ++a) key = key << 1 | (cell[a] >> bit & 1u);
+      keyed[s] = {key, s};
+    }
+    sort_by_bits(keyed, kBits * N, [](const Keyed& one) { return one.key; });
+    for (std::size_t i = 0; i < keyed.size(); ++i) order_[i] = keyed[i].simplex;
   }
 
   template <class Visit>

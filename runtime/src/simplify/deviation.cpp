@@ -24,6 +24,8 @@
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/prism_cover.hpp"
 #include "simplify/prism_walk.hpp"
+#include "simplify/simplex_walk.hpp"
+#include "simplify/vertex_distances.hpp"
 
 namespace tegl {
 namespace detail {
@@ -33,7 +35,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Accepted ratio of a bound to a distance that is attained; the second one is for refinement.
 constexpr double kLooseness = 1.25;
 constexpr double kRefinedLooseness = 1.05;
-/// A bound below these fractions, of the longest edge and of the largest known distance, is accepted.
+/// A bound below this fraction of the longest edge is accepted; with a given bound that is enough, also one below this
+/// fraction of the largest known distance.
 constexpr double kEdgeShare = 0.02;
 constexpr double kLeastShare = 0.5;
 /// Near simplices are searched within kSlack times the distance of the corners plus kReachShare times the longest
@@ -53,14 +56,20 @@ constexpr double kRimShare = 0.02;
 constexpr double kBeyond = 1e-9;
 /// Flatter simplices use the normal of the nearest simplex of the other contour.
 constexpr double kFlat = 1e-2;
+/// Simplices with edges up to this multiple of the bound that is enough are bounded by distances of corners first, in
+/// at most so many parts.
+constexpr double kCoarse = 6.0;
+constexpr std::size_t kFewParts = 48;
 /// Maximum number of parts of a simplex. Refinement of the largest bounds: kMostRefined simplices, one more per
 /// kRefinedShare simplices, and their maximum number of parts.
 constexpr std::size_t kMostParts = 24;
 constexpr std::size_t kMostRefined = 64;
 constexpr std::size_t kRefinedShare = 4000;
 constexpr std::size_t kRefinedParts = 400;
-/// Every kSampled-th simplex is sampled at its centroid for a first estimate of the distances.
-constexpr std::size_t kSampled = 8;
+/// Maximum number of simplices that are sampled for a first estimate of the distances; edges longer than this multiple
+/// of their mean longest edge are sampled at their middles.
+constexpr std::size_t kMostSamples = std::size_t{1} << 18;
+constexpr double kLong = 1.25;
 constexpr std::size_t kGrain = 256;
 
 void raise(double& value, double candidate) {
@@ -68,14 +77,6 @@ void raise(double& value, double candidate) {
   double old = shared.load(std::memory_order_relaxed);
   while (candidate > old && !shared.compare_exchange_weak(old, candidate, std::memory_order_relaxed)) {
   }
-}
-
-template <int N>
-PointN<N> middle_of(const CornersN<N>& corners) {
-  PointN<N> middle{};
-  for (const PointN<N>& corner : corners)
-    for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
-  return middle;
 }
 
 /// The scaled simplices of a contour.
@@ -173,10 +174,9 @@ struct DeviationInput {
   const ScaledSimplices<N>& to;
   const BoxTree<N>& tree;
   const BoundaryFaces<N>& open;
-  const FacetNeighbours<N>& neighbours;    ///< of `to`
-  const std::vector<double>& of_vertices;  ///< distance of each vertex of `from` from the nearest point of `to`
-  const std::vector<Index>& next;          ///< the simplex of `to` with that point
-  double enough;                           ///< bounds below it are not refined
+  const FacetNeighbours<N>& neighbours;  ///< of `to`
+  const std::vector<NearPoint>& near;    ///< by vertex of `from`: a point of `to`, the nearest one if it matters
+  double enough;                         ///< bounds below it are not refined
   std::vector<double>& of_to;
 };
 
@@ -187,12 +187,15 @@ class SimplexDeviation {
   static constexpr int D = N - 1;
 
   explicit SimplexDeviation(const DeviationInput<N>& measure)
-      : m_(measure), walk_(measure.to.corners, measure.neighbours) {}
+      : m_(measure), walk_(measure.to.corners, measure.neighbours), few_(measure.to.corners, measure.neighbours) {}
 
   /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
-    load(s);
     looseness_ = kLooseness;
+    load_size(s);
+    const double few = bound_by_corners(s);
+    if (few < kInfinity) return few;
+    load_frame(s);
     const double enough = std::max(m_.enough, kEdgeShare * edge_);
     const double walked = bound_by_walk(s, enough);
     if (walked < kInfinity) return walked;
@@ -204,7 +207,8 @@ class SimplexDeviation {
 
   /// A closer bound, refined until it is at most `enough` or kRefinedParts parts are reached.
   double refined_bound(Index s, double enough) {
-    load(s);
+    load_size(s);
+    load_frame(s);
     looseness_ = kRefinedLooseness;
     double least = 0.0;
     return in_parts(enough, kRefinedParts, least);
@@ -233,11 +237,25 @@ class SimplexDeviation {
     bool operator<(const Part& other) const { return bound < other.bound; }
   };
 
+  /// Bounds the distance by those of the corners, for simplices that are not much larger than the distances that need
+  /// no closer bound.
+  double bound_by_corners(Index s) {
+    const double rim = kRim * edge_;  // more than rounding errors
+    const double limit = m_.enough - rim;
+    if (!(edge_ <= kCoarse * limit && nearest_ <= limit)) return kInfinity;
+    std::array<NearPoint, N> near;
+    for (int i = 0; i < N; ++i) near[i] = m_.near[m_.from.simplices[s][i]];
+    const double result = few_.bound(m_.from.corners[s], near, limit, kFewParts) + rim;
+    if (result < kInfinity)
+      for (const NearPoint& match : few_.matches()) raise(m_.of_to[match.simplex], match.distance + rim);
+    return result;
+  }
+
   /// Bounds the distance by the simplices of `to` that are connected with the ones nearest to the corners. Most
   /// simplices need no search for all simplices near them.
   double bound_by_walk(Index s, double enough) {
     std::array<Index, N> starts;
-    for (int i = 0; i < N; ++i) starts[i] = m_.next[m_.from.simplices[s][i]];
+    for (int i = 0; i < N; ++i) starts[i] = m_.near[m_.from.simplices[s][i]].simplex;
     const double rim = kRim * edge_;
     const double rough = std::max(m_.enough, looseness_ * nearest_) - rim;
     const double limit = std::max(enough, looseness_ * nearest_) - rim;
@@ -248,11 +266,14 @@ class SimplexDeviation {
     return result;
   }
 
-  void load(Index s) {
-    const CornersN<N>& corners = m_.from.corners[s];
-    edge_ = longest_edge<N>(corners);
+  void load_size(Index s) {
+    edge_ = longest_edge<N>(m_.from.corners[s]);
     nearest_ = 0.0;
-    for (const Index v : m_.from.simplices[s]) nearest_ = std::max(nearest_, m_.of_vertices[v]);
+    for (const Index v : m_.from.simplices[s]) nearest_ = std::max(nearest_, m_.near[v].distance);
+  }
+
+  void load_frame(Index s) {
+    const CornersN<N>& corners = m_.from.corners[s];
     PointN<N> normal = normal_of<N>(corners);
     double length = norm(normal);
     if (!(shape_of_simplex<N>(corners, length) > kFlat)) {
@@ -489,17 +510,7 @@ class SimplexDeviation {
 
   /// Bisects a simplex at the middle of its longest edge.
   static std::array<CornersN<N>, 2> halves(const CornersN<N>& part) {
-    int first = 0, second = 1;
-    double longest = -1.0;
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < i; ++j) {
-        const PointN<N> edge = minus(part[i], part[j]);
-        if (dot(edge, edge) > longest) {
-          longest = dot(edge, edge);
-          first = j;
-          second = i;
-        }
-      }
+    const auto [first, second] = ends_of_longest_edge<N>(part);
     std::array<CornersN<N>, 2> result = {part, part};
     result[0][second] = result[1][first] = between(part[first], part[second], 0.5);
     return result;
@@ -519,6 +530,7 @@ class SimplexDeviation {
   std::vector<HeightRange> ranges_;
   ClippedSimplex<N> clipped_;
   PrismWalk<N> walk_;
+  SimplexWalk<N> few_;
 };
 
 template <int N>
@@ -552,43 +564,53 @@ void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigne
   for (double& bound : result.of_to) bound = std::min(bound, result.bound);
 }
 
+/// The largest distance of sample points: centroids, and the middles of long edges. At least `least`.
+template <int N>
+double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree, const SimplexWalk<N>& walk,
+                          const std::vector<NearPoint>& near, double least, unsigned threads,
+                          const Progress& progress) {
+  const std::size_t step = 1 + from.simplices.size() / kMostSamples;
+  const std::size_t count = from.simplices.size() / step;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k) sum += longest_edge<N>(from.corners[k * step]);
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(1, count));
+  double largest = least;
+  for_each_block(count, kGrain, threads, progress, [&](std::size_t, std::size_t first, std::size_t end) {
+    double farthest = least;
+    const auto sample = [&](const PointN<N>& p, Index guess) {
+      const NearPoint found = walk.approach(p, guess);
+      if (found.distance > farthest) farthest = std::max(farthest, tree.nearest(p, found.simplex).distance);
+    };
+    for (std::size_t k = first; k < end; ++k) {
+      const CornersN<N>& corners = from.corners[k * step];
+      const auto start = [&](int i) { return near[from.simplices[k * step][i]].simplex; };
+      sample(middle_of<N>(corners), start(0));
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < i; ++j)
+          if (norm(minus(corners[i], corners[j])) > kLong * mean)
+            sample(between(corners[i], corners[j], 0.5), start(i));
+    }
+    raise(largest, farthest);
+  });
+  return largest;
+}
+
 template <int N>
 void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, double enough, unsigned threads,
                  const Progress& progress, Deviation& result) {
   const BoundaryFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
   const FacetNeighbours<N> neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.05, 0.1));
   const BoxTree<N> tree(to.corners);
-  // distances of vertices
-  std::vector<double> of_vertices(from.points.size());
-  std::vector<Index> next(from.points.size());
-  for_each_block(from.points.size(), kGrain, threads, part_of(progress, 0.1, 0.2),
-                 [&](std::size_t, std::size_t first, std::size_t end) {
-                   auto nearest = tree.nearest(from.points[first]);
-                   for (std::size_t v = first; v < end; ++v) {
-                     nearest = tree.nearest(from.points[v], nearest.simplex);
-                     of_vertices[v] = nearest.distance;
-                     next[v] = nearest.simplex;
-                   }
-                 });
-  for (const auto& simplex : from.simplices)
-    for (const Index v : simplex) result.least = std::max(result.least, of_vertices[v]);
-  // distances of sampled centroids, if they may exceed the distances of all vertices
-  const double of_corners = result.least;
-  for_each_block(from.simplices.size() / kSampled, kGrain, threads, part_of(progress, 0.2, 0.25),
-                 [&](std::size_t, std::size_t first, std::size_t end) {
-                   double farthest = of_corners;
-                   for (std::size_t k = first; k < end; ++k) {
-                     const std::size_t s = k * kSampled;
-                     const PointN<N> middle = middle_of<N>(from.corners[s]);
-                     const Index guess = next[from.simplices[s][0]];
-                     if (distance_to_simplex<N>(middle, to.corners[guess], N) > farthest)
-                       farthest = std::max(farthest, tree.nearest(middle, guess).distance);
-                   }
-                   raise(result.least, farthest);
-                 });
-  // bounds of simplices
-  const DeviationInput<N> measure{
-      from, to, tree, open, neighbours, of_vertices, next, std::max(enough, kLeastShare * result.least), result.of_to};
+  // distances of vertices: exactly where they are needed
+  const SimplexWalk<N> walk(to.corners, neighbours);
+  VertexDistances<N> vertices(from.simplices, from.points, tree, walk, threads);
+  vertices.approach(part_of(progress, 0.1, 0.15));
+  result.least = vertices.find_largest(part_of(progress, 0.15, 0.18));
+  result.least =
+      largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.18, 0.22));
+  enough = enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least;
+  vertices.search_above(enough / kLooseness, part_of(progress, 0.22, 0.25));
+  const DeviationInput<N> measure{from, to, tree, open, neighbours, vertices.near(), enough, result.of_to};
   for_each_block(
       from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9),
       [&] { return SimplexDeviation<N>(measure); },

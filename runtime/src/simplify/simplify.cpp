@@ -40,6 +40,7 @@ constexpr unsigned kMostRoundsOfStop = 4;
 /// and the factor up to which the result is determined.
 constexpr unsigned kMostTries = 10;
 constexpr double kErrorOfTolerance = 3.0;
+constexpr std::size_t kMostSearched = 50'000;  ///< simplices: larger contours take one round with quadrics
 constexpr double kNextError = 1.5;
 constexpr double kPrecision = 1.25;
 /// Number of steps down by a factor of 4 before a tolerance of almost 0 is tried.
@@ -47,6 +48,7 @@ constexpr unsigned kMostSteps = 2;
 /// Progress of one round after its preparation and after its contractions.
 constexpr double kReady = 0.2;
 constexpr double kCollapsed = 0.97;
+constexpr double kCounted = 0.35;  ///< after the contractions if no other round follows
 /// Relative to the size of the contour: bound of the rounding errors of an error.
 constexpr double kRounding = 1e-12;
 /// Relative to the size of the contour: an error that counts as 0. Sums of squared distances are accurate only to its
@@ -154,6 +156,11 @@ class Simplifier {
   [[nodiscard]] std::vector<double> uniform_tolerance(double error) const {
     return std::vector<double>(contour_.vertices.size(), error);
   }
+  /// Whether a count is reached in one round. A search would take many minutes for large contours.
+  [[nodiscard]] bool takes_one_round() const {
+    return options_.method == SimplifyMethod::fast ||
+           (options_.method == SimplifyMethod::quadric && contour_.simplices.size() > kMostSearched);
+  }
   [[nodiscard]] bool by_count() const { return options_.count || options_.ratio; }
 
   /// Simplifies within the maximum error less the earlier one. With a count, the result for the count is taken if it is
@@ -208,13 +215,15 @@ class Simplifier {
     return std::nullopt;
   }
 
-  /// Reaches a count with a small error. Most of the error comes from a few contractions in thin parts. So this
-  /// searches for the smallest maximum error with which the count is still reached, up to `most`.
+  /// Reaches a count with a small error, up to `most`. Most of the error comes from a few contractions in thin parts.
+  /// So this searches for the smallest maximum error with which the count is still reached, unless `takes_one_round`.
   Round minimize_error(double most) {
-    const bool fast = options_.method == SimplifyMethod::fast;
-    Round best = one_round(uniform_tolerance(fast ? most : kUnlimited), progress_after(0.25), count_);
-    measure(best, progress_after(1.0 / 3.0));
-    if (best.end != SimplifyEnd::count || fast) return best;
+    const bool once = takes_one_round();
+    const bool last = once && most == kUnlimited;
+    Round best = one_round(uniform_tolerance(once ? most : kUnlimited), last ? kCounted : progress_after(0.25), count_,
+                           {.by_mean = once});
+    measure(best, last ? 1.0 : progress_after(1.0 / 3.0));
+    if (best.end != SimplifyEnd::count || once) return best;
     double low = smallest_tolerance(best);
     double factor = kErrorOfTolerance;
     bool found = false, failed = false;
@@ -266,14 +275,17 @@ class Simplifier {
   [[nodiscard]] double progress_after(double share) const { return progress_ + share * (1.0 - progress_); }
 
   /// Simplifies once until at most `stop` simplices are left, and advances the progress to `to`; without measurement.
-  /// `is_trial`: the result is discarded, so it may be non-manifold.
-  Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop, bool is_trial = false) {
+  struct RoundKind {
+    bool is_trial = false;  ///< the result is discarded, so it may be non-manifold
+    bool by_mean = false;   ///< CollapseGoal::by_mean
+  };
+  Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop, RoundKind kind = {}) {
     ++stats_.rounds;
     const Progress progress = detail::part_of(options_.work.progress, progress_, to);
     progress_ = to;
     const bool is_fast = options_.method == SimplifyMethod::fast;
-    Round round =
-        is_fast ? run_meshoptimizer(tolerance, stop, is_trial, progress) : collapse_edges(tolerance, stop, progress);
+    Round round = is_fast ? run_meshoptimizer(tolerance, stop, kind.is_trial, progress)
+                          : collapse_edges(tolerance, stop, kind.by_mean, progress);
     round.end = end_without_limits(round.result);
     if (round.end == SimplifyEnd::shape && round.is_limited) round.end = SimplifyEnd::error;
     if (round.result.simplices.size() != contour_.simplices.size()) return round;
@@ -291,7 +303,7 @@ class Simplifier {
   /// also those for a contour that is no manifold.
   bool is_reducible() {
     const std::size_t before = contour_.simplices.size();
-    const Round round = one_round(uniform_tolerance(kUnlimited), progress_after(0.5), before - 1, true);
+    const Round round = one_round(uniform_tolerance(kUnlimited), progress_after(0.5), before - 1, {.is_trial = true});
     stats_.rounds = 0;
     if (end_without_limits(contour_) == SimplifyEnd::count) return false;
     return round.is_limited || round.result.simplices.size() < before;
@@ -323,11 +335,11 @@ class Simplifier {
   }
 
   /// One round of a method that contracts edges.
-  Round collapse_edges(const std::vector<double>& tolerance, std::size_t stop, const Progress& progress) {
+  Round collapse_edges(const std::vector<double>& tolerance, std::size_t stop, bool by_mean, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     EdgeCollapse<N> collapse = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
     // contract
-    CollapseGoal goal{stop, options_.max_curvature, &progress, kReady, kCollapsed};
+    CollapseGoal goal{stop, options_.max_curvature, by_mean, &progress, kReady, kCollapsed};
     if (options_.method == SimplifyMethod::quadric) collapse_by_quadrics(collapse, goal);
     if (options_.method == SimplifyMethod::facets) collapse_by_curvature(collapse, goal);
     if (options_.method == SimplifyMethod::vertices) collapse_by_distance(collapse, goal);
@@ -335,8 +347,7 @@ class Simplifier {
     Round round;
     round.is_limited = collapse.is_limited();
     round.survivors.resize(contour_.vertices.size());
-    for (std::size_t v = 0; v < round.survivors.size(); ++v)
-      round.survivors[v] = collapse.survivor(static_cast<Index>(v));
+    for (Index v = 0; v < round.survivors.size(); ++v) round.survivors[v] = collapse.survivor(v);
     RemainingSimplices<N> remains;
     for (Index s = 0; s < collapse.complex().simplex_count(); ++s) {
       if (!collapse.complex().is_alive(s)) continue;
@@ -475,7 +486,7 @@ class Simplifier {
     options.enough = enough;
     Deviation of_original = deviation(contour_, round.result, options);
     options.work.progress = detail::part_of(options_.work.progress, 0.5 * (from + to), to);
-    options.enough = enough > 0.0 ? enough : 0.5 * of_original.least;
+    options.enough = enough > 0.0 ? enough : of_original.least;
     const Deviation of_result = deviation(round.result, contour_, options);
     round.errors = std::move(of_original.of_to);
     for (std::size_t s = 0; s < round.errors.size(); ++s)

@@ -69,7 +69,7 @@ template <int N>
 class QuadricOrder {
  public:
   QuadricOrder(EdgeCollapse<N>& collapse, const CollapseGoal& goal)
-      : collapse_(collapse), reporter_(goal, collapse.complex().alive()) {}
+      : collapse_(collapse), by_mean_(goal.by_mean), reporter_(goal, collapse.complex().alive()) {}
 
   void fill() {
     for (Index v = 0; v < collapse_.points().size(); ++v) {
@@ -111,10 +111,12 @@ class QuadricOrder {
     if (!target) return;
     const PointN<N> edge = minus(collapse_.scaled()[a], collapse_.scaled()[b]);
     const double weight = collapse_.quadric(a).weight() + collapse_.quadric(b).weight();
-    queue_.push(target->cost + kLengthShare * weight * dot(edge, edge), {a, b, stamp(a, b)});
+    const double sum = target->cost + kLengthShare * weight * dot(edge, edge);
+    queue_.push(by_mean_ && weight > 0.0 ? sum / weight : sum, {a, b, stamp(a, b)});
   }
 
   EdgeCollapse<N>& collapse_;
+  bool by_mean_;
   ProgressReporter reporter_;
   EdgeBuckets queue_;
   std::vector<Index> around_;

@@ -14,6 +14,7 @@ namespace tegl::detail {
 struct CollapseGoal {
   std::size_t count = 0;     ///< stop at this number of simplices
   double max_curvature = 0;  ///< only for `collapse_by_curvature`
+  bool by_mean = false;      ///< only for `collapse_by_quadrics`: by the mean of the squared distances, not their sum
   const Progress* progress = nullptr;
   double from = 0, to = 1;  ///< range of `progress` that this work covers
 };

@@ -400,6 +400,32 @@ TYPED_TEST(Simplify, IsAsNearByTwoGoalsAsByTheCountWhereTheErrorLetsIt) {
   }
 }
 
+/// Large contours are not searched: one round has the bound, for any number of threads.
+TEST(SimplifyLarge, TakesOneRoundWithABound) {
+  const auto contour = ball<3>(100);
+  ASSERT_GT(contour.simplices.size(), 50'000u);
+  auto options = with_ratio<3>(SimplifyMethod::quadric, 0.1);
+  double last = 0.0;
+  options.work.threads = 2;
+  options.work.progress = [&](double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+    return true;
+  };
+  const auto [result, stats] = simplify(contour, options);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_EQ(stats.rounds, 1u);
+  EXPECT_EQ(stats.end, SimplifyEnd::count);
+  expect_same_topology(check(contour), check(result));
+  EXPECT_GE(*stats.error_of_original, sampled_deviation(contour, result, 200, 1));
+  EXPECT_GE(*stats.error_of_result, sampled_deviation(result, contour, 200, 2));
+  options.work = {.threads = 1};
+  EXPECT_EQ(simplify(contour, options).contour.vertices, result.vertices);
+  options.measure = false;
+  const auto once = simplify(contour, options).contour;
+  EXPECT_LT(*stats.error(), std::max(deviation(contour, once).bound, deviation(once, contour).bound));
+}
+
 TEST(Simplify2, CapsOfASlantedGridStayInItsBorder) {
   auto grid = centred_grid<3>(12, 1.0);
   grid.linear[0][1] = 0.4;
