@@ -75,6 +75,11 @@ HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsi
   }
 }
 
+void alphas_of_ends(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
+                    double* out) {
+  alphas_of(from, to, count, isovalue, epsilon, out);
+}
+
 /// Interpolation parameters of all edges of a 4D tile, critical or not.
 void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
   constexpr unsigned kEdges = tables::edge_count(4);
@@ -116,6 +121,12 @@ namespace tegl::detail {
   void edge_alphas<T>(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept { \
     HWY_DYNAMIC_DISPATCH(name)(edges, isovalue, epsilon, out);                                              \
   }
+HWY_EXPORT(alphas_of_ends);
+void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
+                    double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_of_ends)(from, to, count, isovalue, epsilon, out);
+}
+
 HWY_EXPORT(alphas_4d);
 void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept {
   HWY_DYNAMIC_DISPATCH(alphas_4d)(corners, isovalue, epsilon, out);

@@ -26,6 +26,9 @@ struct EdgeSamples {
 /// the middle between two infinities.
 template <Value T>
 void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
+/// The same from the values at both ends of each edge.
+void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
+                    double* out) noexcept;
 /// Interpolation parameters for all 32 edges of a 4D tile, from the values at its 16 corners. Results for non-critical
 /// edges are undefined.
 void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept;

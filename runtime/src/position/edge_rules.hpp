@@ -10,7 +10,6 @@
 #include <exception>
 #include <limits>
 #include <mutex>
-#include <numeric>
 #include <span>
 
 #include <fmt/format.h>
@@ -45,20 +44,20 @@ class FilteredPositions final : public PositionsOnEdges<N> {
 
   void find(const LayerEdges<N>& edges, double* out) const noexcept override {
     constexpr std::size_t kMost = LayerEdges<N>::kMost;
-    static constexpr auto kInOrder = [] {
-      std::array<std::uint32_t, kMost> result{};
-      std::iota(result.begin(), result.end(), 0u);
-      return result;
-    }();
-    static constexpr std::array<std::ptrdiff_t, kMost> kOneRow{};
-    const std::size_t count = edges.edges.count;
-    // read both ends
+    const std::size_t count = edges.edges.count, stride = strides_[edges.axis];
+    // read both ends, which are seldom in the cache
+    const float* const layer = values_.data() + edges.k * edges.rows.size() * edges.rows.row_size();
+    std::array<const float*, kMost> at;
+    for (std::size_t i = 0; i < count; ++i) {
+      at[i] = layer + static_cast<std::size_t>(edges.row[i]) * edges.rows.row_size() + edges.edges.at[i];
+      __builtin_prefetch(at[i]);
+      if (edges.axis != 0) __builtin_prefetch(at[i] + stride);
+    }
     std::array<double, kMost> from, to;
     bool any_nan = false;
     for (std::size_t i = 0; i < count; ++i) {
-      const float* const at = values_.data() + edges.row_of_all(i) * edges.rows.row_size() + edges.edges.at[i];
-      from[i] = at[0];
-      to[i] = at[strides_[edges.axis]];
+      from[i] = at[i][0];
+      to[i] = at[i][stride];
       any_nan |= std::isnan(from[i] + to[i]);
     }
     if (any_nan) replace_nans(edges, from.data(), to.data());
@@ -70,7 +69,7 @@ class FilteredPositions final : public PositionsOnEdges<N> {
       from[i] = is_high ? std::max(first, isovalue_) : std::min(first, below_);
       to[i] = is_high ? std::min(second, below_) : std::max(second, isovalue_);
     }
-    edge_alphas<double>({from.data(), to.data(), kOneRow.data(), kInOrder.data(), count, 1}, isovalue_, epsilon_, out);
+    alphas_between(from.data(), to.data(), count, isovalue_, epsilon_, out);
   }
 
  private:

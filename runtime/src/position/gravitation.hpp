@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "image/vertex_moves.hpp"
@@ -28,31 +29,26 @@ class Gravitation final : public PositionsOnEdges<N> {
     for (int a = 0; a < N; ++a)
       for (std::size_t i = 0; i + 1 < grid.axes[a].size(); ++i)
         steps_[a].push_back(grid.axes[a][i + 1] - grid.axes[a][i]);
+    for (int a = 0; a < N; ++a) steps_[a].push_back(0.0);  // of the last sample, which nothing pulls outwards
   }
 
   void find(const LayerEdges<N>& edges, double* out) const noexcept override {
     samples_.edge_alphas(edges.k, edges.axis, edges.edges, out);
   }
-  /// As VertexMoves.
+  /// As VertexMoves. The rows of `edges.edges` are not read.
   void find_moves(const LayerEdges<N>& edges, const double* alphas, std::array<double, N>* out) const noexcept {
-    Beside beside{};
-    for (std::size_t i = 0; i < edges.edges.count; ++i) {
-      if (i == 0 || edges.row[i] != edges.row[i - 1]) enter_row(edges, i, beside);
-      const std::size_t at = edges.edges.at[i];
-      Pulls pulls{};
+    const auto along = [&]<int A>(std::integral_constant<int, A>) {
+      if (edges.axis != A) return false;
       if (signs_.any_missing())
-        find_pulls_by_sample(beside, at, pulls);
+        find_moves_along<A, true>(edges, alphas, out);
       else
-        find_pulls(beside, at, pulls);
-      int all = 0;
-      for (const int pull : pulls) all += std::abs(pull);
-      const double each = std::min(alphas[i], 1.0 - alphas[i]) * kShares[static_cast<std::size_t>(all)];
-      for (int j = 0; j < N; ++j) {
-        const std::size_t to = j == 0 ? at : beside.index[j];
-        out[i][j] = pulls[j] == 0 ? 0.0 : each * pulls[j] * steps_[j][pulls[j] > 0 ? to : to - 1];
-      }
-      if (mapped_) out[i] = mapped(out[i]);
+        find_moves_along<A, false>(edges, alphas, out);
+      return true;
+    };
+    [&]<int... A>(std::integer_sequence<int, A...>) {
+      static_cast<void>((along(std::integral_constant<int, A>()) || ...));
     }
+    (std::make_integer_sequence<int, N>());
   }
 
  private:
@@ -68,6 +64,30 @@ class Gravitation final : public PositionsOnEdges<N> {
     return shares;
   }();
 
+  template <int AxisOfEdges, bool AnyMissing>
+  void find_moves_along(const LayerEdges<N>& edges, const double* alphas, std::array<double, N>* out) const noexcept {
+    Beside beside{};
+    std::array<const double*, N> steps;
+    for (int j = 0; j < N; ++j) steps[j] = steps_[j].data();
+    for (std::size_t i = 0; i < edges.edges.count; ++i) {
+      if (i == 0 || edges.row[i] != edges.row[i - 1]) enter_row(edges, i, beside);
+      const std::size_t at = edges.edges.at[i];
+      Pulls pulls{};
+      if constexpr (AnyMissing)
+        find_pulls_by_sample(beside, at, pulls);
+      else
+        find_pulls<AxisOfEdges>(beside, at, pulls);
+      int all = 0;
+      for (const int pull : pulls) all += std::abs(pull);
+      const double each = std::min(alphas[i], 1.0 - alphas[i]) * kShares[static_cast<std::size_t>(all)];
+      for (int j = 0; j < N; ++j) {  // without branches, which would be mispredicted
+        const std::size_t to = j == 0 ? at : beside.index[j];
+        out[i][j] = j == AxisOfEdges ? 0.0 : each * pulls[j] * steps[j][to - (pulls[j] < 0 ? 1 : 0)];
+      }
+      if (mapped_) out[i] = mapped(out[i]);
+    }
+  }
+
   /// The rows around the edges of a row.
   struct Beside {
     int axis = 0;
@@ -75,6 +95,7 @@ class Gravitation final : public PositionsOnEdges<N> {
     std::array<std::size_t, 2> rows{};     ///< the rows of both ends
     std::array<const Word*, 2> high{};     ///< bits of the high samples of both
     std::array<std::ptrdiff_t, N> step{};  ///< by axis > 0: words to the next row; 0: along the edges, or at the border
+    std::size_t inner = 0;                 ///< samples of a row without those at its ends
   };
   void enter_row(const LayerEdges<N>& edges, std::size_t i, Beside& beside) const noexcept {
     beside.axis = edges.axis;
@@ -82,6 +103,7 @@ class Gravitation final : public PositionsOnEdges<N> {
     const std::size_t row = edges.row_of_all(i);
     beside.rows = {row, edges.axis == 0 ? row : row + signs_.stride(edges.axis)};
     beside.high = {signs_.high(beside.rows[0]), signs_.high(beside.rows[1])};
+    beside.inner = signs_.sizes()[0] - 2;
     // vertices on the border stay on it
     for (int j = 1; j < N; ++j) {
       const bool inside = j != edges.axis && beside.index[j] > 0 && beside.index[j] + 1 < signs_.sizes()[j];
@@ -89,23 +111,25 @@ class Gravitation final : public PositionsOnEdges<N> {
     }
   }
   [[nodiscard]] bool pulls_along_row(const Beside& beside, std::size_t at) const noexcept {
-    return beside.axis != 0 && at != 0 && at + 1 != signs_.sizes()[0];
+    return beside.axis != 0 && at - 1 < beside.inner;
   }
 
+  template <int AxisOfEdges>
   void find_pulls(const Beside& beside, std::size_t at, Pulls& pulls) const noexcept {
     const auto bit = [](const Word* bits, std::size_t i) {
       return static_cast<int>(bits[i / kWordBits] >> (i % kWordBits) & 1u);
     };
-    const std::size_t end = beside.axis == 0 ? at + 1 : at;
+    const std::size_t end = AxisOfEdges == 0 ? at + 1 : at;
     const auto [lower, upper] = beside.high;
-    // for a high lower end; otherwise negative
-    if (pulls_along_row(beside, at))
-      pulls[0] = bit(lower, at + 1) - bit(lower, at - 1) - bit(upper, at + 1) + bit(upper, at - 1);
-    for (int j = 1; j < N; ++j)
-      if (const std::ptrdiff_t step = beside.step[j]; step != 0)
-        pulls[j] = bit(lower + step, at) - bit(lower - step, at) - bit(upper + step, end) + bit(upper - step, end);
-    const int sign = 2 * bit(lower, at) - 1;
-    for (int& pull : pulls) pull *= sign;
+    const int sign = 2 * bit(lower, at) - 1;  // the sums are for a high lower end
+    if (AxisOfEdges != 0 && pulls_along_row(beside, at))
+      pulls[0] = sign * (bit(lower, at + 1) - bit(lower, at - 1) - bit(upper, at + 1) + bit(upper, at - 1));
+    for (int j = 1; j < N; ++j) {
+      if (j == AxisOfEdges) continue;
+      const std::ptrdiff_t step = beside.step[j];  // 0 on the border, where the sum is 0, too
+      pulls[j] =
+          sign * (bit(lower + step, at) - bit(lower - step, at) - bit(upper + step, end) + bit(upper - step, end));
+    }
   }
   /// The same beside missing samples, which count as samples on the side of the end.
   void find_pulls_by_sample(const Beside& beside, std::size_t at, Pulls& pulls) const noexcept {
@@ -131,7 +155,7 @@ class Gravitation final : public PositionsOnEdges<N> {
 
   const SampleSource<N>& samples_;
   SampleSigns<N> signs_;
-  std::array<std::vector<double>, N> steps_;  ///< by axis and sample: to the next one
+  std::array<std::vector<double>, N> steps_;  ///< by axis and sample: to the next one; 0 for the last
   Matrix<N> linear_;
   bool mapped_;
 };
@@ -147,8 +171,7 @@ class GravitationSource final : public PlacedSource<N>, public VertexMoves<N> {
 
   void find_moves(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
                   std::array<double, N>* out) const noexcept override {
-    typename PlacedSource<N>::Offsets offsets;
-    gravitation_.find_moves({this->rows(), k, axis, edges.rows, this->inner(edges, offsets)}, alphas, out);
+    gravitation_.find_moves({this->rows(), k, axis, edges.rows, edges}, alphas, out);
   }
 
  private:
