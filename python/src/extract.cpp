@@ -146,12 +146,12 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
 }
 
 template <class Real>
-AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& positions, bool of_cells, double level,
-                             const ExtractOptions& options) {
+AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& positions,
+                             const std::optional<CellFaces>& cells, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
-    if (of_cells) {
+    if (cells) {
       if constexpr (N <= 4)
-        return {extract_cells<Real>(view, level, positions, options), level};
+        return {extract_cells<Real>(view, level, positions, options, *cells), level};
       else
         throw_dimension("an image of cells", N, "2 to 4 dimensions");
     }
@@ -159,12 +159,13 @@ AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& posit
   });
 }
 
-/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `of_cells`: samples are
-/// cells.
+/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `cells`: samples are
+/// cells, with these faces.
 std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule,
                                                const py::array_t<float, py::array::c_style>& values, double margin,
-                                               double last_axis_weight, bool of_cells, double level, bool is_double,
-                                               const py::dict& arguments, const py::object& progress) {
+                                               double last_axis_weight, const std::optional<CellFaces>& cells,
+                                               double level, bool is_double, const py::dict& arguments,
+                                               const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
@@ -179,8 +180,8 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
   positions.last_axis_weight = last_axis_weight;
   return call.run([&] {
     auto result =
-        std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, of_cells, level, options)
-                                               : placed_contour_of<float>(image, positions, of_cells, level, options));
+        std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, cells, level, options)
+                                               : placed_contour_of<float>(image, positions, cells, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -234,14 +235,33 @@ AnyContour curved_contour_of(const AnyImage& image, std::span<const CurvedAxis> 
   });
 }
 
+std::vector<CurvedAxis> curved_axes(const CurvedAxes& given) {
+  std::vector<CurvedAxis> curved;
+  for (const auto& [axis, along, values, name, unit] : given)
+    curved.push_back({axis, along, std::vector<double>(values.data(), values.data() + values.size()), name, unit});
+  return curved;
+}
+
+/// Number of cells in which a curved grid is folded, and the index of the first, by axis of the library.
+std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage& image, const CurvedAxes& given) {
+  const std::vector<CurvedAxis> curved = curved_axes(given);
+  return visit_image(
+      image, [&]<class T, int N>(const Image<T, N>& view) -> std::pair<std::uint64_t, std::vector<std::size_t>> {
+        if constexpr (N <= 4) {
+          const GridFolds<N> folds = find_folds<N>(view.grid(), curved);
+          return {folds.cells, {folds.first.begin(), folds.first.end()}};
+        } else {
+          throw_dimension("curved grids", N, "2 to 4 dimensions");
+        }
+      });
+}
+
 std::unique_ptr<AnyContour> extract_curved_any(const AnyImage& image, const CurvedAxes& given, double level,
                                                bool is_double, const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
-  std::vector<CurvedAxis> curved;
-  for (const auto& [axis, along, values, name, unit] : given)
-    curved.push_back({axis, along, std::vector<double>(values.data(), values.data() + values.size()), name, unit});
+  const std::vector<CurvedAxis> curved = curved_axes(given);
   return call.run([&] {
     auto result = std::make_unique<AnyContour>(is_double ? curved_contour_of<double>(image, curved, level, options)
                                                          : curved_contour_of<float>(image, curved, level, options));
@@ -374,8 +394,9 @@ void bind_extract(py::module_& m) {
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
   m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("level"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::extract_curved);
+  m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), doc::find_folds);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("margin"),
-        py::arg("last_axis_weight"), py::arg("of_cells"), py::arg("level"), py::arg("double"), py::arg("options"),
+        py::arg("last_axis_weight"), py::arg("cells"), py::arg("level"), py::arg("double"), py::arg("options"),
         py::arg("progress"), doc::extract_placed);
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);

@@ -59,9 +59,10 @@ const char* choosing_argument(const std::vector<std::filesystem::path>& files) {
 
 constexpr SeriesWords kWords{"times", "time_step", "time_unit", "sort", "sort='time'", "sort='name'", "sort='given'"};
 
-ReadImageResult read_with_hint(const std::vector<std::filesystem::path>& files, const SeriesOptions& options) {
+std::variant<ReadSeriesResult, ReadSeries5dResult> read_with_hint(const std::vector<std::filesystem::path>& files,
+                                                                  const SeriesOptions& options) {
   try {
-    return read_series(files, options);
+    return read_series_to_5d(files, options);
   } catch (const Error& error) {
     if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
       throw Error(error.code(), error.what() + hint);
@@ -98,26 +99,32 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   for (const auto& [dimension, index] : fixed) request.fixed.push_back({dimension, index});
   request.allow_outside_paths = allow_outside_paths;
   const Progress tell = call.progress();
-  ReadImageResult read = call.run([&] {
+  auto any = call.run([&] {
     const FileLock lock(tell);
     SeriesOptions options = series_options(files, request, kWords);
     options.work.progress = tell;
     options.separate_process = separate_process;
     return read_with_hint(files, options);
   });
-  warn_of(read.info.remarks);
+  const ImageInfo& info = std::visit([](auto& read) -> const ImageInfo& { return read.info; }, any);
+  warn_of(info.remarks);
   py::dict result;
-  std::visit([&](auto& images) { std::visit([&](auto& image) { put_image(result, image); }, images); }, read.image);
-  put(result, "format", read.info.format);
-  put(result, "variable", read.info.variable);
-  put(result, "variables", read.info.variables);
-  put(result, "value_unit", read.info.value_unit);
-  put(result, "value_name", read.info.value_name);
-  put(result, "world_frame", read.info.world_frame);
-  result["axis_directions"] = directions_of(read.info);
-  result["samples_are_cells"] = read.info.samples_are_cells;
+  const auto put_one = [&](auto& image) { put_image(result, image); };
+  if (auto* const read = std::get_if<ReadSeries5dResult>(&any))
+    std::visit(put_one, read->image);
+  else
+    std::visit([&](auto& images) { std::visit(put_one, images); }, std::get<ReadSeriesResult>(any).image);
+  put(result, "format", info.format);
+  put(result, "variable", info.variable);
+  put(result, "variables", info.variables);
+  put(result, "value_unit", info.value_unit);
+  put(result, "value_name", info.value_name);
+  put(result, "world_frame", info.world_frame);
+  result["axis_directions"] = directions_of(info);
+  result["samples_are_cells"] = info.samples_are_cells;
+  result["cell_faces"] = py::cast(info.cell_faces);
   py::list curved;
-  for (const CurvedAxis& one : read.info.curved)
+  for (const CurvedAxis& one : info.curved)
     curved.append(py::make_tuple(one.axis, one.along,
                                  py::array_t<double>(static_cast<py::ssize_t>(one.values.size()), one.values.data()),
                                  one.name, one.unit));
@@ -170,14 +177,7 @@ void write_any(const AnyContour& contour, const std::string& path, const py::obj
   Call call(progress);
   const Progress tell = call.progress();
   call.run([&] {
-    MeshView mesh = std::visit(
-        []<int N, class Real>(const Contour<N, Real>& c) -> MeshView {
-          if constexpr (N <= 4)
-            return c;
-          else
-            throw_dimension("a file", N, "2 to 4 dimensions");
-        },
-        contour.contour);
+    MeshView mesh = std::visit([](const auto& c) { return MeshView(c); }, contour.contour);
     mesh.isovalue = contour.isovalue;
     const FileLock lock(tell);
     write_mesh(mesh, path, {.work = {.progress = tell}});
@@ -206,8 +206,7 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside
   else if (mesh.dim == 3)
     result->contour = to_contour<4>(std::move(mesh));
   else
-    throw Error(ErrorCode::UnsupportedData,
-                fmt::format("{} holds {}-simplices; expected segments, triangles or tetrahedra", path, mesh.dim));
+    result->contour = to_contour<5>(std::move(mesh));
   return result;
 }
 

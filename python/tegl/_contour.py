@@ -457,7 +457,7 @@ class Contour:
 
     @_arguments.documents("write_mesh")
     def save(self, path: str | os.PathLike, *, progress: Progress | None = None) -> None:
-        """Writes a file, in the format of its suffix: .ply, .gltf, .glb, .obj (2D, 3D), .stl (3D) or .vtkhdf (4D too).
+        """Writes a file, in the format of its suffix: .ply, .gltf, .glb, .obj (2D, 3D), .stl (3D) or .vtkhdf (2D to 5D).
 
         Files have the coordinates x, y, z and t, from arrays over (t, z, y, x).
         """

@@ -7,6 +7,7 @@ import builtins
 import dataclasses
 import os
 import typing
+import warnings
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -129,6 +130,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
+    if curved is not None:
+        _refuse_other_coordinates([prepared.library_axis(axis) for axis in curved], prepared, spacing, origin, coords, affine)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
                                           ("samples" if of_cells else "positions",
@@ -141,13 +144,15 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
                                          options, progress)
         elif positions != "linear" or of_cells:
-            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, of_cells, level, is_double,
+            faces = _cell_faces(array, prepared, (spacing, origin, coords)) if of_cells else None
+            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, faces, level, is_double,
                                         options, progress)
         elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
                                          progress)
         elif curved is not None:
             core = _tegl.extract_curved(prepared.image, of_samples, level, is_double, options, progress)
+            _warn_of_folds(prepared, of_samples)
         elif periodic is None:
             core = _tegl.extract(prepared.image, level, is_double, options, progress)
         else:
@@ -306,6 +311,9 @@ class Image:
     #: coordinates of a curved grid, by axis: see `tegl.contour`; those axes have indices as `coords`. {}: straight axes
     curved: dict[int, np.ndarray] = dataclasses.field(repr=False, default_factory=dict)
     samples_are_cells: bool = False  #: whether the file says that the samples are cells, for `samples="file"`
+    #: coordinates of the faces between cells along each axis, one more than samples, of files with cells of uneven size
+    #: (.vtr); () or an empty array: midway between `coords`
+    cell_faces: tuple[np.ndarray, ...] = dataclasses.field(repr=False, default=())
 
     def __repr__(self) -> str:
         """Three lines: values, axes, source."""
@@ -315,8 +323,11 @@ class Image:
         def along(axis: int) -> str:
             unit = f" {shown(self.axis_units[axis])}" if self.axis_units[axis] else ""
             coords = self.coords[axis]
+            if axis in self.curved:  # `coords` are indices
+                known = self.curved[axis][np.isfinite(self.curved[axis])]
+                coords = [known.min(), known.max()] if known.size else []
             ends = f"{coords[0]:g} to {coords[-1]:g}" if len(coords) > 1 else "".join(f"{one:g}" for one in coords)
-            return f"{shown(self.axis_names[axis]) or f'axis {axis}'} {ends}{unit}"
+            return f"{shown(self.axis_names[axis]) or f'axis {axis}'} {ends}{unit}{' (curved)' if axis in self.curved else ''}"
 
         name = f" {shown(self.variable or self.value_name)}" if self.variable or self.value_name else ""
         unit = f" in {shown(self.value_unit)}" if self.value_unit else ""
@@ -428,10 +439,44 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         curved[ndim - 1 - axis if is_reversed else axis] = values.T if is_reversed else values
         names[axis], units[axis] = name or names[axis], unit or units[axis]
     return Image(array=array, coords=coords, axis_names=tuple(names)[turn],
-                 axis_units=tuple(units)[turn], curved=curved, samples_are_cells=found["samples_are_cells"], affine=affine, time_axis=0 if is_reversed else ndim - 1,
+                 axis_units=tuple(units)[turn], curved=curved, samples_are_cells=found["samples_are_cells"],
+                 cell_faces=_faces_by_axis(found["cell_faces"], ndim)[turn], affine=affine,
+                 time_axis=0 if is_reversed else ndim - 1,
                  value_name=found["value_name"], value_unit=found["value_unit"], format=found["format"],
                  variable=found["variable"], variables=tuple(found["variables"]), world_frame=found["world_frame"],
                  axis_directions=tuple(found["axis_directions"] or ["unknown"] * ndim)[turn], _axes=axes)
+
+
+def _faces_by_axis(faces: list[list[float]], ndim: int) -> tuple[np.ndarray, ...]:
+    """One array for each axis; () without any."""
+    return tuple(np.array(faces[axis] if axis < len(faces) else []) for axis in range(ndim)) if any(faces) else ()
+
+
+def _cell_faces(array, prepared, other_coordinates: tuple) -> list[list[float]]:
+    """The faces of the file's cells by axis of the library; none with coordinates other than the file's."""
+    if any(given is not None for given in other_coordinates):
+        return []
+    faces = [one.tolist() for one in getattr(array, "cell_faces", ())]
+    return faces[::-1] if prepared.is_reversed else faces
+
+
+def _refuse_other_coordinates(curved: list[int], prepared, spacing, origin, coords, affine) -> None:
+    """An error for coordinates of axes of a curved grid (numbers of the library) that would not be used."""
+    for name, given in (("spacing", spacing), ("origin", origin), ("affine", affine)):
+        if given is not None:
+            raise ValueError(f"{name} with a curved grid, whose samples have coordinates of their own; expected coords, with "
+                             "None for each curved axis")
+    for axis, given in enumerate(coords or []):
+        if given is not None and (prepared.ndim - 1 - axis if prepared.is_reversed else axis) in curved:
+            raise ValueError(f"coords[{axis}] with a curved grid along this axis; expected None for it")
+
+
+def _warn_of_folds(prepared, of_samples: list) -> None:
+    cells, first = _tegl.find_folds(prepared.image, of_samples)
+    if cells:
+        at = ", ".join(map(str, first[::-1] if prepared.is_reversed else first))
+        warnings.warn(f"the curved grid is folded in {cells} {'cell' if cells == 1 else 'cells'}, the first at the sample "
+                      f"({at}): the contour may overlap itself there", stacklevel=4)
 
 
 def _path(path) -> str:

@@ -355,6 +355,17 @@ def test_curved_grids_have_the_coordinates_of_their_samples():
         tegl.contour(radius, 1.5, curved=[x, y])
     with pytest.raises(ValueError, match="periodic with curved"):
         tegl.contour(radius, 1.5, curved={0: x, 1: y}, periodic=1)
+    for other in (dict(spacing=2), dict(origin=1), dict(coords=[np.arange(60), None])):
+        with pytest.raises(ValueError, match=f"{next(iter(other))}.* with a curved grid"):
+            tegl.contour(radius, 1.5, curved={0: x, 1: y}, **other)
+    times = [0, 1, 3, 4, 7]
+    timed = tegl.contour((1.5 - radius)[..., None] + np.zeros(5), 0.0, curved={0: x[..., None], 1: y[..., None]},
+                         coords=[None, None, times], time_axis=-1)
+    assert timed.vertices[:, 2].max() == 7
+    folded = x.copy()
+    folded[30] = folded[28]
+    with pytest.warns(UserWarning, match="the curved grid is folded in .* cells, the first at the sample"):
+        tegl.contour(radius, 1.5, curved={0: folded, 1: np.where(np.arange(60)[:, None] == 30, y[28], y)})
 
 
 def test_curved_grids_of_netcdf_files(tmp_path):
@@ -374,6 +385,7 @@ def test_curved_grids_of_netcdf_files(tmp_path):
     image = tegl.read(tmp_path / "model.nc", "temp")
     assert image.axis_names == ("time", "lat", "lon") and image.axis_units[1:] == ("degrees_north", "degrees_east")
     assert sorted(image.curved) == [1, 2] and np.allclose(image.curved[2], lon[None]) and np.allclose(image.curved[1], lat[None])
+    assert "lat 10 to " in repr(image) and "degrees_north (curved)" in repr(image)
     tube = image.contour(17.0)
     assert np.abs(np.hypot(tube.vertices[:, 2] - 182, tube.vertices[:, 1] - 17) - 3).max() < 0.1
     assert tube.axis_names == ("time", "lat", "lon")
@@ -397,3 +409,13 @@ def test_samples_are_cells_if_the_file_says_so(tmp_path):
         assert image.contour(1, samples="file").check().is_closed
     with pytest.raises(ValueError, match="samples is 'file' for a ndarray"):
         tegl.contour(mask, 1, samples="file")
+    (tmp_path / "cells.vtr").write_text(
+        '<VTKFile type="RectilinearGrid" byte_order="LittleEndian"><RectilinearGrid WholeExtent="0 3 0 3 0 0">'
+        '<Piece Extent="0 3 0 3 0 0"><CellData><DataArray type="UInt8" Name="v" format="ascii">0 0 0 0 1 0 0 1 0</DataArray>'
+        '</CellData><Coordinates><DataArray type="Float64" Name="x" format="ascii">0 1 5 6</DataArray><DataArray type="Float64" '
+        'Name="y" format="ascii">0 4 5 7</DataArray><DataArray type="Float64" Name="z" format="ascii">0</DataArray>'
+        "</Coordinates></Piece></RectilinearGrid></VTKFile>")
+    for time_axis in (0, -1):
+        image = tegl.read(tmp_path / "cells.vtr", time_axis=time_axis)
+        assert list(image.cell_faces[-time_axis]) == [0, 4, 5, 7]
+        assert image.contour(1, samples="file").measure().content == pytest.approx(4 * 3, rel=1e-12)

@@ -349,6 +349,16 @@ TEST_F(Contour, OfACurvedGridHasItsCoordinates) {
               HasSubstr("curved grid"));
   EXPECT_THAT(run_tegl({"slice", model, "--iso", "1.5", "--at", "time=0.5", "-o", path("x.ply")}).err,
               HasSubstr("--index-grid"));
+  // folds are counted
+  EXPECT_EQ(run_tegl({"contour", model, "--iso", "1.5", "-o", path("x.vtkhdf"), "--json"}).json()["folded_cells"], 0);
+  EXPECT_EQ(components.json()["folded_cells"], 0);
+  const std::string straight = write("straight.nrrd", nrrd_bytes(noise({4, 4, 4}, 1), ""));
+  EXPECT_FALSE(run_tegl({"contour", straight, "--iso", "128", "-o", path("x.vtkhdf"), "--json"})
+                   .json()
+                   .contains("folded_cells"));
+  const RunResult no_grid = run_tegl({"contour", straight, "--iso", "128", "--index-grid", "-o", path("x.vtkhdf")});
+  EXPECT_EQ(no_grid.exit, 2);
+  EXPECT_THAT(no_grid.err, HasSubstr("--index-grid with"));
 }
 
 }  // namespace

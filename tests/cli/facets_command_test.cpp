@@ -100,7 +100,8 @@ TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
   expect_failure(6, {moving, "--iso", "0", "--facets", "-o", path("o.vtkhdf")}, {".vtkhdf", "polyhedra", ".vtu"});
   expect_failure(6, {solid, "--iso", "0", "--facets", "-o", path("no/o.vtu")}, {"no", "exist"});
   expect_failure(5, {solid, "--iso", "99", "--facets", "-o", path("o.vtu")}, {"99"});
-  expect_failure(2, {moving, "--iso", "0", "--triangulation", "zigzag", "-o", path("o.vtkhdf")}, {"4 dimensions", "compact"});
+  expect_failure(2, {moving, "--iso", "0", "--triangulation", "zigzag", "-o", path("o.vtkhdf")},
+                 {"4 dimensions", "compact"});
   expect_failure(2, {solid, "--iso", "0", "--triangulation", "fan", "--stream", "-o", path("o.vtkhdf")},
                  {"fan", "--stream", "compact"});
 }

@@ -62,6 +62,11 @@ TEST_F(FilterCommand, CurvatureFlowIsInUnitsOfTheAxesAndLeavesTheTime) {
   ASSERT_EQ(run_tegl({"filter", film(), "--curvature", "0.5", "--stream", "-o", path("b.nrrd"), "-q"}).exit, 0);
   EXPECT_EQ(floats<4>(read_image(path("b.nrrd"))).values,
             filter_image(floats<4>(frames).view(), CurvatureFlow{{1, 1, 1, 0}, 0.5}).values);
+  // a time in which everything vanishes
+  EXPECT_EQ(run_tegl({"filter", volume(), "--curvature", "0.5", "-o", path("c.nrrd")}).err, "");
+  const RunResult all = run_tegl({"filter", volume(), "--curvature", "500", "-o", path("c.nrrd")});
+  EXPECT_EQ(all.exit, 0);
+  EXPECT_NE(all.err.find("all closed contours vanish in this time"), std::string::npos) << all.err;
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--curvature", "-1"}, {"--curvature", "x"}, {"--curvature", "1", "--fill"}}) {
     std::vector<std::string> arguments = {"filter", volume(), "-o", path("c.nrrd")};

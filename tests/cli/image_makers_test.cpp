@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "sample_files.hpp"
+#include "tegl/check.hpp"
+#include "tegl/extract.hpp"
 #include "tegl/io.hpp"
+#include "tegl/measure.hpp"
 #include "tegl/scale_space.hpp"
 #include "tegl_program.hpp"
 
@@ -86,6 +89,9 @@ TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
   ASSERT_EQ(from_file.coordinates.size(), direct.coordinates.size());
   for (std::size_t i = 0; i < direct.coordinates.size(); ++i)  // NRRD is in the frame LPS, NIfTI in RAS
     EXPECT_NEAR(std::abs(from_file.coordinates[i]), std::abs(direct.coordinates[i]), 1e-12);
+  for (const char* const one : {"1", ""})
+    expect_refused({"contour", volume, "--iso", "128", "-o", path("c.vtkhdf"), "--scale-space", one}, "--scale-space",
+                   2);
   for (const std::vector<std::string>& options : {std::vector<std::string>{"--scale-space", "2,1"},
                                                   {"--scale-space", "0.5:2:3", "--stream"},
                                                   {"--scale-space", "0.5:2:3", "--lattice", "fcc"}}) {
@@ -93,6 +99,75 @@ TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
     arguments.insert(arguments.end(), options.begin(), options.end());
     EXPECT_EQ(run_tegl(arguments).exit, 2);
   }
+}
+
+TEST_F(ImageMakers, ScaleSpacesOfFourAxesAreSavedCutAndTracked) {
+  const std::string film = write("film.nii", nifti_bytes(noise({6, 5, 6, 4}, 1), {1, 1, 1, 1}));
+  ASSERT_EQ(run_tegl({"scale-space", film, "--sigmas", "0.5:2:3", "-o", path("a.nrrd"), "-q"}).exit, 0);
+  const std::vector<std::filesystem::path> files = {path("a.nrrd")};
+  const auto read = std::get<ReadSeries5dResult>(read_series_to_5d(files));
+  const auto& scales = std::get<OwnedImage<float, 5>>(read.image);
+  EXPECT_EQ(run_tegl({"info", path("a.nrrd"), "--json"}).json()["axes"][4]["name"], "log2_sigma");
+  ExtractOptions options;  // slices at a layer have the bits of the layer's contour with ambiguities from the data
+  options.ambiguity = Ambiguity::mean;
+  // the contour as a file, from the scale space and without it
+  const RunResult contour =
+      run_tegl({"contour", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "-o", path("a.vtkhdf"), "--json"});
+  ASSERT_EQ(contour.exit, 0) << contour.err;
+  EXPECT_EQ(contour.json()["image_dim"], 5);
+  EXPECT_EQ(contour.json()["dim"], 4);
+  EXPECT_EQ(contour.json()["bad_links"], 0);
+  const Contour<5, double> saved = to_contour<5>(read_mesh(path("a.vtkhdf")));
+  const auto direct = extract<double>(scales.view(), 128.0, options);
+  EXPECT_TRUE(saved.simplices == direct.simplices);
+  EXPECT_TRUE(saved.vertices == direct.vertices);
+  ASSERT_EQ(run_tegl({"contour", film, "--scale-space", "0.5:2:3", "--iso", "128", "--ambiguity", "mean", "-o",
+                      path("b.vtkhdf"), "-q"})
+                .exit,
+            0);
+  EXPECT_TRUE(read_mesh(path("b.vtkhdf")).simplices == read_mesh(path("a.vtkhdf")).simplices);
+  // cuts, from the file and from the image: at a layer the contour of the layer
+  const std::string layer = path("layer.vtkhdf");
+  const RunResult from_file = run_tegl({"slice", path("a.vtkhdf"), "--at", "log2_sigma=0", "-o", layer, "--json"});
+  const RunResult from_image = run_tegl({"slice", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "--at",
+                                         "log2_sigma=0", "-o", path("c.vtkhdf"), "--json"});
+  ASSERT_EQ(from_file.exit, 0) << from_file.err;
+  ASSERT_EQ(from_image.exit, 0) << from_image.err;
+  Grid<4> grid = Grid<4>::unit({6, 5, 6, 4});
+  std::copy_n(scales.grid.axes.begin(), 4, grid.axes.begin());
+  const std::size_t layer_size = scales.values.size() / 3;
+  const auto of_layer = extract<double>(Image<float, 4>(scales.values.data() + layer_size, grid), 128.0, options);
+  EXPECT_EQ(from_file.json()["simplices"], of_layer.simplices.size());
+  EXPECT_EQ(from_file.json()["euler"], check(of_layer).euler);
+  EXPECT_EQ(from_image.json()["simplices"], from_file.json()["simplices"]);
+  EXPECT_EQ(run_tegl({"slice", path("a.vtkhdf"), "--plane", "0,0,0,1,1=2", "-o", layer, "-q"}).exit, 0);
+  // measures and tracks
+  const auto size = run_tegl({"measure", path("a.vtkhdf"), "--at", "log2_sigma=0", "--json"}).json();
+  EXPECT_NEAR(size["cuts"][0]["size"], measure(of_layer).size, 1e-9);
+  const RunResult tracks =
+      run_tegl({"track", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "-o", path("t.svg"), "--json"});
+  ASSERT_EQ(tracks.exit, 0) << tracks.err;
+  EXPECT_EQ(tracks.json()["graph"]["space_dim"], 5);
+  EXPECT_EQ(run_tegl({"track", path("a.vtkhdf"), "-o", path("t.json"), "--json"}).json()["events_by_kind"],
+            tracks.json()["events_by_kind"]);
+  const std::string bytes(reinterpret_cast<const char*>(scales.values.data()), scales.values.size() * sizeof(float));
+  const RunResult raw = run_tegl({"contour", write("a.raw", bytes), "--raw", "6x5x6x4x3", "--raw-type", "float",
+                                  "--iso", "128", "--ambiguity", "mean", "-o", path("r.vtkhdf"), "--json"});
+  ASSERT_EQ(raw.exit, 0) << raw.err;
+  EXPECT_EQ(raw.json()["simplices"], contour.json()["simplices"]);
+  // what is for fewer dimensions
+  expect_refused({"contour", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "-o", path("c.ply")}, "4-simplices",
+                 6);
+  expect_refused({"contour", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "--samples-are", "cells", "-o",
+                  path("c.vtkhdf")},
+                 "with an image of 5 axes", 2);
+  expect_refused({"contour", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "--positions", "relaxed", "-o",
+                  path("c.vtkhdf")},
+                 "an image of 5 axes", 2);
+  expect_refused({"contour", path("a.nrrd"), "--iso", "128", "--scale-space", "1,2", "-o", path("c.vtkhdf")},
+                 "--scale-space with an image of 5 axes", 2);
+  expect_refused({"simplify", path("a.vtkhdf"), "--ratio", "0.5", "-o", path("c.vtkhdf")}, "5D contour", 4);
+  expect_refused({"filter", path("a.nrrd"), "--median", "1", "-o", path("c.nrrd")}, "image of 5 axes", 4);
 }
 
 TEST_F(ImageMakers, FactorsOfScalesAreByAxis) {

@@ -77,6 +77,20 @@ TEST_F(MergeCommand, RefusesOtherOptions) {
                  "--merge with --ratio");
 }
 
+TEST_F(MergeCommand, MergingEverythingIsAnEmptyResult) {
+  const std::vector<std::string> all = {"contour", balls_, "--iso", "0", "--merge-within", "100", "-o", path("a.ply")};
+  const RunResult refused = run(all);
+  EXPECT_EQ(refused.exit, 5);
+  EXPECT_THAT(refused.err, HasSubstr("leaves nothing"));
+  EXPECT_TRUE(files() == std::vector<std::string>{"balls.nii"});
+  std::vector<std::string> allowed = all;
+  allowed.emplace_back("--allow-empty");
+  const RunResult empty = run(allowed);
+  EXPECT_EQ(empty.exit, 0);
+  EXPECT_THAT(empty.err, HasSubstr("leaves nothing"));
+  EXPECT_EQ(run({"simplify", path("a.ply"), "--merge", "--allow-empty", "-o", path("b.ply")}).exit, 0);
+}
+
 TEST_F(MergeCommand, CellsHaveTheirExactVolume) {
   const ReadImageResult input = read_image(balls_);
   const auto& image = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(input.image));
@@ -116,7 +130,51 @@ TEST_F(MergeCommand, SamplesAreCellsIfTheFileSaysSo) {
     EXPECT_EQ(std::abs(run_file.json()["content"].get<double>() - 7) < 1e-9, are_cells) << centers;
     const RunResult points = run({"measure", image, "--iso", "1", "--json"});
     EXPECT_LT(points.json()["content"].get<double>(), 6.0) << "points are the default";
+    // options that cells do not have are refused for cells only
+    for (const std::vector<std::string>& option :
+         {std::vector<std::string>{"--pick", "2,2,2"}, {"--stream"}, {"--division", "kuhn"}, {"--facets"}}) {
+      std::vector<std::string> arguments = {"contour",       image,  "--iso", "1",
+                                            "--samples-are", "file", "-o",    path("b.vtkhdf")};
+      arguments.insert(arguments.end(), option.begin(), option.end());
+      const RunResult result = run(arguments);
+      EXPECT_EQ(result.exit, are_cells ? 2 : 0) << centers << " " << option[0] << result.err;
+      if (are_cells) EXPECT_THAT(result.err, HasSubstr("--samples-are file with " + option[0]));
+    }
+    // filtered cells are cells
+    for (const char* const output : {"f.nrrd", "f.vti"}) {
+      ASSERT_EQ(run({"filter", image, "--gaussian", "0.01", "-o", path(output), "-q"}).exit, 0);
+      const RunResult of_filtered = run({"measure", path(output), "--iso", "0.9", "--samples-are", "file", "--json"});
+      EXPECT_EQ(std::abs(of_filtered.json()["content"].get<double>() - 7) < 1e-9, are_cells) << centers << output;
+    }
   }
+}
+
+TEST_F(MergeCommand, CellsOfRectilinearGridsHaveTheSizesOfTheFile) {
+  // faces that are not midway between the centres of the cells
+  const std::string image =
+      write("cells.vtr",
+            "<VTKFile type=\"RectilinearGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+            "<RectilinearGrid WholeExtent=\"0 4 0 3 0 3\"><Piece Extent=\"0 4 0 3 0 3\">\n"
+            "<CellData Scalars=\"v\"><DataArray type=\"Float32\" Name=\"v\" format=\"ascii\">\n"
+            "0 0 0 0  0 0 0 0  0 0 0 0\n0 0 0 0  0 1 1 0  0 0 0 0\n0 0 0 0  0 0 0 0  0 0 0 0\n</DataArray></CellData>\n"
+            "<Coordinates><DataArray type=\"Float64\" Name=\"x\" format=\"ascii\">0 1 4 5 9</DataArray>\n"
+            "<DataArray type=\"Float64\" Name=\"y\" format=\"ascii\">0 10 11 20</DataArray>\n"
+            "<DataArray type=\"Float64\" Name=\"z\" format=\"ascii\">-4 -1 0.5 1</DataArray></Coordinates>\n"
+            "</Piece></RectilinearGrid></VTKFile>\n");
+  for (const char* const samples : {"cells", "file"}) {
+    const auto measures = run({"measure", image, "--iso", "1", "--samples-are", samples, "--json"}).json();
+    EXPECT_NEAR(measures["content"].get<double>(), 4 * 1 * 1.5, 1e-12);
+    EXPECT_THAT(measures["lowest"], ElementsAre(1, 10, -1));
+    EXPECT_THAT(measures["highest"], ElementsAre(5, 11, 0.5));
+  }
+  const ReadImageResult read = read_image(image);
+  EXPECT_THAT(read.info.cell_faces[0], ElementsAre(0, 1, 4, 5, 9));
+  const auto& cells = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(read.image));
+  CellFaces faces = read.info.cell_faces;
+  faces[1][1] = 16;
+  EXPECT_THROW((void)extract_cells(cells.view(), 1, {}, {}, faces), Error);
+  faces = {{0, 1}};
+  EXPECT_THROW((void)extract_cells(cells.view(), 1, {}, {}, faces), Error);
 }
 
 }  // namespace

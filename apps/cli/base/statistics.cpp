@@ -318,19 +318,36 @@ template ValueStatistics value_statistics(std::span<const std::int32_t>, std::sp
 template ValueStatistics value_statistics(std::span<const float>, std::span<const std::size_t>);
 template ValueStatistics value_statistics(std::span<const double>, std::span<const std::size_t>);
 
-ValueStatistics value_statistics(const AnyImage& image) {
-  const auto of_owned = [](const auto& owned) {
-    const auto sizes = owned.grid.sizes();
-    return value_statistics(std::span(owned.values), std::span<const std::size_t>(sizes));
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+namespace {
+
+/// Statistics of an image of one dimension, of any type.
+template <class AnyTyped>
+ValueStatistics statistics_of(const AnyTyped& image) {
+  return std::visit(
+      [](const auto& owned) {
+        const auto sizes = owned.grid.sizes();
+        return value_statistics(std::span(owned.values), std::span<const std::size_t>(sizes));
+      },
+      image);
 }
 
-ValueRange value_range(const AnyImage& image, double isovalue) {
+template <class AnyTyped>
+ValueRange range_of(const AnyTyped& image, double isovalue) {
   ValueRange range;
-  const auto of_owned = [&](const auto& owned) { range.read(std::span(owned.values), isovalue, isovalue); };
-  std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+  std::visit([&](const auto& owned) { range.read(std::span(owned.values), isovalue, isovalue); }, image);
   return range;
 }
+
+}  // namespace
+
+ValueStatistics value_statistics(const AnyImage& image) {
+  return std::visit([](const auto& typed) { return statistics_of(typed); }, image);
+}
+ValueStatistics value_statistics(const AnyImage5d& image) { return statistics_of(image); }
+
+ValueRange value_range(const AnyImage& image, double isovalue) {
+  return std::visit([&](const auto& typed) { return range_of(typed, isovalue); }, image);
+}
+ValueRange value_range(const AnyImage5d& image, double isovalue) { return range_of(image, isovalue); }
 
 }  // namespace tegl::cli

@@ -66,6 +66,7 @@ template <Value T>
 ValueStatistics value_statistics(std::span<const T> values, std::span<const std::size_t> sizes);
 
 ValueStatistics value_statistics(const AnyImage& image);
+ValueStatistics value_statistics(const AnyImage5d& image);
 
 /// Minimum and maximum of the samples read so far, infinities included; NaN, NaN if all are missing.
 struct ValueRange {
@@ -91,5 +92,6 @@ struct ValueRange {
 
 /// The range of an image's samples, which are read until the isovalue has some on both sides: complete if it has not.
 ValueRange value_range(const AnyImage& image, double isovalue);
+ValueRange value_range(const AnyImage5d& image, double isovalue);
 
 }  // namespace tegl::cli

@@ -57,8 +57,8 @@ class IntersectionSearch {
   [[nodiscard]] bool is_on() const { return is_on_; }
 
   void run(Mesh&& mesh, const WorkOptions& work) {
-    const AnyContour contour = to_any_contour(std::move(mesh));
-    std::visit([&](const auto& c) { find(c, work); }, contour);
+    AnyContour contour = to_any_contour(std::move(mesh));
+    visit_to_4d(contour, [&](const auto& c) { find(c, work); });
   }
 
   /// Whether the last run found a pair, or flat simplices, which are not examined.
@@ -68,8 +68,8 @@ class IntersectionSearch {
   [[nodiscard]] std::string text(const Console& console) const {
     std::string text = report_line("intersect", result_text(console));
     if (flat_ > 0)
-      text += report_line(
-          "flat", console.red(fmt::format("{} of zero size, not examined", counted_simplices(dim_, flat_))));
+      text += report_line("flat",
+                          console.red(fmt::format("{} of zero size, not examined", counted_simplices(dim_, flat_))));
     if (!tile_.empty())
       text += report_line("tiles", fmt::format("{} of {} with intersections ({:.3g} %)", grouped(tiles_hit_),
                                                grouped(tiles_), 100.0 * share()));

@@ -49,7 +49,8 @@ constexpr const char* kContourExamples =
     "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
     "  tegl contour cavity.pvd --var p --iso 0 -o p.vtkhdf               (a mesh over time)\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
-    "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
+    "A file of 2 to 5 dimensions gives segments, triangles, tetrahedra or 4-simplices. Cut the last two with 'tegl "
+    "slice'.";
 
 /// Appends the vertices and simplices of a contour, with the isovalue as an attribute of both.
 void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
@@ -82,7 +83,7 @@ class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
       : Command(
-            program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D, 3D or 4D",
+            program, "contour", "Extract the contour (isolines, isosurface) of an image in 2D to 5D",
             "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, .pvd) "
             "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd) or a table of points (.csv); several files form one "
             "image or mesh with one more axis",
@@ -196,6 +197,20 @@ class ContourCommand final : public Command {
     return results;
   }
 
+  /// Refuses --samples-are file with options that cells do not have, if the samples of FILE are cells.
+  void refuse_cells_of_file(bool samples_are_cells) const {
+    const auto refuse = [&](bool given, const char* with) {
+      if (given) options_.refuse_cells(samples_are_cells, file(), with);
+    };
+    refuse(is_streamed(), stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
+    refuse(!index_.empty(), "--index");
+    refuse(facets_, "--facets");
+    refuse(app().count("--pick") > 0, "--pick");
+    refuse(one_file_, "--one-file");
+    refuse(options_.polygon_triangulation().has_value(), "a triangulation of polygons");
+    refuse(attributes_.wanted(), "--attribute");
+  }
+
   void require_tiling_options() const {
     if (unroll_ && options_.tiling().periodic.empty())
       throw Error(ErrorCode::InvalidArgument, "--unroll without --periodic; expected both");
@@ -226,10 +241,15 @@ class ContourCommand final : public Command {
     positions_.require();
   }
 
+  [[nodiscard]] bool has_scale_space() const { return app().count("--scale-space") > 0; }
+
   /// Refuses --scale-space with options that need the image itself, or layers of a file.
   void require_scale_space() {
-    if (scale_space_.empty()) return;
+    if (!has_scale_space()) return;
     sigmas_ = parse_sigmas("--scale-space", scale_space_);
+    if (sigmas_.size() < 2)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--scale-space {} has one scale; expected at least two, as in 0.5:8:24", scale_space_));
     const auto refuse = [&](bool given, const char* with) {
       if (given)
         throw Error(ErrorCode::InvalidArgument, fmt::format("--scale-space with {}; expected one of the two", with));
@@ -241,17 +261,59 @@ class ContourCommand final : public Command {
     refuse(!options_.tiling().is_plain() && !options_.tiling().of_cells, "--periodic, --lattice or --division");
   }
 
-  /// Replaces an image by its scale space.
-  void make_scale_space(AnyImage& image, Progress progress) const {
+  /// Replaces an image in 2 to 4 dimensions by its scale space.
+  void make_scale_space(std::variant<ReadImageResult, ReadImage5dResult>& input, Progress progress) const {
     ScaleSpaceOptions options;
     options.filter.work = {options_.threads(), std::move(progress)};
-    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> AnyImage {
-      if constexpr (N <= 3)
-        return AnyImageN<N + 1>(ScaleSpaceLayers<T, N>(owned.view(), sigmas_, options).all());
+    if (std::holds_alternative<ReadImage5dResult>(input))
+      throw Error(ErrorCode::InvalidArgument, "--scale-space with an image of 5 axes; expected 2 to 4");
+    ReadImageResult from = std::move(std::get<ReadImageResult>(input));
+    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+      auto scales = ScaleSpaceLayers<T, N>(owned.view(), sigmas_, options).all();
+      if constexpr (N == 4)
+        input = ReadImage5dResult{std::move(scales), std::move(from.info)};
       else
-        throw Error(ErrorCode::UnsupportedData, "--scale-space of an image with 4 axes; expected 2 or 3");
+        input = ReadImageResult{AnyImageN<N + 1>(std::move(scales)), std::move(from.info)};
     };
-    image = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, from.image);
+  }
+
+  /// Refuses options that 5D contours do not have.
+  void require_to_5d() const {
+    options_.require_to_5d();
+    for (const char* const name : {"--index", "--pick", "--merge", "--merge-within", "--one-file"})
+      if (app().get_option_no_throw(name) != nullptr && app().count(name) > 0)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("{} with an image of 5 axes; expected none", name));
+    if (!positions_.are_linear()) positions_.refuse("an image of 5 axes");
+    if (attributes_.wanted())
+      throw Error(ErrorCode::InvalidArgument, "--attribute with an image of 5 axes; expected none");
+  }
+
+  /// Contours an image of 5 axes.
+  void contour_5d(const ReadImage5dResult& input, ExtractOptions& options, Stopwatch& watch, ProgressBar& bar,
+                  std::vector<ContourResult>& results) {
+    require_to_5d();
+    require_output_holds(results.front().output, 4);
+    for (ContourResult& result : results) {
+      result.input = inputs();
+      result.variable = input.info.variable;
+      result.image_dim = 5;
+      require_contour(input, *result.isovalue, options_.allows_empty());
+    }
+    results.front().seconds.read = watch.lap();
+    WrittenFiles written;
+    for (ContourResult& result : results) {
+      options.work.progress = bar.stage("contour");
+      result.mesh = extract_and_use<Mesh>(input.image, *result.isovalue, options, options_.single_precision(),
+                                          [&](auto extraction) {
+                                            result.stats = extraction.stats;
+                                            return to_mesh(std::move(extraction.contour));
+                                          });
+      result.seconds.add(*result.stats);
+      check_and_write(result, bar, written);
+      leave_the_sizes(result);
+    }
+    written.keep();
   }
 
   /// Refuses --merge with options of contours that are not in memory or have no simplices.
@@ -296,15 +358,21 @@ class ContourCommand final : public Command {
 
   void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     Stopwatch watch;
-    ReadImageResult input = read(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused);
-    if (!sigmas_.empty()) make_scale_space(input.image, bar.stage("scale space"));
+    auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused);
+    if (!sigmas_.empty()) make_scale_space(any, bar.stage("scale space"));
+    if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
+      return contour_5d(*in_5d, options, watch, bar, results);
+    ReadImageResult input = std::move(std::get<ReadImageResult>(any));
     tiling_ = options_.tiling();
-    remark(take_grid(input, file(), options_, tiling_));
+    std::optional<std::uint64_t> folded_cells;
+    remark(take_grid(input, file(), options_, tiling_, folded_cells));
+    refuse_cells_of_file(input.info.samples_are_cells);
     require_output_holds(results.front().output, image_dim(input.image) - 1);
     for (ContourResult& result : results) {
       result.input = inputs();
       result.variable = input.info.variable;
       result.image_dim = image_dim(input.image);
+      result.folded_cells = folded_cells;
       require_contour(input, *result.isovalue, options_.allows_empty());
     }
     placed_ = positions_.library_options(input.image, image_options(bar.stage("positions")), position_values_);
@@ -312,7 +380,11 @@ class ContourCommand final : public Command {
     WrittenFiles written;
     const auto finished = [&](ContourResult& result) {
       if (result.stats) result.seconds.add(*result.stats);
-      if (result.mesh.simplices.empty()) remark(remark_without_contour(input.image, *result.isovalue));
+      const std::size_t left = result.mesh.simplices.size();
+      if (result.merging)
+        remark(MergeArguments::require_left(*result.merging, left, true));
+      else if (left == 0)
+        remark(remark_without_contour(input.image, *result.isovalue));
       if (one_file_) return;
       if (&result == &results.back()) input.image = AnyImage();  // frees the image's memory for the check
       check_and_write(result, bar, written);
@@ -395,8 +467,8 @@ class ContourCommand final : public Command {
           triangulated_polygons(
               image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
     else if (!positions_.are_linear())
-      result.mesh = extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision,
-                                                 tiling_.of_cells, finished);
+      result.mesh =
+          extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision, tiling_, finished);
     else
       result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, tiling_);
   }
@@ -426,9 +498,11 @@ class ContourCommand final : public Command {
   /// possible.
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
+    const auto sizes = app().get_option("--raw")->as<std::string>();
+    if (std::count(sizes.begin(), sizes.end(), 'x') >= 4) return false;  // 5D contours are made in memory
     const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
                               app().count("--pick") > 0 || !positions_.are_linear() || merging_.are_given() ||
-                              !scale_space_.empty() || options_.wants_shape_normals() || attributes_.wanted() ||
+                              has_scale_space() || options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
@@ -479,7 +553,10 @@ class ContourCommand final : public Command {
   /// if it has to be.
   template <class AnyContour>
   Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar, ContourResult& result) const {
-    if (merging_.are_given()) result.merging = merging_.merge(contour, {threads, bar.stage("merge")});
+    if (merging_.are_given()) {
+      result.merging = merging_.merge(contour, {threads, bar.stage("merge")});
+      MergeArguments::require_left(*result.merging, contour.simplices.size(), options_.allows_empty());
+    }
     options_.add_shape_normals(contour);
     attributes_.sample_to(contour, image_options(), threads, bar);
     return to_mesh(unrolled_for(std::move(contour), output_, unroll_));
@@ -537,6 +614,7 @@ class ContourCommand final : public Command {
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
+    refuse_cells_of_file(input.info.samples_are_cells);
     std::vector<FacetsResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
       FacetsResult& result = results[i];
@@ -574,6 +652,7 @@ class ContourCommand final : public Command {
                               attributes_.wanted() ? "an image that fits into memory" : "normals from the gradient"));
     // open, extract and write in one pass
     OpenLayersResult input = open();
+    refuse_cells_of_file(input.info.samples_are_cells);
     for (ContourResult& result : results) {
       result.input = inputs();
       result.variable = input.info.variable;

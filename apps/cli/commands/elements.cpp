@@ -143,12 +143,19 @@ class ElementsCommand final : public ContourInputCommand {
   void make(Contour<N, double>& contour, const ContourInput& input, ElementReport& report, ProgressBar& bar) const {
     // attributes
     Stopwatch watch;
-    attributes_.sample_to(contour, image_options(), threads(), bar);
+    if constexpr (N <= 4)
+      attributes_.sample_to(contour, image_options(), threads(), bar);
+    else if (attributes_.wanted())
+      throw Error(ErrorCode::InvalidArgument, "--attribute with a 5D contour; expected one in 2 to 4 dimensions");
     report.attribute_seconds = watch.lap();
     // elements
     const WorkOptions work{threads(), bar.stage("elements")};
-    const Elements<N> all =
-        input.image ? elements_by_cell(contour, grid_of<N>(input.image->image), work) : elements(contour, work);
+    const auto found = [&] {
+      if constexpr (N <= 4)  // images of 5 axes are not kept
+        if (input.image) return elements_by_cell(contour, grid_of<N>(input.image->image), work);
+      return elements(contour, work);
+    };
+    const Elements<N> all = found();
     report.elements_seconds = watch.lap();
     // sums for the report
     const ElementSum<N> sum = sum_of(all);

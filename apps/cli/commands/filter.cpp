@@ -215,7 +215,7 @@ class FilterCommand final : public Command {
   }
 
   template <int N>
-  Filter filter_of(const Grid<N>& grid) const {
+  Filter filter_of(const Grid<N>& grid) {
     if (kind_ == "contextual") return ContextualLowPass{parse_finite("--contextual", value_)};
     if (kind_ == "kernel") return kernel(N);
     if (kind_ == "curvature") return curvature_flow(grid);
@@ -243,19 +243,38 @@ class FilterCommand final : public Command {
 
   /// The flow along all axes except the time.
   template <int N>
-  Filter curvature_flow(const Grid<N>& grid) const {
+  Filter curvature_flow(const Grid<N>& grid) {
     CurvatureFlow flow{{}, parse_finite("--curvature", value_)};
     if (flow.time < 0)
       throw Error(ErrorCode::InvalidArgument, fmt::format("--curvature is {}; expected 0 or more", value_));
     std::array<double, N> ones{};
-    for (std::size_t a = 0; a < N; ++a) ones[a] = is_time(grid.axes[a].name, a) ? 0.0 : 1.0;
-    try {
-      if (!samples_) ones = sigmas_in_samples<N>(grid, ones);
-    } catch (const Error& error) {
-      throw Error(error.code(), fmt::format("{} (--samples: all steps have the length 1)", error.what()));
+    for (std::size_t a = 0; a < N; ++a) {
+      ones[a] = is_time(grid.axes[a].name, a) ? 0.0 : 1.0;
+      if (ones[a] != 0.0 && !samples_ && !grid.axes[a].is_uniform())
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format("--curvature along the axis '{}', whose steps differ; expected even steps, or --samples: "
+                        "all steps have the length 1",
+                        axis_label(grid.axes[a].name, a)));
     }
-    for (const double per_unit : ones) flow.spacing.push_back(per_unit == 0 ? 0.0 : 1 / per_unit);
+    if (!samples_) ones = sigmas_in_samples<N>(grid, ones);
+    double square = 0;
+    int flowing = 0;
+    for (std::size_t a = 0; a < N; ++a) {
+      flow.spacing.push_back(ones[a] == 0 ? 0.0 : 1 / ones[a]);
+      const double extent = flow.spacing.back() * static_cast<double>(grid.axes[a].size() - 1);
+      square += extent * extent;
+      flowing += ones[a] == 0 ? 0 : 1;
+    }
+    remark_on_time(flow, square / 4, flowing);
     return flow;
+  }
+
+  /// A remark if a ball as large as the image vanishes in the time of the flow.
+  void remark_on_time(const CurvatureFlow& flow, double square_of_radius, int flowing) {
+    if (flowing < 2 || 2.0 * (flowing - 1) * flow.time < square_of_radius) return;
+    remark(fmt::format("--curvature {}: all closed contours vanish in this time, as a ball around the image does in {}",
+                       value_, number(square_of_radius / (2.0 * (flowing - 1)))));
   }
 
   [[nodiscard]] Filter kernel(std::size_t axes) const {

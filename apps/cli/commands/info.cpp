@@ -49,9 +49,11 @@ struct Description {
 template <int N>
 void describe_grid(const Grid<N>& grid, Description& description) {
   description.axes.assign(grid.axes.begin(), grid.axes.end());
-  const AxisPeriods<N> longitudes = longitude_periods(grid);
-  for (std::size_t a = 0; a < N; ++a)
-    if (longitudes[a] != 0.0) description.around.push_back(axis_label(grid.axes[a].name, a));
+  if constexpr (N <= 4) {
+    const AxisPeriods<N> longitudes = longitude_periods(grid);
+    for (std::size_t a = 0; a < N; ++a)
+      if (longitudes[a] != 0.0) description.around.push_back(axis_label(grid.axes[a].name, a));
+  }
   if (!grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
     description.linear.emplace_back();
@@ -363,17 +365,20 @@ class InfoCommand final : public Command {
     // an image: read and describe
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
-    const ReadImageResult image = read(bar.stage("read"), CurvedGrids::allowed);
+    const auto any = read_to_5d(bar.stage("read"), CurvedGrids::allowed);
     Description description;
-    description.info = image.info;
+    description.info = std::visit([](const auto& image) { return image.info; }, any);
     description.read_seconds = watch.lap();
     InterruptHandler::throw_if_requested();
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
       description.value_type = kValueType<T>;
       describe_grid(owned.grid, description);
     };
-    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image.image);
-    description.values = value_statistics(image.image);
+    if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
+      std::visit(of_owned, in_5d->image);
+    else
+      std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, std::get<ReadImageResult>(any).image);
+    description.values = std::visit([](const auto& image) { return value_statistics(image.image); }, any);
     description.statistics_seconds = watch.lap();
     bar.clear();
     streams.out.write(json() ? dump(to_json(description, inputs()))

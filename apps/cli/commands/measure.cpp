@@ -88,9 +88,9 @@ class MeasureCommand final : public ContourInputCommand {
   void require_axis(const std::vector<Cut>& cuts, const ContourInput& input) const {
     const int last = input.space_dim() - 1;
     if (last < 2 && (!cuts.empty() || samples_ > 0))
-      throw Error(ErrorCode::UnsupportedData, "holds a 2D contour, whose cuts are points; expected a 3D or 4D one");
+      throw Error(ErrorCode::UnsupportedData, "holds a 2D contour, whose cuts are points; expected a 3D, 4D or 5D one");
     for (const Cut& cut : cuts) {
-      if (equal_ignoring_case(cut.axis, input.axis_name(last)) || cut.axis == std::string(1, "xyzt"[last])) continue;
+      if (equal_ignoring_case(cut.axis, input.axis_name(last)) || cut.axis == std::string(1, "xyztu"[last])) continue;
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--at {}={}: measures are taken along the last axis; expected "
                               "{}={}",

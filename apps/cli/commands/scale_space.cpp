@@ -70,7 +70,7 @@ class ScaleSpaceCommand final : public Command {
   explicit ScaleSpaceCommand(CLI::App& program)
       : Command(
             program, "scale-space", "Smooth an image at many scales: an image with the scale as one more axis",
-            "the image in 2D or 3D: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM "
+            "the image in 2D to 4D: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped) or DICOM "
             "(a folder)",
             Files::image) {
     app()
@@ -141,26 +141,21 @@ class ScaleSpaceCommand final : public Command {
   template <class T, int N>
   void write_scales(const OwnedImage<T, N>& image, const std::vector<double>& sigmas, const ImageInfo& info,
                     ProgressBar& bar, ImageResult& result) {
-    if constexpr (N == 4) {
-      throw Error(ErrorCode::UnsupportedData,
-                  "4 axes and the scale are 5, which files cannot hold; expected an image in "
-                  "2D or 3D (5D only in memory: tegl::ScaleSpaceLayers)");
-    } else {
-      ScaleSpaceOptions options;
-      options.quantity = laplacian_ ? ScaleQuantity::laplacian : ScaleQuantity::values;
-      options.in_samples = samples_;
-      options.factors = factors(N);
-      options.filter.borders = {border_ == "extended" ? FilterBorder::extended
-                                : border_ == "cyclic" ? FilterBorder::cyclic
-                                                      : FilterBorder::missing};
-      options.filter.work.threads = threads_;
-      ScaleSpaceLayers<T, N> layers(image.view(), sigmas, options);
-      MeasuredLayers<FilteredValue<T>, N + 1> measured(layers, isovalue_, threads_);
-      ImageInfo of_scales = info;
-      if (!of_scales.axis_directions.empty()) of_scales.axis_directions.push_back(AxisDirection::unknown);
-      stream_image_result(measured, of_scales, bar, result);
-      report(sigmas, measured.sizes(), result);
-    }
+    ScaleSpaceOptions options;
+    options.quantity = laplacian_ ? ScaleQuantity::laplacian : ScaleQuantity::values;
+    options.in_samples = samples_;
+    options.factors = factors(N);
+    options.filter.borders = {border_ == "extended" ? FilterBorder::extended
+                              : border_ == "cyclic" ? FilterBorder::cyclic
+                                                    : FilterBorder::missing};
+    options.filter.work.threads = threads_;
+    ScaleSpaceLayers<T, N> layers(image.view(), sigmas, options);
+    MeasuredLayers<FilteredValue<T>, N + 1> measured(layers, isovalue_, threads_);
+    ImageInfo of_scales = info;
+    of_scales.samples_are_cells = false;  // a scale has no extent
+    if (!of_scales.axis_directions.empty()) of_scales.axis_directions.push_back(AxisDirection::unknown);
+    stream_image_result(measured, of_scales, bar, result);
+    report(sigmas, measured.sizes(), result);
   }
 
   /// The numbers of --factors; empty without the option.

@@ -101,19 +101,18 @@ class SimplifyCommand final : public ContourInputCommand {
     ContourResult result = input.to_result();
     result.output = output_;
     result.compression = compress_.compression();
-    std::visit(
-        [&](auto& contour) {
-          if (merging_.are_given()) {
-            result.merging = merging_.merge(contour, {threads(), bar.stage("merge")});
-            result.mesh = to_mesh(std::move(contour));
-            return;
-          }
-          auto [fewer, found] = simplified(contour, input, bar);
-          stats = found;
-          if (!no_check_) count_intersections(fewer, bar);
-          result.mesh = to_mesh(std::move(fewer));
-        },
-        input.contour);
+    visit_to_4d(input.contour, [&](auto& contour) {
+      if (merging_.are_given()) {
+        result.merging = merging_.merge(contour, {threads(), bar.stage("merge")});
+        remark(MergeArguments::require_left(*result.merging, contour.simplices.size(), allows_empty()));
+        result.mesh = to_mesh(std::move(contour));
+        return;
+      }
+      auto [fewer, found] = simplified(contour, input, bar);
+      stats = found;
+      if (!no_check_) count_intersections(fewer, bar);
+      result.mesh = to_mesh(std::move(fewer));
+    });
     input.contour = AnyContour();
     // check and write
     if (!no_check_) check_result(result, threads(), bar);

@@ -46,8 +46,8 @@ constexpr const char* kSliceExamples =
     "directly, all cuts of one direction in one pass.";
 
 void require_cuttable(int dim, std::string_view what) {
-  if (dim == 3 || dim == 4) return;
-  throw Error(ErrorCode::UnsupportedData, fmt::format("holds a {}D {}; expected a 4D one (or a 3D one)", dim, what));
+  if (dim >= 3 && dim <= 5) return;
+  throw Error(ErrorCode::UnsupportedData, fmt::format("holds a {}D {}; expected a 3D, 4D or 5D one", dim, what));
 }
 
 /// The hyperplane of a cut, after axis a is scaled by factors[a].
@@ -130,10 +130,20 @@ Extraction<N - 1, Real> slice_slab(const Image<T, N>& image, double isovalue, co
   return slice_image_with_stats<Real>(image, isovalue, Hyperplane<N>::across(*cut.across, cut.value), options);
 }
 
+/// Calls f with the image of any type.
+template <class F>
+decltype(auto) visit_owned(const AnyImage& image, const F& f) {
+  return std::visit([&](const auto& typed) { return std::visit(f, typed); }, image);
+}
+template <class F>
+decltype(auto) visit_owned(const AnyImage5d& image, const F& f) {
+  return std::visit(f, image);
+}
+
 /// Whether a cut across an axis needs only the layers beside it.
-bool is_separate(const AnyImage& image, int axis) {
-  const auto of_owned = [axis](const auto& owned) { return owned.grid.is_separate(axis); };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+template <class AnyDimension>
+bool is_separate(const AnyDimension& image, int axis) {
+  return visit_owned(image, [axis](const auto& owned) { return owned.grid.is_separate(axis); });
 }
 
 /// The mesh of a cut, after its axes are scaled, with the normals of --normals.
@@ -192,7 +202,8 @@ class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
       : Command(program, "slice", "Cut a 4D contour at a time, or by any other hyperplane",
-                "a 4D or 3D image or mesh, or a 4D or 3D contour saved by 'tegl contour' (.vtkhdf ...)", Files::image) {
+                "an image in 3D to 5D, a 4D or 3D mesh, or a contour in 3D to 5D saved by 'tegl contour' (.vtkhdf ...)",
+                Files::image) {
     app()
         .add_option("--at", at_,
                     "axis and coordinate of the cut, in the unit of the axis: t=7.3, x=2; t=1,2.5 for several; "
@@ -246,6 +257,8 @@ class SliceCommand final : public Command {
     std::vector<ContourResult> results = find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar)
                                          : are_cell_meshes(files(), images())     ? cut_cell_mesh(std::move(cuts), bar)
                                                                                   : cut_image(std::move(cuts), bar);
+    if (attributes_.wanted() && results[0].image_dim == 5)
+      throw Error(ErrorCode::InvalidArgument, "--attribute with a cut of a 5D contour; expected a 3D or 4D contour");
     if (attributes_.wanted() && results[0].image_dim == 4)
       add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), results, bar);
     else if (attributes_.wanted())
@@ -392,9 +405,15 @@ class SliceCommand final : public Command {
   }
 
   std::vector<ContourResult> cut_whole_image(std::vector<Cut> cuts, ProgressBar& bar) {
-    const double isovalue = options_.isovalue();
     Stopwatch watch;
-    const ReadImageResult input = read(bar.stage("read"));
+    const auto any = read_to_5d(bar.stage("read"));
+    return std::visit([&](const auto& input) { return cut_read_image(input, std::move(cuts), bar, watch); }, any);
+  }
+
+  template <class Input>
+  std::vector<ContourResult> cut_read_image(const Input& input, std::vector<Cut> cuts, ProgressBar& bar,
+                                            Stopwatch& watch) {
+    const double isovalue = options_.isovalue();
     require_cuts(image_dim(input.image), "image");
     const CutSpace space = space_of(input.image);
     factors_ = parse_scale(scale_, space);
@@ -414,7 +433,7 @@ class SliceCommand final : public Command {
         const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
           if constexpr (N >= 3) cut_slab(owned.view(), result, bar);  // others are refused by require_cuts
         };
-        std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, input.image);
+        visit_owned(input.image, of_owned);
         continue;
       }
       of_whole.push_back(result);
@@ -448,7 +467,8 @@ class SliceCommand final : public Command {
   }
 
   /// Cuts the contour of the whole image.
-  void cut_whole(const AnyImage& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
+  template <class AnyDimension>
+  void cut_whole(const AnyDimension& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.work.progress = bar.stage("contour");
     cut_extraction(
@@ -466,7 +486,7 @@ class SliceCommand final : public Command {
     ExtractStats stats;
     extract([&]<int N, class Real>(Extraction<N, Real>&& extraction) {
       stats = extraction.stats;
-      if constexpr (N == 3 || N == 4) cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
+      if constexpr (N >= 3) cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
       return Nothing();
     });
     for (ContourResult& result : results) {
@@ -534,7 +554,9 @@ class SliceCommand final : public Command {
       result.seconds.read = read_seconds;
       result.isovalue = mesh.isovalue;
     }
-    if (mesh.space_dim == 4)
+    if (mesh.space_dim == 5)
+      cut_contour_of(to_contour<5>(std::move(mesh)), factors_, options_, results, bar);
+    else if (mesh.space_dim == 4)
       cut_contour_of(to_contour<4>(std::move(mesh)), factors_, options_, results, bar);
     else
       cut_contour_of(to_contour<3>(std::move(mesh)), factors_, options_, results, bar);

@@ -302,7 +302,7 @@ class TrackCommand final : public ContourInputCommand {
     const std::optional<std::string> unit = measure_unit(units, last - 1);
     bool any_measure = false;
     const std::vector<std::size_t> order = falling(graph, lifetime);
-    constexpr std::array kMeasures{"points", "length", "area"};
+    constexpr std::array kMeasures{"points", "length", "area", "volume"};
     std::string text;
     for (std::size_t i = 0; i < std::min(kMost, order.size()); ++i) {
       const Track& track = graph.tracks[order[i]];

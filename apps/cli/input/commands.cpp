@@ -66,6 +66,18 @@ ReadImageResult Command::read(const Progress& progress, CurvedGrids curved) {
   return {std::move(result.image), std::move(result.info)};
 }
 
+std::variant<ReadImageResult, ReadImage5dResult> Command::read_to_5d(const Progress& progress, CurvedGrids curved) {
+  auto any = images_.read_to_5d(worked_on_, progress);
+  std::visit([&](const auto& read) { take_order(read.files); }, any);
+  if (auto* const read = std::get_if<ReadSeries5dResult>(&any)) {
+    settle_curved(read->info, curved);
+    return ReadImage5dResult{std::move(read->image), std::move(read->info)};
+  }
+  auto& read = std::get<ReadSeriesResult>(any);
+  settle_curved(read.info, curved);
+  return ReadImageResult{std::move(read.image), std::move(read.info)};
+}
+
 OpenLayersResult Command::open() {
   OpenSeriesResult result = images_.open(worked_on_);
   take_order(result.files);
@@ -74,6 +86,10 @@ OpenLayersResult Command::open() {
 }
 
 void Command::settle_curved(ImageInfo& info, CurvedGrids curved) const {
+  if (images_.index_grid() && info.format != "netCDF")
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--index-grid with {}, which is {}; expected it with a curved grid of a netCDF file",
+                            worked_on_.front(), info.format));
   if (images_.index_grid()) info.curved.clear();
   if (info.curved.empty() || curved == CurvedGrids::allowed) return;
   std::vector<std::string> names;

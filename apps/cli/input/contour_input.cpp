@@ -57,14 +57,17 @@ CutAxis cut_axis_of(const CurvedAxis& one) {
 
 }  // namespace
 
-std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
-                      Tiling& tiling) {
+std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options, Tiling& tiling,
+                      std::optional<std::uint64_t>& folded_cells) {
+  options.refuse_cells_with_tiling(input.info.samples_are_cells, file);
   if (options.samples_are_as_in_file()) tiling.of_cells = input.info.samples_are_cells;
+  if (tiling.of_cells) tiling.cell_faces = input.info.cell_faces;
   if (input.info.curved.empty()) return "";
   options.refuse_tiling("the curved grid of " + file);
   tiling.curved = std::move(input.info.curved);
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
     const GridFolds<N> folds = find_folds<N>(owned.grid, tiling.curved);
+    folded_cells = folds.cells;
     if (folds.cells == 0) return "";
     return fmt::format(
         "the curved grid is folded in {}, the first at the sample ({}): the contour may overlap itself there",
@@ -100,7 +103,13 @@ AnyContour to_any_contour(Mesh&& mesh) {
   const int dim = mesh.dim == 1 ? 2 : mesh.space_dim;
   if (dim == 2) return to_contour<2>(std::move(mesh));
   if (dim == 3) return to_contour<3>(std::move(mesh));
-  return to_contour<4>(std::move(mesh));
+  if (dim == 4) return to_contour<4>(std::move(mesh));
+  return to_contour<5>(std::move(mesh));
+}
+
+void throw_5d() {
+  throw Error(ErrorCode::UnsupportedData,
+              "holds a 5D contour; expected one in 2 to 4 dimensions: cut it first ('tegl slice')");
 }
 
 MeshSize ContourInput::size() const {
@@ -127,6 +136,7 @@ ContourResult ContourInput::to_result() const {
   result.image_dim = space_dim();
   result.isovalue = isovalue;
   result.stats = stats;
+  result.folded_cells = folded_cells;
   result.seconds = seconds;
   return result;
 }
@@ -136,6 +146,7 @@ void add_input_keys(Json& json, const ContourInput& input) {
   json["variable"] = input.variable.empty() ? Json(nullptr) : Json(input.variable);
   json["image_dim"] = input.space_dim();
   json["isovalue"] = input.isovalue ? Json(*input.isovalue) : Json(nullptr);
+  if (input.folded_cells) json["folded_cells"] = *input.folded_cells;
 }
 
 std::string input_text(const ContourInput& input) {
@@ -160,17 +171,24 @@ void refuse_image_options(const std::vector<std::string>& files, std::vector<std
                                                       file, fmt::join(refused, ", "), expected));
 }
 
-std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const AnyImage& image) {
-  using Ends = std::pair<std::optional<double>, std::optional<double>>;
-  const auto of_grid = []<int N>(const Grid<N>& grid) -> Ends {
-    constexpr int kLast = N - 1;
-    for (int a = 0; a < kLast; ++a)
-      if (grid.linear[kLast][a] != 0) return {};
-    const Axis& axis = grid.axes[kLast];
-    const auto world = [&](double at) { return grid.linear[kLast][kLast] * at + grid.offset[kLast]; };
-    return std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
-  };
-  const auto of_owned = [&](const auto& owned) { return of_grid(owned.grid); };
+namespace {
+
+using Ends = std::pair<std::optional<double>, std::optional<double>>;
+
+template <int N>
+Ends ends_of_grid(const Grid<N>& grid) {
+  constexpr int kLast = N - 1;
+  for (int a = 0; a < kLast; ++a)
+    if (grid.linear[kLast][a] != 0) return {};
+  const Axis& axis = grid.axes[kLast];
+  const auto world = [&](double at) { return grid.linear[kLast][kLast] * at + grid.offset[kLast]; };
+  return std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
+}
+
+}  // namespace
+
+Ends ends_of_last_axis(const AnyImage& image) {
+  const auto of_owned = [&](const auto& owned) { return ends_of_grid(owned.grid); };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
@@ -213,6 +231,24 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
   return result;
 }
 
+void ContourInputCommand::contour_5d(const ReadImage5dResult& input, ExtractOptions options, ProgressBar& bar,
+                                     Stopwatch& watch, ContourInput& result) const {
+  options_.require_to_5d();
+  result.variable = input.info.variable;
+  require_contour(input, *result.isovalue, allows_empty());
+  result.last_axis = space_of(input.image).axes.back();
+  result.ends = std::visit([](const auto& owned) { return ends_of_grid(owned.grid); }, input.image);
+  result.single_precision = options_.single_precision();
+  result.seconds.read = watch.lap();
+  options.work.progress = bar.stage("contour");
+  result.contour = extract_and_use<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
+                                               [&](auto extraction) {
+                                                 result.stats = extraction.stats;
+                                                 return AnyContour(widened(std::move(extraction.contour)));
+                                               });
+  result.seconds.add(*result.stats);
+}
+
 ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) {
   require_inputs();
   ContourInput result;
@@ -234,9 +270,14 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();
   Tiling tiling = options_.tiling();
-  ReadImageResult input = read(bar.stage("read"), keep_image ? CurvedGrids::refused : CurvedGrids::allowed);
-  remark(take_grid(input, file(), options_, tiling));
+  auto any = keep_image ? read(bar.stage("read")) : read_to_5d(bar.stage("read"), CurvedGrids::allowed);
   result.file = inputs();
+  if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any)) {
+    contour_5d(*in_5d, options, bar, watch, result);
+    return result;
+  }
+  ReadImageResult input = std::move(std::get<ReadImageResult>(any));
+  remark(take_grid(input, file(), options_, tiling, result.folded_cells));
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue, allows_empty());
   result.last_axis = space_of(input.image).axes.back();

@@ -17,22 +17,39 @@
 
 namespace tegl::cli {
 
-/// A contour in 2, 3 or 4 dimensions.
-using AnyContour = std::variant<Contour<2, double>, Contour<3, double>, Contour<4, double>>;
+/// A contour in 2 to 5 dimensions.
+using AnyContour = std::variant<Contour<2, double>, Contour<3, double>, Contour<4, double>, Contour<5, double>>;
 
 /// Converts a mesh to a contour. Throws UnsupportedData unless its simplices are segments in the plane, triangles in
-/// space or tetrahedra in 4-space.
+/// space, tetrahedra in 4-space or 4-simplices in 5-space.
 AnyContour to_any_contour(Mesh&& mesh);
+
+/// Throws UnsupportedData: the operation exists in 2 to 4 dimensions only.
+[[noreturn]] void throw_5d();
+
+/// Calls f with a contour in 2, 3 or 4 dimensions. Throws UnsupportedData for one in 5.
+template <class Any, class F>
+decltype(auto) visit_to_4d(Any& contour, const F& f) {
+  using Result = decltype(f(std::get<0>(contour)));
+  return std::visit(
+      [&]<int N>(Contour<N, double>& one) -> Result {
+        if constexpr (N <= 4)
+          return f(one);
+        else
+          throw_5d();
+      },
+      contour);
+}
 
 /// Reads a mesh with finite coordinates. Throws MalformedFile if a coordinate is infinite or NaN, and errors of
 /// `read_mesh`.
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 
 /// Takes what the file says of its cells to the tiling: whether samples are cells, if the options ask for it, and the
-/// coordinates of a curved grid. Returns a remark on folds of the grid, or an empty text. Throws InvalidArgument for
-/// options that choose other tilings.
-std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
-                      Tiling& tiling);
+/// coordinates of a curved grid. Sets the number of folded cells of a curved grid, and returns a remark on them, or an
+/// empty text. Throws InvalidArgument for options that choose other tilings.
+std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options, Tiling& tiling,
+                      std::optional<std::uint64_t>& folded_cells);
 
 /// Reads a saved contour with finite coordinates. Throws EmptyResult if it has no simplices, unless `allow_empty`.
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty);
@@ -41,19 +58,20 @@ Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options,
 struct ContourInput {
   AnyContour contour;
   InputFiles file;
-  std::string variable;                  ///< netCDF: the variable read
-  std::optional<double> isovalue;        ///< none if a saved contour does not have it
-  std::optional<ExtractStats> stats;     ///< none for a saved contour
-  std::optional<ReadImageResult> image;  ///< if requested, and FILE is an image
-  std::optional<CutAxis> last_axis;      ///< extent in an image or a mesh of cells; none for a saved contour
-  const char* last_axis_of = "image";    ///< the object that this extent belongs to
+  std::string variable;                       ///< netCDF: the variable read
+  std::optional<double> isovalue;             ///< none if a saved contour does not have it
+  std::optional<ExtractStats> stats;          ///< none for a saved contour
+  std::optional<std::uint64_t> folded_cells;  ///< of a curved grid
+  std::optional<ReadImageResult> image;       ///< if requested, and FILE is an image
+  std::optional<CutAxis> last_axis;           ///< extent in an image or a mesh of cells; none for a saved contour
+  const char* last_axis_of = "image";         ///< the object that this extent belongs to
   /// World coordinates of the first and the last sample on the last axis, or the first and the last time of a mesh;
   /// none for a saved contour, and if an image's world map mixes the axis with others.
   std::pair<std::optional<double>, std::optional<double>> ends;
   bool single_precision = false;  ///< all coordinates have single precision, from --precision float
   StageSeconds seconds;           ///< time of reading and contouring
 
-  /// 2, 3 or 4: the dimension of the space that the contour lies in.
+  /// 2 to 5: the dimension of the space that the contour lies in.
   [[nodiscard]] int space_dim() const { return static_cast<int>(contour.index()) + 2; }
   [[nodiscard]] MeshSize size() const;
   /// The name of a contour's axis, or its customary letter; and its unit, which may be empty.
@@ -103,12 +121,16 @@ class ContourInputCommand : public Command {
   /// Whether a value outside of the data gives an empty result and not an error (--allow-empty).
   [[nodiscard]] bool allows_empty() const { return options_.allows_empty(); }
 
-  /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`. Throws InvalidArgument if --iso is
+  /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`; images of 5 axes are not kept but
+  /// errors. Throws InvalidArgument if --iso is
   /// missing for an image, or if options of images are given with a saved contour; EmptyResult if the isovalue is
   /// outside of the data or the saved contour is empty, unless --allow-empty is given; and errors of the readers.
   [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false);
 
  private:
+  /// Contours an image of 5 axes.
+  void contour_5d(const ReadImage5dResult& input, ExtractOptions options, ProgressBar& bar, Stopwatch& watch,
+                  ContourInput& result) const;
   /// Reads FILE as a mesh of cells, and contours it.
   [[nodiscard]] ContourInput read_mesh_contour(ProgressBar& bar);
 

@@ -210,10 +210,15 @@ CutSpace space_of(const Grid<N>& grid) {
 template CutSpace space_of(const Grid<2>&);
 template CutSpace space_of(const Grid<3>&);
 template CutSpace space_of(const Grid<4>&);
+template CutSpace space_of(const Grid<5>&);
 
 CutSpace space_of(const AnyImage& image) {
   const auto of_owned = [](const auto& owned) { return space_of(owned.grid); };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+CutSpace space_of(const AnyImage5d& image) {
+  return std::visit([](const auto& owned) { return space_of(owned.grid); }, image);
 }
 
 CutSpace space_of(const Mesh& mesh) {

@@ -51,6 +51,7 @@ struct CutSpace {
   std::span<const double> vertices = {};
 };
 CutSpace space_of(const AnyImage& image);
+CutSpace space_of(const AnyImage5d& image);
 /// The space of an image on this grid.
 template <int N>
 CutSpace space_of(const Grid<N>& grid);

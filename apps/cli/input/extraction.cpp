@@ -96,7 +96,7 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
 }
 
 Tiling ExtractionOptions::tiling() const {
-  if (samples_ != "points") refuse_tiling_before_cells("--samples-are " + samples_);
+  if (samples_ == "cells") refuse_tiling_before_cells("--samples-are " + samples_);
   if (!division_.empty()) refuse_tiling_before_division("--division " + division_);
   if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
   Tiling tiling{periodic_, std::nullopt, std::nullopt, {}, samples_ == "cells"};
@@ -115,9 +115,23 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
 
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
   refuse_tiling_before_cells(with);
-  if (samples_ != "points")
+  if (samples_ == "cells")
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--samples-are {} with {}; expected one of the two", samples_, with));
+}
+
+void ExtractionOptions::refuse_cells(bool samples_are_cells, const std::string& file, const std::string& with) const {
+  if (samples_are_as_in_file() && samples_are_cells)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("--samples-are file with {}, and the samples of {} are cells; expected --samples-are points", with,
+                    file));
+}
+
+void ExtractionOptions::refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const {
+  if (!division_.empty()) refuse_cells(samples_are_cells, file, "--division " + division_);
+  if (!lattice_.empty()) refuse_cells(samples_are_cells, file, "--lattice " + lattice_);
+  if (!periodic_.empty()) refuse_cells(samples_are_cells, file, "--periodic");
 }
 
 void ExtractionOptions::refuse_tiling_before_cells(const std::string& with) const {
@@ -199,6 +213,17 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   return options;
 }
 
+void ExtractionOptions::require_to_5d() const {
+  constexpr const char* kWhat = "an image of 5 axes";
+  refuse_tiling(kWhat);
+  if (wants_shape_normals())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--normals {} with {}; expected --normals gradient, or none", normals_, kWhat));
+  if (polygon_triangulation())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--triangulation {} with {}; expected compact or barycentric", triangulation_, kWhat));
+}
+
 template <int N, class Real>
 void ExtractionOptions::add_shape_normals(Contour<N, Real>& contour) const {
   if (normals_ == "geometric") contour.normals = geometric_normals(contour, NormalWeights::angle, {threads_});
@@ -271,23 +296,33 @@ EmptyResult outside_error(double isovalue, const ValueRange& range, const std::s
                   texts[0], texts[1], texts[2], unit.empty() ? "" : " " + unit, kAllow));
 }
 
-void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
-  const auto require_samples = [](std::span<const Axis> axes) {
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-      if (axes[a].size() > 1) continue;
-      throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
-                                    axis_label(axes[a].name, a)));
-    }
-  };
-  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
-  std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
-  if (allow_empty) return;
+namespace {
+
+void require_samples(std::span<const Axis> axes) {
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (axes[a].size() > 1) continue;
+    throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
+                                  axis_label(axes[a].name, a)));
+  }
+}
+
+template <class Input>
+void require_both_sides(const Input& input, double isovalue) {
   const ValueRange range = value_range(input.image, isovalue);
   if (!range.has_both_sides(isovalue)) throw outside_error(isovalue, range, input.info.value_unit);
 }
 
-std::string remark_without_contour(const AnyImage& image, double isovalue) {
-  return value_range(image, isovalue).has_both_sides(isovalue) ? remark_on_missing(isovalue) : std::string();
+}  // namespace
+
+void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
+  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
+  std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
+  if (!allow_empty) require_both_sides(input, isovalue);
+}
+
+void require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty) {
+  std::visit([](const auto& owned) { require_samples(owned.grid.axes); }, input.image);
+  if (!allow_empty) require_both_sides(input, isovalue);
 }
 
 std::string remark_on_missing(double isovalue) {

@@ -34,6 +34,7 @@ struct Tiling {
   std::optional<Division> division = {};   ///< of --division
   std::vector<CurvedAxis> curved = {};     ///< of the image's curved grid
   bool of_cells = false;                   ///< of --samples-are
+  CellFaces cell_faces = {};               ///< of the file
   [[nodiscard]] bool is_plain() const {
     return periodic.empty() && !lattice && !division && curved.empty() && !of_cells;
   }
@@ -51,8 +52,15 @@ class ExtractionOptions {
   void add_tiling_to(CLI::App& app);
   /// The values of these options. Throws InvalidArgument if two are given.
   [[nodiscard]] Tiling tiling() const;
-  /// Throws InvalidArgument with one of them. `with`: another option or a command.
+  /// Throws InvalidArgument with one of them. `with`: another option or a command. With --samples-are file it depends
+  /// on the file: see refuse_cells.
   void refuse_tiling(const std::string& with) const;
+  /// Throws InvalidArgument if --samples-are file is given and the samples of FILE are cells. `with`: as refuse_tiling.
+  void refuse_cells(bool samples_are_cells, const std::string& file, const std::string& with) const;
+  /// As refuse_cells, for the options of other tilings.
+  void refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const;
+  /// Throws InvalidArgument with options that 5D contours do not have.
+  void require_to_5d() const;
   /// Whether the file decides if its samples are cells.
   [[nodiscard]] bool samples_are_as_in_file() const { return samples_ == "file"; }
 
@@ -109,6 +117,7 @@ class ExtractionOptions {
 
 /// The dimension of the image.
 int image_dim(const AnyImage& image);
+inline int image_dim(const AnyImage5d&) { return 5; }
 
 /// The error of an isovalue without samples on both sides, for the range of all samples. `unit`: of the values; may be
 /// empty.
@@ -117,12 +126,17 @@ EmptyResult outside_error(double isovalue, const ValueRange& range, const std::s
 /// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every
 /// axis, and samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`.
 void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
+void require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty);
+
+/// The remark that missing samples prevent a contour.
+std::string remark_on_missing(double isovalue);
 
 /// The remark about an empty contour: empty if the isovalue is outside of the values, which was allowed; else that
 /// missing samples prevent a contour.
-std::string remark_without_contour(const AnyImage& image, double isovalue);
-/// The remark that missing samples prevent a contour.
-std::string remark_on_missing(double isovalue);
+template <class Image>
+std::string remark_without_contour(const Image& image, double isovalue) {
+  return value_range(image, isovalue).has_both_sides(isovalue) ? remark_on_missing(isovalue) : std::string();
+}
 
 /// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD. Throws InvalidArgument for other names.
 template <int N>
@@ -139,6 +153,8 @@ Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& outpu
     Attribute& attribute = result.contour.vertex_attributes.emplace_back(Attribute{"original", "", 1, {}});
     attribute.values.assign(result.originals.begin(), result.originals.end());
     return std::move(result.contour);
+  } else {
+    return contour;  // 5D contours have no periods
   }
 }
 
@@ -154,8 +170,9 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
       return use(extract_curved_with_stats<double>(owned.view(), tiling.curved, isovalue, options));
     }
     if (tiling.of_cells) {
-      if (single_precision) return use(extract_cells_with_stats<float>(owned.view(), isovalue, {}, options));
-      return use(extract_cells_with_stats<double>(owned.view(), isovalue, {}, options));
+      if (single_precision)
+        return use(extract_cells_with_stats<float>(owned.view(), isovalue, {}, options, tiling.cell_faces));
+      return use(extract_cells_with_stats<double>(owned.view(), isovalue, {}, options, tiling.cell_faces));
     }
     if (tiling.lattice) {
       if (single_precision)
@@ -176,6 +193,18 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
     return use(extract_with_stats<double>(owned.view(), isovalue, options));
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+/// The same for an image in 5 dimensions.
+template <class Result, class Use>
+Result extract_and_use(const AnyImage5d& image, double isovalue, const ExtractOptions& options, bool single_precision,
+                       const Use& use) {
+  return std::visit(
+      [&](const auto& owned) -> Result {
+        if (single_precision) return use(extract_with_stats<float>(owned.view(), isovalue, options));
+        return use(extract_with_stats<double>(owned.view(), isovalue, options));
+      },
+      image);
 }
 
 /// Checks the mesh; sets the report and the seconds of the check.

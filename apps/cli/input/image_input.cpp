@@ -242,19 +242,33 @@ RawLayout ImageOptions::raw_layout() const {
   return layout;
 }
 
-ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
+template <class Function>
+auto ImageOptions::read_by(const Function& function, const std::vector<std::string>& files,
+                           const Progress& progress) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
   options.work.progress = progress;
   options.separate_process = separate_process();
-  return remembered(with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); }));
+  return with_hint(variable(), files, options, [&] { return function(paths_of(files), options); });
+}
+
+ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
+  ReadSeriesResult result = read_by(&read_series, files, progress);
+  remember(result.info);
+  return result;
+}
+
+std::variant<ReadSeriesResult, ReadSeries5dResult> ImageOptions::read_to_5d(const std::vector<std::string>& files,
+                                                                            const Progress& progress) const {
+  auto result = read_by(&read_series_to_5d, files, progress);
+  std::visit([&](const auto& read) { remember(read.info); }, result);
+  return result;
 }
 
 OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const {
-  for (const std::string& file : files) require_input(file, Folders::allowed);
-  SeriesOptions options = series_options(files);
-  options.separate_process = separate_process();
-  return remembered(with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); }));
+  OpenSeriesResult result = read_by(&open_series, files, {});
+  remember(result.info);
+  return result;
 }
 
 CellMeshOptions ImageOptions::cell_mesh_options(const Progress& progress) const {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "output/result.hpp"
@@ -34,6 +35,9 @@ class ImageOptions {
   /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that conflict with each
   /// other or the files, and for files in the order of a shell.
   [[nodiscard]] ReadSeriesResult read(const std::vector<std::string>& files, const Progress& progress) const;
+  /// The same for images of up to 5 axes.
+  [[nodiscard]] std::variant<ReadSeriesResult, ReadSeries5dResult> read_to_5d(const std::vector<std::string>& files,
+                                                                              const Progress& progress) const;
 
   /// Opens the files as one image to be read layer by layer.
   [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
@@ -65,12 +69,13 @@ class ImageOptions {
   void add_raw_to(CLI::App& app);
   /// Parses the layout options. Throws InvalidArgument.
   [[nodiscard]] RawLayout raw_layout() const;
+  /// Reads the files by `function`, and adds hints to its errors.
+  template <class Function>
+  auto read_by(const Function& function, const std::vector<std::string>& files, const Progress& progress) const;
   /// Stores the remarks of a result.
-  template <class Result>
-  Result remembered(Result result) const {
-    for (const std::string& remark : result.info.remarks)  // a file may be opened before it is read as a whole
+  void remember(const ImageInfo& info) const {
+    for (const std::string& remark : info.remarks)  // a file may be opened before it is read as a whole
       if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) remarks_.push_back(remark);
-    return result;
   }
 
   std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_, spacing_, origin_,

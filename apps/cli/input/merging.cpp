@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
+#include "output/result.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::cli {
@@ -22,6 +24,15 @@ void MergeArguments::refuse(const std::string& with) const {
   if (are_given())
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} with {}; expected one of the two",
                                                         within_.empty() ? "--merge" : "--merge-within", with));
+}
+
+std::string MergeArguments::require_left(const MergeSummary& summary, std::size_t simplices, bool allow_empty) {
+  if (simplices > 0 || summary.counts.before.simplices == 0) return {};
+  const std::string what =
+      fmt::format("vertices within {} are merged, which leaves nothing of {}", number(summary.tolerance),
+                  counted_simplices(summary.simplex_dim, summary.counts.before.simplices));
+  if (allow_empty) return what;
+  throw EmptyResult(what + "; expected a smaller distance (--allow-empty: an empty result)");
 }
 
 double MergeArguments::tolerance() const {

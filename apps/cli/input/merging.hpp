@@ -21,6 +21,8 @@ class MergeArguments {
   /// The tolerance. Throws InvalidArgument for a text that is no number, 0 or more.
   [[nodiscard]] double tolerance() const;
 
+  /// Throws EmptyResult if merging left nothing of a contour, unless `allow_empty`; then it returns a remark.
+  static std::string require_left(const MergeSummary& summary, std::size_t simplices, bool allow_empty);
   /// Merges the vertices of a contour; returns the report.
   template <int N, class Real>
   MergeSummary merge(Contour<N, Real>& contour, const WorkOptions& work) const {

@@ -9,6 +9,7 @@
 
 #include "base/progress.hpp"
 #include "input/commands.hpp"
+#include "input/extraction.hpp"
 #include "tegl/cells.hpp"
 #include "tegl/positions.hpp"
 
@@ -40,14 +41,17 @@ class PositionArguments {
 };
 
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
-/// Extraction<N, double>. `of_cells`: the samples are cells.
+/// Extraction<N, double>. `tiling`: whether samples are cells, and their faces.
 template <class Result, class Use>
 Result extract_placed_and_use(const AnyImage& image, double isovalue, const PositionOptions& positions,
-                              const ExtractOptions& options, bool single_precision, bool of_cells, const Use& use) {
+                              const ExtractOptions& options, bool single_precision, const Tiling& tiling,
+                              const Use& use) {
   const auto of_owned = [&](const auto& owned) -> Result {
-    if (of_cells) {
-      if (single_precision) return use(extract_cells_with_stats<float>(owned.view(), isovalue, positions, options));
-      return use(extract_cells_with_stats<double>(owned.view(), isovalue, positions, options));
+    if (tiling.of_cells) {
+      const CellFaces& faces = tiling.cell_faces;
+      if (single_precision)
+        return use(extract_cells_with_stats<float>(owned.view(), isovalue, positions, options, faces));
+      return use(extract_cells_with_stats<double>(owned.view(), isovalue, positions, options, faces));
     }
     if (single_precision) return use(extract_placed_with_stats<float>(owned.view(), isovalue, positions, options));
     return use(extract_placed_with_stats<double>(owned.view(), isovalue, positions, options));

@@ -105,7 +105,11 @@ void require_output_holds(const fs::path& output, int simplex_dim) {
         output,
         fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf, or a surface: cut the contour "
                     "first ('tegl slice')",
-                    extension, simplex_dim + 1, simplex_dim == 3 ? "tetrahedra" : "simplices", simplex_dim + 1));
+                    extension, simplex_dim + 1,
+                    simplex_dim == 3   ? "tetrahedra"
+                    : simplex_dim == 4 ? "4-simplices"
+                                       : "simplices",
+                    simplex_dim + 1));
   if (simplex_dim < format->least_dim)
     fail(output, fmt::format("'{}' cannot hold a {}D contour, which is made of lines; expected .ply, .gltf, .glb, .obj "
                              "or .vtkhdf",
@@ -125,7 +129,8 @@ void require_output_keeps(const fs::path& output, std::string_view normals, bool
 }
 
 void CompressOption::add_to(CLI::App& app) {
-  app.add_flag("--compress", compress_, ".vtkhdf (and .vtu of --facets): compressed without loss; takes longer to write");
+  app.add_flag("--compress", compress_,
+               ".vtkhdf (and .vtu of --facets): compressed without loss; takes longer to write");
 }
 
 void CompressOption::require_known(const fs::path& output, bool facets) const {

@@ -120,11 +120,11 @@ std::string input_line(const InputFiles& input, const std::string& variable) {
 }
 
 std::string axis_label(const std::string& name, std::size_t axis) {
-  return name.empty() ? std::string(1, "xyzt"[axis]) : name;
+  return name.empty() ? std::string(1, "xyztu"[axis]) : name;
 }
 
 std::size_t axis_called(const std::string& name, const std::vector<std::string>& labels) {
-  constexpr std::string_view kLetters = "xyzt";
+  constexpr std::string_view kLetters = "xyztu";
   for (std::size_t a = 0; a < labels.size(); ++a)
     if (equal_ignoring_case(name, labels[a])) return a;
   return std::min(name.size() == 1 ? kLetters.find(name[0]) : std::string_view::npos, labels.size());
@@ -159,8 +159,11 @@ bool has_faults(const MeshReport& report) {
 }
 
 std::string counted_simplices(int dim, std::uint64_t count) {
-  constexpr std::array<std::pair<const char*, const char*>, 4> kNames = {
-      {{"point", "points"}, {"segment", "segments"}, {"triangle", "triangles"}, {"tetrahedron", "tetrahedra"}}};
+  constexpr std::array<std::pair<const char*, const char*>, 5> kNames = {{{"point", "points"},
+                                                                          {"segment", "segments"},
+                                                                          {"triangle", "triangles"},
+                                                                          {"tetrahedron", "tetrahedra"},
+                                                                          {"4-simplex", "4-simplices"}}};
   const auto& [singular, plural] = kNames.at(static_cast<std::size_t>(dim));
   return counted(count, singular, plural);
 }
@@ -210,6 +213,7 @@ Json to_json(const ContourResult& result) {
   json["image_dim"] = result.image_dim;
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
   if (!result.isovalues.empty()) json["isovalues"] = result.isovalues;
+  if (result.folded_cells) json["folded_cells"] = *result.folded_cells;
   // cut and pick
   json["at"] = nullptr;
   if (result.cut) {

@@ -136,9 +136,10 @@ struct ContourResult {
   std::vector<double> isovalues;   ///< for several contours in one file
   std::optional<Cut> cut;
   std::optional<Picked> picked;
-  std::optional<ExtractStats> stats;    ///< none for cuts of a saved contour, and for picks
-  std::optional<MeshReport> report;     ///< none with --no-check
-  std::optional<MergeSummary> merging;  ///< of --merge
+  std::optional<ExtractStats> stats;               ///< none for cuts of a saved contour, and for picks
+  std::optional<std::uint64_t> folded_cells = {};  ///< of a curved grid
+  std::optional<MeshReport> report;                ///< none with --no-check
+  std::optional<MergeSummary> merging;             ///< of --merge
   Mesh mesh;
   std::optional<MeshSize> streamed;             ///< for contours that were written without being in memory
   LostVertices lost;                            ///< vertices that coincide in the file

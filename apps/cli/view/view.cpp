@@ -163,7 +163,7 @@ class ViewCommand final : public ContourInputCommand {
       if (!contour.periods.empty()) contour = unroll(contour).contour;  // simplices keep their numbers
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };
-    Json layer = std::visit([&](auto& contour) { return add(contour); }, input.contour);
+    Json layer = visit_to_4d(input.contour, add);
     remark_on_size(here);
     layer["unit"] = info.value_unit;
     layer["world"] = world.empty() ? Json(nullptr) : Json(world);

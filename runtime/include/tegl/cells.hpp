@@ -19,12 +19,17 @@ namespace tegl {
 /// step outside of the first and of the last one. A single sample of a rectilinear axis has a cell of width 1.
 [[nodiscard]] std::vector<double> cell_faces(const Axis& axis);
 
+/// The coordinates of the faces between cells, by axis, one more than cells. An axis beyond the end of the list, or
+/// with an empty list, has the faces of `cell_faces`.
+using CellFaces = std::vector<std::vector<double>>;
+
 /// As `extract_cells`, with counts and times.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Extraction<N, Real> extract_cells_with_stats(const Image<T, N>& image, double isovalue,
                                                            const PositionOptions& positions = {},
-                                                           const ExtractOptions& options = {});
+                                                           const ExtractOptions& options = {},
+                                                           const CellFaces& faces = {});
 
 /// Extracts the contour between the cells at or above the isovalue (high) and the others. Everything outside of the
 /// image is low, and so are missing values. So the contour is always closed, at the outer faces of the cells.
@@ -37,6 +42,9 @@ requires DimensionBetween<N, 2, 4>
 /// simplices of zero size. With `relaxed` and `gravitation`, the contour equals `extract_placed` for the cells'
 /// centres: vertices lie on the edges between the centres of high and low cells, or beside them.
 ///
+/// `faces`: for cells of uneven sizes, which do not follow from their centres; files give them in
+/// ImageInfo::cell_faces. Errors: InvalidArgument unless each sample lies between the faces of its cell.
+///
 /// `options`: `ambiguity` low or high; `direction` and `work`; with `relaxed` and `gravitation` also `triangulation`
 /// and `epsilon`. `close` is ignored. Errors: as `extract`; UnsupportedData for other rules of positions,
 /// other rules for ambiguities, and normals from the image. Memory besides the contour: one byte per sample, and for
@@ -44,9 +52,9 @@ requires DimensionBetween<N, 2, 4>
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_cells(const Image<T, N>& image, double isovalue,
-                                             const PositionOptions& positions = {},
-                                             const ExtractOptions& options = {}) {
-  return extract_cells_with_stats<Real>(image, isovalue, positions, options).contour;
+                                             const PositionOptions& positions = {}, const ExtractOptions& options = {},
+                                             const CellFaces& faces = {}) {
+  return extract_cells_with_stats<Real>(image, isovalue, positions, options, faces).contour;
 }
 
 }  // namespace tegl

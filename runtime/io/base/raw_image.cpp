@@ -107,7 +107,7 @@ RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd
 }
 
 void name_axes(RawGrid& grid) {
-  constexpr std::array<const char*, 4> kNames = {"x", "y", "z", "t"};
+  constexpr std::array<const char*, 5> kNames = {"x", "y", "z", "t", "u"};
   for (std::size_t a = 0; a < std::min(grid.axes.size(), kNames.size()); ++a)
     if (grid.axes[a].name.empty()) grid.axes[a].name = kNames[a];
 }
@@ -169,6 +169,19 @@ AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
     default:
       fail_axes(image.grid, path);
   }
+}
+
+AnyImage5d to_image_5d(RawImage&& image) {
+  const Grid<5> grid = fixed_grid<5>(image.grid);
+  return std::visit(
+      [&]<class T>(ValueVector<T>& values) -> AnyImage5d {
+        using To = std::conditional_t<std::is_same_v<T, float> || sizeof(T) <= 2, float, double>;
+        if constexpr (std::is_same_v<T, To>)
+          return OwnedImage<To, 5>{grid, std::move(values)};
+        else
+          return OwnedImage<To, 5>{grid, converted<To>(values)};
+      },
+      image.values);
 }
 
 const char* type_name(const ValueArray& values) noexcept {

@@ -48,7 +48,7 @@ struct RawImage {
 RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd& affine, const Eigen::VectorXd& offset,
                     const std::filesystem::path& path);
 
-/// Names unnamed axes x, y, z, t by position.
+/// Names unnamed axes x, y, z, t, u by position.
 void name_axes(RawGrid& grid);
 
 /// The axis with at least two coordinates; uniform if they are so, bit by bit. InvalidGrid unless strictly monotone.
@@ -77,6 +77,9 @@ Grid<N> fixed_grid(const RawGrid& grid) {
 /// Converts to 2, 3 or 4 dimensions; UnsupportedData for any other. uint32, int64 and uint64 become int32 if all values
 /// fit, else double.
 AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path);
+
+/// Converts an image of 5 axes: values of at most 16 bits, and float, to float; others to double.
+AnyImage5d to_image_5d(RawImage&& image);
 
 /// The name of the value type: "uint8", ...
 const char* type_name(const ValueArray& values) noexcept;

@@ -190,8 +190,8 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
          "values of type '{}'; expected uint8, int8, uint16, int16, int32, float or double", name_of(*layout.type));
   RawLayers source;
   source.grid.axes = raw_axes(layout, path);
-  if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
-    fail(ErrorCode::InvalidArgument, path, "{} sizes; expected 2, 3 or 4", layout.sizes.size());
+  if (layout.sizes.size() < 2 || layout.sizes.size() > 5)
+    fail(ErrorCode::InvalidArgument, path, "{} sizes; expected 2 to 5", layout.sizes.size());
   const auto n = static_cast<Eigen::Index>(layout.sizes.size());
   source.grid.linear = Eigen::MatrixXd::Identity(n, n);
   source.grid.offset = Eigen::VectorXd::Zero(n);

@@ -572,11 +572,10 @@ void require_image(const NcFile& file, const NcVariable& variable, const NcSlab&
          is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "");
   const ImageVariable described = describe(file, variable);
   fail(ErrorCode::UnsupportedData, file.path(),
-       "variable '{}' is {} ({}){}; expected 2 to 4 axes longer than 1 ({}), or a fixed index of another dimension, "
-       "such "
+       "variable '{}' is {} ({}){}; expected 2 to 4 axes longer than 1, or a fixed index of another dimension, such "
        "as {}=0",
        variable.name, shape_text(described.sizes), fmt::join(described.axes, ", "),
-       is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "", kMoreAxes, described.axes.back());
+       is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "", described.axes.back());
 }
 
 /// Finds the requested variable, and checks that it can be an image.

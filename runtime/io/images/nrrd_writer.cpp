@@ -94,8 +94,14 @@ std::string direction_lines(const ImageHead& head, std::size_t count, const std:
   return text + fmt::format("\nspace units:{}\nspace origin: {}\n", units, vector_text(origin));
 }
 
-/// Number of axes that may have directions in space; the time has none.
-std::size_t spatial_axes(const ImageHead& head) { return head.axes() == 4 && head.is_separate(3) ? 3 : head.axes(); }
+/// Number of axes that may have directions in space; time and scale have none. Those of cells have, unless the space
+/// has a name and thus three axes: `axis mins` are coordinates of faces, half a step before the first sample.
+std::size_t spatial_axes(const ImageHead& head) {
+  if (head.info.samples_are_cells && space_of(head.info.world_frame).empty()) return head.axes();
+  for (std::size_t a = 3; a < head.axes(); ++a)
+    if (!head.is_separate(a)) return head.axes();
+  return std::min<std::size_t>(head.axes(), 3);
+}
 
 /// The space that the format has a name for, or nothing.
 std::string space_of_image(const ImageHead& head) {
@@ -104,7 +110,8 @@ std::string space_of_image(const ImageHead& head) {
 
 /// Number of axes that are written with directions.
 std::size_t directed_axes(const ImageHead& head) {
-  return head.has_world_map() || !space_of_image(head).empty() ? spatial_axes(head) : 0;
+  const bool directed = head.has_world_map() || !space_of_image(head).empty() || head.info.samples_are_cells;
+  return directed ? spatial_axes(head) : 0;
 }
 
 std::string geometry_lines(const ImageHead& head, const PendingPath& file) {
@@ -112,8 +119,8 @@ std::string geometry_lines(const ImageHead& head, const PendingPath& file) {
   const std::size_t spatial = spatial_axes(head);
   const std::string space = space_of_image(head);
   const bool directed = directed_axes(head) > 0;
-  if (directed && axes > 4)
-    fail(ErrorCode::UnsupportedData, file.target(), "{} axes with a world map; expected at most 4", axes);
+  if (directed && spatial > 4)
+    fail(ErrorCode::UnsupportedData, file.target(), "{} axes coupled by a world map; expected at most 4", spatial);
   std::string spacings = "spacings:";
   std::string mins = "axis mins:";
   for (std::size_t a = 0; a < axes; ++a) {
@@ -121,7 +128,9 @@ std::string geometry_lines(const ImageHead& head, const PendingPath& file) {
     // a separate axis has its part of the world map in its coordinates
     const double factor = head.linear(a, a);
     spacings += by_direction ? " nan" : fmt::format(" {}", factor * head.grid.axes[a].step());
-    mins += by_direction ? " nan" : fmt::format(" {}", factor * head.grid.axes[a].origin() + head.grid.offset[a]);
+    const Axis& axis = head.grid.axes[a];
+    const double first = axis.origin() - (head.info.samples_are_cells ? 0.5 * axis.step() : 0.0);
+    mins += by_direction ? " nan" : fmt::format(" {}", factor * first + head.grid.offset[a]);
   }
   std::string text = directed ? direction_lines(head, spatial, space) : "";
   if (!directed || spatial < axes) text += spacings + "\n" + mins + "\n";
@@ -139,7 +148,7 @@ std::unique_ptr<LayerWriter> write_nrrd(const PendingPath& file, const ImageHead
     labels += " " + quoted(head.axis_name(a));
     // an axis with a direction has no unit of its own, but that of the space
     units += " " + quoted(a < directed ? std::string() : head.grid.axes[a].unit);
-    centers += " node";
+    centers += head.info.samples_are_cells ? " cell" : " node";
   }
   std::string header = "NRRD0005\n";
   if (!head.info.value_name.empty()) header += fmt::format("content: {}\n", one_line(head.info.value_name));

@@ -102,19 +102,41 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
-ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
+namespace {
+
+/// Reads the files, in a child process if needed.
+ImageOfFiles read_raw(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
   const auto read = [&](const Progress& progress) {
     SeriesOptions own = options;
     own.work.progress = progress;
     return read_files(files, own);
   };
-  auto [image, order] = is_read_separately(files, options) ? read_separately(files[0], options.work.progress, read)
-                                                           : read(options.work.progress);
-  ImageInfo info = std::move(image.info);
-  AnyImage result = to_any_image(std::move(image), files[0]);
+  return is_read_separately(files, options) ? read_separately(files[0], options.work.progress, read)
+                                            : read(options.work.progress);
+}
+
+ReadSeriesResult series_of(ImageOfFiles&& read, std::span<const fs::path> files, const SeriesOptions& options) {
+  ImageInfo info = std::move(read.image.info);
+  AnyImage result = to_any_image(std::move(read.image), files[0]);
   tick(options.work.progress, 1.0, files[0]);
-  return {{std::move(result), std::move(info)}, std::move(order)};
+  return {{std::move(result), std::move(info)}, std::move(read.files)};
+}
+
+}  // namespace
+
+ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
+  return series_of(read_raw(files, options), files, options);
+}
+
+std::variant<ReadSeriesResult, ReadSeries5dResult> read_series_to_5d(std::span<const fs::path> files,
+                                                                     const SeriesOptions& options) {
+  ImageOfFiles read = read_raw(files, options);
+  if (read.image.grid.axes.size() != 5) return series_of(std::move(read), files, options);
+  ImageInfo info = std::move(read.image.info);
+  AnyImage5d result = to_image_5d(std::move(read.image));
+  tick(options.work.progress, 1.0, files[0]);
+  return ReadSeries5dResult{{std::move(result), std::move(info)}, std::move(read.files)};
 }
 
 OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {

@@ -84,17 +84,19 @@ std::unique_ptr<LayerWriter> write_vti(const PendingPath& file, const ImageHead&
   // sample (i, j, k) lies at origin + direction (spacing (i, j, k))
   std::array<double, 3> origin{}, spacing = {1, 1, 1};
   std::array<double, 9> direction = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const bool of_cells = head.info.samples_are_cells;  // the origin is then a corner of the first cell
   std::string extent;
   std::uint64_t bytes = head.layer_bytes;
   for (std::size_t a = 0; a < 3; ++a) {
-    extent += fmt::format("{}0 {}", a == 0 ? "" : " ", a < head.axes() ? head.grid.axes[a].size() - 1 : 0);
+    extent +=
+        fmt::format("{}0 {}", a == 0 ? "" : " ", a < head.axes() ? head.grid.axes[a].size() - (of_cells ? 0 : 1) : 0);
     if (a >= head.axes()) continue;
     const Axis& axis = head.grid.axes[a];
     if (a + 1 == head.axes()) bytes *= axis.size();
     origin[a] += head.grid.offset[a];
     double square = 0;
     for (std::size_t row = 0; row < head.axes(); ++row) {
-      origin[row] += head.linear(row, a) * axis.origin();
+      origin[row] += head.linear(row, a) * (axis.origin() - (of_cells ? 0.5 * axis.step() : 0.0));
       direction[3 * row + a] = head.linear(row, a) * axis.step();
       square += direction[3 * row + a] * direction[3 * row + a];
     }
@@ -103,15 +105,16 @@ std::unique_ptr<LayerWriter> write_vti(const PendingPath& file, const ImageHead&
   }
   const std::string& variable = head.info.variable.empty() ? head.info.value_name : head.info.variable;
   const std::string name = attribute_text(variable.empty() ? "values" : variable);
+  const char* const part = of_cells ? "CellData" : "PointData";
   const char* const order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
   const std::string header = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n"
       "<ImageData WholeExtent=\"{}\" Origin=\"{}\" Spacing=\"{}\" Direction=\"{}\">\n<Piece Extent=\"{}\">\n"
-      "<PointData Scalars=\"{}\">\n<DataArray type=\"{}\" Name=\"{}\" format=\"appended\" "
-      "offset=\"0\"/>\n</PointData>\n"
+      "<{} Scalars=\"{}\">\n<DataArray type=\"{}\" Name=\"{}\" format=\"appended\" "
+      "offset=\"0\"/>\n</{}>\n"
       "</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_",
-      order, extent, fmt::join(origin, " "), fmt::join(spacing, " "), fmt::join(direction, " "), extent, name,
-      vtk_type(head.type), name);
+      order, extent, fmt::join(origin, " "), fmt::join(spacing, " "), fmt::join(direction, " "), extent, part, name,
+      vtk_type(head.type), name, part);
   return std::make_unique<VtiWriter>(file, header, bytes, head.layer_bytes);
 }
 

@@ -81,8 +81,8 @@ RawGrid uniform_grid(const OpenVtkImage& image, const std::array<std::size_t, 3>
   return affine_grid(sizes, ordered, ordered_offset, file.path());
 }
 
-/// The coordinates along an axis of a RectilinearGrid, of points or of the middles of cells.
-std::vector<double> axis_coordinates(const OpenVtkImage& image, std::size_t axis) {
+/// The coordinates of the points along an axis of a RectilinearGrid.
+std::vector<double> point_coordinates(const OpenVtkImage& image, std::size_t axis) {
   const VtkFile& file = image.file;
   const VtkExtent whole = whole_extent(file);
   const std::uint64_t count = whole.sizes(false)[axis];
@@ -108,21 +108,26 @@ std::vector<double> axis_coordinates(const OpenVtkImage& image, std::size_t axis
   }
   if (all.size() != count)
     fail(ErrorCode::MalformedFile, file.path(), "{} coordinates along axis {}; expected {}", all.size(), axis, count);
-  if (image.variable.on_cells && all.size() > 1) {
-    for (std::size_t i = 0; i + 1 < all.size(); ++i) all[i] = (all[i] + all[i + 1]) / 2;
-    all.pop_back();
-  }
   return all;
 }
 
-RawGrid rectilinear_grid(const OpenVtkImage& image, const std::array<std::size_t, 3>& order) {
+/// The grid of a RectilinearGrid. Samples of cells are at their middles, and the faces of cells are stored.
+RawGrid rectilinear_grid(OpenVtkImage& image, const std::array<std::size_t, 3>& order) {
   RawGrid grid{{}, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Zero(3), {}};
   for (const std::size_t a : order) {
-    const auto coordinates = axis_coordinates(image, a);
+    std::vector<double> coordinates = point_coordinates(image, a);
     for (const double x : coordinates)
       if (!std::isfinite(x))
         fail(ErrorCode::MalformedFile, image.file.path(), "a coordinate along axis {} is {}; expected finite numbers",
              a, x);
+    if (image.variable.on_cells) {
+      std::vector<double>& faces = image.info.cell_faces.emplace_back();
+      if (coordinates.size() > 1) {
+        faces = coordinates;
+        coordinates.pop_back();
+        for (std::size_t i = 0; i < coordinates.size(); ++i) coordinates[i] = (faces[i] + faces[i + 1]) / 2;
+      }
+    }
     try {
       grid.axes.push_back(coordinates.size() > 1 ? axis_of(coordinates) : Axis::uniform(1, coordinates.front()));
     } catch (const Error& error) {

@@ -141,11 +141,11 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& 
   grid.cells = cells.count();
   grid.axis_names.assign(facets.axis_names.begin(), facets.axis_names.end());
   grid.axis_units.assign(facets.axis_units.begin(), facets.axis_units.end());
-  add_rows<N, Real>(facets.vertices, "Points", io_detail::kTimes, grid.coordinates, grid.point_arrays);
+  add_rows<N, Real>(facets.vertices, "Points", io_detail::kFurtherCoordinates[0], grid.coordinates, grid.point_arrays);
   if (!facets.normals.empty()) {
     grid.normals = io_detail::kNormals;
     VtuArray normals;
-    add_rows<N, Real>(facets.normals, io_detail::kNormals, io_detail::kNormalTimes, normals, grid.point_arrays);
+    add_rows<N, Real>(facets.normals, io_detail::kNormals, io_detail::kFurtherNormals[0], normals, grid.point_arrays);
     grid.point_arrays.push_back(std::move(normals));
   }
   // cell arrays

@@ -34,7 +34,7 @@ namespace {
 using namespace io_detail;
 
 constexpr std::array<MeshFileFormat, 6> kFormats = {
-    {{".ply", 1, 2}, {".gltf", 1, 2}, {".glb", 1, 2}, {".vtkhdf", 1, 3}, {".stl", 2, 2}, {".obj", 1, 2}}};
+    {{".ply", 1, 2}, {".gltf", 1, 2}, {".glb", 1, 2}, {".vtkhdf", 1, 4}, {".stl", 2, 2}, {".obj", 1, 2}}};
 
 const MeshFileFormat& format_of(const fs::path& path) {
   if (const MeshFileFormat* const format = find_mesh_file_format(path)) return *format;
@@ -47,8 +47,8 @@ bool is_gltf(const MeshFileFormat& format) { return format.extension == ".gltf" 
 void check_mesh(const MeshView& mesh, const fs::path& path) {
   const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
   const auto n = static_cast<std::size_t>(mesh.space_dim);
-  if (mesh.dim < 1 || mesh.dim > 3 || mesh.space_dim < 2 || mesh.space_dim > 4 || mesh.dim > mesh.space_dim)
-    fail(ErrorCode::InvalidArgument, path, "mesh of {}-simplices in {}-space; expected 1 to 3 in 2 to 4", mesh.dim,
+  if (mesh.dim < 1 || mesh.dim > 4 || mesh.space_dim < 2 || mesh.space_dim > 5 || mesh.dim > mesh.space_dim)
+    fail(ErrorCode::InvalidArgument, path, "mesh of {}-simplices in {}-space; expected 1 to 4 in 2 to 5", mesh.dim,
          mesh.space_dim);
   if (mesh.simplices.size() % corners != 0 || mesh.coordinates.size() % n != 0)
     fail(ErrorCode::InvalidArgument, path,
@@ -79,14 +79,14 @@ void check_wrapped(const MeshView& mesh, const MeshFileFormat& format, const fs:
          mesh.periods.size(), 2 * mesh.space_dim + 1);
 }
 
-/// Every format supports triangles, and all except STL support lines. Tetrahedra and a fourth coordinate are only
-/// supported by formats with most_dim = 3.
+/// Every format supports triangles, and all except STL support lines. Tetrahedra, 4-simplices and more than three
+/// coordinates are only supported by formats with most_dim = 4.
 void check_combination(const MeshView& mesh, const MeshFileFormat& format, const fs::path& path) {
   if (mesh.dim < format.least_dim)
     fail(ErrorCode::UnsupportedFormat, path,
          "'{}' cannot hold {}-simplices, which lines are made of; expected .ply, .gltf, .glb, .obj or .vtkhdf",
          path.extension().string(), mesh.dim);
-  if (mesh.dim > format.most_dim || (mesh.space_dim == 4 && format.most_dim < 3))
+  if (mesh.dim > format.most_dim || (mesh.space_dim > 3 && format.most_dim < 3))
     fail(ErrorCode::UnsupportedFormat, path,
          "'{}' cannot hold {}-simplices in {}-space (the contour of a {}D image); "
          "expected .vtkhdf, or a cut of it",
@@ -225,7 +225,7 @@ MeshView::MeshView(const Mesh& mesh)
       single_precision(mesh.single_precision) {}
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> MeshView::MeshView(const Contour<N, Real>& contour)
+requires DimensionBetween<N, 2, 5> MeshView::MeshView(const Contour<N, Real>& contour)
     : dim(N - 1),
       space_dim(N),
       coordinates(flat(contour.vertices)),
@@ -239,16 +239,16 @@ requires DimensionBetween<N, 2, 4> MeshView::MeshView(const Contour<N, Real>& co
       single_precision(std::is_same_v<Real, float>) {}
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour) { return mesh_of(contour); }
+requires DimensionBetween<N, 2, 5> Mesh to_mesh(const Contour<N, Real>& contour) { return mesh_of(contour); }
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Mesh to_mesh(Contour<N, Real>&& contour) { return mesh_of(std::move(contour)); }
+requires DimensionBetween<N, 2, 5> Mesh to_mesh(Contour<N, Real>&& contour) { return mesh_of(std::move(contour)); }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh) { return contour_of<N>(mesh); }
+requires DimensionBetween<N, 2, 5> Contour<N, double> to_contour(const Mesh& mesh) { return contour_of<N>(mesh); }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(Mesh&& mesh) { return contour_of<N>(std::move(mesh)); }
+requires DimensionBetween<N, 2, 5> Contour<N, double> to_contour(Mesh&& mesh) { return contour_of<N>(std::move(mesh)); }
 
 std::span<const MeshFileFormat> mesh_file_formats() noexcept { return kFormats; }
 
@@ -296,6 +296,8 @@ TEGL_INSTANTIATE(3, float)
 TEGL_INSTANTIATE(3, double)
 TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
+TEGL_INSTANTIATE(5, float)
+TEGL_INSTANTIATE(5, double)
 #undef TEGL_INSTANTIATE
 template Contour<2, double> to_contour<2>(const Mesh&);
 template Contour<2, double> to_contour<2>(Mesh&&);
@@ -303,5 +305,7 @@ template Contour<3, double> to_contour<3>(const Mesh&);
 template Contour<3, double> to_contour<3>(Mesh&&);
 template Contour<4, double> to_contour<4>(const Mesh&);
 template Contour<4, double> to_contour<4>(Mesh&&);
+template Contour<5, double> to_contour<5>(const Mesh&);
+template Contour<5, double> to_contour<5>(Mesh&&);
 
 }  // namespace tegl

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "base/common.hpp"
 #include "base/hdf5_file.hpp"
@@ -48,14 +49,21 @@ class Reader {
     read_cells();
     read_points();
     const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
-    if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 3 ? static_cast<int>(dims[0]) : 2;
+    if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 4 ? static_cast<int>(dims[0]) : 2;
     // Tetrahedra of other programs with a point array t are read as contours in 4-space.
-    if (file_.has(group_.id(), "PointData") && (dims.size() == 2 ? dims[1] == 4 : mesh_.dim == 3)) add_times();
+    if (dims.size() == 2 && dims[1] >= 4 && dims[1] <= 5)
+      add_coordinates(static_cast<int>(dims[1]));
+    else if (dims.size() != 2 && mesh_.dim == 3)
+      add_coordinates(4);
+    if (mesh_.dim == 4 && mesh_.space_dim != 5)
+      fail(ErrorCode::MalformedFile, path_, "4-simplices without the point arrays 't' and 'u'");
     read_normals();
     std::set<std::string> taken;
-    if (mesh_.space_dim == 4) taken.insert(kTimes);
     if (!mesh_.normals.empty()) taken.insert(kNormals);
-    if (!mesh_.normals.empty() && mesh_.space_dim == 4) taken.insert(kNormalTimes);
+    for (std::size_t i = 0; i < further_count(mesh_.space_dim); ++i) {
+      taken.insert(kFurtherCoordinates.at(i));
+      if (!mesh_.normals.empty()) taken.insert(kFurtherNormals.at(i));
+    }
     mesh_.vertex_attributes = attributes("PointData", vertex_count(mesh_), taken);
     mesh_.simplex_attributes = attributes("CellData", simplex_count(mesh_), {});
     if (dims.size() == 2 && dims[1] == 2) flatten(mesh_, path_);
@@ -109,7 +117,9 @@ class Reader {
     const auto types = numbers<unsigned char>("Types", H5T_NATIVE_UINT8);
     const auto ids = numbers<std::int64_t>("Connectivity", H5T_NATIVE_INT64);
     mesh_.dim = 0;
-    for (int dim = 1; dim <= 3 && !types.empty(); ++dim)
+    const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
+    const int most = !dims.empty() && dims[0] == 4 ? 4 : 3;  // other programs have other poly-vertex cells
+    for (int dim = 1; dim <= most && !types.empty(); ++dim)
       if (types[0] == kCellTypes[static_cast<std::size_t>(dim)]) mesh_.dim = dim;
     const auto other = std::find_if(types.begin(), types.end(), [&](unsigned char t) { return t != types[0]; });
     if (!types.empty() && (mesh_.dim == 0 || other != types.end()))
@@ -143,29 +153,33 @@ class Reader {
     if (size[0] > 0) read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
   }
 
-  /// Adds the point array t as a fourth coordinate to x, y, z.
-  void add_times() {
+  /// Adds the point arrays t and u as coordinates after x, y, z, if they are there.
+  void add_coordinates(int space_dim) {
+    if (!file_.has(group_.id(), "PointData")) return;
     const H5Handle point_data = file_.open_group("VTKHDF/PointData");
-    if (!file_.has(point_data.id(), kTimes)) return;
     const std::size_t vertices = mesh_.coordinates.size() / 3;
-    if (length(point_data.id(), kTimes) != vertices)
-      fail(ErrorCode::MalformedFile, path_, "point array 't' of {} values; expected {}",
-           length(point_data.id(), kTimes), vertices);
-    add_fourth(point_data, kTimes, mesh_.coordinates);
-    mesh_.space_dim = 4;
+    for (std::size_t i = 0; i < further_count(space_dim); ++i) {
+      const char* const name = kFurtherCoordinates.at(i);
+      if (!file_.has(point_data.id(), name)) return;
+      if (length(point_data.id(), name) != vertices)
+        fail(ErrorCode::MalformedFile, path_, "point array '{}' of {} values; expected {}", name,
+             length(point_data.id(), name), vertices);
+      add_column(point_data, name, mesh_.coordinates, 3 + i);
+      ++mesh_.space_dim;
+    }
   }
 
-  /// Converts rows of three numbers to rows of four.
-  void add_fourth(const H5Handle& point_data, const char* name, MeshArray<double>& rows) {
-    const std::size_t count = rows.size() / 3;
+  /// Converts rows of `width` numbers to rows of one more.
+  void add_column(const H5Handle& point_data, const char* name, MeshArray<double>& rows, std::size_t width) {
+    const std::size_t count = rows.size() / width;
     file_.claim(point_data.id(), name);
-    expect_numbers(count + 4 * count);
-    std::vector<double> fourth(count);
-    if (count > 0) read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
-    Buffer<double> all(4 * count);
+    expect_numbers(count + (width + 1) * count);
+    std::vector<double> column(count);
+    if (count > 0) read(point_data.id(), name, H5T_NATIVE_DOUBLE, column.data());
+    Buffer<double> all((width + 1) * count);
     for (std::size_t v = 0; v < count; ++v) {
-      std::copy_n(rows.data() + 3 * v, 3, all.data() + 4 * v);
-      all[4 * v + 3] = fourth[v];
+      std::copy_n(rows.data() + width * v, width, all.data() + (width + 1) * v);
+      all[(width + 1) * v + width] = column[v];
     }
     rows = std::move(all);
   }
@@ -179,12 +193,13 @@ class Reader {
       return file_.has(point_data.id(), name) && file_.sizes(point_data.id(), name) == shape;
     };
     if (vertices == 0 || !has(kNormals, {vertices, 3})) return;
-    if (mesh_.space_dim == 4 && !has(kNormalTimes, {vertices})) return;
+    const auto names = std::span(kFurtherNormals).first(further_count(mesh_.space_dim));
+    if (!std::ranges::all_of(names, [&](const char* name) { return has(name, {vertices}); })) return;
     file_.claim(point_data.id(), kNormals);
     expect_numbers(3 * vertices);
     mesh_.normals.resize(static_cast<std::size_t>(3 * vertices));
     read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
-    if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
+    for (std::size_t i = 0; i < names.size(); ++i) add_column(point_data, names[i], mesh_.normals, 3 + i);
   }
 
   /// The finite numbers of a field array with at most `most` of them; none if there is no such array.

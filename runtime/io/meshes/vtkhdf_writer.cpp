@@ -50,8 +50,10 @@ hid_t real_type(const VtkhdfLayout& layout) { return layout.single_precision ? H
 hid_t id_type(const VtkhdfLayout& layout) { return layout.narrow_ids ? H5T_STD_I32LE : H5T_STD_I64LE; }
 
 std::set<std::string> reserved_point_names(int space_dim) {
-  if (space_dim == 4) return {kNormals, kNormalTimes, kTimes};
-  return {kNormals};
+  std::set<std::string> names = {kNormals};
+  for (std::size_t i = 0; i < further_count(space_dim); ++i)
+    names.insert({kFurtherCoordinates.at(i), kFurtherNormals.at(i)});
+  return names;
 }
 
 }  // namespace
@@ -67,10 +69,15 @@ VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout
                                 layout.expected_simplices + (layout.expected_simplices == ~std::uint64_t{0} ? 0 : 1),
                                 layout.compression)),
       types(file.create_table(group, "Types", H5T_STD_U8LE, 0, layout.expected_simplices, layout.compression)) {
-  const H5Handle point_data = file.create_group("VTKHDF/PointData");
-  if (layout.space_dim == 4)
-    times.emplace(
-        file.create_table(point_data.id(), kTimes, real_type(layout), 0, layout.expected_vertices, layout.compression));
+  static_cast<void>(file.create_group("VTKHDF/PointData"));
+}
+
+std::vector<H5Table> VtkhdfWriter::further_tables(std::span<const char* const> names) const {
+  const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+  std::vector<H5Table> tables;
+  for (const char* const name : names.first(further_count(static_cast<int>(space_dim_))))
+    tables.push_back(file_.create_table(point_data.id(), name, real_, 0, expected_vertices_, compression_));
+  return tables;
 }
 
 VtkhdfWriter::VtkhdfWriter(const PendingPath& pending, const VtkhdfLayout& layout)
@@ -83,37 +90,38 @@ VtkhdfWriter::VtkhdfWriter(const PendingPath& pending, const VtkhdfLayout& layou
       group_(create_root(file_, layout)),
       point_names_(reserved_point_names(layout.space_dim)) {
   tables_.emplace(file_, group_->id(), layout);
+  tables_->further = further_tables(kFurtherCoordinates);
   constexpr std::int64_t kFirst = 0;
   tables_->offsets.append(H5T_NATIVE_INT64, &kFirst, 1);
   types_.assign(kMostRows, kCellTypes[static_cast<std::size_t>(layout.dim)]);
 }
 
 void VtkhdfWriter::append_vertices(std::span<const double> coordinates) {
-  append_rows(coordinates, tables_->points, tables_->times ? &*tables_->times : nullptr);
+  append_rows(coordinates, tables_->points, tables_->further);
 }
 
 void VtkhdfWriter::append_normals(std::span<const double> normals) {
   if (!tables_->normals) {
     const H5Handle point_data = file_.open_group("VTKHDF/PointData");
     tables_->normals.emplace(file_.create_table(point_data.id(), kNormals, real_, 3, expected_vertices_, compression_));
-    if (space_dim_ == 4)
-      tables_->normal_times.emplace(
-          file_.create_table(point_data.id(), kNormalTimes, real_, 0, expected_vertices_, compression_));
+    tables_->further_normals = further_tables(kFurtherNormals);
   }
-  append_rows(normals, *tables_->normals, tables_->normal_times ? &*tables_->normal_times : nullptr);
+  append_rows(normals, *tables_->normals, tables_->further_normals);
 }
 
-void VtkhdfWriter::append_rows(std::span<const double> rows, H5Table& table, H5Table* fourth) {
+void VtkhdfWriter::append_rows(std::span<const double> rows, H5Table& table, std::span<H5Table> further) {
   for (std::size_t at = 0; at < rows.size();) {
     const std::size_t count = std::min(kMostRows, (rows.size() - at) / space_dim_);
     positions_.assign(3 * count, 0.0);
-    times_.resize(fourth != nullptr ? count : 0);
-    for (std::size_t r = 0; r < count; ++r, at += space_dim_) {
-      std::copy_n(rows.data() + at, std::min<std::size_t>(3, space_dim_), positions_.data() + 3 * r);
-      if (fourth != nullptr) times_[r] = rows[at + 3];
-    }
+    for (std::size_t r = 0; r < count; ++r)
+      std::copy_n(rows.data() + at + r * space_dim_, std::min<std::size_t>(3, space_dim_), positions_.data() + 3 * r);
     table.append(H5T_NATIVE_DOUBLE, positions_.data(), count);
-    if (fourth != nullptr) fourth->append(H5T_NATIVE_DOUBLE, times_.data(), count);
+    column_.resize(count);
+    for (std::size_t i = 0; i < further.size(); ++i) {
+      for (std::size_t r = 0; r < count; ++r) column_[r] = rows[at + r * space_dim_ + 3 + i];
+      further[i].append(H5T_NATIVE_DOUBLE, column_.data(), count);
+    }
+    at += count * space_dim_;
   }
 }
 

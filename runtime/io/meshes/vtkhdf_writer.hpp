@@ -20,8 +20,8 @@ namespace tegl::io_detail {
 
 /// Metadata of a file, and the expected numbers of vertices and simplices (other numbers are allowed).
 struct VtkhdfLayout {
-  int dim = 2;        ///< dimension of the simplices, 1 to 3
-  int space_dim = 3;  ///< 2 to 4; 4: the last coordinate goes to the point array "t"
+  int dim = 2;        ///< dimension of the simplices, 1 to 4
+  int space_dim = 3;  ///< 2 to 5; the coordinates after x, y, z go to the point arrays "t" and "u"
   std::vector<std::string> axis_names;
   std::vector<std::string> axis_units;
   std::uint64_t expected_vertices = ~std::uint64_t{0};
@@ -61,11 +61,14 @@ class VtkhdfWriter {
   struct Tables {
     Tables(const H5File& file, hid_t group, const VtkhdfLayout& layout);
     H5Table points, connectivity, offsets, types;
-    std::optional<H5Table> times;
-    std::optional<H5Table> normals, normal_times;
+    std::vector<H5Table> further;  ///< coordinates after x, y, z
+    std::optional<H5Table> normals;
+    std::vector<H5Table> further_normals;
   };
-  /// Splits rows of space_dim numbers: three columns to `table`, the fourth to `fourth`, which may be null without it.
-  void append_rows(std::span<const double> rows, H5Table& table, H5Table* fourth);
+  /// Splits rows of space_dim numbers: three columns to `table`, each other one to one of `further`.
+  void append_rows(std::span<const double> rows, H5Table& table, std::span<H5Table> further);
+  /// Tables of single numbers of the vertices, for the coordinates after x, y, z.
+  [[nodiscard]] std::vector<H5Table> further_tables(std::span<const char* const> names) const;
   void append_ids(hid_t type, const void* ids, std::size_t count);
 
   H5Quiet quiet_;
@@ -77,7 +80,7 @@ class VtkhdfWriter {
   H5File file_;
   std::optional<H5Handle> group_;
   std::optional<Tables> tables_;
-  std::vector<double> positions_, times_;
+  std::vector<double> positions_, column_;
   std::vector<std::int64_t> offsets_;
   std::vector<unsigned char> types_;
   FileNames point_names_{{}};

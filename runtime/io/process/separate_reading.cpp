@@ -139,6 +139,9 @@ void put_info(Packer& packer, const ImageInfo& info) {
     packer.text(curved.unit);
   });
   packer.number(static_cast<std::uint64_t>(info.samples_are_cells));
+  put_list(packer, info.cell_faces, [&](const std::vector<double>& faces) {
+    put_list(packer, faces, [&](double value) { packer.number(value); });
+  });
   put_texts(packer, info.remarks);
 }
 
@@ -159,6 +162,11 @@ ImageInfo get_info(Unpacker& unpacker) {
     return curved;
   });
   info.samples_are_cells = unpacker.number<std::uint64_t>() != 0;
+  get_list(unpacker, info.cell_faces, [&] {
+    std::vector<double> faces;
+    get_list(unpacker, faces, [&] { return unpacker.number<double>(); });
+    return faces;
+  });
   get_texts(unpacker, info.remarks);
   return info;
 }
@@ -235,8 +243,8 @@ void put_mesh(Packer& packer, Mesh& mesh) {
 
 Mesh get_mesh(Unpacker& unpacker) {
   Mesh mesh;
-  mesh.dim = static_cast<int>(unpacker.count(3));
-  mesh.space_dim = static_cast<int>(unpacker.count(4));
+  mesh.dim = static_cast<int>(unpacker.count(4));
+  mesh.space_dim = static_cast<int>(unpacker.count(5));
   if (mesh.dim < 1 || mesh.space_dim < 2) throw BadPackage();
   const auto get = [&]<class T>(MeshArray<T>& to) {
     Buffer<T> numbers;

@@ -248,7 +248,7 @@ class Drawing {
     std::string what = graph_.tracks.size() == all_
                            ? fmt::format("{} track{}", all_, all_ == 1 ? "" : "s")
                            : fmt::format("the {} longest of {} tracks", graph_.tracks.size(), all_);
-    constexpr std::array kMeasures{"number of points", "length", "area"};
+    constexpr std::array kMeasures{"number of points", "length", "area", "volume"};
     if (largest_ > 0 && graph_.space_dim >= 2)
       what += fmt::format("; thick as the square root of the {}",
                           kMeasures[static_cast<std::size_t>(graph_.space_dim - 2)]);

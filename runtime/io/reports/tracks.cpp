@@ -86,7 +86,7 @@ std::string track_colour(Index track) {
 }
 
 std::string axis_columns(const TrackGraph& graph, const std::string& prefix) {
-  constexpr std::array kNames{"x", "y", "z"};
+  constexpr std::array kNames{"x", "y", "z", "t"};
   std::string text;
   for (int a = 0; a + 1 < graph.space_dim; ++a) text += fmt::format(",{}{}", prefix, kNames[a]);
   return text;

@@ -3,8 +3,11 @@
 // Contours of images of cells: makes the image of sides and chooses how its contour is made.
 #include "tegl/cells.hpp"
 
+#include <array>
 #include <chrono>
 #include <cmath>
+
+#include <fmt/format.h>
 
 #include "base/progress.hpp"
 #include "cells/cubic_contour.hpp"
@@ -37,12 +40,38 @@ void require_cell_options(double isovalue, const PositionOptions& positions, con
                 "positions by a second image or a function for an image of cells; expected linear, relaxed or "
                 "gravitation");
   if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
-    throw Error(ErrorCode::UnsupportedData,
-                "ambiguities of cells resolved from the data; expected Ambiguity::low or high");
+    throw Error(ErrorCode::UnsupportedData, "ambiguities of cells resolved from the data; expected low or high");
   if (options.normals != Normals::none)
-    throw Error(ErrorCode::UnsupportedData,
-                "normals from the image for an image of cells; expected normals of the "
-                "shape (tegl/normals.hpp)");
+    throw Error(
+        ErrorCode::UnsupportedData,
+        "normals from the image for an image of cells; expected normals of the contour's shape, geometric or flat");
+}
+
+/// The faces of each axis. Throws unless those that are given enclose the samples.
+template <int N>
+std::array<std::vector<double>, N> faces_of(const Grid<N>& grid, const CellFaces& given) {
+  std::array<std::vector<double>, N> faces;
+  for (std::size_t a = 0; a < N; ++a) {
+    const Axis& axis = grid.axes[a];
+    if (a >= given.size() || given[a].empty()) {
+      faces[a] = cell_faces(axis);
+      continue;
+    }
+    faces[a] = given[a];
+    if (faces[a].size() != axis.size() + 1)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("{} faces of {} cells along axis {}; expected {}",
+                                                          faces[a].size(), axis.size(), a, axis.size() + 1));
+    const bool ascends = faces[a].back() > faces[a].front();
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      const double low = faces[a][ascends ? i : i + 1], high = faces[a][ascends ? i + 1 : i];
+      if (!(low < axis[i] && axis[i] < high))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the cell {} along axis {} has its centre at {} and its faces at {} and {}; expected "
+                                "the centre between the faces",
+                                i, a, axis[i], faces[a][i], faces[a][i + 1]));
+    }
+  }
+  return faces;
 }
 
 /// 1 for high samples, 0 for low ones, and a layer of 0 around the image.
@@ -91,16 +120,15 @@ Axis padded_axis(const Axis& axis, const std::vector<double>& faces) {
 /// Makes the contour from the sides.
 template <class Real, int N>
 Extraction<N, Real> contour_of_sides(const Grid<N>& grid, Values<std::uint8_t>&& values,
-                                     const PositionOptions& positions, ExtractOptions options) {
+                                     const PositionOptions& positions, ExtractOptions options, const CellFaces& faces) {
   const Progress progress = options.work.progress;
   options.work.progress = detail::part_of(progress, 0.1, 0.7);
-  detail::CellPlaces<N> places{{}, {}, grid.linear, grid.offset};
+  detail::CellPlaces<N> places{{}, faces_of(grid, faces), grid.linear, grid.offset};
   OwnedImage<std::uint8_t, N> sides;
   sides.values = std::move(values);
   sides.grid.linear = grid.linear;
   sides.grid.offset = grid.offset;
   for (int a = 0; a < N; ++a) {
-    places.faces[a] = cell_faces(grid.axes[a]);
     for (std::size_t i = 0; i < grid.axes[a].size(); ++i) places.centres[a].push_back(grid.axes[a][i]);
     sides.grid.axes[a] = padded_axis(grid.axes[a], places.faces[a]);
   }
@@ -133,21 +161,22 @@ template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_cells_with_stats(const Image<T, N>& image,
                                                                                 double isovalue,
                                                                                 const PositionOptions& positions,
-                                                                                const ExtractOptions& given) {
+                                                                                const ExtractOptions& given,
+                                                                                const CellFaces& faces) {
   require_cell_options(isovalue, positions, given);
   ExtractOptions options = given;
   options.close = false;
   const auto start = std::chrono::steady_clock::now();
   Values<std::uint8_t> sides = padded_sides(image, isovalue, detail::part_of(given.work.progress, 0.0, 0.1));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  Extraction<N, Real> result = contour_of_sides<Real, N>(image.grid(), std::move(sides), positions, options);
+  Extraction<N, Real> result = contour_of_sides<Real, N>(image.grid(), std::move(sides), positions, options, faces);
   result.stats.classify_seconds += seconds.count();
   return result;
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                      \
-  template Extraction<N, Real> extract_cells_with_stats<Real, T, N>(const Image<T, N>&, double, \
-                                                                    const PositionOptions&, const ExtractOptions&);
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                           \
+  template Extraction<N, Real> extract_cells_with_stats<Real, T, N>( \
+      const Image<T, N>&, double, const PositionOptions&, const ExtractOptions&, const CellFaces&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

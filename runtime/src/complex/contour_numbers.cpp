@@ -40,14 +40,16 @@ WorkOptions work_of(const ExtractOptions& options, const Progress& progress) {
 void check_complex_options(int dim, double isovalue, const ExtractOptions& options) {
   check_arguments(isovalue, options);
   if (options.ambiguity == Ambiguity::custom)
-    throw Error(ErrorCode::InvalidArgument,
-                "ambiguity resolved by a custom estimator; expected another rule for the contour of a complex");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "ambiguity resolved by a custom estimator; expected another rule for meshes, lattices and divided cells");
   if (dim == 4 && is_estimated(options.ambiguity))
     throw Error(ErrorCode::InvalidArgument,
-                "ambiguity resolved from the data; expected low or high for the contour of a 4D complex");
+                "ambiguity resolved from the data; expected low or high in 4D for meshes, lattices and divided cells");
   if (options.normals != Normals::none && options.normals != Normals::differences)
-    throw Error(ErrorCode::InvalidArgument,
-                "normals by a kernel, by context or to one side; expected differences for the contour of a complex");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "normals by a kernel, by context or to one side; expected differences for meshes, lattices and divided cells");
 }
 
 ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values,

@@ -143,6 +143,61 @@ TEST_F(ImageWriter, NrrdKeepsAWorldMapAndItsFrame) {
   EXPECT_NEAR(ras.grid.axes[2][0], -0.8, 1e-15);
 }
 
+TEST_F(ImageWriter, FiveAxesGoThroughNrrdAndRawFiles) {
+  Grid<5> grid = Grid<5>::unit({3, 4, 2, 3, 2});
+  grid.axes[4] = Axis::uniform(2, -1.5, 0.25);
+  grid.axes[4].name = "log2_sigma";
+  const auto image = noise<float, 5>(grid, 1);
+  ImageInfo info;
+  for (const char* const frame : {"", "LPS"}) {
+    info.world_frame = frame;
+    write_image(image.view(), path("a.nrrd"), info);
+    const std::vector<fs::path> files = {path("a.nrrd")};
+    const auto read = std::get<ReadSeries5dResult>(read_series_to_5d(files));
+    const auto& found = std::get<OwnedImage<float, 5>>(read.image);
+    EXPECT_EQ(found.values, image.values);
+    EXPECT_EQ(found.grid.axes[4].name, "log2_sigma");
+    EXPECT_EQ(found.grid.axes[4][1], -1.25);
+    EXPECT_EQ(found.grid.axes[2][1], 1.0);
+    EXPECT_EQ(read.info.world_frame, frame);
+  }
+  expect_error(ErrorCode::UnsupportedData, "image of 5 axes (3 x 4 x 2 x 3 x 2)", [&] { read_image(path("a.nrrd")); });
+  // others stay as they are
+  write_noise<3>(named_grid<3>(), path("b.nrrd"));
+  const std::vector<fs::path> three = {path("b.nrrd")};
+  EXPECT_TRUE(std::holds_alternative<ReadSeriesResult>(read_series_to_5d(three)));
+  // 32-bit values become double
+  const std::vector<std::int32_t> values(32, (1 << 24) + 1);
+  write_file(path("c.raw"), std::string(reinterpret_cast<const char*>(values.data()), values.size() * 4));
+  const std::vector<fs::path> raw = {path("c.raw")};
+  SeriesOptions options;
+  options.raw = RawLayout{.sizes = {2, 2, 2, 2, 2}, .type = ValueType::int32};
+  const auto whole = std::get<ReadSeries5dResult>(read_series_to_5d(raw, options));
+  EXPECT_EQ(std::get<OwnedImage<double, 5>>(whole.image).values[31], (1 << 24) + 1);
+}
+
+TEST_F(ImageWriter, CellsStayCells) {
+  ImageInfo info;
+  info.samples_are_cells = true;
+  for (const std::string name : {"a.nrrd", "a.vti"}) {
+    const auto check = [&]<int N>(Grid<N> grid) {
+      for (Axis& axis : grid.axes)
+        if (name == "a.vti") axis.unit = "";
+      const auto image = noise<float, N>(grid, 1);
+      write_image(image.view(), path(name), info);
+      const ReadImageResult read = read_image(path(name));
+      expect_same(image, read, 1e-14);
+      EXPECT_TRUE(read.info.samples_are_cells) << name;
+    };
+    check(named_grid<2>());
+    check(named_grid<3>());
+    if (name == "a.nrrd") check(named_grid<4>());
+    info.world_frame = "LPS";
+    check(named_grid<3>());
+    info.world_frame = "";
+  }
+}
+
 TEST_F(ImageWriter, NetcdfKeepsUnevenAxesAndCalendars) {
   Grid<3> grid = named_grid<3>();
   grid.axes[0] = Axis::rectilinear({0, 1, 4, 9});

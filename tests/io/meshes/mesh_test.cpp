@@ -50,7 +50,7 @@ Contour<N, Real> small_contour() {
     contour.simplices.resize(1);
     contour.simplices[0][v] = static_cast<Index>(v);
   }
-  for (int a = 0; a < N; ++a) contour.axis_names[a] = std::string(1, "abcd"[a]);
+  for (int a = 0; a < N; ++a) contour.axis_names[a] = std::string(1, "abcde"[a]);
   contour.axis_units[0] = "mm";
   contour.vertex_attributes = {{"heat", "K", 1, Buffer<double>(N, 0.3)}};
   contour.simplex_attributes = {{"pair", "", 2, {1.5, 2.5}}};
@@ -172,6 +172,23 @@ TEST(Mesh, FourDimensionalContoursGoThroughVtkhdf) {
     const Mesh mesh = random_mesh(3, 4, simplices + 4, simplices, simplices);
     expect_same(written_and_read(mesh, "a.vtkhdf"), mesh);
   }
+}
+
+TEST(Mesh, FiveDimensionalContoursGoThroughVtkhdf) {
+  for (const std::size_t simplices : {0U, 1U, 70000U}) {
+    const Mesh mesh = random_mesh(4, 5, simplices + 5, simplices, simplices);
+    expect_same(written_and_read(mesh, "a.vtkhdf"), mesh);
+  }
+  TempDir dir;
+  const Contour<5, float> contour = small_contour<5, float>();
+  write_mesh(contour, dir / "b.vtkhdf");
+  const Contour<5, double> back = to_contour<5>(read_mesh(dir / "b.vtkhdf"));
+  EXPECT_EQ(back.vertices[4][4], contour.vertices[4][4]);
+  EXPECT_EQ(back.normals[4][4], 1);
+  EXPECT_TRUE(back.simplices == contour.simplices);
+  EXPECT_EQ(back.axis_names[4], "e");
+  expect_error(ErrorCode::UnsupportedFormat, {"4-simplices in 5-space (the contour of a 5D image)"},
+               [&] { write_mesh(contour, dir / "b.ply"); });
 }
 
 TEST(Mesh, GltfKeepsFloatsAndOrder) {

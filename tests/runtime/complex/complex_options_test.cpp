@@ -322,7 +322,7 @@ TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {
   });
   refuse(complex, "expected differences", [](ExtractOptions& o) { o.normals = Normals::sobel; });
   const Complex<4> swept = in_time(complex, std::vector<double>{0.0, 1.0}, std::vector<double>(2 * mesh.points.size()));
-  refuse(swept, "expected low or high for the contour of a 4D complex",
+  refuse(swept, "expected low or high in 4D for meshes, lattices and divided cells",
          [](ExtractOptions& o) { o.ambiguity = Ambiguity::mean; });
 }
 

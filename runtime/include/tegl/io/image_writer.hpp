@@ -55,15 +55,16 @@ StoredGrid stored_grid(const Grid<N>& grid) {
 }  // namespace detail
 
 /// Writes an image layer by layer, for images larger than memory. The file appears when it is complete. Of `info`,
-/// value_unit, value_name, world_frame, variable and axis_directions are written if the format has them. read_image
-/// gives the same values, coordinates, names and units back.
+/// value_unit, value_name, world_frame, variable, axis_directions and samples_are_cells (.nrrd, .vti) are written if
+/// the format has them. read_image (in 5D read_series_to_5d, .nrrd only) gives the same values, coordinates, names and
+/// units back; coordinates of cells in .vti up to rounding.
 ///
-/// .nrrd: NRRD0005 with raw values. Axes must be uniform. The world map becomes space directions; the last of four axes
-/// must be separate from the others then. The frames LPS, LAS and RAS are named in the file (read_image converts RAS
-/// and LAS to LPS). .nc, .cdf: netCDF in the format CDF-5, with the coordinates of each axis. The world map must keep
-/// the axes separate; it becomes part of the coordinates, and its frame is not written. .vti: VTK's ImageData, for
-/// other programs: 2D and 3D, uniform axes; the world map becomes origin, spacing and direction. Names of axes, units
-/// and frames are not written.
+/// .nrrd: NRRD0005 with raw values. Axes must be uniform. The world map becomes space directions; of more than four
+/// axes, those after the third must be separate from the others then. The frames LPS, LAS and RAS are named in the file
+/// (read_image converts RAS and LAS to LPS). .nc, .cdf: netCDF in the format CDF-5, with the coordinates of each axis.
+/// The world map must keep the axes separate; it becomes part of the coordinates, and its frame is not written. .vti:
+/// VTK's ImageData, for other programs: 2D and 3D, uniform axes; the world map becomes origin, spacing and direction.
+/// Names of axes, units and frames are not written.
 ///
 /// Errors: UnsupportedFormat (another extension), UnsupportedData (a grid that the format cannot hold), WriteFailed,
 /// Cancelled, and those of the reader. No file is left after an error.

@@ -25,6 +25,8 @@ using AnyImageN =
                  OwnedImage<std::int16_t, N>, OwnedImage<std::int32_t, N>, OwnedImage<float, N>, OwnedImage<double, N>>;
 /// An image of any value type in 2, 3 or 4 dimensions.
 using AnyImage = std::variant<AnyImageN<2>, AnyImageN<3>, AnyImageN<4>>;
+/// An image in 5 dimensions. Values of at most 16 bits, and float, are float; others are double.
+using AnyImage5d = std::variant<OwnedImage<float, 5>, OwnedImage<double, 5>>;
 
 /// The direction in which the coordinates of an axis increase, if the file defines it: ocean depths and atmospheric
 /// pressures increase downwards.
@@ -43,16 +45,26 @@ struct ImageInfo {
   /// netCDF: coordinates in arrays of two or more dimensions (CF conventions, section 5.2), for tegl/curved.hpp. The
   /// grid has indices on these axes. Empty if the grid's axes are straight.
   std::vector<CurvedAxis> curved = {};
+  /// VTK's rectilinear grids with values of cells: coordinates of the cells' faces by axis, one more than samples; for
+  /// extract_cells. Empty, or without an axis: the faces are midway between the samples.
+  std::vector<std::vector<double>> cell_faces = {};
   /// VTK: values of cells; NRRD: `centers: cell` on all axes. The samples then lie at the centres of cells, which
   /// tegl/cells.hpp makes contours of.
   bool samples_are_cells = false;
-  std::vector<std::string> remarks = {};  ///< DICOM: skipped files, uneven slice distances; coordinates that are not used
+  std::vector<std::string> remarks =
+      {};  ///< DICOM: skipped files, uneven slice distances; coordinates that are not used
 };
 
 /// An image and its metadata.
 struct ReadImageResult {
   AnyImage image = {};  ///< values and grid
   ImageInfo info = {};  ///< metadata
+};
+
+/// An image in 5 dimensions and its metadata.
+struct ReadImage5dResult {
+  AnyImage5d image = {};  ///< values and grid
+  ImageInfo info = {};    ///< metadata
 };
 
 /// A fixed index along one dimension of a netCDF variable.
@@ -87,13 +99,14 @@ struct ReadImageOptions {
 /// ImageInfo::remarks reports both.
 ///
 /// Axes: the fastest axis in the file is axis 0, time is last. Trailing axes of one sample are dropped (in netCDF at
-/// any position); 2, 3 or 4 axes must remain. Units are those of the file. Orientations that couple axes become
-/// Grid::linear and offset, exactly, even if sheared; other orientations become part of the axes. NRRD spaces RAS and
-/// LAS are converted to LPS. Values are those stored; uint32, int64 and uint64 become int32 if all values fit, else
-/// double. NIfTI slope and intercept and netCDF packing are applied. Missing values of netCDF become NaN, in float, or
-/// in double if float cannot represent the values. netCDF variables on curved grids, with longitude and latitude (or a
-/// vertical coordinate) in arrays of two or more dimensions, have indices on those axes, and the arrays in
-/// ImageInfo::curved; longitudes are continued across 360 degrees, and samples with unknown coordinates are missing.
+/// any position); 2, 3 or 4 axes must remain (read_series_to_5d of tegl/io/series.hpp reads 5). Units are those of the
+/// file. Orientations that couple axes become Grid::linear and offset, exactly, even if sheared; other orientations
+/// become part of the axes. NRRD spaces RAS and LAS are converted to LPS. Values are those stored; uint32, int64 and
+/// uint64 become int32 if all values fit, else double. NIfTI slope and intercept and netCDF packing are applied.
+/// Missing values of netCDF become NaN, in float, or in double if float cannot represent the values. netCDF variables
+/// on curved grids, with longitude and latitude (or a vertical coordinate) in arrays of two or more dimensions, have
+/// indices on those axes, and the arrays in ImageInfo::curved; longitudes are continued across 360 degrees, and samples
+/// with unknown coordinates are missing.
 ///
 /// Errors, all naming the file: FileNotFound, MalformedFile (damaged, truncated or inconsistent; compressed data are
 /// checked to the last byte), UnsupportedFormat, UnsupportedData (colours, vectors, other than 2 to 4 axes; a file of

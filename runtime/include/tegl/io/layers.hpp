@@ -48,7 +48,7 @@ struct OpenLayersResult {
 
 /// The layout of a headerless raw file: contiguous values, axis 0 fastest.
 struct RawLayout {
-  std::vector<std::size_t> sizes = {};       ///< sizes of 2 to 4 axes
+  std::vector<std::size_t> sizes = {};       ///< sizes of 2 to 4 axes; 5 for read_series_to_5d
   std::optional<ValueType> type = {};        ///< required; one that images in memory may have
   std::uint64_t offset = 0;                  ///< bytes before the first value
   bool big_endian = false;                   ///< byte order of values

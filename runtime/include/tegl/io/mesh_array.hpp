@@ -16,12 +16,12 @@ namespace tegl {
 
 namespace detail {
 template <class T>
-using HeldNumbers =
-    HeldArray<T, Buffer<T>, Buffer<std::array<T, 2>>, Buffer<std::array<T, 3>>, Buffer<std::array<T, 4>>>;
+using HeldNumbers = HeldArray<T, Buffer<T>, Buffer<std::array<T, 2>>, Buffer<std::array<T, 3>>,
+                              Buffer<std::array<T, 4>>, Buffer<std::array<T, 5>>>;
 }  // namespace detail
 
 /// Numbers in one contiguous block of memory, with the functions of a std::vector, such as data, size, begin, end, back
-/// and []. Takes over a Buffer of numbers, or of rows of 2 to 4 numbers as a contour has them, without a copy.
+/// and []. Takes over a Buffer of numbers, or of rows of 2 to 5 numbers as a contour has them, without a copy.
 template <class T>
 class MeshArray : public detail::HeldNumbers<T> {
   using Held = detail::HeldNumbers<T>;
@@ -31,7 +31,7 @@ class MeshArray : public detail::HeldNumbers<T> {
   MeshArray(Buffer<T> numbers) noexcept : Held(std::move(numbers)) {}  ///< moves the numbers
   /// Moves rows; number i of row r becomes number r * Width + i.
   template <std::size_t Width>
-  requires(Width >= 2 && Width <= 4) MeshArray(Buffer<std::array<T, Width>> rows)
+  requires(Width >= 2 && Width <= 5) MeshArray(Buffer<std::array<T, Width>> rows)
   noexcept : Held(std::move(rows)) {}
   MeshArray(std::initializer_list<T> numbers) : MeshArray(Buffer<T>(numbers)) {}  ///< copies the numbers
   explicit MeshArray(std::size_t count, T number = T()) : MeshArray(Buffer<T>(count, number)) {}  ///< equal numbers
@@ -79,7 +79,7 @@ class MeshArray : public detail::HeldNumbers<T> {
   /// The numbers as rows of Width; numbers that do not fill a row are left out. Does not copy rows of this width that
   /// were taken over.
   template <std::size_t Width>
-  requires(Width >= 2 && Width <= 4) [[nodiscard]] Buffer<std::array<T, Width>> rows() && {  ///< becomes empty
+  requires(Width >= 2 && Width <= 5) [[nodiscard]] Buffer<std::array<T, Width>> rows() && {  ///< becomes empty
     Buffer<std::array<T, Width>> result;
     if (auto* const held = this->template held_as<Buffer<std::array<T, Width>>>()) {
       result = std::move(*held);

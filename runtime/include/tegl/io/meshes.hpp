@@ -21,7 +21,8 @@
 
 namespace tegl {
 
-/// A mesh in the form that files store: d-simplices in space_dim-space. A 4D contour has d = 3, space_dim = 4.
+/// A mesh in the form that files store: d-simplices in space_dim-space. A 4D contour has d = 3, space_dim = 4; a 5D
+/// contour d = 4, space_dim = 5.
 struct Mesh {
   int dim = 2;                                     ///< dimension of the simplices
   int space_dim = 3;                               ///< number of coordinates of a vertex
@@ -84,41 +85,41 @@ struct MeshView {
   MeshView(const Mesh& mesh);  ///< all of the mesh
   /// All of the contour; `isovalue` is not set.
   template <int N, Coordinate Real>
-  requires DimensionBetween<N, 2, 4> MeshView(const Contour<N, Real>& contour);
+  requires DimensionBetween<N, 2, 5> MeshView(const Contour<N, Real>& contour);
   /// Deleted: the view of a temporary would dangle.
   MeshView(const Mesh&& mesh) = delete;
   /// Deleted: the view of a temporary would dangle.
   template <int N, Coordinate Real>
-  requires DimensionBetween<N, 2, 4> MeshView(const Contour<N, Real>&& contour)
+  requires DimensionBetween<N, 2, 5> MeshView(const Contour<N, Real>&& contour)
   = delete;
 };
 
 /// Converts a contour to a mesh with names, units, normals and attributes; `single_precision` is set for Real = float.
 /// Copies all data. write_mesh also takes contours and needs no Mesh.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Mesh to_mesh(const Contour<N, Real>& contour);
 /// Takes the contour's memory over: simplices, attributes and, for Real = double, coordinates and normals are not
 /// copied.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Mesh to_mesh(Contour<N, Real>&& contour);
 /// Converts a mesh with dim = N - 1 and space_dim = N to a contour. Planar meshes read from 3D files (dim 1, all z = 0)
 /// become N = 2; their normals lose z. Throws UnsupportedData for other meshes.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, double> to_contour(const Mesh& mesh);
 /// Takes the mesh's memory over: attributes, and arrays that hold rows as a contour has them. Other arrays are freed as
 /// soon as they are copied (but arrays of planar meshes with the mesh). After UnsupportedData the mesh is unchanged.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, double> to_contour(Mesh&& mesh);
 
 /// The meshes that a file format supports.
 struct MeshFileFormat {
   std::string_view extension = {};  ///< with the dot, in lower case
   int least_dim = 0;                ///< minimum dimension of simplices
-  int most_dim = 0;                 ///< maximum dimension; 3: in 4-space
+  int most_dim = 0;                 ///< maximum dimension; 3: in 4-space; 4: in 5-space
 };
 
 /// The formats of read_mesh and write_mesh, by extension.
@@ -129,10 +130,12 @@ struct MeshFileFormat {
 
 /// Writes a mesh or a contour; the extension selects the format. Supported meshes: .ply, .obj (text; both lossless) and
 /// .gltf/.glb (coordinates as float): segments and triangles in the plane or in space; .stl (binary, float): triangles
-/// only; .vtkhdf (lossless): segments, triangles and 4D contours, as tetrahedra with t as a point array.
+/// only; .vtkhdf (lossless): segments, triangles, 4D contours, as tetrahedra with t as a point array, and 5D contours.
+/// VTK has no 4-simplices: those of a 5D contour are poly-vertex cells of 5 points, with t and u as point arrays.
 ///
 /// Normals: nx, ny, nz (.ply), vn (.obj), NORMAL (.gltf/.glb; 0 becomes (0, 0, 1), as the format requires length 1),
-/// the point arrays Normals and, in 4-space, normal_t (.vtkhdf). .stl stores the normals of its triangles instead.
+/// the point arrays Normals and, in 4-space and 5-space, normal_t and normal_u (.vtkhdf). .stl stores the normals of
+/// its triangles instead.
 ///
 /// Attributes: properties of vertices and of faces or edges (.ply), point and cell arrays (.vtkhdf; both as double,
 /// with names and units), and _NAME attributes of vertices (.gltf/.glb; as float, of up to four numbers; wider
@@ -151,7 +154,7 @@ inline void write_mesh(const Mesh& mesh, const std::filesystem::path& path, cons
 }
 /// As above, also for temporaries.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 void write_mesh(const Contour<N, Real>& contour, const std::filesystem::path& path, const WriteOptions& options = {}) {
   write_mesh(MeshView(contour), path, options);
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "tegl/io/layers.hpp"
@@ -67,6 +68,16 @@ struct OpenSeriesResult : OpenLayersResult {
 /// `coordinates` and `step`; a unit that the files' unit does not convert to), and those of read_image.
 [[nodiscard]] ReadSeriesResult read_series(std::span<const std::filesystem::path> files,
                                            const SeriesOptions& options = {});
+
+/// An image in 5 dimensions read from one or several files.
+struct ReadSeries5dResult : ReadImage5dResult {
+  std::vector<std::filesystem::path> files = {};  ///< as in ReadSeriesResult
+};
+
+/// As read_series, also for images of 5 axes: a NRRD or NumPy file, a raw file, or several files of 4 axes each.
+/// Errors: UnsupportedData for more than 5 axes, and those of read_series.
+[[nodiscard]] std::variant<ReadSeriesResult, ReadSeries5dResult> read_series_to_5d(
+    std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
 /// Opens a series to be read layer by layer, one file per layer, for images larger than memory. Values as in
 /// open_layers (uint32, int64 and uint64 as double). Memory: one file. Errors: those of read_series, immediately; and
