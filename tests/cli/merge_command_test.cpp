@@ -138,7 +138,9 @@ TEST_F(MergeCommand, SamplesAreCellsIfTheFileSaysSo) {
       arguments.insert(arguments.end(), option.begin(), option.end());
       const RunResult result = run(arguments);
       EXPECT_EQ(result.exit, are_cells ? 2 : 0) << centers << " " << option[0] << result.err;
-      if (are_cells) EXPECT_THAT(result.err, HasSubstr("--samples-are file with " + option[0]));
+      if (are_cells) {
+        EXPECT_THAT(result.err, HasSubstr("--samples-are file with " + option[0]));
+      }
     }
     // filtered cells are cells
     for (const char* const output : {"f.nrrd", "f.vti"}) {
