@@ -173,7 +173,8 @@ TEST_F(ImageWriter, FiveAxesGoThroughNrrdAndRawFiles) {
   SeriesOptions options;
   options.raw = RawLayout{.sizes = {2, 2, 2, 2, 2}, .type = ValueType::int32};
   const auto whole = std::get<ReadSeries5dResult>(read_series_to_5d(raw, options));
-  EXPECT_EQ(std::get<OwnedImage<double, 5>>(whole.image).values[31], (1 << 24) + 1);
+  const auto& doubles = std::get<OwnedImage<double, 5>>(whole.image);
+  EXPECT_EQ(doubles.values[31], (1 << 24) + 1);
 }
 
 TEST_F(ImageWriter, CellsStayCells) {
