@@ -156,8 +156,8 @@ inline Mesh random_mesh(int dim, int space_dim, std::size_t vertices, std::size_
     mesh.normals.push_back(i % 7 == 0 ? 0.0 : coordinate(random) / 1000);
   for (std::size_t i = 0; i < simplices * static_cast<std::size_t>(dim + 1); ++i)
     mesh.simplices.push_back(static_cast<Index>(random() % std::max<std::size_t>(1, vertices)));
-  const std::array<const char*, 4> names = {"lon", "lat", "depth below", "time"};
-  const std::array<const char*, 4> units = {"degrees_east", "degrees_north", "m", "months since 1900-01-01"};
+  const std::array<const char*, 5> names = {"lon", "lat", "depth below", "time", "log2_sigma"};
+  const std::array<const char*, 5> units = {"degrees_east", "degrees_north", "m", "months since 1900-01-01", ""};
   mesh.axis_names.assign(names.begin(), names.begin() + space_dim);
   mesh.axis_units.assign(units.begin(), units.begin() + space_dim);
   return mesh;
