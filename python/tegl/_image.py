@@ -325,7 +325,7 @@ class Image:
             coords = self.coords[axis]
             if axis in self.curved:  # `coords` are indices
                 known = self.curved[axis][np.isfinite(self.curved[axis])]
-                coords = [known.min(), known.max()] if known.size else []
+                coords = np.array([known.min(), known.max()]) if known.size else known
             ends = f"{coords[0]:g} to {coords[-1]:g}" if len(coords) > 1 else "".join(f"{one:g}" for one in coords)
             return f"{shown(self.axis_names[axis]) or f'axis {axis}'} {ends}{unit}{' (curved)' if axis in self.curved else ''}"
 
