@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The contours of mesh cells, by tile::FacetBuilder. In the compact triangulation of 3-cells, polygons are fans from
-// one of their own vertices; hexahedra have the contours of the cube's own table. Compact 4-cells do not exist: the
-// chords of polygons in 3-faces would have to depend on the mesh's numbering of points.
+// one of their own vertices; hexahedra have the contours of the cube's own table. Compact 4-cells have no tables: the
+// chords of polygons in 3-faces depend on the mesh's numbering of points, so the runtime builds them.
 #pragma once
 
 #include <array>

@@ -8,7 +8,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
+#include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "complex/cell_signatures.hpp"
 
@@ -70,8 +72,8 @@ void resolve(const CellGroup& group, const ResolvedCells& resolved, std::span<co
   }
 }
 
-void finish(const CellGroup& group, const CellCases& cases, std::span<const double> values, ActiveBlock& block) {
-  if (cases.resolved() != nullptr) resolve(group, *cases.resolved(), values, block);
+/// Adds up the sizes of the cells' contours.
+void add_sizes(const CellCases& cases, ActiveBlock& block) {
   if (cases.is_plain()) {
     for (const ActiveCell& cell : block.cells) {
       const CellCases::Case& of = cases.of_signature(cell.signature);
@@ -87,6 +89,54 @@ void finish(const CellGroup& group, const CellCases& cases, std::span<const doub
     block.shared += list.shared_vertices;
     block.own += list.added() - list.shared_vertices;
   }
+}
+
+/// Adds up the sizes, or lists the keys of contours that are not built yet.
+void finish(const CellGroup& group, const CellCases& cases, std::span<const double> values, ActiveBlock& block) {
+  if (cases.resolved() != nullptr) resolve(group, *cases.resolved(), values, block);
+  if (cases.compact() == nullptr) return add_sizes(cases, block);
+  block.keys.reserve(block.cells.size());
+  for (const ActiveCell& cell : block.cells)
+    block.keys.push_back(cases.compact()->key(cell.signature, group.cell(cell.cell)));
+}
+
+/// Keys in ascending order, each once.
+void make_distinct(std::vector<CompactKey>& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+/// Builds the compact contours of 4D cells.
+void build_compact(const CellTables& tables, std::vector<ActiveBlock>& blocks, const WorkOptions& work) {
+  const auto of_block = [&](std::size_t b) { return tables.of_group[blocks[b].group].compact(); };
+  if (std::all_of(tables.of_group.begin(), tables.of_group.end(),
+                  [](const CellCases& cases) { return cases.compact() == nullptr; }))
+    return;
+  std::vector<std::vector<CompactKey>> distinct(blocks.size());
+  for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.3),
+                 [&](std::size_t b, std::size_t, std::size_t) {
+                   distinct[b] = blocks[b].keys;
+                   make_distinct(distinct[b]);
+                 });
+  for (std::size_t g = 0; g < tables.of_group.size(); ++g) {
+    if (tables.of_group[g].compact() == nullptr) continue;
+    std::vector<CompactKey> keys;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      if (blocks[b].group == g) keys.insert(keys.end(), distinct[b].begin(), distinct[b].end());
+    make_distinct(keys);
+    const double groups = static_cast<double>(tables.of_group.size()), at = static_cast<double>(g);
+    tables.of_group[g].compact()->build(std::move(keys), {work.threads, part_of(work.progress, 0.3 + 0.5 * at / groups,
+                                                                                0.3 + 0.5 * (at + 1) / groups)});
+  }
+  for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.8, 1.0),
+                 [&](std::size_t b, std::size_t, std::size_t) {
+                   ActiveBlock& block = blocks[b];
+                   if (of_block(b) == nullptr) return;
+                   for (std::size_t i = 0; i < block.cells.size(); ++i)
+                     block.cells[i].variant = of_block(b)->variant(block.keys[i]);
+                   block.keys = {};
+                   add_sizes(tables.of_group[block.group], block);
+                 });
 }
 
 }  // namespace
@@ -120,7 +170,7 @@ std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTa
   const std::vector<CellRange> ranges = ranges_of(cells);
   std::vector<ActiveBlock> blocks(ranges.size());
   for_each_block(
-      ranges.size(), 1, work.threads, work.progress, [] { return Scratch(); },
+      ranges.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5), [] { return Scratch(); },
       [&](std::size_t b, std::size_t, std::size_t, Scratch& scratch) {
         const auto& [group, from, to] = ranges[b];
         blocks[b].group = group;
@@ -130,6 +180,7 @@ std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTa
           scan_blocks(edges->blocks[group], cells.groups[group], from, to, bits, scratch, blocks[b]);
         finish(cells.groups[group], tables.of_group[group], values, blocks[b]);
       });
+  build_compact(tables, blocks, {work.threads, part_of(work.progress, 0.5, 1.0)});
   return blocks;
 }
 
@@ -152,7 +203,7 @@ std::vector<ActiveBlock> blocks_of_cells(const CellGroups& cells, const CellTabl
       parts.push_back({g, before, at, std::min(end, at + std::min(kCells, end - at))});
   }
   std::vector<ActiveBlock> blocks(parts.size());
-  for_each_item(parts.size(), work.threads, work.progress, [&](std::size_t b) {
+  for_each_item(parts.size(), work.threads, part_of(work.progress, 0.0, 0.5), [&](std::size_t b) {
     const Part& part = parts[b];
     const CellGroup& group = cells.groups[part.group];
     const unsigned full = (1u << group.corner_count) - 1;
@@ -167,6 +218,7 @@ std::vector<ActiveBlock> blocks_of_cells(const CellGroups& cells, const CellTabl
     }
     finish(group, tables.of_group[part.group], values, blocks[b]);
   });
+  build_compact(tables, blocks, {work.threads, part_of(work.progress, 0.5, 1.0)});
   return blocks;
 }
 

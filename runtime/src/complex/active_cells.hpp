@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "complex/cell_contour.hpp"
+#include "complex/cell_cases.hpp"
 #include "complex/complex_edges.hpp"
 #include "tegl/work.hpp"
 
@@ -30,15 +30,16 @@ struct PointBits {
 struct ActiveCell {
   Index cell;               ///< in its group
   std::uint16_t signature;  ///< bit v: corner v is high
-  std::uint16_t variant;    ///< CellCases::of
+  std::uint32_t variant;    ///< CellCases::of
 };
 
 /// The active cells among consecutive cells of one group, and the sizes of their contours.
 struct ActiveBlock {
   std::size_t group = 0;
   std::vector<ActiveCell> cells;
-  std::vector<Index> missing;   ///< cells with missing corners
-  std::uint64_t crossings = 0;  ///< crossed edges, counted in each cell
+  std::vector<Index> missing;    ///< cells with missing corners
+  std::vector<CompactKey> keys;  ///< of compact 4D cells, until their contours are built
+  std::uint64_t crossings = 0;   ///< crossed edges, counted in each cell
   std::uint64_t simplices = 0;
   std::uint64_t shared = 0;  ///< vertices in common 3-faces, counted in each cell
   std::uint64_t own = 0;     ///< vertices of the cells' own

@@ -3,13 +3,13 @@
 // Lists the crossed edges and, if all vertices are on edges, the simplices of each signature of a shape.
 #include <algorithm>
 
-#include "complex/cell_contour.hpp"
+#include "complex/cell_cases.hpp"
 
 namespace tegl::detail {
 
 void CellCases::add_cases() {
   const unsigned signatures = 1u << table_->corner_count;
-  is_plain_ = resolved_ == nullptr && table_->max_added == 0;
+  is_plain_ = resolved_ == nullptr && compact_ == nullptr && table_->max_added == 0;
   cases_.resize(signatures);
   for (unsigned s = 0; s < signatures; ++s) {
     Case& of = cases_[s];

@@ -36,6 +36,8 @@ struct CellGroup {
   tables::CellShape shape;
   std::size_t corner_count;    ///< of a cell
   std::vector<Index> corners;  ///< #cells x corner_count
+  /// Prisms over cells at several times: both cells at an end, which lies in a layer, have its corners in one order.
+  bool is_swept = false;
 
   [[nodiscard]] std::size_t size() const noexcept { return corners.size() / corner_count; }
   [[nodiscard]] const Index* cell(std::size_t i) const noexcept { return corners.data() + i * corner_count; }

@@ -24,6 +24,10 @@ struct ComplexCaps<N>::Facet {
   std::array<Index, 8> points;
   unsigned high = 0;
   bool flip;
+  /// Of compact 4D cells: the cell's corners and table, and the contour's triangles in the facet as edges of the cell.
+  const Index* cell = nullptr;
+  const tables::CellTable* table = nullptr;
+  std::vector<FaceFillings::Triangle> triangles = {};
 
   [[nodiscard]] bool is_high(unsigned i) const noexcept { return (high >> i & 1u) != 0; }
 };
@@ -50,7 +54,15 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       facet.high |= 1u << v;
       corners_.push_back(facet.points[v]);
     }
-    if (facet.high != 0) add_facet(facet);
+    if (facet.high == 0) continue;
+    if (const CellCases& cases = numbers.cases(g); cases.compact() != nullptr) {
+      unsigned signature = 0;
+      for (unsigned v = 0; v < group.corner_count; ++v) signature |= (values[corners[v]] >= isovalue ? 1u : 0u) << v;
+      facet.cell = corners;
+      facet.table = &cases.table();
+      facet.triangles = cases.compact()->in_facet(number, cases.compact()->key(signature, corners));
+    }
+    add_facet(facet);
   }
   std::sort(corners_.begin(), corners_.end());
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
@@ -176,6 +188,7 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
   // the contour's polygons: their segments, one after the other
   std::map<CapVertex, CapVertex> next;
   for (const auto& [from, to] : segments) next[from] = to;
+  add_compact(facet, next, boundary.triangles);
   while (!next.empty()) {
     Part loop;
     for (auto at = next.begin(); at != next.end();) {
@@ -184,6 +197,8 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
       next.erase(at);
       at = next.find(to);
     }
+    boundary.parts.push_back(loop);
+    if (facet.table != nullptr) continue;
     std::vector<Index> key;
     for (const CapVertex v : loop) key.push_back(static_cast<Index>(v.number()));
     if (const Index centre = numbers_.polygon(key); centre == kNoPoint)
@@ -191,9 +206,32 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
     else
       for (std::size_t i = 0; i < loop.size(); ++i)
         boundary.triangles.push_back({CapVertex::of_contour(centre), loop[i], loop[(i + 1) % loop.size()]});
-    boundary.parts.push_back(std::move(loop));
   }
   return boundary;
+}
+
+/// All triangles have the same orientation in the facet, so one side of the contour fixes it.
+template <int N>
+void ComplexCaps<N>::add_compact(const Facet& facet, const std::map<CapVertex, CapVertex>& next,
+                                 std::vector<Triangle>& triangles) const {
+  const std::size_t first = triangles.size();
+  for (const FaceFillings::Triangle& edges : facet.triangles) {
+    Triangle& t = triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+      t[i] = on_edge(facet.cell[facet.table->edges[2 * edges[i]]], facet.cell[facet.table->edges[2 * edges[i] + 1]]);
+  }
+  const auto is_side = [&](CapVertex from, CapVertex to) { return next.at(from) == to; };
+  const auto is_reversed = [&](const Triangle& t) {
+    return is_side(t[1], t[0]) || is_side(t[2], t[1]) || is_side(t[0], t[2]);
+  };
+  const auto is_along = [&](const Triangle& t) {
+    return is_side(t[0], t[1]) || is_side(t[1], t[2]) || is_side(t[2], t[0]);
+  };
+  const std::span<Triangle> added = std::span(triangles).subspan(first);
+  const auto at_border =
+      std::find_if(added.begin(), added.end(), [&](const Triangle& t) { return is_along(t) != is_reversed(t); });
+  if (at_border == added.end() || !is_reversed(*at_border)) return;
+  for (Triangle& t : added) std::swap(t[1], t[2]);
 }
 
 template <int N>

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "complex/border_facets.hpp"
@@ -71,6 +72,8 @@ class ComplexCaps {
   void add_facet(const Facet& facet);
   void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
+  void add_compact(const Facet& facet, const std::map<CapVertex, CapVertex>& next,
+                   std::vector<Triangle>& triangles) const;
   void add_regions(const Facet& facet);
   [[nodiscard]] CapVertex on_edge(Index p, Index q) const;
   /// Adds the high parts of a polygon with corners `around`, and the contour's segments in it, against their direction

@@ -26,7 +26,11 @@ CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOpti
     if (is_estimated(options.ambiguity))
       resolved = std::make_shared<const ResolvedCells>(group.shape, table, options.triangulation,
                                                        face_rule(options.ambiguity), isovalue);
-    tables.of_group.emplace_back(table, options.ambiguity == Ambiguity::high, std::move(resolved));
+    std::shared_ptr<CompactCells> compact;
+    const bool high_connected = options.ambiguity == Ambiguity::high;
+    if (table.dim == 4 && options.triangulation == Triangulation::compact)
+      compact = std::make_shared<CompactCells>(group.shape, high_connected, group.is_swept);
+    tables.of_group.emplace_back(table, high_connected, std::move(resolved), std::move(compact));
   }
   return tables;
 }

@@ -61,7 +61,8 @@ std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumb
     const CellGroup& group = ComplexAccess::cells(complex).groups[numbers.blocks()[b].group];
     const CellCases& cases = numbers.cases(numbers.blocks()[b].group);
     for (const ActiveCell& cell : numbers.blocks()[b].cells)
-      if (cases.of(cell.signature, cell.variant).list().side_vertices > 0)
+      if (const tables::CellList& list = cases.of(cell.signature, cell.variant).list();
+          list.side_vertices > 0 || list.collar_vertices > 0)
         points.insert(points.end(), group.cell(cell.cell), group.cell(cell.cell) + group.corner_count);
   }
   return points;
@@ -260,7 +261,7 @@ class ComplexWriter {
     }
   }
 
-  void write_own_points(const CellCases& cases, unsigned variant, const Index* corners, const CellContour& contour,
+  void write_own_points(const CellCases& cases, std::uint32_t variant, const Index* corners, const CellContour& contour,
                         const ContourNumbers::CellVertices& vertices) const noexcept {
     const tables::CellTable& table = cases.table();
     const tables::CellList& list = contour.list();
@@ -268,8 +269,8 @@ class ComplexWriter {
       const std::uint64_t mask = contour.mask(j);
       const Index number = vertices[table.edge_count + j];
       const bool is_side = j >= unsigned{list.shared_vertices} + list.cone_vertices;
-      if (N == 3 && is_side && variant > 1) {
-        write_side(*cases.resolved(), corners, mask, number);
+      if (is_side && has_rays(cases, variant)) {
+        write_side(cases, corners, mask, number);
         continue;
       }
       std::array<Index, 32> points;  // ascending, so that the sum does not depend on the cell's numbering
@@ -282,21 +283,38 @@ class ComplexWriter {
       for (std::uint32_t v = 0; v < table.corner_count; ++v)
         if ((mask >> v & 1u) != 0) mean.add_corner(corners[v]);
       write(number, mean);
-      if (is_side) contour_.vertices[number] = inwards(table, corners, mean);
+      const bool is_collar = j >= list.added() - list.collar_vertices;
+      if (is_side) contour_.vertices[number] = inwards(table, corners, mean, is_collar ? 0.25 : 0.5);
     }
   }
 
-  /// A side vertex of a hexahedron that is resolved from the data: its place in the unit cube, mapped by the trilinear
-  /// map of the corners.
-  void write_side(const ResolvedCells& resolved, const Index* corners, std::uint64_t mask,
-                  Index number) const noexcept {
-    std::array<double, 8> values;
-    for (std::size_t v = 0; v < 8; ++v) values[v] = complex_.values()[corners[v]];
-    const std::array<double, 3> place = resolved.place(mask, values, epsilon_);
+  /// Whether side vertices are where a cube or a tesseract of an image has them.
+  [[nodiscard]] static bool has_rays(const CellCases& cases, std::uint32_t variant) noexcept {
+    if (N == 3) return cases.resolved() != nullptr && variant > 1;
+    return cases.compact() != nullptr && cases.compact()->is_of_image(variant);
+  }
+
+  /// The place in the unit cube of a side vertex, on a ray on which the interpolant has the isovalue.
+  [[nodiscard]] std::array<double, N> place_on_ray(const CellCases& cases, std::uint64_t mask,
+                                                   std::array<double, std::size_t{1} << N> values) const noexcept {
+    if constexpr (N == 3) {
+      return cases.resolved()->place(mask, values, epsilon_);
+    } else if constexpr (N == 4) {
+      return CompactCells::place(cases.table(), mask, values, isovalue_, epsilon_);
+    } else {
+      return {};  // squares have no side vertices
+    }
+  }
+
+  /// A side vertex of a cube or a tesseract: its place in the unit cube, mapped by the multilinear map of the corners.
+  void write_side(const CellCases& cases, const Index* corners, std::uint64_t mask, Index number) const noexcept {
+    std::array<double, std::size_t{1} << N> values;
+    for (std::size_t v = 0; v < values.size(); ++v) values[v] = complex_.values()[corners[v]];
+    const std::array<double, N> place = place_on_ray(cases, mask, values);
     Point point{}, gradient{};
-    for (std::size_t v = 0; v < 8; ++v) {
+    for (std::size_t v = 0; v < values.size(); ++v) {
       double weight = 1.0;
-      for (std::size_t a = 0; a < 3; ++a) weight *= (v >> a & 1u) != 0 ? place[a] : 1.0 - place[a];
+      for (std::size_t a = 0; a < N; ++a) weight *= (v >> a & 1u) != 0 ? place[a] : 1.0 - place[a];
       for (std::size_t i = 0; i < N; ++i) {
         point[i] += weight * complex_.points()[corners[v]][i];
         if (gradients_ != nullptr) gradient[i] += weight * gradients_->at(corners[v])[i];
@@ -304,7 +322,7 @@ class ComplexWriter {
     }
     Vertex& vertex = contour_.vertices[number];
     for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(point[i]);
-    if (is_layered_) keep_between(corners[0], corners[7], vertex);
+    if (is_layered_) keep_between(corners[0], corners[values.size() - 1], vertex);
     if (gradients_ != nullptr) contour_.normals[number] = normal_of(gradient);
   }
 
@@ -314,13 +332,14 @@ class ComplexWriter {
     vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
   }
 
-  /// The midpoint of a point and the cell's centre.
-  [[nodiscard]] Vertex inwards(const tables::CellTable& table, const Index* corners, const Mean& point) const noexcept {
+  /// A part of the way from a point to the cell's centre.
+  [[nodiscard]] Vertex inwards(const tables::CellTable& table, const Index* corners, const Mean& point,
+                               double part) const noexcept {
     Mean centre(*this);
     for (std::uint32_t v = 0; v < table.corner_count; ++v) centre.add_corner(corners[v]);
     const Point a = point.mean(), b = centre.mean();
     Vertex vertex;
-    for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>((a[i] + b[i]) / 2);
+    for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(a[i] * (1 - part) + b[i] * part);
     if (is_layered_) keep_between(corners[0], corners[table.corner_count - 1], vertex);
     return vertex;
   }

@@ -27,7 +27,7 @@ void check_times(std::span<const double> times) {
 
 /// The prisms over the intervals of a group, interval by interval.
 detail::CellGroup prisms_over(const detail::CellGroup& group, std::size_t points, std::size_t intervals) {
-  detail::CellGroup prisms{detail::prism_of(group.shape), 2 * group.corner_count, {}};
+  detail::CellGroup prisms{detail::prism_of(group.shape), 2 * group.corner_count, {}, true};
   prisms.corners.reserve(2 * group.corners.size() * intervals);
   for (std::size_t k = 0; k < intervals; ++k)
     for (std::size_t c = 0; c < group.size(); ++c)

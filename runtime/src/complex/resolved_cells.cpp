@@ -8,7 +8,7 @@
 #include <span>
 
 #include "ambiguity/face_decision.hpp"
-#include "complex/cell_contour.hpp"
+#include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
 #include "image/cube_heights.hpp"
 #include "tegl/generated/tables.hpp"

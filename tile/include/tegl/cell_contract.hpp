@@ -16,9 +16,10 @@
 //
 // Positions of added vertices. Vertex j has the mask CellTable::masks[first_mask + j]: bit v is corner v, bit
 // corner_count + e is the point of edge e. A barycentre is the mean of the points of its mask. A side vertex is the
-// midpoint of the cell's centre (the mean of all corners) and the mean of the corners and points of its mask. The mask
-// of a vertex in a 3-face is the set of points of a polygon in that face, and identifies it: no two polygons of a cell
-// have the same points.
+// midpoint of the cell's centre (the mean of all corners) and the mean of the corners and points of its mask. A collar
+// vertex, which no emitted table has, is a quarter of the way from the mean to the centre. The mask of a vertex in a
+// 3-face is the set of points of a polygon in that face, and identifies it: no two polygons of a cell have the same
+// points.
 //
 // Orientation. The positive side of a simplex faces the high corners, if the cell's corners are oriented as the
 // reference corners are: det[v_1 - v_0, ..., v_{n-1} - v_0, d] > 0 for a vector d towards high.
@@ -64,11 +65,11 @@ struct CellList {
   std::uint8_t shared_vertices;  ///< number of added vertices in 3-faces (4D)
   std::uint8_t cone_vertices;    ///< number of barycentres of the cell's own facets
   std::uint8_t side_vertices;    ///< number of side vertices
-  std::uint8_t reserved;         ///< 0
+  std::uint8_t collar_vertices;  ///< number of collar vertices, the last ones; 0 in emitted tables
 
   /// Number of added vertices.
   [[nodiscard]] constexpr unsigned added() const noexcept {
-    return unsigned{shared_vertices} + cone_vertices + side_vertices;
+    return unsigned{shared_vertices} + cone_vertices + side_vertices + collar_vertices;
   }
 };
 
