@@ -338,7 +338,7 @@ TEST_F(Contour, OfACurvedGridHasItsCoordinates) {
   EXPECT_EQ(run_tegl({"info", model, "--json"}).json()["curved"], nlohmann::json({"lon", "lat"}));
   // what does not know such grids says so
   for (const std::vector<std::string>& more :
-       {std::vector<std::string>{"--stream"}, {"--pick", "1,1,1"}, {"--facets"}, {"--positions", "relaxed"}}) {
+       {std::vector<std::string>{"--stream"}, {"--facets"}, {"--scale-space", "1,2"}, {"--triangulation", "fan"}}) {
     std::vector<std::string> arguments = {"contour", model, "--iso", "1.5", "-o", path("x.vtkhdf")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult refused = run_tegl(arguments);
@@ -347,8 +347,6 @@ TEST_F(Contour, OfACurvedGridHasItsCoordinates) {
   }
   EXPECT_THAT(run_tegl({"contour", model, "--iso", "1.5", "--periodic", "xi", "-o", path("x.vtkhdf")}).err,
               HasSubstr("curved grid"));
-  EXPECT_THAT(run_tegl({"slice", model, "--iso", "1.5", "--at", "time=0.5", "-o", path("x.ply")}).err,
-              HasSubstr("--index-grid"));
   // folds are counted
   EXPECT_EQ(run_tegl({"contour", model, "--iso", "1.5", "-o", path("x.vtkhdf"), "--json"}).json()["folded_cells"], 0);
   EXPECT_EQ(components.json()["folded_cells"], 0);
@@ -359,6 +357,59 @@ TEST_F(Contour, OfACurvedGridHasItsCoordinates) {
   const RunResult no_grid = run_tegl({"contour", straight, "--iso", "128", "--index-grid", "-o", path("x.vtkhdf")});
   EXPECT_EQ(no_grid.exit, 2);
   EXPECT_THAT(no_grid.err, HasSubstr("--index-grid with"));
+}
+
+TEST_F(Contour, OfACurvedGridTakesPositionsAttributesAndPointsToPick) {
+  const std::string model = TEGL_SOURCE_DIR "/tests/io/seeds/netcdf_curved.nc";
+  const auto contour_with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"contour", model, "--iso", "1.5", "-o", path("o.vtkhdf"), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return std::pair{read_mesh(path("o.vtkhdf")), run.json()};
+  };
+  const Mesh plain = contour_with({}).first;
+  // a point on the contour, in degrees: the nearest sample is beside it
+  const auto [picked, report] = contour_with({"--pick", "179.5,38.5,0.5"});
+  EXPECT_EQ(picked.coordinates, plain.coordinates);
+  EXPECT_EQ(report["pick"]["distance"], 0);
+  // the values of the image itself are the isovalue
+  const Mesh with_values = contour_with({"--attribute", model}).first;
+  EXPECT_EQ(with_values.coordinates, plain.coordinates);
+  ASSERT_EQ(with_values.vertex_attributes.size(), 1u);
+  EXPECT_EQ(with_values.vertex_attributes[0].values.size(), plain.coordinates.size() / 3);
+  for (const double value : with_values.vertex_attributes[0].values) EXPECT_NEAR(value, 1.5, 1e-6);
+  // the same simplices, vertices elsewhere on their edges
+  const Mesh relaxed = contour_with({"--positions", "relaxed"}).first;
+  EXPECT_EQ(relaxed.simplices, plain.simplices);
+  EXPECT_NE(relaxed.coordinates, plain.coordinates);
+  for (std::size_t v = 0; v < relaxed.coordinates.size(); v += 3)
+    EXPECT_NEAR(std::hypot(relaxed.coordinates[v] - 179.5, relaxed.coordinates[v + 1] - 37), 1.5, 1.0);
+  // an image on a curved grid has no values at the vertices of a contour elsewhere
+  Samples straight = ball({7, 6, 2}, 2.0);
+  const std::string other = write("straight.nrrd", nrrd_bytes(straight));
+  EXPECT_THAT(run_tegl({"contour", other, "--iso", "0", "--attribute", model, "-o", path("x.vtkhdf")}).err,
+              HasSubstr("has a curved grid, and the contour has none"));
+}
+
+TEST_F(Contour, OfACurvedGridIsCutAndSimplifiedAsASavedOne) {
+  const std::string model = TEGL_SOURCE_DIR "/tests/io/seeds/netcdf_curved.nc";
+  ASSERT_EQ(run_tegl({"contour", model, "--iso", "1.5", "-o", path("o.vtkhdf")}).exit, 0);
+  const auto expect_same_file = [&](const std::vector<std::string>& command, const std::vector<std::string>& more) {
+    std::vector<std::string> of_image = {command[0], model, "--iso", "1.5", "-o", path("image.ply")};
+    std::vector<std::string> of_saved = {command[0], path("o.vtkhdf"), "-o", path("saved.ply")};
+    of_image.insert(of_image.end(), more.begin(), more.end());
+    of_saved.insert(of_saved.end(), more.begin(), more.end());
+    const RunResult image = run_tegl(of_image), saved = run_tegl(of_saved);
+    EXPECT_EQ(image.exit, 0) << image.err;
+    EXPECT_EQ(saved.exit, 0) << saved.err;
+    EXPECT_EQ(bytes("image.ply"), bytes("saved.ply")) << command[0] << more[1];
+  };
+  expect_same_file({"slice"}, {"--at", "time=0.5"});
+  expect_same_file({"slice"}, {"--at", "lon=179"});
+  expect_same_file({"slice"}, {"--plane", "1,1,0=216.5"});
+  expect_same_file({"simplify"}, {"--count", "12"});
+  EXPECT_THAT(run_tegl({"slice", model, "--iso", "1.5", "--at", "lon=170", "-o", path("x.ply")}).err, HasSubstr("lon"));
 }
 
 }  // namespace

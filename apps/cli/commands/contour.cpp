@@ -21,6 +21,7 @@
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
+#include "input/curved_images.hpp"
 #include "input/extraction.hpp"
 #include "input/merging.hpp"
 #include "input/mesh_input.hpp"
@@ -198,8 +199,7 @@ class ContourCommand final : public Command {
 
   /// Whether no option is given that needs straight axes.
   [[nodiscard]] bool knows_curved_grids() const {
-    return index_.empty() && app().count("--pick") == 0 && !options_.polygon_triangulation() && !attributes_.wanted() &&
-           positions_.are_linear() && sigmas_.empty();
+    return index_.empty() && !options_.polygon_triangulation() && sigmas_.empty();
   }
 
   /// Refuses --positions with options of functions that know linear positions only, and checks its own options.
@@ -427,6 +427,7 @@ class ContourCommand final : public Command {
   /// Extracts the contour of one isovalue, without an index.
   void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     options.work.progress = bar.stage("contour");
+    if (!tiling_.curved.empty()) return make_curved(image, options, bar, result);
     if (tiling_.of_cells) result.wording.no_size = "cells touch; --merge drops most of them";
     if (result.picked) return pick(image, options, bar, result);
     const auto finished = [&](auto extraction) {
@@ -444,6 +445,37 @@ class ContourCommand final : public Command {
           extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision, tiling_, finished);
     else
       result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, tiling_);
+  }
+
+  /// As `make`, for an image on a curved grid: makes the contour on the indices and moves it.
+  void make_curved(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar,
+                   ContourResult& result) const {
+    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+      const Image<T, N> indexed = on_indices(owned, tiling_.curved);
+      const auto move = [&]<class Real>(Contour<N, Real> contour) {
+        const Contour<N, Real> in_indices = attributes_.wanted() ? contour : Contour<N, Real>();
+        auto moved = on_curved_grid<Real>(std::move(contour), owned.grid, tiling_.curved,
+                                          {options.work.threads, bar.stage("move")});
+        attributes_.sample_to(moved, image_options(), options.work.threads, bar, {tiling_.curved, &in_indices, false});
+        result.mesh = with_additions(std::move(moved), options.work.threads, bar, result);
+      };
+      const auto make = [&]<class Real>(Real) {
+        if (result.picked) {
+          auto found = extract_component<Real>(
+              indexed, *result.isovalue, nearest_sample<N>(owned.grid, tiling_.curved, picked_place<N>(*result.picked)),
+              options);
+          take_report(found.report, *result.picked);
+          return move(std::move(found.contour));
+        }
+        auto extraction = positions_.are_linear()
+                              ? extract_with_stats<Real>(indexed, *result.isovalue, options)
+                              : extract_placed_with_stats<Real>(indexed, *result.isovalue, placed_, options);
+        result.stats = extraction.stats;
+        move(std::move(extraction.contour));
+      };
+      options_.single_precision() ? make(float{}) : make(double{});
+    };
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
   }
 
   /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
@@ -496,23 +528,34 @@ class ContourCommand final : public Command {
     return point;
   }
 
+  /// The point of --pick.
+  template <int N>
+  [[nodiscard]] std::array<double, N> picked_place(const Picked& picked) const {
+    if (picked.point.size() != N)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--pick {} has {} numbers; expected {}, one for each axis",
+                                                          pick_, picked.point.size(), N));
+    std::array<double, N> point;
+    std::copy_n(picked.point.begin(), N, point.begin());
+    return point;
+  }
+
+  template <int N>
+  static void take_report(const PickReport<N>& report, Picked& picked) {
+    picked.tile.assign(report.at.begin(), report.at.end());
+    picked.distance = report.distance;
+    picked.tiles = report.tiles;
+    picked.components = report.components;
+  }
+
   /// Extracts the component nearest to the point of --pick.
   void pick(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     Stopwatch watch;
-    Picked& picked = *result.picked;
     const auto keep = [&](auto found) {
-      picked.tile.assign(found.report.at.begin(), found.report.at.end());
-      picked.distance = found.report.distance;
-      picked.tiles = found.report.tiles;
-      picked.components = found.report.components;
+      take_report(found.report, *result.picked);
       result.mesh = with_additions(std::move(found.contour), options.work.threads, bar, result);
     };
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
-      if (picked.point.size() != N)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("--pick {} has {} numbers; expected {}, one for each axis",
-                                                            pick_, picked.point.size(), N));
-      std::array<double, N> point;
-      std::copy_n(picked.point.begin(), N, point.begin());
+      const std::array<double, N> point = picked_place<N>(*result.picked);
       if (options_.single_precision())
         keep(extract_component<float>(owned.view(), *result.isovalue, point, options));
       else
@@ -531,7 +574,8 @@ class ContourCommand final : public Command {
       MergeArguments::require_left(*result.merging, contour.simplices.size(), options_.allows_empty());
     }
     options_.add_shape_normals(contour);
-    attributes_.sample_to(contour, image_options(), threads, bar);
+    if (tiling_.curved.empty())
+      attributes_.sample_to(contour, image_options(), threads, bar, {{}, nullptr, images().index_grid()});
     return to_mesh(unrolled_for(std::move(contour), output_, unroll_));
   }
 

@@ -103,7 +103,8 @@ class ElementsCommand final : public ContourInputCommand {
                   fmt::format("--per cell with {}, which is a mesh; expected an image", file()));
     // read and make elements
     ProgressBar bar(streams.err, wants_progress());
-    ContourInput input = read_contour(bar, per_ == "cell");
+    ContourInput input =
+        read_contour(bar, per_ == "cell", per_ == "cell" ? CurvedGrids::refused : CurvedGrids::allowed);
     ElementReport report;
     std::visit([&](auto& contour) { make(contour, input, report, bar); }, input.contour);
     // report

@@ -193,7 +193,7 @@ class SimplifyCommand final : public ContourInputCommand {
     options.keep_embedded = keep_embedded_;
     options.scale = scale(contour);
     used_scale_.assign(options.scale.begin(), options.scale.end());
-    if (input.image) options.planes = planes<N>(input.image->image);
+    if (input.image && !input.is_curved) options.planes = planes<N>(input.image->image);
     options.work = {threads(), bar.stage("simplify")};
     return simplify_or_explain(contour, options);
   }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -175,11 +176,11 @@ void append_points(const ContourResult& result, const std::vector<double>& facto
 /// Adds the values of other images at the vertices of the cuts.
 template <int N>
 void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& reading,
-                    const std::vector<double>& factors, unsigned threads, std::vector<ContourResult>& results,
-                    ProgressBar& bar) {
+                    const std::vector<double>& factors, unsigned threads, bool by_index,
+                    std::vector<ContourResult>& results, ProgressBar& bar) {
   Contour<N, double> points;  // the points of all cuts, so that each image is read once
   for (const ContourResult& result : results) append_points<N>(result, factors, points);
-  attributes.sample_to(points, reading, threads, bar);
+  attributes.sample_to(points, reading, threads, bar, {{}, nullptr, by_index});
   for (const Attribute& all : points.vertex_attributes) {
     std::size_t first = 0;
     for (ContourResult& result : results) {
@@ -260,9 +261,11 @@ class SliceCommand final : public Command {
     if (attributes_.wanted() && results[0].image_dim == 5)
       throw Error(ErrorCode::InvalidArgument, "--attribute with a cut of a 5D contour; expected a 3D or 4D contour");
     if (attributes_.wanted() && results[0].image_dim == 4)
-      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), results, bar);
+      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), results,
+                        bar);
     else if (attributes_.wanted())
-      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), results, bar);
+      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), results,
+                        bar);
     // check and write
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
@@ -406,30 +409,35 @@ class SliceCommand final : public Command {
 
   std::vector<ContourResult> cut_whole_image(std::vector<Cut> cuts, ProgressBar& bar) {
     Stopwatch watch;
-    const auto any = read_to_5d(bar.stage("read"));
-    return std::visit([&](const auto& input) { return cut_read_image(input, std::move(cuts), bar, watch); }, any);
+    auto any = read_to_5d(bar.stage("read"), CurvedGrids::allowed);
+    return std::visit([&](auto& input) { return cut_read_image(input, std::move(cuts), bar, watch); }, any);
   }
 
   template <class Input>
-  std::vector<ContourResult> cut_read_image(const Input& input, std::vector<Cut> cuts, ProgressBar& bar,
-                                            Stopwatch& watch) {
+  std::vector<ContourResult> cut_read_image(Input& input, std::vector<Cut> cuts, ProgressBar& bar, Stopwatch& watch) {
     const double isovalue = options_.isovalue();
     require_cuts(image_dim(input.image), "image");
-    const CutSpace space = space_of(input.image);
+    Tiling tiling;
+    CutSpace space = space_of(input.image);
+    if constexpr (std::is_same_v<Input, ReadImageResult>) {
+      std::optional<std::uint64_t> folded_cells;
+      remark(take_grid(input, file(), options_, tiling, folded_cells));
+      space = space_of(input.image, tiling.curved);
+    }
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
     require_contour(input, isovalue, options_.allows_empty());
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
     std::vector<std::size_t> places;
-    // cuts across an axis from a slab; the others from the whole contour
+    // cuts across an axis from a slab; the others, and those of curved grids, from the whole contour
     for (std::size_t i = 0; i < results.size(); ++i) {
       ContourResult& result = results[i];
       result.variable = input.info.variable;
       result.isovalue = isovalue;
       result.image_dim = image_dim(input.image);
       result.seconds.read = read_seconds;
-      if (result.cut->across && is_separate(input.image, *result.cut->across)) {
+      if (tiling.is_plain() && result.cut->across && is_separate(input.image, *result.cut->across)) {
         const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
           if constexpr (N >= 3) cut_slab(owned.view(), result, bar);  // others are refused by require_cuts
         };
@@ -439,7 +447,7 @@ class SliceCommand final : public Command {
       of_whole.push_back(result);
       places.push_back(i);
     }
-    if (!of_whole.empty()) cut_whole(input.image, of_whole, bar);
+    if (!of_whole.empty()) cut_whole(input.image, tiling, of_whole, bar);
     for (std::size_t i = 0; i < places.size(); ++i) results[places[i]] = std::move(of_whole[i]);
     return results;
   }
@@ -468,12 +476,17 @@ class SliceCommand final : public Command {
 
   /// Cuts the contour of the whole image.
   template <class AnyDimension>
-  void cut_whole(const AnyDimension& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
+  void cut_whole(const AnyDimension& image, const Tiling& tiling, std::vector<ContourResult>& results,
+                 ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.work.progress = bar.stage("contour");
     cut_extraction(
         [&](const auto& use) {
-          extract_and_use<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), use);
+          const double isovalue = *results[0].isovalue;
+          if constexpr (std::is_same_v<AnyDimension, AnyImage>)
+            extract_and_use<Nothing>(image, isovalue, options, options_.single_precision(), use, tiling);
+          else
+            extract_and_use<Nothing>(image, isovalue, options, options_.single_precision(), use);
         },
         results, bar);
   }

@@ -6,9 +6,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
+#include "input/curved_images.hpp"
 #include "input/extraction.hpp"
 #include "output/output.hpp"
 #include "tegl/sample.hpp"
@@ -23,6 +26,23 @@ namespace fs = std::filesystem;
 std::string stem(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.substr(0, std::max<std::size_t>(1, std::min(name.find('.', 1), name.size())));
+}
+
+bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+/// Throws unless the coordinates of an image's curved grid are those of the contour's.
+void require_same_grid(const std::string& file, const std::vector<CurvedAxis>& image,
+                       std::span<const CurvedAxis> contour) {
+  const auto is_equal = [](const CurvedAxis& a, const CurvedAxis& b) {
+    return a.axis == b.axis && a.along == b.along &&
+           std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(), is_same);
+  };
+  if (std::equal(image.begin(), image.end(), contour.begin(), contour.end(), is_equal)) return;
+  throw Error(
+      ErrorCode::UnsupportedData,
+      fmt::format("{} has a curved grid, and the contour {}; expected the coordinates of the contour's own image, "
+                  "or straight axes (--index-grid: the indices)",
+                  file, contour.empty() ? "has none" : "another one"));
 }
 
 }  // namespace
@@ -61,7 +81,7 @@ void AttributeOptions::require_inputs() const {
 
 template <int N, class Real>
 void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads,
-                                 ProgressBar& bar) const {
+                                 ProgressBar& bar, const std::type_identity_t<CurvedContour<N, Real>>& curved) const {
   for (const std::string& text : texts_) {
     const FileAndVariable from = parse_file_and_variable(text);
     const Progress progress = bar.stage("attribute");
@@ -78,20 +98,29 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
         throw Error(
             ErrorCode::InvalidArgument,
             fmt::format("--attribute {}: the contour already has an attribute '{}'; expected each once", text, name));
+    const bool is_curved = !curved.by_index && !input.info.curved.empty();
+    if (is_curved) require_same_grid(from.file, input.info.curved, curved.axes);
     const auto sampling = [&](double fraction) { return progress(0.7 + 0.3 * fraction); };
     const auto sample_owned = [&](const auto& owned) {
-      contour.vertex_attributes.push_back(
-          sample(owned.view(), contour, name, input.info.value_unit, {.threads = threads, .progress = sampling}));
+      const auto view = is_curved ? on_indices(owned, input.info.curved) : owned.view();
+      contour.vertex_attributes.push_back(sample(view, is_curved ? *curved.in_indices : contour, name,
+                                                 input.info.value_unit, {.threads = threads, .progress = sampling}));
     };
     std::visit(sample_owned, std::get<AnyImageN<N>>(input.image));
   }
 }
 
-template void AttributeOptions::sample_to(Contour<2, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<2, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<3, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<3, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<4, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<4, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<2, float>&, ReadImageOptions, unsigned, ProgressBar&,
+                                          const CurvedContour<2, float>&) const;
+template void AttributeOptions::sample_to(Contour<2, double>&, ReadImageOptions, unsigned, ProgressBar&,
+                                          const CurvedContour<2, double>&) const;
+template void AttributeOptions::sample_to(Contour<3, float>&, ReadImageOptions, unsigned, ProgressBar&,
+                                          const CurvedContour<3, float>&) const;
+template void AttributeOptions::sample_to(Contour<3, double>&, ReadImageOptions, unsigned, ProgressBar&,
+                                          const CurvedContour<3, double>&) const;
+template void AttributeOptions::sample_to(Contour<4, float>&, ReadImageOptions, unsigned, ProgressBar&,
+                                          const CurvedContour<4, float>&) const;
+template void AttributeOptions::sample_to(Contour<4, double>&, ReadImageOptions, unsigned, ProgressBar&,
+                                          const CurvedContour<4, double>&) const;
 
 }  // namespace tegl::cli

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -25,6 +27,14 @@ FileAndVariable parse_file_and_variable(const std::string& text);
 /// Reads another image than FILE, with the names of this program's options in errors.
 ReadImageResult read_other_image(const std::string& file, const ReadImageOptions& options);
 
+/// How the contour lies on the curved grid of its image.
+template <int N, class Real>
+struct CurvedContour {
+  std::span<const CurvedAxis> axes = {};         ///< none: the contour is not on a curved grid
+  const Contour<N, Real>* in_indices = nullptr;  ///< the same vertices on index_grid
+  bool by_index = false;                         ///< curved grids have their indices as coordinates (--index-grid)
+};
+
 class AttributeOptions {
  public:
   /// Adds --attribute to a command. This object must outlive the parse.
@@ -39,10 +49,12 @@ class AttributeOptions {
   void require_inputs() const;
 
   /// Interpolates the images at the vertices, as attributes named after the variables, or after the files without
-  /// extensions. `reading`: how the files are read. Throws InvalidArgument if two have the same name, UnsupportedData
-  /// for an image of another dimension, and errors of the readers.
+  /// extensions. `reading`: how the files are read. Images on the contour's own curved grid are interpolated by the
+  /// indices. Throws InvalidArgument if two have the same name, UnsupportedData for an image of another dimension or on
+  /// another curved grid, and errors of the readers.
   template <int N, class Real>
-  void sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads, ProgressBar& bar) const;
+  void sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads, ProgressBar& bar,
+                 const std::type_identity_t<CurvedContour<N, Real>>& curved = {}) const;
 
  private:
   std::vector<std::string> texts_;

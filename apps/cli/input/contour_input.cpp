@@ -76,6 +76,12 @@ std::string take_grid(ReadImageResult& input, const std::string& file, const Ext
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image);
 }
 
+CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved) {
+  CutSpace space = space_of(image);
+  for (const CurvedAxis& one : curved) space.axes[static_cast<std::size_t>(one.axis)] = cut_axis_of(one);
+  return space;
+}
+
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
   Mesh mesh = read_mesh(file, options);
   const auto is_finite = [](double x) { return std::isfinite(x); };
@@ -249,7 +255,7 @@ void ContourInputCommand::contour_5d(const ReadImage5dResult& input, ExtractOpti
   result.seconds.add(*result.stats);
 }
 
-ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) {
+ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image, CurvedGrids curved) {
   require_inputs();
   ContourInput result;
   result.file = inputs();
@@ -270,7 +276,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();
   Tiling tiling = options_.tiling();
-  auto any = keep_image ? read(bar.stage("read")) : read_to_5d(bar.stage("read"), CurvedGrids::allowed);
+  auto any = keep_image ? read(bar.stage("read"), curved) : read_to_5d(bar.stage("read"), curved);
   result.file = inputs();
   if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any)) {
     contour_5d(*in_5d, options, bar, watch, result);
@@ -280,14 +286,11 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   remark(take_grid(input, file(), options_, tiling, result.folded_cells));
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue, allows_empty());
-  result.last_axis = space_of(input.image).axes.back();
+  result.is_curved = !tiling.curved.empty();
+  result.last_axis = space_of(input.image, tiling.curved).axes.back();
   result.ends = ends_of_last_axis(input.image);
   for (const CurvedAxis& one : tiling.curved)
-    if (one.axis == image_dim(input.image) - 1) {
-      const CutAxis axis = cut_axis_of(one);
-      result.last_axis = axis;
-      result.ends = {axis.first, axis.last};
-    }
+    if (one.axis == image_dim(input.image) - 1) result.ends = {result.last_axis->first, result.last_axis->last};
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");

@@ -50,6 +50,8 @@ Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 /// empty text. Throws InvalidArgument for options that choose other tilings.
 std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options, Tiling& tiling,
                       std::optional<std::uint64_t>& folded_cells);
+/// The space of an image with the ranges of its curved coordinates.
+CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved);
 
 /// Reads a saved contour with finite coordinates. Throws EmptyResult if it has no simplices, unless `allow_empty`.
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty);
@@ -69,6 +71,7 @@ struct ContourInput {
   /// none for a saved contour, and if an image's world map mixes the axis with others.
   std::pair<std::optional<double>, std::optional<double>> ends;
   bool single_precision = false;  ///< all coordinates have single precision, from --precision float
+  bool is_curved = false;         ///< of an image on a curved grid
   StageSeconds seconds;           ///< time of reading and contouring
 
   /// 2 to 5: the dimension of the space that the contour lies in.
@@ -121,11 +124,12 @@ class ContourInputCommand : public Command {
   /// Whether a value outside of the data gives an empty result and not an error (--allow-empty).
   [[nodiscard]] bool allows_empty() const { return options_.allows_empty(); }
 
-  /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`; images of 5 axes are not kept but
-  /// errors. Throws InvalidArgument if --iso is
-  /// missing for an image, or if options of images are given with a saved contour; EmptyResult if the isovalue is
-  /// outside of the data or the saved contour is empty, unless --allow-empty is given; and errors of the readers.
-  [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false);
+  /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`, on a curved grid only if allowed;
+  /// images of 5 axes are not kept but errors. Throws InvalidArgument if --iso is missing for an image, or if options of
+  /// images are given with a saved contour; EmptyResult if the isovalue is outside of the data or the saved contour is
+  /// empty, unless --allow-empty is given; and errors of the readers.
+  [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false,
+                                          CurvedGrids curved = CurvedGrids::allowed);
 
  private:
   /// Contours an image of 5 axes.
