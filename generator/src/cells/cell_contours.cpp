@@ -39,6 +39,11 @@ CellContours::CellContours(const Cell& cell, Triangulation triangulation)
   const Tile& tile = cell.tile;
   if (tile.dim == 4 && triangulation == Triangulation::compact)
     throw std::invalid_argument("compact contours of a 4-cell; expected barycentric");
+  for (const tile::Face& face : cell.lattice.faces())
+    edge_of_.push_back(face.dim != 1
+                           ? std::uint8_t{0}
+                           : tile.edge_between(static_cast<std::uint32_t>(std::countr_zero(face.corners)),
+                                               63u - static_cast<std::uint32_t>(std::countl_zero(face.corners))));
   polygons_of_.assign(tile.edge_count(), 0);
   std::uint32_t polygon = 0;
   for (const tile::Face& face : cell.lattice.faces()) {
@@ -56,20 +61,18 @@ CellContours::CellContours(const Cell& cell, Triangulation triangulation)
   find_orientation();
 }
 
-std::uint8_t CellContours::edge_of(const tile::Vertex& vertex) const {
-  const Signature corners = cell_.lattice.faces()[vertex.face].corners;
-  return cell_.tile.edge_between(static_cast<std::uint32_t>(std::countr_zero(corners)),
-                                 static_cast<std::uint32_t>(63 - std::countl_zero(corners)));
-}
+std::uint8_t CellContours::edge_of(const tile::Vertex& vertex) const { return edge_of_[vertex.face]; }
 
 /// The contour around the single high corner 0 is convex, so one of its simplices fixes the sign for all.
 void CellContours::find_orientation() {
   facets_ = builder_.build(1);
-  const tile::Simplex& simplex = facets_.facets.at(0).simplices.at(0);
+  const tile::LocalContour contour = as_local(false);
+  const LocalSimplex& simplex = contour.simplices.at(0);
   const Tile& tile = cell_.tile;
-  const auto place = [&](tile::VertexId v) {  // a barycentre: approximately the middle of the facet
+  const auto place = [&](std::uint8_t v) {  // a barycentre: approximately the middle of the facet
     std::array<double, 4> sum{};
-    const std::uint64_t points = mask_of(v) >> tile.corner_count();
+    const std::uint64_t points =
+        v < tile.edge_count() ? std::uint64_t{1} << v : contour.masks[v - tile.edge_count()] >> tile.corner_count();
     for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
       for (std::size_t i = 0; (points >> e & 1u) != 0 && i < 4; ++i)
         sum[i] += (tile.corners[tile.edges[e][0]][i] + tile.corners[tile.edges[e][1]][i]) / 2 / std::popcount(points);
@@ -149,73 +152,17 @@ void CellContours::cut_into_fan(tile::Facet& facet) const {
               fmt::format("{}: a polygon of {} points without a fan inside", cell_.name, cycle.size()));
 }
 
-std::uint64_t CellContours::mask_of(tile::VertexId v) const {
-  const tile::Vertex& vertex = facets_.vertices[v];
-  const std::uint32_t corners = cell_.tile.corner_count();
-  if (vertex.kind == tile::VertexKind::corner) return cell_.lattice.faces()[vertex.face].corners;
-  if (vertex.kind == tile::VertexKind::edge) return std::uint64_t{1} << (corners + edge_of(vertex));
-  if (vertex.copied != tile::kNoVertex) return mask_of(vertex.copied);
-  std::uint64_t mask = 0;
-  for (const tile::Simplex& s : vertex.of)
-    for (const tile::VertexId w : s)
-      if (w != tile::kNoVertex && w != v) mask |= mask_of(w);
-  return mask;
-}
-
-/// The mask of a side vertex: in a 3-face with one polygon that has a barycentre, the barycentre's. So the copy of the
-/// barycentre is on its ray. A vertex near the corners of the side would see triangles of the polygon from behind, for
-/// some positions.
-std::uint64_t CellContours::on_ray(std::uint64_t mask,
-                                   const std::vector<std::pair<std::uint64_t, tile::VertexId>>& barycentres) const {
-  std::uint64_t found = 0;
-  for (const auto& [points, v] : barycentres) {
-    if ((points & ~mask) != 0) continue;
-    if (found != 0) return mask;
-    found = points;
+tile::LocalContour CellContours::as_local(bool reversed) const {
+  try {
+    return tile::local_contour(cell_.lattice, edge_of_, cell_.tile.edge_count(), facets_, reversed);
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::Internal, fmt::format("{}: {}", cell_.name, error.what()));
   }
-  return found != 0 ? found : mask;
 }
 
 CellContour CellContours::local() const {
-  const auto n = static_cast<std::size_t>(cell_.tile.dim);
-  // added vertices by kind, ordered by mask
-  std::array<std::vector<std::pair<std::uint64_t, tile::VertexId>>, 3> added;
-  std::vector<bool> seen(facets_.vertices.size(), false);
-  for (const tile::Facet& facet : facets_.facets)
-    for (const tile::Simplex& s : facet.simplices)
-      for (std::size_t i = 0; i < n; ++i) {
-        const tile::Vertex& vertex = facets_.vertices[s[i]];
-        if (vertex.kind == tile::VertexKind::edge || seen[s[i]]) continue;
-        seen[s[i]] = true;
-        const bool own = vertex.face == cell_.lattice.tile(), cone = vertex.kind == tile::VertexKind::barycentre;
-        if (!(own || cone) || (!cone && vertex.kind != tile::VertexKind::side))
-          throw Error(ErrorCode::Internal, fmt::format("{}: a vertex of another kind", cell_.name));
-        added[!own ? 0 : cone ? 1 : 2].emplace_back(mask_of(s[i]), s[i]);
-      }
-  for (auto& [mask, v] : added[2]) mask = on_ray(mask, added[0]);
-  // local numbers
-  CellContour contour;
-  std::vector<std::uint8_t> local(facets_.vertices.size(), 0);
-  for (std::size_t v = 0; v < facets_.vertices.size(); ++v)
-    if (facets_.vertices[v].kind == tile::VertexKind::edge) local[v] = edge_of(facets_.vertices[v]);
-  for (std::size_t kind = 0; kind < 3; ++kind) {
-    std::sort(added[kind].begin(), added[kind].end());
-    for (const auto& [mask, v] : added[kind]) {
-      const std::size_t number = cell_.tile.edge_count() + contour.masks.size();
-      if (number > 255) throw Error(ErrorCode::Internal, fmt::format("{}: more than 256 vertices", cell_.name));
-      local[v] = static_cast<std::uint8_t>(number);
-      contour.masks.push_back(mask);
-    }
-    contour.added_count[kind] = static_cast<std::uint8_t>(added[kind].size());
-  }
-  for (const tile::Facet& facet : facets_.facets)
-    for (const tile::Simplex& s : facet.simplices) {
-      LocalSimplex simplex{};
-      for (std::size_t i = 0; i < n; ++i) simplex[i] = local[s[i]];
-      if (reversed_) std::swap(simplex[n - 1], simplex[n - 2]);
-      contour.simplices.push_back(simplex);
-    }
-  return contour;
+  tile::LocalContour contour = as_local(reversed_);
+  return {std::move(contour.simplices), std::move(contour.masks), contour.added_count};
 }
 
 }  // namespace tegl::gen

@@ -14,7 +14,7 @@
 #include "base/tile_contour.hpp"
 #include "cells/cell.hpp"
 #include "filling/facets.hpp"
-#include "tegl/tile/facets.hpp"
+#include "tegl/tile/local_contour.hpp"
 
 namespace tegl::gen {
 
@@ -44,15 +44,14 @@ class CellContours {
   void cut_into_fan(tile::Facet& facet) const;
   void find_orientation();
   [[nodiscard]] std::uint8_t edge_of(const tile::Vertex& vertex) const;
-  [[nodiscard]] std::uint64_t mask_of(tile::VertexId vertex) const;
-  [[nodiscard]] std::uint64_t on_ray(std::uint64_t mask,
-                                     const std::vector<std::pair<std::uint64_t, tile::VertexId>>& barycentres) const;
+  [[nodiscard]] tile::LocalContour as_local(bool reversed) const;
 
   const Cell& cell_;
   Triangulation triangulation_;
   tile::FacetBuilder builder_;
   std::unique_ptr<CubeLattice> cubes_;      ///< for compact hexahedra
   std::unique_ptr<ContourBuilder> cube_;    ///< for compact hexahedra
+  std::vector<std::uint8_t> edge_of_;       ///< by face of the lattice
   std::vector<std::uint8_t> edge_of_cube_;  ///< edge of the cube -> edge of the cell
   std::vector<std::uint32_t> polygons_of_;  ///< by edge: the set of 2-faces that contain it
   bool reversed_ = false;                   ///< whether the lattice is oriented against the coordinates

@@ -141,10 +141,10 @@ class Complex {
 /// two times is a prism. Point p at time k is point k * #P + p, with its time as the last coordinate. `times`: T
 /// ascending values; `values`: T x #P, row = time, NaN: missing; `points`: T x #P, row = time, if the points move, or
 /// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (in the same
-/// triangulation), if no value is missing; at every other time, too, it is closed away from the border. N = 2 or 3. Errors:
-/// InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of values or points; a
-/// coordinate that is not finite, or above 2^1018 in absolute value), TooLarge (2^32 points or prisms or more).
-/// O(T (P + C)) time and memory.
+/// triangulation), if no value is missing; at every other time, too, it is closed away from the border. N = 2 or 3.
+/// Errors: InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of values or points;
+/// a coordinate that is not finite, or above 2^1018 in absolute value), TooLarge (2^32 points or prisms or more). O(T
+/// (P + C)) time and memory.
 template <int N>
 requires DimensionBetween<N, 2, 3>
 [[nodiscard]] Complex<N + 1> in_time(const Complex<N>& complex, std::span<const double> times,
@@ -158,20 +158,22 @@ requires DimensionBetween<N, 2, 4>
                                                      const ExtractOptions& options = {});
 
 /// Extracts the contour {value = isovalue} of a complex. It separates points with values >= isovalue (high) from the
-/// others. Vertices are on edges, ordered by the edges' ends, then in cells. Along
-/// an edge values are linear, from the end with the smaller number.
+/// others. Vertices are on edges, ordered by the edges' ends, then in cells. Along an edge values are linear, from the
+/// end with the smaller number.
 ///
 /// The contour is an oriented manifold if the union of the cells is a manifold (with or without border). It has a
 /// boundary only at the border of the complex and at missing values. It is the contour of an image if the cells are
 /// those of its grid (compact: the same simplices, in 4D if points are numbered along the axes; also 3D barycentric,
-/// with barycentres at the mean of a polygon's points). A cell's orientation is the sign of the best affine map from its reference corners; cells that
-/// are folded or flat may have the wrong one, and then the contour's orientation has conflicts there.
+/// with barycentres at the mean of a polygon's points). A cell's orientation is the sign of the best affine map from
+/// its reference corners; cells that are folded or flat may have the wrong one, and then the contour's orientation has
+/// conflicts there.
 ///
 /// Options: all, except as follows. Neighbouring cells of any types agree in their common faces, with every rule.
 /// - triangulation: the diagonals of compact 4D contours in faces between cells depend on the numbers of the points.
-/// - ambiguity: in 2D and 3D all but custom, in 4D low and high. With rules that read the data, hexahedra are resolved
-///   as the cubes of an image; in wedges and pyramids every polygon is a disc. (The interpolant of a wedge has no
-///   tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous.
+/// - ambiguity: in 2D and 3D all but custom. In 4D low and high; in the barycentric triangulation also squares and
+///   decider, and mean and saddle if no cell has a hexahedron as a facet: there are no tunnels in 4D. With rules that
+///   read the data, hexahedra in 3D are resolved as the cubes of an image; in wedges and pyramids every polygon is a
+///   disc. (The interpolant of a wedge has no tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous.
 /// - close: caps are the high part of the complex's border, the facets of one cell only. Without missing values, the
 ///   contour is then closed if the border is a manifold. Facets of cells with missing corners have no caps.
 /// - normals: differences. The gradient at a point belongs to the linear function that best fits the differences to

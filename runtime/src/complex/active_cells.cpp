@@ -94,39 +94,39 @@ void add_sizes(const CellCases& cases, ActiveBlock& block) {
 /// Adds up the sizes, or lists the keys of contours that are not built yet.
 void finish(const CellGroup& group, const CellCases& cases, std::span<const double> values, ActiveBlock& block) {
   if (cases.resolved() != nullptr) resolve(group, *cases.resolved(), values, block);
-  if (cases.compact() == nullptr) return add_sizes(cases, block);
+  if (cases.built() == nullptr) return add_sizes(cases, block);
   block.keys.reserve(block.cells.size());
   for (const ActiveCell& cell : block.cells)
-    block.keys.push_back(cases.compact()->key(cell.signature, group.cell(cell.cell)));
+    block.keys.push_back(cases.built()->key(cell.signature, group.cell(cell.cell), values));
 }
 
 /// Keys in ascending order, each once.
-void make_distinct(std::vector<CompactKey>& keys) {
+void make_distinct(std::vector<CellKey>& keys) {
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
-/// Builds the compact contours of 4D cells.
-void build_compact(const CellTables& tables, std::vector<ActiveBlock>& blocks, const WorkOptions& work) {
-  const auto of_block = [&](std::size_t b) { return tables.of_group[blocks[b].group].compact(); };
+/// Builds the contours of 4D cells that are not in a table.
+void build_contours(const CellTables& tables, std::vector<ActiveBlock>& blocks, const WorkOptions& work) {
+  const auto of_block = [&](std::size_t b) { return tables.of_group[blocks[b].group].built(); };
   if (std::all_of(tables.of_group.begin(), tables.of_group.end(),
-                  [](const CellCases& cases) { return cases.compact() == nullptr; }))
+                  [](const CellCases& cases) { return cases.built() == nullptr; }))
     return;
-  std::vector<std::vector<CompactKey>> distinct(blocks.size());
+  std::vector<std::vector<CellKey>> distinct(blocks.size());
   for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.3),
                  [&](std::size_t b, std::size_t, std::size_t) {
                    distinct[b] = blocks[b].keys;
                    make_distinct(distinct[b]);
                  });
   for (std::size_t g = 0; g < tables.of_group.size(); ++g) {
-    if (tables.of_group[g].compact() == nullptr) continue;
-    std::vector<CompactKey> keys;
+    if (tables.of_group[g].built() == nullptr) continue;
+    std::vector<CellKey> keys;
     for (std::size_t b = 0; b < blocks.size(); ++b)
       if (blocks[b].group == g) keys.insert(keys.end(), distinct[b].begin(), distinct[b].end());
     make_distinct(keys);
     const double groups = static_cast<double>(tables.of_group.size()), at = static_cast<double>(g);
-    tables.of_group[g].compact()->build(std::move(keys), {work.threads, part_of(work.progress, 0.3 + 0.5 * at / groups,
-                                                                                0.3 + 0.5 * (at + 1) / groups)});
+    tables.of_group[g].built()->build(std::move(keys), {work.threads, part_of(work.progress, 0.3 + 0.5 * at / groups,
+                                                                              0.3 + 0.5 * (at + 1) / groups)});
   }
   for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.8, 1.0),
                  [&](std::size_t b, std::size_t, std::size_t) {
@@ -180,7 +180,7 @@ std::vector<ActiveBlock> find_active_cells(const CellGroups& cells, const CellTa
           scan_blocks(edges->blocks[group], cells.groups[group], from, to, bits, scratch, blocks[b]);
         finish(cells.groups[group], tables.of_group[group], values, blocks[b]);
       });
-  build_compact(tables, blocks, {work.threads, part_of(work.progress, 0.5, 1.0)});
+  build_contours(tables, blocks, {work.threads, part_of(work.progress, 0.5, 1.0)});
   return blocks;
 }
 
@@ -218,7 +218,7 @@ std::vector<ActiveBlock> blocks_of_cells(const CellGroups& cells, const CellTabl
     }
     finish(group, tables.of_group[part.group], values, blocks[b]);
   });
-  build_compact(tables, blocks, {work.threads, part_of(work.progress, 0.5, 1.0)});
+  build_contours(tables, blocks, {work.threads, part_of(work.progress, 0.5, 1.0)});
   return blocks;
 }
 

@@ -37,9 +37,9 @@ struct ActiveCell {
 struct ActiveBlock {
   std::size_t group = 0;
   std::vector<ActiveCell> cells;
-  std::vector<Index> missing;    ///< cells with missing corners
-  std::vector<CompactKey> keys;  ///< of compact 4D cells, until their contours are built
-  std::uint64_t crossings = 0;   ///< crossed edges, counted in each cell
+  std::vector<Index> missing;   ///< cells with missing corners
+  std::vector<CellKey> keys;    ///< of cells whose contours are built, until their contours are built
+  std::uint64_t crossings = 0;  ///< crossed edges, counted in each cell
   std::uint64_t simplices = 0;
   std::uint64_t shared = 0;  ///< vertices in common 3-faces, counted in each cell
   std::uint64_t own = 0;     ///< vertices of the cells' own

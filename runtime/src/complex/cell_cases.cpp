@@ -9,7 +9,7 @@ namespace tegl::detail {
 
 void CellCases::add_cases() {
   const unsigned signatures = 1u << table_->corner_count;
-  is_plain_ = resolved_ == nullptr && compact_ == nullptr && table_->max_added == 0;
+  is_plain_ = resolved_ == nullptr && built_ == nullptr && table_->max_added == 0;
   cases_.resize(signatures);
   for (unsigned s = 0; s < signatures; ++s) {
     Case& of = cases_[s];

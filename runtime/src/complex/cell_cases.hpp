@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "ambiguity/face_estimator.hpp"
+#include "complex/built_cells.hpp"
 #include "complex/cell_contour.hpp"
-#include "complex/compact_cells.hpp"
 #include "tegl/ambiguity.hpp"
 
 namespace tegl::detail {
@@ -66,18 +66,18 @@ class CellCases {
 
   /// `table` must outlive this object.
   CellCases(const tables::CellTable& table, bool high_connected, std::shared_ptr<const ResolvedCells> resolved = {},
-            std::shared_ptr<CompactCells> compact = {})
-      : table_(&table), high_connected_(high_connected), resolved_(std::move(resolved)), compact_(std::move(compact)) {
+            std::shared_ptr<BuiltCells> built = {})
+      : table_(&table), high_connected_(high_connected), resolved_(std::move(resolved)), built_(std::move(built)) {
     if (table.corner_count <= 8) add_cases();  // otherwise many signatures: each is looked up when it occurs
   }
   [[nodiscard]] const tables::CellTable& table() const noexcept { return *table_; }
   [[nodiscard]] CellContour operator[](unsigned signature) const noexcept {
     return {*table_, signature, high_connected_};
   }
-  /// The contour of a cell that is resolved from the data (ResolvedCells::variant) or of a compact 4D cell
-  /// (CompactCells::variant); 0 for other cells.
+  /// The contour of a cell that is resolved from the data (ResolvedCells::variant) or whose contour is built
+  /// (BuiltCells::variant); 0 for other cells.
   [[nodiscard]] CellContour of(unsigned signature, std::uint32_t variant) const noexcept {
-    if (compact_ != nullptr) return compact_->contour(variant);
+    if (built_ != nullptr) return built_->contour(variant);
     if (variant == 0) return (*this)[signature];
     if (variant == 1) return {*table_, signature, true};
     return resolved_->contour(variant);
@@ -85,7 +85,9 @@ class CellCases {
   /// Null: ambiguous faces are resolved by a fixed rule.
   [[nodiscard]] const ResolvedCells* resolved() const noexcept { return resolved_.get(); }
   /// Null: the contours are in the table. Contours are built when the active cells are known.
-  [[nodiscard]] CompactCells* compact() const noexcept { return compact_.get(); }
+  [[nodiscard]] BuiltCells* built() const noexcept { return built_.get(); }
+  /// Null: the contours are not compact ones that are built.
+  [[nodiscard]] const CompactCells* compact() const noexcept { return dynamic_cast<const CompactCells*>(built_.get()); }
 
   /// Whether all vertices are on edges and depend on the signature alone. Then `of_signature` and `ordinals` have all
   /// that there is to write.
@@ -121,7 +123,7 @@ class CellCases {
   bool high_connected_;
   bool is_plain_ = false;
   std::shared_ptr<const ResolvedCells> resolved_;
-  std::shared_ptr<CompactCells> compact_;
+  std::shared_ptr<BuiltCells> built_;
   std::vector<Case> cases_;          ///< by signature; empty for shapes of more corners
   std::vector<std::uint8_t> edges_;  ///< the crossed edges of all cases
   std::array<std::vector<std::uint8_t>, 2> ordinals_;

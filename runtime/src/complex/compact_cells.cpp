@@ -5,7 +5,7 @@
 // for all positions; otherwise it is coned from the mean of its points. Other components are filled as in the
 // barycentric table, whose polygons have centres: these are moved into the cell, and the tetrahedra between them and
 // the triangles of the facet are added. A tesseract whose facets are those of an image's has the image's contour.
-#include "complex/compact_cells.hpp"
+#include "complex/built_cells.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -39,15 +39,10 @@ std::uint8_t edge_between(const tables::CellTable& table, unsigned p, unsigned q
 
 }  // namespace
 
-struct CompactCells::Built {
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<std::uint64_t> cones, sides, collars;  ///< masks of own vertices
-  bool of_image = false;
-};
+BuiltCells::BuiltCells(const tables::CellTable& table) : table_(table) { table_.element_of = nullptr; }
 
 CompactCells::CompactCells(CellShape shape, bool high_connected, bool is_swept)
-    : shape_(shape), high_connected_(high_connected), barycentric_(table_of(shape)), table_(barycentric_) {
-  table_.element_of = nullptr;
+    : BuiltCells(table_of(shape)), shape_(shape), high_connected_(high_connected), barycentric_(table_of(shape)) {
   for (const CellFacet& of : facets_of(shape)) {
     const FaceFillings& fillings = fillings_.try_emplace(of.shape, of.shape, high_connected).first->second;
     Facet& facet = facets_.emplace_back(Facet{&fillings, &of, {}, is_swept && facets_.size() < 2});
@@ -63,8 +58,8 @@ unsigned CompactCells::facet_signature(const Facet& facet, unsigned signature) c
   return bits;
 }
 
-CompactKey CompactCells::key(unsigned signature, const Index* corners) const noexcept {
-  CompactKey key{static_cast<std::uint16_t>(signature), {}};
+CellKey CompactCells::key(unsigned signature, const Index* corners, std::span<const double> /*values*/) const noexcept {
+  CellKey key{static_cast<std::uint16_t>(signature), {}};
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
     const unsigned bits = facet_signature(facet, signature);
@@ -75,7 +70,7 @@ CompactKey CompactCells::key(unsigned signature, const Index* corners) const noe
   return key;
 }
 
-std::vector<Triangle> CompactCells::in_facet(std::size_t f, const CompactKey& key) const {
+std::vector<Triangle> CompactCells::in_facet(std::size_t f, const CellKey& key) const {
   const Facet& facet = facets_[f];
   std::vector<Triangle> result;
   for (const Triangle& t : facet.fillings->triangles(facet_signature(facet, key.signature), key.fillings[f]))
@@ -85,7 +80,7 @@ std::vector<Triangle> CompactCells::in_facet(std::size_t f, const CompactKey& ke
 
 class CompactCells::Filler {
  public:
-  Filler(const CompactCells& cells, const CompactKey& key)
+  Filler(const CompactCells& cells, const CellKey& key)
       : cells_(cells), signature_(key.signature), shift_(cells.table_.corner_count) {
     for (std::size_t f = 0; f < cells.facets_.size(); ++f) {
       for (const std::uint8_t e : std::span(cells.facets_[f].edges).first(table_of_facet(f).edge_count))
@@ -94,7 +89,7 @@ class CompactCells::Filler {
     }
   }
 
-  Built operator()() {
+  BuiltContour operator()() {
     if (cells_.shape_ == CellShape::hexahedron_prism && is_of_image()) return std::move(built_);
     DisjointSets sets(cells_.table_.edge_count);
     for (const auto& [t, facet] : sigma_) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
@@ -250,7 +245,7 @@ class CompactCells::Filler {
       if (list.reversed() != cells_.high_connected_) std::swap(t[2], t[3]);
     }
     if (boundary_of(tetrahedra) != sorted_sigma()) return false;
-    built_ = {std::move(tetrahedra), std::move(cones), {}, {}, true};
+    built_ = {std::move(tetrahedra), {}, std::move(cones), {}, {}, true};
     for (unsigned j = 0; j < list.list().side_vertices; ++j) {
       std::uint64_t mask = 0;
       for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {
@@ -291,26 +286,31 @@ class CompactCells::Filler {
   unsigned shift_;
   std::array<std::uint32_t, 32> facets_of_edge_{};  ///< as bits
   Component sigma_;
-  Built built_;
+  BuiltContour built_;
 };
 
-void CompactCells::build(std::vector<CompactKey> keys, const WorkOptions& work) {
+void CompactCells::fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const {
+  for (std::size_t k = 0; k < keys.size(); ++k) contours[k] = Filler(*this, keys[k])();
+}
+
+void BuiltCells::build(std::vector<CellKey> keys, const WorkOptions& work) {
   keys_ = std::move(keys);
-  std::vector<Built> all(keys_.size());
-  for_each_block(keys_.size(), 64, work.threads, work.progress, [&](std::size_t, std::size_t from, std::size_t to) {
-    for (std::size_t k = from; k < to; ++k) all[k] = Filler(*this, keys_[k])();
+  std::vector<BuiltContour> all(keys_.size());
+  for_each_block(keys_.size(), 256, work.threads, work.progress, [&](std::size_t, std::size_t from, std::size_t to) {
+    fill(std::span(keys_).subspan(from, to - from), std::span(all).subspan(from, to - from));
   });
-  for (const Built& built : all) {
+  for (const BuiltContour& built : all) {
     tables::CellList& list = lists_.emplace_back();
     list.first_simplex = static_cast<std::uint32_t>(simplices_.size() / 4);
     list.first_mask = static_cast<std::uint32_t>(masks_.size());
     list.simplex_count = static_cast<std::uint16_t>(built.tetrahedra.size());
+    list.shared_vertices = static_cast<std::uint8_t>(built.shared.size());
     list.cone_vertices = static_cast<std::uint8_t>(built.cones.size());
     list.side_vertices = static_cast<std::uint8_t>(built.sides.size());
     list.collar_vertices = static_cast<std::uint8_t>(built.collars.size());
     of_image_.push_back(built.of_image ? 1 : 0);
     for (const Tetrahedron& t : built.tetrahedra) simplices_.insert(simplices_.end(), t.begin(), t.end());
-    for (const auto* masks : {&built.cones, &built.sides, &built.collars})
+    for (const auto* masks : {&built.shared, &built.cones, &built.sides, &built.collars})
       masks_.insert(masks_.end(), masks->begin(), masks->end());
   }
   table_.lists = lists_.data();
@@ -333,7 +333,7 @@ std::array<double, 4> CompactCells::place(const tables::CellTable& table, std::u
   return mask_place<4>(mask, std::identity(), on_edge, false, [&](const TilePoint<4>& end) { return rays.level(end); });
 }
 
-std::uint32_t CompactCells::variant(const CompactKey& key) const noexcept {
+std::uint32_t BuiltCells::variant(const CellKey& key) const noexcept {
   return static_cast<std::uint32_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
 }
 

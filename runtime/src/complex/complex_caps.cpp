@@ -60,7 +60,7 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       for (unsigned v = 0; v < group.corner_count; ++v) signature |= (values[corners[v]] >= isovalue ? 1u : 0u) << v;
       facet.cell = corners;
       facet.table = &cases.table();
-      facet.triangles = cases.compact()->in_facet(number, cases.compact()->key(signature, corners));
+      facet.triangles = cases.compact()->in_facet(number, cases.compact()->key(signature, corners, values));
     }
     add_facet(facet);
   }

@@ -23,14 +23,17 @@ CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOpti
   for (const CellGroup& group : cells.groups) {
     const tables::CellTable& table = tables::cell_table(group.shape, options.triangulation);
     std::shared_ptr<const ResolvedCells> resolved;
-    if (is_estimated(options.ambiguity))
+    const bool is_decided = is_estimated(options.ambiguity);
+    if (is_decided && table.dim < 4)
       resolved = std::make_shared<const ResolvedCells>(group.shape, table, options.triangulation,
                                                        face_rule(options.ambiguity), isovalue);
-    std::shared_ptr<CompactCells> compact;
+    std::shared_ptr<BuiltCells> built;
     const bool high_connected = options.ambiguity == Ambiguity::high;
-    if (table.dim == 4 && options.triangulation == Triangulation::compact)
-      compact = std::make_shared<CompactCells>(group.shape, high_connected, group.is_swept);
-    tables.of_group.emplace_back(table, high_connected, std::move(resolved), std::move(compact));
+    if (is_decided && table.dim == 4)
+      built = std::make_shared<DecidedCells>(group.shape, face_rule(options.ambiguity), isovalue);
+    else if (table.dim == 4 && options.triangulation == Triangulation::compact)
+      built = std::make_shared<CompactCells>(group.shape, high_connected, group.is_swept);
+    tables.of_group.emplace_back(table, high_connected, std::move(resolved), std::move(built));
   }
   return tables;
 }
@@ -47,9 +50,10 @@ void check_complex_options(int dim, double isovalue, const ExtractOptions& optio
     throw Error(
         ErrorCode::InvalidArgument,
         "ambiguity resolved by a custom estimator; expected another rule for meshes, lattices and divided cells");
-  if (dim == 4 && is_estimated(options.ambiguity))
+  if (dim == 4 && is_estimated(options.ambiguity) && options.triangulation == Triangulation::compact)
     throw Error(ErrorCode::InvalidArgument,
-                "ambiguity resolved from the data; expected low or high in 4D for meshes, lattices and divided cells");
+                "ambiguity resolved from the data and the compact triangulation; expected the barycentric one in 4D for "
+                "meshes, lattices and divided cells");
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(
         ErrorCode::InvalidArgument,

@@ -291,7 +291,7 @@ class ComplexWriter {
   /// Whether side vertices are where a cube or a tesseract of an image has them.
   [[nodiscard]] static bool has_rays(const CellCases& cases, std::uint32_t variant) noexcept {
     if (N == 3) return cases.resolved() != nullptr && variant > 1;
-    return cases.compact() != nullptr && cases.compact()->is_of_image(variant);
+    return cases.built() != nullptr && cases.built()->is_of_image(variant);
   }
 
   /// The place in the unit cube of a side vertex, on a ray on which the interpolant has the isovalue.

@@ -14,7 +14,7 @@ namespace tegl::detail {
 
 /// A barycentre by the vertices of its polygon: ascending numbers, unused entries at the end kNoPoint. The polygons of
 /// a complex have different vertices, whatever the numbering of the cells that they are in.
-using PolygonKey = std::array<Index, 8>;
+using PolygonKey = std::array<Index, 12>;
 inline constexpr Index kNoPoint = ~Index{0};
 
 /// The shared barycentres of a contour, ordered by their keys.

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of 4D cells that are built: compact ones, whose facets have diagonals that depend on the numbers of points,
+// and barycentric ones with quadrilaterals decided from the data.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "compare.hpp"
+#include "complex/cell_groups.hpp"
+#include "complex/complex_cases.hpp"
+#include "invariants.hpp"
+#include "meshes.hpp"
+#include "tegl/check.hpp"
+#include "tegl/complex.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/intersections.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl {
+namespace {
+
+using namespace test;
+
+ExtractOptions compact_by(Ambiguity ambiguity, bool close = false) {
+  ExtractOptions options;
+  options.triangulation = Triangulation::compact;
+  options.ambiguity = ambiguity;
+  options.close = close;
+  return options;
+}
+
+constexpr Ambiguity kBoth[] = {Ambiguity::low, Ambiguity::high};
+
+/// The same mesh with its points in another order.
+template <int N>
+MeshData<N> renumbered(MeshData<N> mesh, std::vector<double>& values, std::uint64_t seed) {
+  std::vector<Index> number(mesh.points.size());
+  std::iota(number.begin(), number.end(), Index{0});
+  std::shuffle(number.begin(), number.end(), std::mt19937_64(seed));
+  auto points = mesh.points;
+  auto moved = values;
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    mesh.points[number[p]] = points[p];
+    values[number[p]] = moved[p];
+  }
+  for (Index& corner : mesh.corners) corner = number[corner];
+  return mesh;
+}
+
+/// Cells that do not touch, one for each `step`-th signature, with their corners numbered at random.
+Complex<4> cells_by_signature(CellType type, unsigned step, std::uint64_t seed) {
+  const detail::CellKind& kind = *detail::find_kind(type);
+  const tables::CellTable& table = detail::table_of(kind.shape);
+  const std::size_t corners = table.corner_count;
+  std::mt19937_64 random(seed);
+  std::vector<std::array<double, 4>> points;
+  std::vector<double> values;
+  std::vector<Index> cells;
+  for (unsigned signature = 0; signature < 1u << corners; signature += step) {
+    std::vector<Index> number(corners);
+    std::iota(number.begin(), number.end(), static_cast<Index>(points.size()));
+    std::shuffle(number.begin(), number.end(), random);
+    points.resize(points.size() + corners);
+    values.resize(points.size());
+    for (std::size_t i = 0; i < corners; ++i) {
+      const std::size_t v = detail::table_corner(kind, i);
+      for (std::size_t a = 0; a < 4; ++a) points[number[v]][a] = table.corners[4 * v + a];
+      points[number[v]][0] += 3.0 * (signature % 256);
+      points[number[v]][1] += 3.0 * (signature / 256);
+      const double size = 0.05 + 0.9 * static_cast<double>(random() >> 11) * 0x1p-53;
+      values[number[v]] = (signature >> v & 1u) != 0 ? size : -size;
+      cells.push_back(number[v]);
+    }
+  }
+  Complex<4> complex(points, type, cells);
+  complex.set_values(values);
+  return complex;
+}
+
+/// The certificate of every signature: closed by caps, the contour is an oriented manifold with the topology of the
+/// barycentric one.
+TEST(Compact4d, EverySignatureOfEveryShapeHasAManifoldWithTheTopologyOfTheBarycentricOne) {
+  const std::pair<CellType, unsigned> shapes[] = {{CellType::simplex4, 1},         {CellType::tetrahedron_prism, 1},
+                                                  {CellType::pyramid_prism, 1},    {CellType::wedge_prism, 5},
+                                                  {CellType::octahedron_prism, 7}, {CellType::cell16, 1},
+                                                  {CellType::voxel_prism, 29},     {CellType::hexahedron_prism, 31}};
+  for (const auto& [type, step] : shapes) {
+    Complex<4> complex = cells_by_signature(type, step, 5);
+    for (const Ambiguity a : kBoth) {
+      SCOPED_TRACE(testing::Message() << name_of(type) << " " << static_cast<int>(a));
+      ExtractOptions options = compact_by(a, true);
+      const auto contour = extract<double>(complex, 0.0, options);
+      const MeshReport report = expect_closed_manifold(contour);
+      options.triangulation = Triangulation::barycentric;
+      const auto barycentric = extract<double>(complex, 0.0, options);
+      const MeshReport other = expect_closed_manifold(barycentric);
+      EXPECT_EQ(other.euler, report.euler);
+      EXPECT_EQ(other.components, report.components);
+      EXPECT_LT(contour.simplices.size(), barycentric.simplices.size());
+    }
+  }
+}
+
+/// All shapes over time, and simplices.
+std::vector<Complex<4>> noisy_complexes(std::size_t samples, std::uint64_t seed) {
+  std::vector<Complex<4>> complexes;
+  const auto points = grid_points<3>({samples, samples, samples}, 0.15);
+  const std::vector<double> times = {0.0, 0.7, 1.0, 2.5};
+  for (MeshData<3> mesh :
+       {mixed_mesh(points, 7), kuhn_mesh(points), wedge_mesh(points), pyramid_mesh(points), cube_mesh(points, true)})
+    for (const bool shuffled : {false, true}) {
+      std::vector<double> values, of_step;
+      MeshData<3> used = mesh;
+      for (std::uint64_t k = 0; k < times.size(); ++k) {
+        of_step = closed_noise(mesh, seed + k);
+        if (k == 0 || k + 1 == times.size()) of_step.assign(of_step.size(), -1.0);
+        if (shuffled) used = renumbered(mesh, of_step, seed);
+        values.insert(values.end(), of_step.begin(), of_step.end());
+      }
+      complexes.push_back(in_time(used.complex(), times, values));
+    }
+  return complexes;
+}
+
+TEST(Compact4d, NoiseOnMovingMeshesHasAClosedOrientedManifoldWhateverTheNumbersOfPoints) {
+  for (Complex<4>& complex : noisy_complexes(8, 11)) {
+    std::vector<std::size_t> sizes;
+    for (const Ambiguity a : kBoth) {
+      ExtractOptions options = compact_by(a);
+      const auto contour = extract(complex, 0.5, options);
+      EXPECT_GT(contour.simplices.size(), 3000u);
+      expect_closed_manifold(contour);
+      EXPECT_GT(measure(contour).content.value(), 0.0);
+      EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(complex, 0.5, options));
+      options.triangulation = Triangulation::barycentric;
+      EXPECT_LT(2 * contour.simplices.size(), count(complex, 0.5, options).simplices);
+    }
+    ExtractOptions options = compact_by(Ambiguity::low);
+    const auto before = extract(complex, 0.5, options);
+    complex.find_edges();
+    for (const unsigned threads : {1u, 3u}) {
+      options.work.threads = threads;
+      const auto after = extract(complex, 0.5, options);
+      EXPECT_TRUE(before.vertices == after.vertices);
+      EXPECT_TRUE(before.simplices == after.simplices);
+    }
+  }
+}
+
+/// Prisms given one by one have other diagonals at their ends than those of in_time, and are closed as well.
+TEST(Compact4d, CellsInAnyOrderOfTheirCornersHaveAClosedContour) {
+  for (MeshData<4> mesh :
+       {kuhn_mesh(grid_points<4>({6, 6, 6, 6}, 0.1)), cube_mesh(grid_points<4>({6, 6, 6, 6}, 0.1))}) {
+    std::vector<double> values = closed_noise(mesh, 3);
+    mesh = renumbered(mesh, values, 4);
+    Complex<4> complex = mesh.complex();
+    complex.set_values(values);
+    for (const Ambiguity a : kBoth) expect_closed_manifold(extract<double>(complex, 0.5, compact_by(a)));
+  }
+}
+
+/// Moves vertices inside cells to those of another contour, which are where they are up to rounding.
+void snap(const Contour<4>& to, Contour<4>& contour) {
+  const auto theirs = sorted_vertices(to), ours = sorted_vertices(contour);
+  std::vector<std::array<float, 4>> others;
+  std::set_difference(theirs.begin(), theirs.end(), ours.begin(), ours.end(), std::back_inserter(others));
+  EXPECT_LT(5 * others.size(), theirs.size());
+  for (auto& vertex : contour.vertices) {
+    if (std::binary_search(theirs.begin(), theirs.end(), vertex)) continue;
+    for (const auto& other : others) {
+      float distance = 0;
+      for (std::size_t i = 0; i < 4; ++i) distance = std::max(distance, std::abs(other[i] - vertex[i]));
+      if (distance > 1e-6f) continue;
+      vertex = other;
+      break;
+    }
+  }
+}
+
+TEST(Compact4d, AGridsOwnTesseractsHaveTheGridsContour) {
+  const MeshData<4> mesh = cube_mesh(grid_points<4>({9, 5, 9, 5}), true);  // steps and places in cells are exact
+  Complex<4> complex = mesh.complex();
+  std::vector<double> values = closed_noise(mesh, 23);
+  for (const bool rounded : {false, true}) {
+    if (rounded)
+      for (double& value : values) value = std::round(16 * value) / 16;  // some points have the isovalue
+    complex.set_values(values);
+    const OwnedImage<double, 4> image = image_of(mesh, values);
+    for (const Ambiguity a : kBoth)
+      for (const bool close : {false, true}) {
+        ExtractOptions options = compact_by(a, close);
+        options.direction = close ? GradientDirection::ascent : GradientDirection::descent;
+        options.epsilon = rounded ? 0.1 : 0.0;
+        const auto of_image = extract(image.view(), 0.5, options);
+        auto of_mesh = extract(complex, 0.5, options);
+        EXPECT_EQ(of_image.simplices.size(), of_mesh.simplices.size());
+        if (!close) snap(of_image, of_mesh);
+        EXPECT_TRUE(close || same_surface(of_image, of_mesh)) << static_cast<int>(a) << rounded;
+      }
+  }
+}
+
+TEST(Compact4d, CutsAtStepsAreTheCompactContoursOfTheSteps) {
+  const auto points = grid_points<3>({9, 9, 9}, 0.15);
+  const std::vector<double> times = {0.0, 0.7, 1.0};
+  for (const MeshData<3>& mesh : {mixed_mesh(points, 7), wedge_mesh(points), cube_mesh(points, true)}) {
+    std::vector<double> all;
+    for (std::uint64_t k = 0; k < times.size(); ++k)
+      for (const double value : closed_noise(mesh, 30 + k)) all.push_back(value);
+    Complex<3> step = mesh.complex();
+    const Complex<4> swept = in_time(step, times, all);
+    for (const Ambiguity a : kBoth) {
+      const auto contour = extract(swept, 0.5, compact_by(a));
+      const auto first = all.begin() + static_cast<std::ptrdiff_t>(mesh.points.size());
+      step.set_values(std::vector<double>(first, first + static_cast<std::ptrdiff_t>(mesh.points.size())));
+      const auto expected = extract(step, 0.5, compact_by(a));
+      EXPECT_GT(expected.simplices.size(), 300u);
+      EXPECT_TRUE(same_surface(slice(contour, Hyperplane<4>::across(3, 0.7)), expected));
+      expect_closed_manifold(slice(contour, Hyperplane<4>::across(3, 0.4)));
+    }
+  }
+}
+
+TEST(Compact4d, ContoursOfCellsWithFlatFacesDoNotIntersectThemselves) {
+  const MeshData<3> points = grid_points<3>({5, 5, 5});
+  const std::vector<double> times = {0.0, 0.5, 1.0, 2.0};
+  for (const MeshData<3>& mesh : {kuhn_mesh(points), wedge_mesh(points), pyramid_mesh(points), cube_mesh(points)}) {
+    std::vector<double> all;
+    for (std::uint64_t k = 0; k < times.size(); ++k)
+      for (const double value : closed_noise(mesh, 50 + k)) all.push_back(value);
+    const Complex<4> swept = in_time(mesh.complex(), times, all);
+    for (const Ambiguity a : kBoth) {
+      const auto contour = extract<double>(swept, 0.5, compact_by(a));
+      EXPECT_GT(contour.simplices.size(), 500u);
+      EXPECT_EQ(0u, find_intersections(contour).pair_count);
+    }
+  }
+}
+
+ExtractOptions decided_by(Ambiguity rule) {
+  ExtractOptions options = compact_by(rule);
+  options.triangulation = Triangulation::barycentric;
+  return options;
+}
+
+TEST(Decided4d, NoiseOnMovingMeshesHasAClosedOrientedManifold) {
+  std::vector<Complex<4>> complexes = noisy_complexes(7, 5);
+  for (std::size_t i = 0; i < complexes.size(); ++i) {
+    const bool has_tetrahedra_alone = i / 2 == 1;
+    for (const Ambiguity rule : {Ambiguity::squares, Ambiguity::decider, Ambiguity::mean, Ambiguity::saddle}) {
+      if (!has_tetrahedra_alone && (rule == Ambiguity::mean || rule == Ambiguity::saddle)) continue;
+      SCOPED_TRACE(testing::Message() << "mesh " << i << " rule " << static_cast<int>(rule));
+      ExtractOptions options = decided_by(rule);
+      const auto contour = extract(complexes[i], 0.5, options);
+      EXPECT_GT(contour.simplices.size(), 5000u);
+      expect_closed_manifold(contour);
+      EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(complexes[i], 0.5, options));
+      EXPECT_NE(contour.simplices.size(), count(complexes[i], 0.5, decided_by(Ambiguity::low)).simplices);
+      options.work.threads = 3;
+      EXPECT_TRUE(contour.simplices == extract(complexes[i], 0.5, options).simplices);
+    }
+  }
+}
+
+/// Images have other copies of sides inside tesseracts, so only the topology is the same.
+TEST(Decided4d, AGridsOwnTesseractsHaveTheTopologyOfTheGridsContour) {
+  const MeshData<4> mesh = cube_mesh(grid_points<4>({9, 5, 6, 5}), true);
+  Complex<4> complex = mesh.complex();
+  const std::vector<double> values = closed_noise(mesh, 29);
+  complex.set_values(values);
+  const OwnedImage<double, 4> image = image_of(mesh, values);
+  for (const Ambiguity rule : {Ambiguity::squares, Ambiguity::decider}) {
+    const auto of_image = extract<double>(image.view(), 0.5, decided_by(rule));
+    const auto of_mesh = extract<double>(complex, 0.5, decided_by(rule));
+    EXPECT_GT(of_mesh.simplices.size(), 10000u);
+    const MeshReport a = check(of_image), b = check(of_mesh);
+    EXPECT_EQ(a.euler, b.euler);
+    EXPECT_EQ(a.components, b.components);
+  }
+}
+
+TEST(Decided4d, CutsAtStepsAreTheContoursOfTheSteps) {
+  const auto points = grid_points<3>({8, 8, 8}, 0.15);
+  const std::vector<double> times = {0.0, 0.7, 1.0};
+  const std::pair<MeshData<3>, Ambiguity> cases[] = {{mixed_mesh(points, 7), Ambiguity::squares},
+                                                     {cube_mesh(points, true), Ambiguity::decider},
+                                                     {kuhn_mesh(points), Ambiguity::saddle}};
+  for (const auto& [mesh, rule] : cases) {
+    std::vector<double> all;
+    for (std::uint64_t k = 0; k < times.size(); ++k)
+      for (const double value : closed_noise(mesh, 30 + k)) all.push_back(value);
+    Complex<3> step = mesh.complex();
+    const auto contour = extract(in_time(step, times, all), 0.5, decided_by(rule));
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(mesh.points.size());
+    step.set_values(std::vector<double>(first, first + static_cast<std::ptrdiff_t>(mesh.points.size())));
+    EXPECT_TRUE(same_surface(slice(contour, Hyperplane<4>::across(3, 0.7)), extract(step, 0.5, decided_by(rule))));
+    expect_closed_manifold(slice(contour, Hyperplane<4>::across(3, 0.4)));
+  }
+}
+
+TEST(Decided4d, ClosedPartsOfBothSidesFillTheMesh) {
+  const auto points = grid_points<3>({5, 5, 5}, 0.15);
+  const MeshData<3> mesh = kuhn_mesh(points);  // over time without tori, whose filling depends on the side
+  std::vector<double> all;
+  std::mt19937_64 random(9);
+  for (std::size_t i = 0; i < 3 * mesh.points.size(); ++i)
+    all.push_back(static_cast<double>(random() >> 11) * 0x1p-53 - 0.4);
+  Complex<4> swept = in_time(mesh.complex(), std::vector<double>{0.0, 0.5, 2.0}, all);
+  double content = 0.0;
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<double> values = all;
+    for (double& value : values) value *= sign;
+    swept.set_values(values);
+    ExtractOptions options = decided_by(Ambiguity::mean);
+    options.close = true;
+    const auto contour = extract<double>(swept, 0.0, options);
+    expect_closed_manifold(contour);
+    content += measure(contour).content.value();
+  }
+  EXPECT_NEAR(16.0, content, 1e-9);
+}
+
+}  // namespace
+}  // namespace tegl
