@@ -110,17 +110,15 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
   }
 }
 
-template void AttributeOptions::sample_to(Contour<2, float>&, ReadImageOptions, unsigned, ProgressBar&,
-                                          const CurvedContour<2, float>&) const;
-template void AttributeOptions::sample_to(Contour<2, double>&, ReadImageOptions, unsigned, ProgressBar&,
-                                          const CurvedContour<2, double>&) const;
-template void AttributeOptions::sample_to(Contour<3, float>&, ReadImageOptions, unsigned, ProgressBar&,
-                                          const CurvedContour<3, float>&) const;
-template void AttributeOptions::sample_to(Contour<3, double>&, ReadImageOptions, unsigned, ProgressBar&,
-                                          const CurvedContour<3, double>&) const;
-template void AttributeOptions::sample_to(Contour<4, float>&, ReadImageOptions, unsigned, ProgressBar&,
-                                          const CurvedContour<4, float>&) const;
-template void AttributeOptions::sample_to(Contour<4, double>&, ReadImageOptions, unsigned, ProgressBar&,
-                                          const CurvedContour<4, double>&) const;
+#define TEGL_INSTANTIATE_SAMPLE_TO(N, Real)                                                              \
+  template void AttributeOptions::sample_to(Contour<N, Real>&, ReadImageOptions, unsigned, ProgressBar&, \
+                                            const CurvedContour<N, Real>&) const;
+TEGL_INSTANTIATE_SAMPLE_TO(2, float)
+TEGL_INSTANTIATE_SAMPLE_TO(2, double)
+TEGL_INSTANTIATE_SAMPLE_TO(3, float)
+TEGL_INSTANTIATE_SAMPLE_TO(3, double)
+TEGL_INSTANTIATE_SAMPLE_TO(4, float)
+TEGL_INSTANTIATE_SAMPLE_TO(4, double)
+#undef TEGL_INSTANTIATE_SAMPLE_TO
 
 }  // namespace tegl::cli
