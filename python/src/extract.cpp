@@ -187,19 +187,25 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
   });
 }
 
+/// The periods of axes: those given, or else of longitudes and by the samples (NaN).
+template <int N>
+AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<int>& axes, const std::vector<double>& given) {
+  AxisPeriods<N> periods = sample_periods(grid, axes);
+  const AxisPeriods<N> longitudes = longitude_periods(grid);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto axis = static_cast<std::size_t>(axes[i]);
+    if (longitudes[axis] != 0.0) periods[axis] = longitudes[axis];
+    if (!std::isnan(given.at(i))) periods[axis] = given[i];
+  }
+  return periods;
+}
+
 template <class Real>
 AnyContour periodic_contour_of(const AnyImage& image, const std::vector<int>& axes, const std::vector<double>& given,
                                double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N <= 4) {
-      AxisPeriods<N> periods = sample_periods(view.grid(), axes);
-      const AxisPeriods<N> longitudes = longitude_periods(view.grid());
-      for (std::size_t i = 0; i < axes.size(); ++i) {
-        const auto axis = static_cast<std::size_t>(axes[i]);
-        if (longitudes[axis] != 0.0) periods[axis] = longitudes[axis];
-        if (!std::isnan(given.at(i))) periods[axis] = given[i];
-      }
-      return {extract_periodic<Real>(view, periods, level, options), level};
+      return {extract_periodic<Real>(view, periods_of(view.grid(), axes, given), level, options), level};
     } else {
       throw_dimension("periodic axes", N, "2 to 4 dimensions");
     }
@@ -340,12 +346,18 @@ std::pair<std::unique_ptr<AnyContour>, py::array> unroll_any(const AnyContour& c
   return {std::move(result), py::array_t<Index>(static_cast<py::ssize_t>(originals.size()), originals.data())};
 }
 
-std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, double level, const py::dict& arguments,
-                                                  const py::object& progress) {
+/// `axes`: the periodic axes, with their periods; none: a plain image.
+std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const std::vector<int>& axes,
+                                                  const std::vector<double>& periods, double level,
+                                                  const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
-  const ContourSize size =
-      call.run([&] { return visit_image(image, [&](const auto& view) { return count(view, level, options); }); });
+  const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> ContourSize {
+    if (axes.empty()) return count(view, level, options);
+    if constexpr (N <= 4) return count_periodic(view, periods_of(view.grid(), axes, periods), level, options);
+    throw_dimension("periodic axes", N, "2 to 4 dimensions");
+  };
+  const ContourSize size = call.run([&] { return visit_image(image, of_view); });
   return {size.vertices, size.simplices};
 }
 
@@ -403,7 +415,8 @@ void bind_extract(py::module_& m) {
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::divided_complex);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
-  m.def("count", &count_any, py::arg("image"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
+  m.def("count", &count_any, py::arg("image"), py::arg("axes"), py::arg("periods"), py::arg("level"),
+        py::arg("options"), py::arg("progress"), doc::count);
   m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::slice_image);
 }

@@ -165,6 +165,34 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     return Contour._of(core, prepared.is_reversed, prepared.extent, prepared.image.grid)
 
 
+class ContourSize(typing.NamedTuple):
+    """The numbers of vertices and simplices of a contour."""
+
+    vertices: int
+    simplices: int
+
+
+@_arguments.documents("count", "count_periodic")
+def count(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
+          axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None, time_axis: int | None = None,
+          triangulation: _kinds.Triangulation = "compact", ambiguity: _kinds.Ambiguity = "low", close: bool = False,
+          threads: int = 0, progress: Progress | None = None, periodic=None) -> ContourSize:
+    """The size of the contour that `contour` makes with the same arguments, without making it: (vertices, simplices).
+
+    Arguments are those of `tegl.contour`. A level outside of the values gives (0, 0).
+    """
+    options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction="descent",
+                                         close=close, epsilon=0.0, normals=False, gradient="differences",
+                                         threads=threads)
+    prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
+                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+    level = _arguments.as_number("level", level)
+    options = prepared.library_options(options)
+    with prepared.terms():
+        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
+        return ContourSize(*_tegl.count(prepared.image, axes, periods, level, options, progress))
+
+
 @typing.overload
 def slice(contour_or_array: Contour, level: None = None, *, at: Place | None = None, axis: int | str | None = None,
           normal: Sequence[float] | np.ndarray | None = None, offset: float | None = None, allow_empty: bool = False,

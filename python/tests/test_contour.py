@@ -315,6 +315,18 @@ def test_periodic_axes_give_a_wrapped_contour(tmp_path):
         contour.simplify(0.5)
 
 
+def test_count_has_the_size_of_the_contour():
+    values = noise((7, 8, 9), 4)
+    for options in ({}, {"periodic": "all"}, {"periodic": [0, 2], "close": True}, {"ambiguity": "saddle"},
+                    {"triangulation": "barycentric", "periodic": {1: 8.5}}):
+        contour = tegl.contour(values, 0.5, **options)
+        size = tegl.count(values, 0.5, **options)
+        assert size == (len(contour.vertices), len(contour.simplices)) and size.simplices > 100, options
+    assert tegl.count(values, 7.0) == (0, 0)
+    with pytest.raises(ValueError, match="periodic"):
+        tegl.count(np.zeros((3, 3, 3, 3, 3)), 0.5, periodic=0)
+
+
 def test_periodic_axes_by_name_number_and_period():
     image = np.add.outer(np.zeros(8), np.cos(2 * np.pi * np.arange(12) / 12))
     def edges(**arguments):

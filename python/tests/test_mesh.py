@@ -82,8 +82,9 @@ def test_values_at_several_times_are_cut_at_any_time():
         cut = contour.slice(t)
         assert cut.check().is_closed
         assert cut.measure().content == pytest.approx(4 / 3 * np.pi * (0.7 - 0.1 * t)**3, rel=0.06)
-    step = tegl.contour_mesh(points, cells, values[1], 0.0, triangulation="barycentric")
-    assert len(contour.slice(0.5).simplices) == len(step.simplices)
+    assert len(contour.slice(0.5).simplices) == len(tegl.contour_mesh(points, cells, values[1], 0.0).simplices)
+    decided = tegl.contour_mesh(points, cells, values, 0.0, times=times, triangulation="barycentric", ambiguity="saddle")
+    assert decided.slice(1.7).check().is_closed and len(decided.simplices) > 2 * len(contour.simplices)
 
 
 def test_points_may_move():
@@ -187,7 +188,7 @@ def test_an_index_gives_the_contours_of_the_mesh():
     (dict(times=[0.0, 1.0]), ValueError, "values have the shape (27,); expected (2, 27)"),
     (dict(times=[1.0, 0.0], values=np.zeros((2, 27))), ValueError, "expected ascending times"),
     (dict(level=7.0), ValueError, "level is 7.0; expected a level above"),
-    (dict(ambiguity="mean", times=[0.0, 1.0], values=np.zeros((2, 27))), ValueError, "low or high"),
+    (dict(ambiguity="mean", times=[0.0, 1.0], values=np.zeros((2, 27))), ValueError, "expected the barycentric one"),
     (dict(normals="sobel"), ValueError, "normals of a mesh are 'sobel'; expected True"),
     (dict(dtype="int32"), ValueError, "expected float32 or float64"),
 ])
