@@ -37,16 +37,23 @@ class Ownership {
   /// If the offers cover i, i passes to their owners; otherwise i owns itself. Clears the offers. Returns whether i was
   /// given up.
   bool give_up(std::uint32_t i, Key least, Key greatest) {
-    const std::uint64_t first = parts_.size();
-    parts_of_[i] = first;
-    // Most uncovered ranges are uncovered at an end.
-    const bool covered = lowest_ <= least && greatest <= highest_ && divide(least, greatest, first);
-    if (!covered) {
-      parts_.resize(first);
-      parts_.push_back({greatest, i});
-    }
+    if (give_up_to_offers(i, least, greatest)) return true;
+    set_one(i, i, greatest);
     forget_offers();
-    return covered;
+    return false;
+  }
+  /// If the offers cover i, i passes to their owners, and the offers are cleared. Returns whether i was given up.
+  bool give_up_to_offers(std::uint32_t i, Key least, Key greatest) {
+    // Most uncovered ranges are uncovered at an end.
+    if (lowest_ > least || highest_ < greatest) return false;
+    const std::uint64_t first = parts_.size();
+    if (!divide(least, greatest, first)) {
+      parts_.resize(first);
+      return false;
+    }
+    parts_of_[i] = first;
+    forget_offers();
+    return true;
   }
   /// Sets one owner of the whole range of i: i itself if it is not given up.
   void set_one(std::uint32_t i, std::uint32_t owner, Key greatest) {

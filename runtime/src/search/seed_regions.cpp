@@ -235,10 +235,13 @@ class BlockTrees {
         places_(grid.room()),
         is_earlier_(grid.room()),
         owners_(grid.room()),
-        outside_(grid.room()) {
+        outside_(grid.room()),
+        low_(grid.width()),
+        high_(grid.width()),
+        from_(grid.width()),
+        to_(grid.width()),
+        wanted_(grid.width()) {
     for (const BlockGrid::Earlier& earlier : grid.earlier()) is_earlier_[earlier.tile] = true;
-    for (const std::ptrdiff_t distance : neighbours_)
-      if (distance > 0) ahead_.push_back(distance);
   }
 
   FinishedBlock<Key> make(std::size_t number) {
@@ -283,6 +286,7 @@ class BlockTrees {
       }
     });
     tiles_.clear();
+    rows_.clear();
     border_.clear();
     add_tiles(grid_.dim() - 1, 0, first, false);
     owners_.clear();
@@ -306,6 +310,7 @@ class BlockTrees {
       const std::size_t tile = at + (i + 1) * grid_.step(axis);
       const bool at_border =
           outside || (i == 0 && first[axis] > 0) || (i + 1 == count && first[axis] + count < grid_.size(axis));
+      if (axis == 0 && i == 0) rows_.emplace_back(static_cast<std::uint32_t>(tile), static_cast<std::uint32_t>(count));
       if (axis > 0) {
         add_tiles(axis - 1, tile, first, at_border);
       } else if (!constant(static_cast<std::uint32_t>(tile))) {
@@ -381,15 +386,16 @@ class BlockTrees {
       owners_.set(tile, parts_);
     }
   }
-  /// Whether other trees cover the tile; `parts_` are then their parts.
+  /// Whether other trees cover the tile; `parts_` are then their parts. Neighbours across faces nearly always do, so
+  /// they are tried first.
   bool is_covered_by_others(std::uint32_t tile) {
     const Key least = least_[tile];
     const Key greatest = greatest_[tile];
-    // collect the parts that other roots offer
     offered_.clear();
     Key lowest = greatest, highest = least;
-    for (const std::ptrdiff_t distance : neighbours_) {
-      const auto other = static_cast<std::uint32_t>(tile + distance);
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+      if (i == grid_.faces() && lowest <= least && highest >= greatest && divide_among_offered(tile)) return true;
+      const auto other = static_cast<std::uint32_t>(tile + neighbours_[i]);
       if (!owners_.has(other) || !overlap(tile, other)) continue;
       Key from = std::max(least, least_[other]);
       for_roots(other, from, std::min(greatest, greatest_[other]), [&](std::uint32_t root, Key to) {
@@ -401,10 +407,13 @@ class BlockTrees {
         from = to;
       });
     }
-    if (lowest > least || highest < greatest) return false;
-    // greedy interval cover
+    return lowest <= least && highest >= greatest && divide_among_offered(tile);
+  }
+  /// Sets `parts_` to a division of the range of a tile among the offers, each part as long as possible. False: a gap.
+  bool divide_among_offered(std::uint32_t tile) {
+    const Key greatest = greatest_[tile];
     parts_.clear();
-    for (Key level = least; level < greatest;) {
+    for (Key level = least_[tile]; level < greatest;) {
       Key farthest = level;
       std::uint32_t by = tile;
       for (const KeyLink<Key>& offer : offered_)
@@ -418,11 +427,13 @@ class BlockTrees {
     }
     return true;
   }
+  /// Gives the tile up if processed neighbours cover it: across faces, or all of them.
   bool is_given_up(std::uint32_t tile) {
     const Key least = least_[tile];
     const Key greatest = greatest_[tile];
-    for (const std::ptrdiff_t distance : neighbours_) {
-      const auto other = static_cast<std::uint32_t>(tile + distance);
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+      if (i == grid_.faces() && owners_.give_up_to_offers(tile, least, greatest)) return true;
+      const auto other = static_cast<std::uint32_t>(tile + neighbours_[i]);
       if (!owners_.has(other) || !overlap(tile, other)) continue;
       // A tile that contains the range with room at both ends is as good as any. In noise most tiles lie in one.
       if (least_[other] < least && greatest < greatest_[other] && owners_.give_up_to_one(tile, other, least, greatest))
@@ -432,6 +443,33 @@ class BlockTrees {
     return owners_.give_up(tile, least, greatest);
   }
 
+  /// Sets `wanted_` for `count` tiles of a row: whether a tile and its neighbour ahead are active at a common level at
+  /// which no tile between them is (as tested with one or two of these). At other levels the tile between is linked to
+  /// both, or connected to them by tiles between, so that a link is superfluous. Returns whether any is wanted.
+  bool find_wanted(std::uint32_t tile, std::uint32_t count, const BlockGrid::Ahead& ahead) {
+    const Key* const least = &least_[tile];
+    const Key* const greatest = &greatest_[tile];
+    // levels that are not covered yet: from `low_` to `high_`
+    for (std::uint32_t i = 0; i < count; ++i) {
+      low_[i] = from_[i] = std::max(least[i], least[i + ahead.distance]);
+      high_[i] = to_[i] = std::min(greatest[i], greatest[i + ahead.distance]);
+    }
+    const auto is_any = [&] {
+      unsigned any = 0;
+      for (std::uint32_t i = 0; i < count; ++i) any |= low_[i] < high_[i] ? 1U : 0U;
+      return any != 0;
+    };
+    for (const std::ptrdiff_t distance : ahead.between) {
+      if (!is_any()) return false;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Key first = least[i + distance], end = greatest[i + distance];
+        low_[i] = first <= from_[i] && low_[i] < end ? end : low_[i];
+        high_[i] = to_[i] <= end && first < high_[i] ? first : high_[i];
+      }
+    }
+    for (std::uint32_t i = 0; i < count; ++i) wanted_[i] = low_[i] < high_[i] ? 1 : 0;
+    return is_any();
+  }
   /// Collects the links among the tiles of the block and to earlier blocks, and numbers the trees of the latter.
   void link(Regions<Key>& trees) {
     LinkCollector<Key> collector(tiles_.size() / 2);
@@ -445,17 +483,21 @@ class BlockTrees {
     for (const std::uint32_t tile : border_)
       owners_.for_owners(tile, least_[tile], greatest_[tile], [&](std::uint32_t root, Key) { number(root); });
     const auto add_links = [&](std::uint32_t tile, std::uint32_t other) {
-      if (overlap(tile, other))
-        owners_.add_links(tile, other, std::max(least_[tile], least_[other]),
-                          std::min(greatest_[tile], greatest_[other]), number, collector);
+      owners_.add_links(tile, other, std::max(least_[tile], least_[other]), std::min(greatest_[tile], greatest_[other]),
+                        number, collector);
     };
-    for (const std::uint32_t tile : tiles_)
-      for (const std::ptrdiff_t distance : ahead_)
-        if (const auto other = static_cast<std::uint32_t>(tile + distance); owners_.has(other)) add_links(tile, other);
+    for (const auto& [tile, count] : rows_)
+      for (const BlockGrid::Ahead& ahead : grid_.ahead()) {
+        if (!find_wanted(tile, count, ahead)) continue;
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const auto other = static_cast<std::uint32_t>(tile + i + ahead.distance);
+          if (wanted_[i] != 0 && owners_.has(other)) add_links(tile + i, other);
+        }
+      }
     for (const std::uint32_t tile : border_)
-      for (const std::ptrdiff_t distance : ahead_) {
-        const auto other = static_cast<std::uint32_t>(tile - distance);
-        if (is_earlier_[other] && owners_.has(other)) add_links(tile, other);
+      for (const BlockGrid::Ahead& ahead : grid_.ahead()) {
+        const auto other = static_cast<std::uint32_t>(tile - ahead.distance);
+        if (is_earlier_[other] && owners_.has(other) && find_wanted(other, 1, ahead)) add_links(tile, other);
       }
     trees.links = collector.take();
   }
@@ -495,18 +537,20 @@ class BlockTrees {
   const std::vector<FinishedBlock<Key>>& finished_;
   std::vector<std::uint32_t>& first_owner_;
   std::vector<std::ptrdiff_t> neighbours_;
-  std::vector<std::ptrdiff_t> ahead_;  ///< one of each pair of opposite neighbours
   std::vector<Key> least_, greatest_;  ///< by tile of the box
   std::vector<Place> places_;          ///< by tile of the box
   std::vector<bool> is_earlier_;       ///< by tile of the box: whether it belongs to an earlier block
   Ownership<Key> owners_;              ///< of the tiles of the box: tiles of the block, and roots outside
   OutsideRoots outside_;
-  std::vector<std::uint32_t> tiles_;   ///< of the block, those that are not constant
-  std::vector<std::uint32_t> border_;  ///< the tiles that have neighbours in other blocks
-  std::vector<std::uint32_t> number_;  ///< by root: number of its tree in the block
+  std::vector<std::uint32_t> tiles_;                           ///< of the block, those that are not constant
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> rows_;  ///< of the block: first tile, number of tiles
+  std::vector<std::uint32_t> border_;                          ///< the tiles that have neighbours in other blocks
+  std::vector<std::uint32_t> number_;                          ///< by root: number of its tree in the block
   std::vector<std::uint8_t> classes_;
   std::vector<KeyLink<Key>> offered_;  ///< a: the offering root
   std::vector<std::pair<std::uint32_t, Key>> parts_;
+  std::vector<Key> low_, high_, from_, to_;  ///< by tile of a row (see find_wanted)
+  std::vector<std::uint8_t> wanted_;         ///< by tile of a row
 };
 
 /// The regions of all tiles. Blocks of a group are built at the same time; the result is that of building them one

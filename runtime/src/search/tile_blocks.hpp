@@ -19,6 +19,12 @@ namespace tegl::detail {
 class BlockGrid {
  public:
   using Coordinates = std::array<std::size_t, kMostAxes>;
+  /// A neighbour ahead, and the tiles between: the step along some of its axes leads to them, so that they are
+  /// neighbours of both.
+  struct Ahead {
+    std::ptrdiff_t distance;
+    std::vector<std::ptrdiff_t> between;
+  };
   /// A tile in the margin of a box, which belongs to an earlier block.
   struct Earlier {
     std::uint32_t tile;
@@ -36,11 +42,7 @@ class BlockGrid {
       count_ *= counts[a];
     }
     room_ = steps_[dim_ - 1] * (width_ + 2);
-    for (const Step& step : neighbour_steps(dim_, neighbourhood)) {
-      std::ptrdiff_t distance = 0;
-      for (int a = 0; a < dim_; ++a) distance += step[a] * static_cast<std::ptrdiff_t>(steps_[a]);
-      neighbours_.push_back(distance);
-    }
+    find_neighbours(neighbourhood);
     find_earlier(counts);
     order_blocks(counts);
   }
@@ -50,8 +52,12 @@ class BlockGrid {
   [[nodiscard]] std::size_t width() const noexcept { return width_; }
   [[nodiscard]] std::size_t step(int axis) const noexcept { return steps_[axis]; }  ///< in a box
   [[nodiscard]] std::size_t size(int axis) const noexcept { return tiles_.size(axis); }
-  /// Distances in a box.
+  /// Number of neighbours across faces.
+  [[nodiscard]] std::size_t faces() const noexcept { return 2 * static_cast<std::size_t>(dim_); }
+  /// Distances in a box; neighbours across faces first.
   [[nodiscard]] const std::vector<std::ptrdiff_t>& neighbours() const noexcept { return neighbours_; }
+  /// One of each pair of opposite neighbours.
+  [[nodiscard]] const std::vector<Ahead>& ahead() const noexcept { return ahead_; }
   [[nodiscard]] const std::vector<Earlier>& earlier() const noexcept { return earlier_; }
   /// The blocks, in groups: a block depends only on blocks of earlier groups.
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& groups() const noexcept { return groups_; }
@@ -92,6 +98,25 @@ class BlockGrid {
  private:
   static constexpr std::array<std::size_t, kMostAxes + 1> kWidth = {1, 4096, 64, 16, 8, 6};
 
+  void find_neighbours(Neighbourhood neighbourhood) {
+    const auto moved = [](const Step& step) {
+      return std::count_if(step.begin(), step.end(), [](int to) { return to != 0; });
+    };
+    std::vector<Step> steps = neighbour_steps(dim_, neighbourhood);
+    std::stable_sort(steps.begin(), steps.end(), [&](const Step& a, const Step& b) { return moved(a) < moved(b); });
+    for (const Step& step : steps) {
+      std::vector<std::ptrdiff_t> parts = {0};  // distances of all parts of the step, the whole last
+      for (int a = 0; a < dim_; ++a) {
+        if (step[a] == 0) continue;
+        const std::size_t count = parts.size();
+        for (std::size_t i = 0; i < count; ++i)
+          parts.push_back(parts[i] + step[a] * static_cast<std::ptrdiff_t>(steps_[a]));
+      }
+      const std::ptrdiff_t distance = parts.back();
+      neighbours_.push_back(distance);
+      if (distance > 0) ahead_.push_back({distance, {parts.begin() + 1, parts.end() - 1}});
+    }
+  }
   void find_earlier(const Coordinates& counts) {
     for (std::size_t tile = 0; tile < room_; ++tile) {
       std::ptrdiff_t back = 0;
@@ -131,6 +156,7 @@ class BlockGrid {
   std::size_t room_ = 0;
   std::array<std::size_t, kMostAxes> steps_{};
   std::vector<std::ptrdiff_t> neighbours_;
+  std::vector<Ahead> ahead_;
   std::vector<Earlier> earlier_;
   std::vector<std::vector<std::size_t>> groups_;
 };

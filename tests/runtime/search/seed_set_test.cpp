@@ -217,6 +217,20 @@ TEST(SeedSet, ChosenPartByPartMeetsAllComponents) {
   EXPECT_LT(10 * set.tiles.size(), 7 * find_seeds(image.view(), options).tiles.size());
 }
 
+TEST(SeedSet, OfManyNoisyTilesWithDiagonalNeighboursMeetsAllComponents) {
+  // Neighbours across an edge or a corner, some of which no tile between them connects.
+  const auto image = noise<float, 3>({72, 71, 70}, 21);
+  for (const Neighbourhood neighbourhood : {Neighbourhood::faces_and_edges, Neighbourhood::all}) {
+    const AllComponents<float, 3> all(image, neighbourhood, 1);
+    SeedSetOptions options;
+    options.neighbourhood = neighbourhood;
+    const SeedSet set = find_seeds(image.view(), options);
+    EXPECT_TRUE(set.stats.reduced);
+    EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
+    EXPECT_LT(set.tiles.size(), set.stats.tiles / 50);
+  }
+}
+
 /// Seeds and their bound per tile, for noise with few samples along the first axes and many along the last.
 template <int N>
 std::pair<double, double> share_of_seeds(const std::array<std::size_t, N>& sizes) {
