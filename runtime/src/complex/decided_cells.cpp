@@ -57,10 +57,9 @@ DecidedCells::DecidedCells(CellShape shape, FaceRule rule, double isovalue)
   const auto is_cube = [](const CellFacet& facet) { return facet.shape == CellShape::hexahedron; };
   const auto facets = facets_of(shape);
   if (!rule.separates && std::any_of(facets.begin(), facets.end(), is_cube))
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "ambiguity mean or saddle for the contour of a 4D complex with hexahedra as facets; expected low, high, "
-        "squares or decider");
+    throw Error(ErrorCode::InvalidArgument,
+                "ambiguity by means or saddles in 4D cells with hexahedra as facets; expected low, high, squares or "
+                "decider");
   const std::vector<tile::Face>& faces = lattice_.faces();
   edge_of_.resize(faces.size());
   for (std::uint32_t f = 0; f < faces.size(); ++f) {
