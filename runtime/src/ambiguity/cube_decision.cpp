@@ -224,6 +224,48 @@ std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, u
   return values;
 }
 
+/// Decides the centres of cubes by the trilinear interpolant, except of those in `unsure`. `entries`: of the table of
+/// resolved cubes. Returns those that rounding could decide.
+Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, Word unsure, double isovalue,
+          const RowTable& table, TilesOfWord& tiles) noexcept {
+  const auto& joins = cube_joins();
+  Word with_one = 0, with_more = 0;  // pairs of edges
+  for (std::size_t j = 0; j < entries.size(); ++j) {
+    const unsigned pairs = joins[entries[j]].pairs;
+    with_one |= Word{pairs == 1} << j;
+    with_more |= Word{pairs > 1} << j;
+  }
+  const auto decide = [&](std::size_t j, tile::Choice centre) {
+    tiles.variants[j] = table.variant(entries[j], static_cast<unsigned>(centre));
+  };
+  for (Word rest = with_more & ~unsure; rest != 0; rest &= rest - 1) {
+    const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+    decide(j, detail::decide_centre(corners_of_cube<3, 7>(block, tiles.bits[j], 0), isovalue, entries[j]));
+  }
+  with_one &= ~unsure;
+  std::array<std::uint8_t, kWordBits> bits;
+  std::array<const tables::CubeJoin*, kWordBits> asked;
+  std::size_t count = 0;
+  for (Word rest = with_one; rest != 0; rest &= rest - 1, ++count) {
+    const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+    bits[count] = tiles.bits[j];
+    asked[count] = &joins[entries[j]];
+  }
+  JoinQuestions questions;
+  ask(block, {bits.data(), count}, asked.data(), questions);
+  answer(questions, isovalue);
+  Word still_unsure = 0;
+  std::size_t q = 0;
+  for (Word rest = with_one; rest != 0; rest &= rest - 1, ++q) {
+    const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+    // choices as numbers: separate, low, high
+    const unsigned joined = 1u + unsigned{joins[entries[j]].high};
+    decide(j, static_cast<tile::Choice>(joined * unsigned{questions.answers[q] == JoinQuestions::yes}));
+    still_unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << j;
+  }
+  return still_unsure;
+}
+
 }  // namespace
 
 void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
@@ -232,40 +274,19 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   // Cubes are decided by means, by the interpolant, or not at all.
   const bool by_means = estimator.is_by_means() && !estimator.separates();
   const bool by_joins = estimator.is_by_saddles() && !estimator.separates();
-  const auto& joins = cube_joins();
-  JoinQuestions questions;
-  std::array<std::uint8_t, kWordBits> asked;
   std::array<std::uint16_t, kWordBits> entries;
-  // tiles that are decided already, and questions about the others
+  Word unsure = 0;  // sets of tiles, as bits: made without branches
   for (std::size_t j = 0; j < tiles.count; ++j) {
     const unsigned bit = tiles.bits[j], signature = tiles.signatures[j];
     const auto high = static_cast<unsigned>(block.high[bit]);
     const unsigned entry =
         resolved.first_entry[signature] + packed_squares(high, unsigned{resolved.ambiguous_squares[signature]});
+    entries[j] = static_cast<std::uint16_t>(entry);
     tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
-    if (block.unsure[bit] != 0) {
-      tiles.variants[j] = {};
-    } else if (by_joins && joins[entry].pairs == 1) {
-      for (std::size_t e = 0; e < 8; ++e) {
-        const unsigned corner = joins[entry].corners[e];
-        questions.ends[e][questions.count] = block.samples[corner >> 1][bit + (corner & 1u)];
-      }
-      questions.sign[questions.count] = joins[entry].high ? 1.0 : -1.0;
-      entries[questions.count] = static_cast<std::uint16_t>(entry);
-      asked[questions.count++] = static_cast<std::uint8_t>(j);
-    } else if (by_joins && joins[entry].pairs > 1) {
-      const auto centre = detail::decide_centre(corners_of_cube<3, 7>(block, bit, 0), estimator.isovalue(), entry);
-      tiles.variants[j] = table.variant(entry, static_cast<unsigned>(centre));
-    }
+    unsure |= Word{block.unsure[bit] != 0} << j;
   }
-  // apply the answers
-  answer(questions, estimator.isovalue());
-  for (std::size_t q = 0; q < questions.count; ++q) {
-    Variant& variant = tiles.variants[asked[q]];
-    const auto joined = static_cast<unsigned>(joins[entries[q]].high ? tile::Choice::high : tile::Choice::low);
-    if (questions.answers[q] == JoinQuestions::yes) variant = table.variant(entries[q], joined);
-    if (questions.answers[q] == JoinQuestions::unsure) variant = {};
-  }
+  if (by_joins) unsure |= join(block, {entries.data(), tiles.count}, unsure, estimator.isovalue(), table, tiles);
+  for (; unsure != 0; unsure &= unsure - 1) tiles.variants[std::countr_zero(unsure)] = {};
 }
 
 }  // namespace tegl::detail

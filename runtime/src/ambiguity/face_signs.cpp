@@ -57,7 +57,12 @@ struct Highs {
   template <class M>
   HWY_INLINE void take(unsigned face, M is_high) {
     const Bits d;
-    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(d, is_high), hn::Set(d, std::uint64_t{1} << face)));
+    const auto bit = hn::Set(d, std::uint64_t{1} << face);
+#if HWY_TARGET <= HWY_AVX3
+    bits.raw = _mm512_mask_or_epi64(bits.raw, is_high.raw, bits.raw, bit.raw);
+#else
+    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(d, is_high), bit));
+#endif
   }
 };
 
@@ -182,7 +187,7 @@ HWY_INLINE void means_of(FaceBlock<N>& block, double isovalue) {
   look_again(block, !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), 0x1p36);
 }
 
-/// Decides squares by their saddles. `least`: smallest margin of a determinant over its possible error.
+/// Decides squares by their saddles. `least`: smallest margin of a determinant over its possible error without kTiny.
 struct Saddles {
   Highs highs;
   hn::Vec<D> least;
@@ -192,14 +197,19 @@ struct Saddles {
   template <class V>
   HWY_INLINE void take(unsigned face, V first, V second, V third, V last) {
     const D d;
-    const auto tiny = hn::Set(d, 0x1p-959);
     const auto one = hn::Mul(first, last), other = hn::Mul(second, third);
     const auto determinant = hn::Sub(one, other);
-    const auto error = hn::Mul(hn::Add(hn::Add(hn::Abs(one), hn::Abs(other)), tiny), hn::Set(d, 0x1p-48));
+    const auto size = hn::Add(hn::Abs(one), hn::Abs(other));
     // The difference of two zeros may be -0.
     const auto of_high = hn::IfThenElse(hn::Lt(first, hn::Zero(d)), hn::Neg(determinant), determinant);
     highs.take(face, hn::Ge(of_high, hn::Zero(d)));
-    least = hn::Min(least, hn::Sub(hn::Abs(determinant), error));
+    // The factor has room for the rounding of this line, fused or not.
+    least = hn::Min(least, hn::NegMulAdd(size, hn::Set(d, 0x1p-48), hn::Abs(determinant)));
+  }
+  /// Where rounding cannot decide.
+  HWY_INLINE auto sure() const {
+    constexpr double kTiny = 0x1p-1006;  // of the products, if they are denormal
+    return hn::Gt(least, hn::Set(D(), kTiny));
   }
 };
 
@@ -234,9 +244,11 @@ HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
   for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
     Saddles saddles;
     take_saddles(block, i, isovalue, saddles);
-    auto sure = hn::Gt(saddles.least, hn::Zero(d));
+    auto sure = saddles.sure();
+    auto largest = hn::Zero(d);
     for (std::size_t r = 0; r < block.kRows; ++r)
-      for (std::size_t to = i; to < i + 2; ++to) sure = hn::And(sure, hn::Lt(hn::Abs(samples_at(block, r, to)), large));
+      for (std::size_t to = i; to < i + 2; ++to) largest = hn::Max(largest, hn::Abs(samples_at(block, r, to)));
+    sure = hn::And(sure, hn::Lt(largest, large));
     if constexpr (N == 4) {
       Means means(isovalue);
       take_means_of_rows(block, i, false, means);
@@ -305,19 +317,24 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
   conditions.take({hn::Mul(sign, a.value), a.size});
   conditions.take({hn::Mul(sign, c.value), c.size});
   conditions.take(hyperdeterminant);
-  // Nothing was rounded if all values and the isovalue are multiples of 1/2 with 10 bits. A zero then counts as high.
-  const auto is_short = [&](hn::Vec<D> value) HWY_ATTR {
-    const auto halves = hn::Add(value, value);
-    return hn::And(hn::Eq(hn::Round(halves), halves), hn::Le(hn::Abs(value), hn::Set(d, 0x1p9)));
-  };
-  auto is_whole = is_short(hn::Set(d, isovalue));
-  for (const auto& values : questions.ends) is_whole = hn::And(is_whole, is_short(hn::LoadU(d, values.data() + i)));
-  const auto least = hn::IfThenElse(hn::Gt(sign, zero), zero, hn::Set(d, 0x1p-60));  // below any such number
-  const auto is_so = [&](const Rounded& x) HWY_ATTR { return hn::Ge(hn::Mul(sign, x.value), least); };
-  const auto is_inside = hn::And(hn::Gt(u0.value, zero), hn::Gt(u1.value, zero));
-  const auto exactly = hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant.value, least)), hn::And(is_so(a), is_so(c)));
-  const auto is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, conditions.all));
-  const auto is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, conditions.none));
+  const auto used = hn::FirstN(d, questions.count - i);
+  auto is_yes = conditions.all, is_no = conditions.none;
+  if (!hn::AllFalse(d, hn::AndNot(hn::Or(is_yes, is_no), used))) {
+    // Nothing was rounded if all values and the isovalue are multiples of 1/2 with 10 bits. A zero then counts as high.
+    const auto is_short = [&](hn::Vec<D> value) HWY_ATTR {
+      const auto halves = hn::Add(value, value);
+      return hn::And(hn::Eq(hn::Round(halves), halves), hn::Le(hn::Abs(value), hn::Set(d, 0x1p9)));
+    };
+    auto is_whole = is_short(hn::Set(d, isovalue));
+    for (const auto& values : questions.ends) is_whole = hn::And(is_whole, is_short(hn::LoadU(d, values.data() + i)));
+    const auto least = hn::IfThenElse(hn::Gt(sign, zero), zero, hn::Set(d, 0x1p-60));  // below any such number
+    const auto is_so = [&](const Rounded& x) HWY_ATTR { return hn::Ge(hn::Mul(sign, x.value), least); };
+    const auto is_inside = hn::And(hn::Gt(u0.value, zero), hn::Gt(u1.value, zero));
+    const auto exactly =
+        hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant.value, least)), hn::And(is_so(a), is_so(c)));
+    is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, is_yes));
+    is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, is_no));
+  }
   // write
   alignas(64) double result[hn::MaxLanes(d)];
   hn::Store(hn::IfThenElse(is_yes, hn::Set(d, 1.0), hn::IfThenElse(is_no, zero, hn::Set(d, 2.0))), d, result);
@@ -332,6 +349,55 @@ void answer_all(JoinQuestions& questions, double isovalue) {
   std::fill(questions.sign.begin() + questions.count, questions.sign.begin() + end, 0.0);
   for (std::size_t i = 0; i < questions.count; i += hn::Lanes(d)) answer_some(questions, isovalue, i);
 }
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// Transposes eight rows of eight numbers and stores them `pitch` apart.
+HWY_INLINE void store_transposed(const __m512d (&rows)[8], double* to, std::size_t pitch) {
+  __m512d pairs[8], fours[8];
+  for (unsigned i = 0; i < 8; i += 2) {
+    pairs[i] = _mm512_unpacklo_pd(rows[i], rows[i + 1]);
+    pairs[i + 1] = _mm512_unpackhi_pd(rows[i], rows[i + 1]);
+  }
+  for (unsigned i = 0; i < 8; i += 4)
+    for (unsigned j = 0; j < 2; ++j) {  // columns j, j + 4 and j + 2, j + 6
+      fours[i + j] = _mm512_shuffle_f64x2(pairs[i + j], pairs[i + j + 2], 0x88);
+      fours[i + j + 2] = _mm512_shuffle_f64x2(pairs[i + j], pairs[i + j + 2], 0xDD);
+    }
+  for (unsigned j = 0; j < 4; ++j) {
+    _mm512_storeu_pd(to + j * pitch, _mm512_shuffle_f64x2(fours[j], fours[j + 4], 0x88));
+    _mm512_storeu_pd(to + (j + 4) * pitch, _mm512_shuffle_f64x2(fours[j], fours[j + 4], 0xDD));
+  }
+}
+
+void ask_all(const FaceBlock<3>& block, const std::uint8_t* bits, std::size_t count,
+             const tables::CubeJoin* const* joins, JoinQuestions& questions) {
+  // the corners of one tile are a register, from which its ends are picked
+  for (std::size_t q = 0; q < count; q += 8) {
+    __m512d rows[8];
+    for (std::size_t j = 0; j < 8; ++j) {
+      const std::size_t i = std::min(q + j, count - 1);
+      const auto two = [&](std::size_t row) HWY_ATTR { return _mm_loadu_pd(block.samples[row].data() + bits[i]); };
+      const __m256d lower = _mm256_insertf128_pd(_mm256_castpd128_pd256(two(0)), two(1), 1);
+      const __m256d upper = _mm256_insertf128_pd(_mm256_castpd128_pd256(two(2)), two(3), 1);
+      const __m512i ends = _mm512_cvtepu8_epi64(_mm_loadu_si64(joins[i]->corners.data()));
+      rows[j] = _mm512_permutexvar_pd(ends, _mm512_insertf64x4(_mm512_castpd256_pd512(lower), upper, 1));
+      questions.sign[q + j] = JoinQuestions::kSigns[joins[i]->high];
+    }
+    store_transposed(rows, questions.ends[0].data() + q, JoinQuestions::kMost);
+  }
+  questions.count = count;
+}
+
+#else
+
+void ask_all(const FaceBlock<3>& block, const std::uint8_t* bits, std::size_t count,
+             const tables::CubeJoin* const* joins, JoinQuestions& questions) {
+  for (std::size_t q = 0; q < count; ++q)
+    questions.add(*joins[q], [&](unsigned corner) { return block.samples[corner >> 1][bits[q] + (corner & 1u)]; });
+}
+
+#endif
 
 // Highway's dispatch tables cannot hold templates.
 void means3(FaceBlock<3>& block, double isovalue) { means_of<3>(block, isovalue); }
@@ -352,6 +418,13 @@ HWY_EXPORT(means3);
 HWY_EXPORT(means4);
 HWY_EXPORT(saddles3);
 HWY_EXPORT(saddles4);
+
+HWY_EXPORT(ask_all);
+
+void ask(const FaceBlock<3>& block, std::span<const std::uint8_t> bits, const tables::CubeJoin* const* joins,
+         JoinQuestions& questions) noexcept {
+  HWY_DYNAMIC_DISPATCH(ask_all)(block, bits.data(), bits.size(), joins, questions);
+}
 
 void answer(JoinQuestions& questions, double isovalue) noexcept {
   HWY_DYNAMIC_DISPATCH(answer_all)(questions, isovalue);

@@ -8,8 +8,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "image/bitplanes.hpp"
+#include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
 
@@ -53,7 +55,19 @@ struct JoinQuestions {
   alignas(64) std::array<std::array<double, kMost>, 8> ends;
   alignas(64) std::array<double, kMost> sign;  ///< 1: A and C are high; -1: they are low
   std::array<Answer, kMost> answers;
+
+  /// Adds a question. `value(corner)`: the sample at a corner of the cube.
+  template <class Value>
+  void add(const tables::CubeJoin& join, const Value& value) noexcept {
+    for (std::size_t e = 0; e < ends.size(); ++e) ends[e][count] = value(join.corners[e]);
+    sign[count++] = kSigns[join.high];
+  }
+
+  static constexpr std::array<double, 2> kSigns = {-1.0, 1.0};  ///< by CubeJoin::high, which is hard to predict
 };
+/// Asks about tiles of a block. `bits`: their positions.
+void ask(const FaceBlock<3>& block, std::span<const std::uint8_t> bits, const tables::CubeJoin* const* joins,
+         JoinQuestions& questions) noexcept;
 void answer(JoinQuestions& questions, double isovalue) noexcept;
 
 }  // namespace tegl::detail

@@ -3,7 +3,9 @@
 // Resolves ambiguous 4D tiles one at a time and a word of tiles at a time.
 #include "ambiguity/tesseract_decision.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "ambiguity/connected_sides.hpp"
@@ -197,48 +199,63 @@ class WordResolver {
     }
   }
 
-  /// Decides the centres of cubes by the trilinear interpolant. Cubes with one pair of edges are collected first.
+  /// Decides the centres of cubes by the trilinear interpolant. Those with one pair of edges are listed without
+  /// branches and asked about together.
   void take_joins() noexcept {
     take_separate();
     const auto& joins = cube_joins();
-    JoinQuestions questions;
+    std::array<std::uint16_t, 8 * kWordBits> asked;  // 8 * tile + cube
+    std::size_t count = 0;
     for (std::size_t j = 0; j < of_.count; ++j) {
-      if (questions.count + 8 > JoinQuestions::kMost) apply_answers(questions);
+      unsigned with_more = 0;
       for (unsigned f = 0; f < 8; ++f) {
-        const CubeJoin& join = joins[entries_[j][f]];
-        if (join.pairs == 1) {
-          for (std::size_t e = 0; e < 8; ++e) questions.ends[e][questions.count] = value(j, f, join.corners[e]);
-          questions.sign[questions.count] = join.high ? 1.0 : -1.0;
-          asked_[questions.count++] = static_cast<std::uint16_t>(8 * j + f);
-        } else if (join.pairs > 1) {
-          std::array<double, 8> values;
-          for (unsigned corner = 0; corner < 8; ++corner) values[corner] = value(j, f, corner);
-          join_cube(j, f, detail::decide_centre(values, estimator_.isovalue(), entries_[j][f]));
-        }
+        const unsigned pairs = joins[entries_[j][f]].pairs;
+        asked[count] = static_cast<std::uint16_t>(8 * j + f);
+        count += static_cast<std::size_t>(pairs == 1);
+        with_more |= static_cast<unsigned>(pairs > 1) << f;
+      }
+      for (; with_more != 0; with_more &= with_more - 1) {
+        const auto f = static_cast<unsigned>(std::countr_zero(with_more));
+        std::array<double, 8> values;
+        for (unsigned corner = 0; corner < 8; ++corner) values[corner] = value(j, f, corner);
+        join_cube(j, f, detail::decide_centre(values, estimator_.isovalue(), entries_[j][f]));
       }
     }
-    apply_answers(questions);
+    for (std::size_t first = 0; first < count; first += JoinQuestions::kMost)
+      ask_about({asked.data() + first, std::min(JoinQuestions::kMost, count - first)});
   }
-  void apply_answers(JoinQuestions& questions) noexcept {
+  void ask_about(std::span<const std::uint16_t> asked) noexcept {
+    JoinQuestions questions;
+    for (const unsigned cube : asked)
+      questions.add(join_of(cube), [&](unsigned corner) { return value(cube / 8, cube % 8, corner); });
     answer(questions, estimator_.isovalue());
-    for (std::size_t q = 0; q < questions.count; ++q) {
-      const std::size_t j = asked_[q] / 8u;
-      const unsigned f = asked_[q] % 8u;
-      if (questions.answers[q] == JoinQuestions::unsure) of_.unsure |= std::uint64_t{1} << j;
-      if (questions.answers[q] == JoinQuestions::yes)
-        join_cube(j, f, cube_joins()[entries_[j][f]].high ? tile::Choice::high : tile::Choice::low);
+    for (std::size_t q = 0; q < asked.size(); ++q) {
+      const unsigned joined = 1u + unsigned{join_of(asked[q]).high};  // choices as numbers: separate, low, high
+      const bool is_joined = questions.answers[q] == JoinQuestions::yes;
+      of_.unsure |= std::uint64_t{questions.answers[q] == JoinQuestions::unsure} << (asked[q] / 8u);
+      join_cube(asked[q] / 8u, asked[q] % 8u, static_cast<tile::Choice>(joined * static_cast<unsigned>(is_joined)));
     }
-    questions.count = 0;
+  }
+  [[nodiscard]] const tables::CubeJoin& join_of(unsigned cube) const noexcept {
+    return cube_joins()[entries_[cube / 8][cube % 8]];
   }
   void join_cube(std::size_t j, unsigned f, tile::Choice choice) noexcept {
     ResolvedTile& tile = of_.tiles[j];
     tile.lists[f] = cubes_.list_of_entry(entries_[j][f], choice);
-    std::uint8_t& cubes = choice == tile::Choice::low ? tile.key.low_cubes : tile.key.high_cubes;
-    if (choice != tile::Choice::separate) cubes = static_cast<std::uint8_t>(cubes | 1u << f);
+    const auto is_low = static_cast<unsigned>(choice == tile::Choice::low);
+    const auto is_high = static_cast<unsigned>(choice == tile::Choice::high);
+    tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | is_low << f);
+    tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | is_high << f);
   }
   [[nodiscard]] double value(std::size_t j, unsigned cube, unsigned corner) const noexcept {
-    const unsigned of_tile = kCubesIn4D[cube][corner];
-    return block_.samples[of_tile >> 1][of_.bits[j] + (of_tile & 1u)];
+    static constexpr auto kAt = [] {
+      std::array<std::array<std::uint16_t, 8>, 8> at{};
+      for (unsigned f = 0; f < 8; ++f)
+        for (unsigned v = 0; v < 8; ++v)
+          at[f][v] = static_cast<std::uint16_t>((kCubesIn4D[f][v] >> 1) * FaceBlock<4>::kPitch + kCubesIn4D[f][v] % 2u);
+      return at;
+    }();
+    return block_.samples[0].data()[kAt[cube][corner] + of_.bits[j]];
   }
 
   void find_vertices() noexcept {
@@ -271,7 +288,6 @@ class WordResolver {
   TesseractsOfWord& of_;
   const ResolvedCubes& cubes_;
   std::array<std::array<std::uint16_t, 8>, kWordBits> entries_;
-  std::array<std::uint16_t, JoinQuestions::kMost> asked_;  ///< by question: 8 * tile + cube
 };
 
 }  // namespace

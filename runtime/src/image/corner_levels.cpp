@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Roots of the multilinear interpolant on the rays to a tile's corners (see corner_levels.hpp). Highway's
-// foreach_target compiles this file once per instruction set. The operations are those of tile_heights.cpp and
-// ray_level.hpp, in the same order, so that the levels are equal bit by bit.
+// Roots of the multilinear interpolant on the rays to a tile's corners (see corner_levels.hpp), and on rays of many
+// cubes (cube_levels in cube_heights.hpp). Highway's foreach_target compiles this file once per instruction set. The
+// operations are those of tile_heights.cpp, cube_heights.cpp and ray_level.hpp, in the same order, so that the levels
+// are equal bit by bit.
 #include "image/corner_levels.hpp"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <limits>
 #include <utility>
 
+#include "image/cube_heights.hpp"
 #include "image/ray_level.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -29,46 +31,53 @@ using RayTag = hn::CappedTag<double, 8>;
 using RayLanes = hn::Vec<RayTag>;
 using RayMask = hn::Mask<RayTag>;
 
-/// A polynomial of degree 4 in each lane, the constant coefficient first.
+/// A polynomial in each lane, the constant coefficient first.
+template <std::size_t Count>
 struct RayPolynomials {
-  std::array<RayLanes, 5> of;
+  std::array<RayLanes, Count> of;
 
-  /// On the rays to the corners from `first` on.
-  HWY_INLINE RayPolynomials(const std::array<double, 16>& products, std::size_t first) {
-    // By set of axes and corner: the product of u = 2 x - 1 over the axes.
-    alignas(64) static constexpr auto kProducts = [] {
-      std::array<std::array<double, 16>, 16> result{};
-      for (unsigned set = 0; set < 16; ++set)
-        for (unsigned corner = 0; corner < 16; ++corner)
-          result[set][corner] = std::popcount(set & ~corner) % 2 == 0 ? 1.0 : -1.0;
-      return result;
-    }();
-    // Unrolled, so that the coefficients stay in registers.
-    [&]<std::size_t... Set>(std::index_sequence<Set...>) HWY_ATTR {
-      const RayTag d;
-      RayLanes sums[5] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-      ((sums[std::popcount(Set)] = hn::Add(
-            sums[std::popcount(Set)], hn::Mul(hn::Set(d, products[Set]), hn::LoadU(d, kProducts[Set].data() + first)))),
-       ...);
-      std::copy(std::begin(sums), std::end(sums), of.begin());
-    }
-    (std::make_index_sequence<16>());
-  }
+  template <std::size_t K = 0>
   HWY_INLINE RayLanes value(RayLanes x) const {
-    const auto cubic = hn::Add(of[3], hn::Mul(x, of[4]));
-    const auto square = hn::Add(of[2], hn::Mul(x, cubic));
-    return hn::Add(of[0], hn::Mul(x, hn::Add(of[1], hn::Mul(x, square))));
+    if constexpr (K + 1 == Count)
+      return of[K];
+    else
+      return hn::Add(of[K], hn::Mul(x, value<K + 1>(x)));
   }
+  template <std::size_t K = 1>
   HWY_INLINE RayLanes slope(RayLanes x) const {
-    const RayTag d;
-    const auto times = [d](double k, RayLanes coefficient) HWY_ATTR { return hn::Mul(hn::Set(d, k), coefficient); };
-    const auto linear = hn::Add(times(3.0, of[3]), hn::Mul(x, times(4.0, of[4])));
-    return hn::Add(times(1.0, of[1]), hn::Mul(x, hn::Add(times(2.0, of[2]), hn::Mul(x, linear))));
+    const auto term = hn::Mul(hn::Set(RayTag(), static_cast<double>(K)), of[K]);
+    if constexpr (K + 1 == Count)
+      return term;
+    else
+      return hn::Add(term, hn::Mul(x, slope<K + 1>(x)));
   }
 };
 
+/// On the rays to a tesseract's corners from `first` on.
+HWY_INLINE RayPolynomials<5> corner_polynomials(const std::array<double, 16>& products, std::size_t first) {
+  // By set of axes and corner: the product of u = 2 x - 1 over the axes.
+  alignas(64) static constexpr auto kProducts = [] {
+    std::array<std::array<double, 16>, 16> result{};
+    for (unsigned set = 0; set < 16; ++set)
+      for (unsigned corner = 0; corner < 16; ++corner)
+        result[set][corner] = std::popcount(set & ~corner) % 2 == 0 ? 1.0 : -1.0;
+    return result;
+  }();
+  // Unrolled, so that the coefficients stay in registers.
+  return [&]<std::size_t... Set>(std::index_sequence<Set...>) HWY_ATTR {
+    const RayTag d;
+    RayLanes sums[5] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    ((sums[std::popcount(Set)] = hn::Add(
+          sums[std::popcount(Set)], hn::Mul(hn::Set(d, products[Set]), hn::LoadU(d, kProducts[Set].data() + first)))),
+     ...);
+    return RayPolynomials<5>{{sums[0], sums[1], sums[2], sums[3], sums[4]}};
+  }
+  (std::make_index_sequence<16>());
+}
+
 /// last_root in the lanes `wanted`.
-HWY_INLINE RayLanes last_roots(const RayPolynomials& polynomials, RayMask wanted) {
+template <std::size_t Count>
+HWY_INLINE RayLanes last_roots(const RayPolynomials<Count>& polynomials, RayMask wanted) {
   const RayTag d;
   const auto zero = hn::Zero(d);
   auto above = hn::Set(d, 1.0), at_above = polynomials.value(above);
@@ -98,28 +107,96 @@ HWY_INLINE RayLanes last_roots(const RayPolynomials& polynomials, RayMask wanted
     next = hn::IfThenElse(is_between, next, hn::Mul(hn::Set(d, 0.5), hn::Add(below, above)));
     const auto moved = hn::Abs(hn::Sub(next, x));
     x = hn::IfThenElse(active, next, x);
-    active = hn::AndNot(hn::Lt(moved, hn::Set(d, kEnoughOfRay<5>)), active);
+    active = hn::AndNot(hn::Lt(moved, hn::Set(d, kEnoughOfRay<Count>)), active);
   }
   return hn::IfThenElse(found, x, hn::Set(d, -1.0));
 }
+
+/// level_inside for some levels.
+struct LevelsInside {
+  RayLanes least, most;
+
+  HWY_INLINE explicit LevelsInside(double epsilon) {
+    const double least_level = std::max(kLeastRayLevel, epsilon);
+    least = hn::Set(RayTag(), least_level);
+    most = hn::Set(RayTag(), 1.0 - least_level);
+  }
+  HWY_INLINE RayLanes operator()(RayLanes level) const {
+    const auto step = hn::Set(RayTag(), kRayLevelStep);
+    level = hn::IfThenElse(hn::Lt(level, least), least, hn::IfThenElse(hn::Lt(most, level), most, level));
+    return hn::Sub(hn::Add(level, step), step);
+  }
+};
 
 void levels_of_corners(const std::array<double, 16>& products, double epsilon, std::uint32_t corners,
                        std::array<double, 16>& out) {
   const RayTag d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  const double least_level = std::max(kLeastRayLevel, epsilon);
-  const auto one = hn::Set(d, 1.0), zero = hn::Zero(d), step = hn::Set(d, kRayLevelStep);
-  const auto least = hn::Set(d, least_level), most = hn::Set(d, 1.0 - least_level);
+  const auto one = hn::Set(d, 1.0), zero = hn::Zero(d);
+  const LevelsInside inside(epsilon);
   for (std::size_t first = 0; first < 16; first += kLanes) {
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(corners >> first & ((1u << kLanes) - 1))};
     if (bits[0] == 0) continue;
-    const RayPolynomials polynomials(products, first);
+    const RayPolynomials<5> polynomials = corner_polynomials(products, first);
     auto level = last_roots(polynomials, hn::LoadMaskBits(d, bits));
     const auto is_nearer = hn::Lt(hn::Abs(polynomials.value(one)), hn::Abs(polynomials.of[0]));
     level = hn::IfThenElse(hn::Lt(level, zero), hn::IfThenElseZero(is_nearer, one), level);
-    // level_inside
-    level = hn::IfThenElse(hn::Lt(level, least), least, hn::IfThenElse(hn::Lt(most, level), most, level));
-    hn::StoreU(hn::Sub(hn::Add(level, step), step), d, out.data() + first);
+    hn::StoreU(inside(level), d, out.data() + first);
+  }
+}
+
+/// Levels of rays to squares, on which the interpolant is linear. `a`: sum of all heights.
+HWY_INLINE RayLanes linear_levels(RayLanes a, const RayLanes (&sums)[4]) {
+  const auto level = hn::Div(a, hn::Sub(sums[1], sums[0]));
+  return hn::IfThenElseZero(hn::Ge(level, hn::Zero(RayTag())), level);
+}
+
+/// Levels of rays to edges: quadratic_level in cube_heights.cpp.
+HWY_INLINE RayLanes quadratic_levels(RayLanes a, const RayLanes (&sums)[4]) {
+  const RayTag d;
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);
+  const auto b = hn::Mul(hn::Set(d, 2.0), hn::Sub(sums[0], sums[2]));
+  const auto c = hn::Add(hn::Sub(sums[0], sums[1]), sums[2]);
+  const auto discriminant = hn::Sub(hn::Mul(b, b), hn::Mul(hn::Mul(hn::Set(d, 4.0), a), c));
+  const auto w = hn::Mul(hn::Set(d, -0.5), hn::Add(b, hn::CopySign(hn::Sqrt(discriminant), b)));
+  auto level = zero;
+  for (const auto root : {hn::Div(w, c), hn::Div(a, w)})
+    level = hn::IfThenElse(hn::And(hn::Gt(root, level), hn::Lt(root, one)), root, level);
+  return hn::IfThenElseZero(hn::Ge(discriminant, zero), level);
+}
+
+/// Levels of rays to corners.
+HWY_INLINE RayLanes cubic_levels(RayLanes a, const RayLanes (&sums)[4], RayMask wanted) {
+  const RayTag d;
+  const auto three = hn::Set(d, 3.0);
+  const auto& [s0, s1, s2, s3] = sums;
+  const RayPolynomials<4> polynomials = {{a, hn::Sub(hn::Add(hn::Mul(three, hn::Sub(s0, s3)), s1), s2),
+                                          hn::Sub(hn::Sub(hn::Mul(three, hn::Add(s0, s3)), s1), s2),
+                                          hn::Sub(hn::Add(hn::Sub(s0, s1), s2), s3)}};
+  return last_roots(polynomials, wanted);
+}
+
+/// CubeHeights::level of `rays`.
+void levels_of_cubes(CubeRays& rays, unsigned degree, double epsilon, double* out) {
+  const RayTag d;
+  const std::size_t lanes = hn::Lanes(d);
+  const LevelsInside inside(epsilon);
+  const auto most = hn::Set(d, std::numeric_limits<double>::max() / 64);
+  const std::size_t end = (rays.count + lanes - 1) / lanes * lanes;
+  for (auto& heights : rays.heights) std::fill(heights.begin() + rays.count, heights.begin() + end, 0.0);
+  // By degree: the number of corners at each distance from the end.
+  static constexpr std::uint8_t kCorners[4][4] = {{8, 0, 0, 0}, {4, 4, 0, 0}, {2, 4, 2, 0}, {1, 3, 3, 1}};
+  for (std::size_t i = 0; i < end; i += lanes) {
+    RayLanes sums[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t distance = 0, corner = 0; distance < 4; ++distance)
+      for (unsigned count = kCorners[degree][distance]; count != 0; --count, ++corner)
+        sums[distance] = hn::Add(sums[distance], hn::Load(d, rays.heights[corner].data() + i));
+    const auto a = hn::Add(hn::Add(hn::Add(sums[0], sums[1]), sums[2]), sums[3]);
+    const auto level = degree == 3   ? cubic_levels(a, sums, hn::FirstN(d, rays.count - i))
+                       : degree == 2 ? quadratic_levels(a, sums)
+                                     : linear_levels(a, sums);
+    const auto is_finite = hn::Le(hn::Abs(a), most);
+    hn::StoreU(hn::IfThenElse(is_finite, inside(level), hn::Set(d, 0.5)), d, out + i);
   }
 }
 
@@ -132,6 +209,7 @@ HWY_AFTER_NAMESPACE();
 namespace tegl::detail {
 
 HWY_EXPORT(levels_of_corners);
+HWY_EXPORT(levels_of_cubes);
 
 void corner_levels(const std::array<double, 16>& products, double epsilon, std::uint32_t corners,
                    std::array<double, 16>& out) noexcept {
@@ -139,6 +217,10 @@ void corner_levels(const std::array<double, 16>& products, double epsilon, std::
     HWY_DYNAMIC_DISPATCH(levels_of_corners)(products, epsilon, corners, out);
   else
     out.fill(0.5);
+}
+
+void cube_levels(CubeRays& rays, unsigned degree, double epsilon, std::array<double, CubeRays::kMost>& out) noexcept {
+  HWY_DYNAMIC_DISPATCH(levels_of_cubes)(rays, degree, epsilon, out.data());
 }
 
 }  // namespace tegl::detail

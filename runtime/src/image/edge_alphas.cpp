@@ -94,6 +94,16 @@ void alphas_4d(const double* corners, double isovalue, double epsilon, double* o
   alphas_of(from, to, kEdges, isovalue, epsilon, out);
 }
 
+/// Interpolation parameters of all edges of cubes.
+void alphas_3d(const double* corners, std::size_t count, std::size_t pitch, double isovalue, double epsilon,
+               double* out) {
+  for (unsigned e = 0; e < tables::edge_count(3); ++e) {
+    const unsigned base = edge_base(3, e);
+    alphas_of(corners + base * pitch, corners + (base | 1u << (e >> 2)) * pitch, count, isovalue, epsilon,
+              out + e * pitch);
+  }
+}
+
 #define TEGL_EDGES(T, name)                                                              \
   void name(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) { \
     alphas(edges, isovalue, epsilon, out);                                               \
@@ -130,6 +140,12 @@ void alphas_between(const double* from, const double* to, std::size_t count, dou
 HWY_EXPORT(alphas_4d);
 void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept {
   HWY_DYNAMIC_DISPATCH(alphas_4d)(corners, isovalue, epsilon, out);
+}
+
+HWY_EXPORT(alphas_3d);
+void cube_alphas(const double* corners, std::size_t count, std::size_t pitch, double isovalue, double epsilon,
+                 double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_3d)(corners, count, pitch, isovalue, epsilon, out);
 }
 
 TEGL_DISPATCH(std::uint8_t, alphas_u8)

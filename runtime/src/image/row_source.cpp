@@ -141,6 +141,20 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
 }
 
+template <Value T, int N>
+void RowSource<T, N>::cubes_alphas(const CubesWithEdges<N>& cubes,
+                                   typename CubesWithEdges<N>::Alphas& out) const noexcept {
+  // All edges: faster than gathering those asked for.
+  constexpr std::size_t kPitch = CubesWithEdges<N>::kMost;
+  std::array<std::array<double, kPitch>, 8> corners;
+  std::array<double, std::size_t{1} << N> values;
+  for (std::size_t i = 0; i < cubes.count; ++i) {
+    corner_values(cubes.bases[i], cubes.axes[i], values.data());
+    for (std::size_t v = 0; v < 8 && v < values.size(); ++v) corners[v][i] = values[v];
+  }
+  cube_alphas(corners[0].data(), cubes.count, kPitch, this->isovalue(), epsilon_, out[0].data());
+}
+
 namespace {
 
 /// Locations of the values around edges along one axis. `from`, by place: the layer that contains the value, displaced

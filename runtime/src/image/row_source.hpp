@@ -31,6 +31,7 @@ class RowSource : public SampleSource<N> {
   void corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept final;
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;
+  void cubes_alphas(const CubesWithEdges<N>& cubes, typename CubesWithEdges<N>::Alphas& out) const noexcept final;
   [[nodiscard]] AroundEdges<N, double> around_edges() const noexcept final;
   [[nodiscard]] AroundEdges<N, float> around_edges_in_float() const noexcept final;
   [[nodiscard]] std::array<double, N> gradient(const Index& index,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -95,6 +96,19 @@ struct EdgesInRows {
   std::size_t count;
 };
 
+/// Some cells of three axes, and edges of each (bit masks).
+template <int N>
+struct CubesWithEdges {
+  static constexpr std::size_t kMost = CubeRays::kMost;
+  /// By local edge and cell.
+  using Alphas = std::array<std::array<double, kMost>, 12>;
+
+  const std::uint8_t* axes;
+  const SampleIndex<N>* bases;
+  const std::uint32_t* edges;
+  std::size_t count;  ///< at most kMost
+};
+
 /// Intersections of the contour with edges of the grid, as interpolation parameters: 0 at an edge's first end, 1 at its
 /// second, clamped to [epsilon, 1 - epsilon]. Also the data of intersections with rays inside cells.
 template <int N>
@@ -110,6 +124,17 @@ class EdgeCrossings {
   /// edge e to out[e]. `out` has an entry for each edge of the cell; the other entries are undefined.
   virtual void cell_alphas(const SampleIndex<N>& base, unsigned axes, std::uint32_t edges,
                            double* out) const noexcept = 0;
+  /// The same for several cubes. The other entries of `out` are undefined.
+  virtual void cubes_alphas(const CubesWithEdges<N>& cubes, typename CubesWithEdges<N>::Alphas& out) const noexcept {
+    std::array<double, 12> alphas;
+    for (std::size_t i = 0; i < cubes.count; ++i) {
+      cell_alphas(cubes.bases[i], cubes.axes[i], cubes.edges[i], alphas.data());
+      for (std::uint32_t rest = cubes.edges[i]; rest != 0; rest &= rest - 1) {
+        const auto e = static_cast<unsigned>(std::countr_zero(rest));
+        out[e][i] = alphas[e];
+      }
+    }
+  }
   /// Heights of the cell along K `axes` based at `base`: 3 (CubeHeights), 4 or 5 (TileHeights).
   template <int K>
   [[nodiscard]] CellHeights<K> heights(const SampleIndex<N>& base, unsigned axes) const noexcept {

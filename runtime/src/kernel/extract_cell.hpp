@@ -12,6 +12,7 @@
 #include "kernel/extract_layers.hpp"
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/corners.hpp"
+#include "tile/extract_tables.hpp"
 
 namespace tegl::detail {
 
@@ -205,6 +206,29 @@ class CellEdges {
   Word passed_ = 0;
 };
 
+using LocalIds = std::array<Index, 256>;  ///< vertex numbers by local vertex
+
+/// Writes a tile's simplices. In the class layout, vertex numbers are permuted once per tile instead of once per use,
+/// which makes it as fast as the flat layout. `flip`: reverses the table's orientation. `own`: number of the tile's
+/// first own vertex. Returns the destination of the next simplex.
+template <int N>
+std::array<Index, N>* write_simplices(const SimplexList<N>& list, bool flip, LocalIds& ids, Index own,
+                                      std::array<Index, N>* out) noexcept {
+  LocalIds permuted;
+  LocalIds& of_stored = list.is_permuted() ? permuted : ids;
+  if (list.is_permuted())
+    for (unsigned v = 0; v < tables::first_tile_vertex(N); ++v) of_stored[v] = ids[list.mapped(v)];
+  for (unsigned j = 0; j < list.own_vertices(); ++j) of_stored[tables::first_tile_vertex(N) + j] = own + j;
+  const unsigned last = flip != list.reversed() ? N - 2 : N - 1;
+  const unsigned before = (N - 2) + (N - 1) - last;
+  for (unsigned q = 0; q < list.size(); ++q, ++out) {
+    for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = of_stored[list.stored(q, j)];
+    (*out)[before] = of_stored[list.stored(q, N - 2)];
+    (*out)[last] = of_stored[list.stored(q, N - 1)];
+  }
+  return out;
+}
+
 /// First vertex of each of the eight cubes of a tile (N = 4), for 64 tiles of a row at a time.
 class TileCubes {
  public:
@@ -239,6 +263,14 @@ class TileCubes {
     out[1] = rank_[0];
     for (const Word word : word_[0]) out[1] += static_cast<Index>(word >> bit & 1u);
     for (unsigned s = 1; s < kStreamCount; ++s) out[s + 1] = rank_[s];
+  }
+  /// Numbers of all vertices that the tile's cubes own. Calls as above.
+  void ids(unsigned bit, LocalIds& out) noexcept {
+    std::array<Index, kCubes> first;
+    ids(bit, first);
+    for (unsigned cube = 0; cube < kCubes; ++cube)
+      for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
+        out[tables::edge_count(4) + tables::kFaceSlots * cube + slot] = first[cube] + slot;
   }
 
  private:

@@ -230,6 +230,109 @@ TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const
   return count;
 }
 
+namespace {
+
+/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
+/// N < 4.
+template <int N>
+class TileResolver {
+ public:
+  /// `base`: of the row; index 0 is ignored.
+  TileResolver(const FaceEstimator<N>& estimator, const RowTable& table, const typename RowShape<N>::Index& base,
+               const TileRoom& room, TileCount& count)
+      : estimator_(estimator), table_(table), base_(base), room_(room), count_(count) {}
+
+  /// Lists the ambiguous ones of tiles first ... end - 1, which lie in one word. Without branches on the tiles.
+  void list(std::uint32_t first, std::uint32_t end) {
+    const auto& ambiguous = ambiguous_signatures<N>();
+    std::size_t found = 0;
+    for (std::uint32_t i = first; i < end; ++i) {
+      const unsigned signature = room_.signatures[i];
+      of_.bits[found] = static_cast<std::uint8_t>(room_.at[i] % kWordBits);
+      of_.signatures[found] = static_cast<std::uint8_t>(signature);
+      numbers_[found] = i;
+      found += ambiguous[signature] ? 1 : 0;
+    }
+    of_.count = found;
+  }
+  [[nodiscard]] std::size_t listed() const noexcept { return of_.count; }
+
+  /// Resolves the listed tiles one by one.
+  void resolve_each(std::size_t word) {
+    for (std::size_t j = 0; j < of_.count; ++j) resolve(j, word);
+  }
+  /// Resolves the listed tiles together. N = 3.
+  void resolve_together(RowFaces<N>& faces, std::size_t word) {
+    detail::resolve(estimator_, table_, faces.look_at(word), of_);
+    // apply the variants; key 0: not resolved here
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      const Variant variant = of_.variants[j];
+      if (variant.key == 0) {
+        resolve(j, word);
+        continue;
+      }
+      count_.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
+      count_.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
+      room_.signatures[numbers_[j]] = variant.key;
+    }
+  }
+
+ private:
+  void resolve(std::size_t j, std::size_t word) {
+    const unsigned signature = of_.signatures[j];
+    base_[0] = word * kWordBits + of_.bits[j];
+    const unsigned key = resolved_key<N>(estimator_, base_, signature);
+    count_.simplices += table_.entry(key) & RowTable::kCountMask;
+    count_.simplices -= table_.entry(signature) & RowTable::kCountMask;
+    count_.own_vertices += table_.own_vertices(key) - table_.own_vertices(signature);
+    room_.signatures[numbers_[j]] = static_cast<std::uint16_t>(key);
+  }
+
+  const FaceEstimator<N>& estimator_;
+  const RowTable& table_;
+  typename RowShape<N>::Index base_;
+  const TileRoom& room_;
+  TileCount& count_;
+  TilesOfWord of_;                                ///< ambiguous tiles of the current word
+  std::array<std::uint32_t, kWordBits> numbers_;  ///< theirs in the row
+};
+
+}  // namespace
+
+// Not inlined, so that the caller has a small stack frame if nothing is resolved. So is resolve_tesseracts.
+template <int N>
+[[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
+                                                 TileCount& count) const {
+  if constexpr (N < 4) {
+    auto base = shape_.index_of(row);
+    base[N - 1] = view.k;
+    TileResolver<N> resolver(*estimator_, *rows_, base, room, count);
+    // calls resolve_listed(word) for each word with ambiguous tiles
+    const auto for_words = [&](const auto& resolve_listed) {
+      std::uint32_t first = 0;
+      for (std::size_t word = 0; first < count.active; ++word) {
+        if (room.active[word] == 0) continue;
+        const auto end = first + static_cast<std::uint32_t>(std::popcount(room.active[word]));
+        resolver.list(first, end);
+        if (resolver.listed() != 0) resolve_listed(word);
+        first = end;
+      }
+    };
+    if constexpr (N == 2) {
+      for_words([&](std::size_t word) { resolver.resolve_each(word); });
+    } else {
+      RowFaces<N> faces(*estimator_, base, shape_.size(0));
+      const bool at_once = RowFaces<N>::can_use(*estimator_);
+      for_words([&](std::size_t word) {
+        if (at_once && resolver.listed() >= 2 * RowFaces<N>::kMany)  // one cube costs less than one tesseract
+          resolver.resolve_together(faces, word);
+        else
+          resolver.resolve_each(word);
+      });
+    }
+  }
+}
+
 /// Indices of tiles of a row, of up to 64 of them.
 using TilePlaces = std::array<std::uint32_t, kWordBits>;
 
@@ -245,117 +348,6 @@ static std::uint32_t list_tiles(const TileRoom& room, std::uint32_t first, std::
     found += wanted(room.signatures[i]) ? 1 : 0;
   }
   return found;
-}
-
-/// Number of consecutive entries of `places` from `j` on whose tiles lie in the same word.
-static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* places, std::uint32_t j,
-                                   std::uint32_t end) {
-  const std::uint32_t first = j;
-  for (const unsigned word = room.at[places[j]] / kWordBits; j < end && room.at[places[j]] / kWordBits == word;) ++j;
-  return j - first;
-}
-
-namespace {
-
-/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
-/// N < 4.
-template <int N>
-class TileResolver {
- public:
-  /// `base`: of the row; index 0 is ignored.
-  TileResolver(const FaceEstimator<N>& estimator, const RowTable& table, const typename RowShape<N>::Index& base,
-               const TileRoom& room, bool is_listed, TileCount& count)
-      : estimator_(estimator),
-        table_(table),
-        base_(base),
-        room_(room),
-        walk_(room.active),
-        is_listed_(is_listed),
-        count_(count) {}
-
-  /// Resolves tile number i of the row.
-  void resolve(std::uint32_t i) {
-    const unsigned signature = room_.signatures[i];
-    base_[0] = is_listed_ ? room_.at[i] : walk_.place_of(i);
-    const unsigned key = resolved_key<N>(estimator_, base_, signature);
-    count_.simplices += table_.entry(key) & RowTable::kCountMask;
-    count_.simplices -= table_.entry(signature) & RowTable::kCountMask;
-    count_.own_vertices += table_.own_vertices(key) - table_.own_vertices(signature);
-    room_.signatures[i] = static_cast<std::uint16_t>(key);
-  }
-
-  /// Resolves tiles that lie in the same word, together. N = 3.
-  void resolve_word(RowFaces<N>& faces, const std::uint32_t* of_word, std::uint32_t tiles) {
-    TilesOfWord of;
-    of.count = tiles;
-    for (std::uint32_t j = 0; j < tiles; ++j) {
-      of.bits[j] = room_.at[of_word[j]] % kWordBits;
-      of.signatures[j] = static_cast<std::uint8_t>(room_.signatures[of_word[j]]);
-    }
-    detail::resolve(estimator_, table_, faces.look_at(room_.at[of_word[0]] / kWordBits), of);
-    // apply the variants; key 0: not resolved here
-    for (std::uint32_t j = 0; j < tiles; ++j) {
-      const Variant variant = of.variants[j];
-      if (variant.key == 0) {
-        resolve(of_word[j]);
-        continue;
-      }
-      count_.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
-      count_.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
-      room_.signatures[of_word[j]] = variant.key;
-    }
-  }
-
- private:
-  const FaceEstimator<N>& estimator_;
-  const RowTable& table_;
-  typename RowShape<N>::Index base_;
-  const TileRoom& room_;
-  BitWalk walk_;
-  bool is_listed_;
-  TileCount& count_;
-};
-
-}  // namespace
-
-// Not inlined, so that the caller has a small stack frame if nothing is resolved. So is resolve_tesseracts.
-template <int N>
-[[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
-                                                 TileCount& count) const {
-  if constexpr (N < 4) {
-    const bool is_listed = shape_.size(0) <= kMostListed;
-    auto base = shape_.index_of(row);
-    base[N - 1] = view.k;
-    TileResolver<N> resolver(*estimator_, *rows_, base, room, is_listed, count);
-    // calls resolve_found with the indices of ambiguous tiles, and their number
-    const auto for_ambiguous = [&](const auto& resolve_found) {
-      const auto& ambiguous = ambiguous_signatures<N>();
-      TilePlaces places;
-      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
-        const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
-        const auto wanted = [&](unsigned signature) { return ambiguous[signature]; };
-        resolve_found(places.data(), list_tiles(room, first, end, places, wanted));
-      }
-    };
-    if constexpr (N == 2) {
-      for_ambiguous([&](const std::uint32_t* places, std::uint32_t found) {
-        for (std::uint32_t j = 0; j < found; ++j) resolver.resolve(places[j]);
-      });
-    } else {
-      RowFaces<N> faces(*estimator_, base, shape_.size(0));
-      const bool at_once = is_listed && RowFaces<N>::can_use(*estimator_);
-      for_ambiguous([&](const std::uint32_t* places, std::uint32_t found) {
-        for (std::uint32_t j = 0; j < found;) {
-          const std::uint32_t tiles = at_once ? count_at_word(room, places, j, found) : 1;
-          if (tiles >= 2 * RowFaces<N>::kMany)  // resolving one cube costs less than one tesseract
-            resolver.resolve_word(faces, places + j, tiles);
-          else
-            for (std::uint32_t k = j; k < j + tiles; ++k) resolver.resolve(places[k]);
-          j += tiles;
-        }
-      });
-    }
-  }
 }
 
 /// Counts the sizes of the tiles that the data do not affect. Returns the number of these tiles.

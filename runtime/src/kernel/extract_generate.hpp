@@ -14,6 +14,7 @@
 #include "kernel/extract_count.hpp"
 #include "kernel/extract_edges.hpp"
 #include "kernel/extract_rows.hpp"
+#include "kernel/generate_cubes.hpp"
 #include "kernel/placement.hpp"
 #include "kernel/shared_places.hpp"
 #include "tile/extract_tables.hpp"
@@ -27,6 +28,7 @@ class TileWriter {
  public:
   using Vertex = std::array<Real, N>;
   using Simplex = std::array<Index, N>;
+  using OwnCubes = CubeVertices<N, Real>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
   /// `flip`: reverses the tables' orientation. `rows`: flat table for the fast path, or null. `estimator`: as in
@@ -44,11 +46,11 @@ class TileWriter {
         has_cubes_(has_cubes) {}
 
   /// `tiles`: the row's active tiles (Counter::tiles). `simplices`: destination of simplex `first_simplex`. `scratch`:
-  /// of the calling thread. If a caller's estimator changed its answers after the row was counted, reports this and
-  /// writes nothing.
+  /// of the calling thread. `cubes`: N = 3: takes own vertices to be written later; null: they are written at once. If
+  /// a caller's estimator changed its answers after the row was counted, reports this and writes nothing.
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const RowTiles& tiles,
-             VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex,
-             CountScratch& scratch) const noexcept {
+             VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex, CountScratch& scratch,
+             OwnCubes* cubes) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
     if (view.slab->active_count[row] == 0) return;
@@ -57,7 +59,7 @@ class TileWriter {
       return estimator_->report_change(index);
     Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
     if (rows_ != nullptr && view.slab->all_valid)
-      write_quickly(view, row, index, tiles, vertices, out, scratch);
+      write_quickly(view, row, index, tiles, vertices, out, scratch, cubes);
     else
       write_one_by_one(view, row, index, vertices, out, scratch);
   }
@@ -68,7 +70,7 @@ class TileWriter {
   [[nodiscard]] bool writes_cubes(const Slab<N>& slab) const noexcept { return has_cubes_ && slab.all_valid; }
 
  private:
-  using Ids = std::array<Index, 256>;  // by local vertex
+  using Ids = LocalIds;
 
   /// The tiles of one row that have own vertices; write_tile_row calls `write` for each, in ascending order, so their
   /// positions are found by iterating over the active bits.
@@ -77,14 +79,30 @@ class TileWriter {
     const SlabView<N>& view;
     std::size_t row;
     CountScratch& scratch;
+    OwnCubes* cubes;
     typename RowShape<N>::Index index;  ///< of the current tile
     VertexRun<Vertex> vertices;
     BitWalk active;
+    const std::uint16_t* listed;                ///< positions of the tiles; null: `active` has them
     Index next;                                 ///< number of the next own vertex
     RowOfTesseracts* tesseracts = nullptr;      ///< N = 4, if resolved from the data without a caller's estimator
     const AssembledTiles* assembled = nullptr;  ///< with `tesseracts`: the row's first tiles may be kept here
     std::size_t at = 0, end = 0;                ///< offset of the next one, and the end
 
+    static Index first_own(void* self, unsigned key, std::size_t ordinal) noexcept requires(N == 3) {
+      auto& own = *static_cast<TilesWithOwnVertices*>(self);
+      own.index[0] = own.listed != nullptr ? own.listed[ordinal] : own.active.place_of(ordinal);
+      const SimplexList<N> list(own.writer.table_, key);
+      const Index first = own.next;
+      own.next += list.own_vertices();
+      if (own.cubes != nullptr && list.list().cone_vertices == 0) {
+        own.cubes->add(list, own.index, kAll, first);
+      } else {
+        SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), nullptr);
+        own.writer.write_own(list, places, own.index, first, own.vertices);
+      }
+      return first;
+    }
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
       own.index[0] = own.active.place_of(ordinal);
@@ -106,7 +124,7 @@ class TileWriter {
       const SimplexList<N> list(own.writer.table_, key);
       SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
       own.writer.write_own(list, places, own.index, own.next, own.vertices);
-      out = own.writer.write_simplices(list, ids, own.next, out);
+      out = write_simplices<N>(list, own.writer.flip_, ids, own.next, out);
       own.next += list.own_vertices();
       return out;
     }
@@ -114,22 +132,27 @@ class TileWriter {
 
   /// Writes a row whose tiles are all valid. Then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
-                     const RowTiles& tiles, VertexRun<Vertex> vertices, Simplex* out,
-                     CountScratch& scratch) const noexcept {
+                     const RowTiles& tiles, VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch,
+                     OwnCubes* cubes) const noexcept {
     TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
     TilesWithOwnVertices own{*this,
                              view,
                              row,
                              scratch,
+                             cubes,
                              start,
                              vertices,
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
+                             view.shape->size(0) <= kMostListed ? tiles.at : nullptr,
                              view.slab->first_own(row)};
     // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
       if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
-    write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
+    if constexpr (N == 3)
+      write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::first_own, &own});
+    else
+      write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
   }
 
   /// write_tile_row for tiles resolved from the data. Not inlined, because its stack frame is large.
@@ -183,7 +206,7 @@ class TileWriter {
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
         // shared and own vertices
         if constexpr (N == 4)
-          if (cubes) cube_ids(*cubes, bit, ids);
+          if (cubes) cubes->ids(bit, ids);
         if (has_cubes_ || list.own_vertices() != 0) {
           SharedPlaces<N> places(source_, index, signature, cube_);
           write_own(list, places, index, own, vertices);
@@ -191,7 +214,7 @@ class TileWriter {
             if (writes_cubes(*view.slab)) write_cubes(places, ids, index, vertices);
         }
         // simplices
-        out = write_simplices(list, ids, own, out);
+        out = write_simplices<N>(list, flip_, ids, own, out);
         own += list.own_vertices();
       }
     }
@@ -301,7 +324,8 @@ class TileWriter {
     const Index first_own = own;
     if constexpr (N == 4)
       if (filling.own_vertices != 0) {
-        const EdgePlaces<N, kAll> alphas(source_, index, signature);
+        const auto alphas = ResolvedPlaces::needs_edges(filling) ? EdgePlaces<N, kAll>(source_, index, signature)
+                                                                 : EdgePlaces<N, kAll>(source_, index);
         ResolvedPlaces shared(alphas, estimator_->triangulation(), tile.lists);
         const typename Placement<N, Real>::Cell in_cell(placement_, index);
         for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
@@ -317,33 +341,6 @@ class TileWriter {
                                    tile.with_vertices != 0 ? cube_ids.data() : nullptr, first_own, flip_},
                     out);
     return out + filling.simplex_count;
-  }
-
-  /// Writes a tile's simplices. In the class layout, vertex numbers are permuted once per tile instead of once per use,
-  /// which makes it as fast as the flat layout.
-  Simplex* write_simplices(const SimplexList<N>& list, Ids& ids, Index own, Simplex* out) const noexcept {
-    Ids permuted;
-    Ids& of_stored = list.is_permuted() ? permuted : ids;
-    if (list.is_permuted())
-      for (unsigned v = 0; v < tables::first_tile_vertex(N); ++v) of_stored[v] = ids[list.mapped(v)];
-    for (unsigned j = 0; j < list.own_vertices(); ++j) of_stored[tables::first_tile_vertex(N) + j] = own + j;
-    const unsigned last = flip_ != list.reversed() ? N - 2 : N - 1;
-    const unsigned before = (N - 2) + (N - 1) - last;
-    for (unsigned q = 0; q < list.size(); ++q, ++out) {
-      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = of_stored[list.stored(q, j)];
-      (*out)[before] = of_stored[list.stored(q, N - 2)];
-      (*out)[last] = of_stored[list.stored(q, N - 1)];
-    }
-    return out;
-  }
-
-  /// Numbers of the vertices that the tile's cubes own.
-  static void cube_ids(TileCubes& cubes, unsigned bit, Ids& ids) noexcept {
-    std::array<Index, TileCubes::kCubes> first;
-    cubes.ids(bit, first);
-    for (unsigned cube = 0; cube < TileCubes::kCubes; ++cube)
-      for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
-        ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first[cube] + slot;
   }
 
   /// Writes the barycentres of the tile's cubes (see writes_cubes).

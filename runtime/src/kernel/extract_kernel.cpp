@@ -85,14 +85,17 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         tiles_(source, tables, tables.rows, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes() && !counter_.lists_cubes()),
         nonmanifold_(shape_, counter_),
-        workers_(options.work.threads,
-                 [this] {
-                   return Scratch{counter_.make_scratch(), {source_, placement_, shape_, uncertainty_}};
-                 }),
+        workers_(
+            options.work.threads,
+            [this] {
+              return Scratch{counter_.make_scratch(), {source_, placement_, shape_, uncertainty_}, make_own_cubes()};
+            }),
         ahead_(workers_.count() > 1 && source.are_in_memory()),
         batch_(plan.batch == 0
                    ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
-                                  EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals != Normals::none), ahead_)
+                                  EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals != Normals::none) +
+                                      own_cubes_bytes(),
+                                  ahead_)
                    : std::min(plan.batch, shape_.layers() - 1)),
         layers_((ahead_ ? 2 : 1) * batch_ + 2),
         slabs_((ahead_ ? 2 : 1) * batch_ + 1) {
@@ -165,13 +168,25 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
 
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
+  using OwnCubes = typename TileWriter<N, Real>::OwnCubes;
   using SteppedExtraction<N, Real>::stats_;
 
   /// Working storage of one thread.
   struct Scratch {
     CountScratch counting;
     EdgeWriter<N, Real> edges;
+    std::unique_ptr<OwnCubes> own_cubes;  ///< N = 3 or 4, if ambiguities are resolved from the data
   };
+
+  [[nodiscard]] std::size_t own_cubes_bytes() const {
+    if constexpr (N > 2) return estimator_ != nullptr ? sizeof(OwnCubes) : 0;
+    return 0;
+  }
+  [[nodiscard]] std::unique_ptr<OwnCubes> make_own_cubes() const {
+    if constexpr (N > 2)
+      if (estimator_ != nullptr) return std::make_unique<OwnCubes>(source_, placement_);
+    return nullptr;
+  }
 
   /// Whether the current batch was classified together with the previous one.
   [[nodiscard]] bool is_classified() const noexcept { return ahead_ && first_ != 0; }
@@ -332,7 +347,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   void generate_chunk(std::size_t k, std::size_t chunk, Scratch& scratch,
                       const typename ContourOutput<N, Real>::Room& room) {
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
-    if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
+    if (k == 0) generate_first_layer(chunk, scratch, vertices);
     generate_slab(k, chunk, scratch, vertices, room.simplices);
   }
 
@@ -377,13 +392,24 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   }
 
   /// Writes the vertices of a chunk of layer 0.
-  void generate_first_layer(std::size_t chunk, EdgeWriter<N, Real>& edges, VertexRun<Vertex> vertices) {
-    edges.start({run_in_layer(0, chunk, vertices), {}, vertices});
+  void generate_first_layer(std::size_t chunk, Scratch& scratch, VertexRun<Vertex> vertices) {
+    start_vertices(scratch, {run_in_layer(0, chunk, vertices), {}, vertices});
     for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
-      edges.add_by_bits(&layer(0), nullptr, row);
-      generate_layer_cubes(0, row, vertices);
+      scratch.edges.add_by_bits(&layer(0), nullptr, row);
+      generate_layer_cubes(0, row, vertices, scratch.own_cubes.get());
     }
-    edges.finish();
+    finish_vertices(scratch);
+  }
+
+  void start_vertices(Scratch& scratch, const EdgeTarget<Vertex>& target) {
+    scratch.edges.start(target);
+    if constexpr (N > 2)
+      if (scratch.own_cubes != nullptr) scratch.own_cubes->start(target.vertices);
+  }
+  void finish_vertices(Scratch& scratch) {
+    scratch.edges.finish();
+    if constexpr (N > 2)
+      if (scratch.own_cubes != nullptr) scratch.own_cubes->finish();
   }
 
   /// Writes the vertices and simplices of a chunk of slab k, and the vertices of the layer above it.
@@ -394,7 +420,8 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     std::uint32_t busy = here.chunks[chunk].busy;
     if (busy == 0) return;
     EdgeWriter<N, Real>& edges = scratch.edges;
-    edges.start({run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
+    OwnCubes* const own_cubes = scratch.own_cubes.get();
+    start_vertices(scratch, {run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
     for (; busy != 0; busy &= busy - 1) {
       const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(busy));
       const RowTiles tiles = counter_.tiles(around, row, scratch.counting);
@@ -402,11 +429,11 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         edges.add_by_tiles(around, row, tiles);
       else
         edges.add_by_bits(&layer(k + 1), &here, row);
-      generate_layer_cubes(k + 1, row, vertices);
-      generate_slab_cubes(around, k, row, vertices);
-      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting);
+      generate_layer_cubes(k + 1, row, vertices, own_cubes);
+      generate_slab_cubes(around, k, row, vertices, own_cubes);
+      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting, own_cubes);
     }
-    edges.finish();
+    finish_vertices(scratch);
   }
 
   [[nodiscard]] const tables::TileTable& cubes_by_key() const {
@@ -414,27 +441,32 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   }
 
   void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
-                            [[maybe_unused]] VertexRun<Vertex> vertices) noexcept {
+                            [[maybe_unused]] VertexRun<Vertex> vertices,
+                            [[maybe_unused]] OwnCubes* own_cubes) noexcept {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
         const Layer<N>& here = layer(k);
         if (counter_.lists_cubes())
           return generate_listed_cubes<7u>(source_, cubes_by_key(), placement_, {&shape_, {&here, nullptr}, nullptr},
-                                           here.cubes, row, k, vertices);
+                                           here.cubes, row, k, vertices, *own_cubes);
         generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
                            vertices);
       }
   }
   void generate_slab_cubes([[maybe_unused]] const SlabView<N>& around, [[maybe_unused]] std::size_t k,
-                           [[maybe_unused]] std::size_t row,
-                           [[maybe_unused]] VertexRun<Vertex> vertices) const noexcept {
+                           [[maybe_unused]] std::size_t row, [[maybe_unused]] VertexRun<Vertex> vertices,
+                           [[maybe_unused]] OwnCubes* own_cubes) const noexcept {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
         const auto& cubes = around.slab->cubes;
         if (counter_.lists_cubes()) {
-          generate_listed_cubes<14u>(source_, cubes_by_key(), placement_, around, cubes[0], row, k, vertices);
-          generate_listed_cubes<13u>(source_, cubes_by_key(), placement_, around, cubes[1], row, k, vertices);
-          generate_listed_cubes<11u>(source_, cubes_by_key(), placement_, around, cubes[2], row, k, vertices);
+          const auto list = [&]<unsigned Axes>(std::integral_constant<unsigned, Axes>, const CubePlane& plane) {
+            generate_listed_cubes<Axes>(source_, cubes_by_key(), placement_, around, plane, row, k, vertices,
+                                        *own_cubes);
+          };
+          list(std::integral_constant<unsigned, 14u>(), cubes[0]);
+          list(std::integral_constant<unsigned, 13u>(), cubes[1]);
+          list(std::integral_constant<unsigned, 11u>(), cubes[2]);
           return;
         }
         generate_cubes<14u>(source_, *tables_.cube, placement_, around, cubes[0], row, k, vertices);

@@ -438,11 +438,17 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
     // vertex numbers of this tile's edges
     __m512i ids[Lanes<N>::kCount];
     for (unsigned k = 0; k < Lanes<N>::kCount; ++k) ids[k] = Lanes<N>::plus(lanes.first[k], moved, k);
+    if constexpr (N == 3)
+      if ((entry & RowTable::kOwnFlag) != 0) {
+        const __m512i number = _mm512_setr_epi32(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3);
+        const Index first = own.first_own(own.self, signature, i);
+        ids[0] = _mm512_mask_add_epi32(ids[0], 0xF000, number, _mm512_set1_epi32(static_cast<int>(first)));
+      }
     // its simplices
-    if ((entry & RowTable::kOwnFlag) != 0) {
+    if (N != 3 && (entry & RowTable::kOwnFlag) != 0) {
       alignas(64) Index stored[16 * Lanes<N>::kCount];
       for (unsigned k = 0; k < Lanes<N>::kCount; ++k) _mm512_store_si512(stored + 16 * k, ids[k]);
-      out = own.write(own.self, signature, i, stored, out);
+      if constexpr (N != 3) out = own.write(own.self, signature, i, stored, out);
     } else {
       for (unsigned q = 0; q < count; q += kAtOnce, local += kAtOnce * N, out += kAtOnce) {
         const unsigned rest = count - q;
@@ -496,9 +502,15 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
     add_bits<kEdges>(first, moved, ids);
-    if ((entry & RowTable::kOwnFlag) != 0)
-      out = own.write(own.self, signature, i, ids, out);
-    else
+    const bool has_own = (entry & RowTable::kOwnFlag) != 0;
+    if constexpr (N == 3)
+      if (has_own) {
+        const Index first_own = own.first_own(own.self, signature, i);
+        for (unsigned j = 0; j < OwnTiles<3>::kMost; ++j) ids[tables::edge_count(3) + j] = first_own + j;
+      }
+    if constexpr (N != 3)
+      if (has_own) out = own.write(own.self, signature, i, ids, out);
+    if (N == 3 || !has_own)
       out = write_plain<N>(simplices + std::size_t{entry >> RowTable::kFirstShift} * N, entry & RowTable::kCountMask,
                            row.flip, ids, out);
     add_bits<kEdges>(first, (edges & ~kNext) | moved, first);

@@ -83,11 +83,18 @@ struct TileOutput {
 };
 
 /// Callback for a tile with own vertices. `ordinal`: its index among the row's active tiles. `ids`: vertex numbers of
-/// its edges. Returns the destination of the next simplex.
+/// its edges. Writes its simplices and returns the destination of the next one.
 template <int N>
 struct OwnTiles {
   using Simplex = std::array<Index, N>;
   Simplex* (*write)(void* self, unsigned signature, std::size_t ordinal, const Index* ids, Simplex* out);
+  void* self;
+};
+/// In 3D, it returns the number of the tile's first own vertex.
+template <>
+struct OwnTiles<3> {
+  static constexpr unsigned kMost = 4;  ///< own vertices of a tile
+  Index (*first_own)(void* self, unsigned signature, std::size_t ordinal);
   void* self;
 };
 

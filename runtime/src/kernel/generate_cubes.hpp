@@ -1,17 +1,131 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pass 4 of the extraction in 4D: writes the barycentres of a row's cubes.
+// Pass 4 of the extraction: writes the vertices that cubes own, those of 3D tiles that are resolved from the data and,
+// in 4D, the barycentres of a row's cubes.
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_count.hpp"
+#include "kernel/extract_edges.hpp"
 #include "kernel/placement.hpp"
 #include "kernel/shared_places.hpp"
+#include "tile/edge_means.hpp"
 #include "tile/extract_tables.hpp"
 
 namespace tegl::detail {
+
+/// Collects the own vertices of cubes and writes many at once: their arithmetic is done in the lanes of
+/// registers, and without branches on the kind of each, which noise makes hard to predict. One per thread.
+template <int N, class Real>
+class CubeVertices {
+ public:
+  using Base = SampleIndex<N>;
+  using Run = VertexRun<std::array<Real, N>>;
+
+  CubeVertices(const EdgeCrossings<N>& source, const Placement<N, Real>& placement) noexcept
+      : source_(source), placement_(placement) {}
+
+  /// Vertices added between start() and finish() are written to `vertices`.
+  void start(const Run& vertices) noexcept { vertices_ = vertices; }
+  void finish() noexcept {
+    write_means();
+    for (unsigned kind = 0; kind < rays_.size(); ++kind) write_rays(kind);
+  }
+
+  /// Adds the own vertices of the cube along `axes` based at `base`. Requires that none is a barycentre. `first`:
+  /// number of the first.
+  void add(const SimplexList<3>& list, const Base& base, unsigned axes, Index first) noexcept {
+    std::optional<CubeHeights> heights;
+    for (unsigned j = 0; j < list.own_vertices(); ++j) {
+      const auto mask = static_cast<std::uint32_t>(list.side_mask(j));
+      if (!is_on_ray(mask)) {
+        if (means_.count == kAtOnce) write_means();
+        means_.edges[means_.count] = mask >> 8;
+        of_means_.set(means_.count++, base, axes, first + j);
+        continue;
+      }
+      const auto kind = static_cast<unsigned>(std::popcount(mask)) / 2;  // 1, 2 or 4 corners
+      if (rays_[kind].count == kAtOnce) write_rays(kind);
+      if (!heights) heights = source_.template heights<3>(base, axes);
+      epsilon_ = heights->epsilon;
+      corners_[kind][rays_[kind].count] = static_cast<std::uint8_t>(mask);
+      of_rays_[kind].set(rays_[kind].count, base, axes, first + j);
+      rays_[kind].add(heights->at, mask);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kAtOnce = CubeRays::kMost;
+  static_assert(kAtOnce == EdgeMeans::kMost && kAtOnce == CubesWithEdges<N>::kMost);
+
+  struct Targets {
+    std::array<Base, kAtOnce> bases;
+    std::array<std::uint8_t, kAtOnce> axes;
+    std::array<Index, kAtOnce> ids;
+    void set(std::size_t i, const Base& base, unsigned along, Index id) noexcept {
+      bases[i] = base;
+      axes[i] = static_cast<std::uint8_t>(along);
+      ids[i] = id;
+    }
+  };
+
+  void write_means() noexcept {
+    if (means_.count == 0) return;
+    source_.cubes_alphas({of_means_.axes.data(), of_means_.bases.data(), means_.edges.data(), means_.count},
+                         means_.alphas);
+    EdgeMeans::Coordinates found;
+    find_means(means_, found);
+    for (std::size_t i = 0; i < means_.count; ++i) write(of_means_, i, {found[0][i], found[1][i], found[2][i]});
+    means_.count = 0;
+  }
+
+  /// `kind`: 0, 1, 2 for rays to corners, edges, squares.
+  void write_rays(unsigned kind) noexcept {
+    CubeRays& rays = rays_[kind];
+    if (rays.count == 0) return;
+    std::array<double, kAtOnce> levels;
+    cube_levels(rays, 3 - kind, epsilon_, levels);
+    for (std::size_t i = 0; i < rays.count; ++i) write(of_rays_[kind], i, ray_place(corners_[kind][i], levels[i]));
+    rays.count = 0;
+  }
+
+  void write(const Targets& of, std::size_t i, const TilePoint<3>& point) noexcept {
+    if constexpr (N == 3) {
+      write_along<7u>(of, i, point);
+    } else {
+      switch (of.axes[i]) {
+        case 7u:
+          return write_along<7u>(of, i, point);
+        case 11u:
+          return write_along<11u>(of, i, point);
+        case 13u:
+          return write_along<13u>(of, i, point);
+        default:
+          return write_along<14u>(of, i, point);
+      }
+    }
+  }
+  template <unsigned Axes>
+  void write_along(const Targets& of, std::size_t i, const TilePoint<3>& point) noexcept {
+    using Frame = CellFrame<N, Axes>;
+    vertices_[of.ids[i]] = placement_.template in_cell<Frame>(of.bases[i], point);
+    if (placement_.normals() != nullptr)
+      vertices_.normal(of.ids[i]) = placement_.normals()->template in_cell<Frame>(of.bases[i], point);
+  }
+
+  const EdgeCrossings<N>& source_;
+  const Placement<N, Real>& placement_;
+  Run vertices_{};
+  double epsilon_ = 0.0;
+  EdgeMeans means_;
+  Targets of_means_;
+  std::array<CubeRays, 3> rays_;
+  std::array<Targets, 3> of_rays_;
+  std::array<std::array<std::uint8_t, kAtOnce>, 3> corners_;
+};
 
 /// Writes the barycentres of a row's cubes along `Axes`, unless tiles write them (TileWriter::writes_cubes). `view`:
 /// the layers that contain the cubes.
@@ -49,12 +163,13 @@ void generate_cubes(const EdgeCrossings<4>& source, const tables::TileTable& tab
   }
 }
 
-/// Writes the vertices of a row's listed cubes. `table`: by key.
+/// Writes the vertices of a row's listed cubes, or adds those that are no barycentres to `together`, to be written
+/// later. `table`: by key.
 template <unsigned Axes, class Real>
 void generate_listed_cubes(const EdgeCrossings<4>& source, const tables::TileTable& table,
                            const Placement<4, Real>& placement, const SlabView<4>& view, const CubePlane& plane,
-                           std::size_t row, std::size_t layer,
-                           VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
+                           std::size_t row, std::size_t layer, VertexRun<typename Placement<4, Real>::Vertex> vertices,
+                           CubeVertices<4, Real>& together) noexcept {
   if (plane.count[row] == 0) return;
   auto index = view.shape->index_of(row);
   index[3] = layer;
@@ -63,6 +178,11 @@ void generate_listed_cubes(const EdgeCrossings<4>& source, const tables::TileTab
   for (const ListedCube& cube : plane.lists.row(row)) {
     index[0] = cube.at;
     const SimplexList<3> list(table, cube.key);
+    if (list.list().cone_vertices == 0) {
+      together.add(list, index, Axes, next);
+      next += list.own_vertices();
+      continue;
+    }
     const EdgePlaces<4, Axes> places(source, index, signature_of<3>(cube.key));
     own_places<3>(list, false, places, points.data(), places.rays());
     for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {

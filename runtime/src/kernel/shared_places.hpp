@@ -59,9 +59,12 @@ class EdgePlaces {
   static constexpr int kDim = std::popcount(Axes);
 
   EdgePlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept
-      : source_(source), base_(base) {
+      : EdgePlaces(source, base) {
     source.cell_alphas(base, Axes, critical_edges<kDim>(signature), alphas_.data());
   }
+  /// For rays only.
+  EdgePlaces(const EdgeCrossings<N>& source, const std::array<std::size_t, N>& base) noexcept
+      : source_(source), base_(base) {}
   [[nodiscard]] TilePoint<kDim> operator()(unsigned edge) const noexcept {
     return edge_point<kDim>(edge, alphas_[edge]);
   }
@@ -184,6 +187,12 @@ class ResolvedPlaces {
     return places_[v];
   }
 
+  /// Whether an own vertex of a filling depends on vertices on edges. Not if all are copies of corners.
+  static bool needs_edges(const ResolvedView& filling) noexcept {
+    std::uint64_t all = 0;
+    for (unsigned j = 0; j < filling.own_vertices; ++j) all |= filling.masks[j];
+    return all >> 16 != 0;
+  }
   /// Position of own vertex j of a filling (ResolvedView::masks).
   [[nodiscard]] TilePoint<4> own_vertex(const ResolvedView& filling, unsigned j) noexcept {
     const std::uint64_t mask = filling.masks[j];

@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "image/cell_heights.hpp"
+#include "image/row_source.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -201,6 +203,79 @@ TEST(TileHeights, OfCornersTogetherAreThoseOfEach) {
       std::array<double, 4> corner;
       for (unsigned a = 0; a < 4; ++a) corner[a] = v >> a & 1u;
       ASSERT_EQ(tile.level(corner), levels[v]) << "tile " << i << ", corner " << v;
+    }
+  }
+}
+
+/// Heights of kind 0 to 3: any; of one size; of few values; any, a few of them huge or infinite.
+std::array<double, 8> random_heights(std::mt19937& random, unsigned kind) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::array<double, 8> heights;
+  for (double& height : heights) {
+    height = uniform(random);
+    if (kind == 1) height = height < 0 ? -1.0 : 1.0;
+    if (kind == 2) height = std::round(2.0 * height);
+  }
+  if (kind == 3 && random() % 8 == 0) heights[random() % 8] = std::ldexp(uniform(random), 1023);
+  if (kind == 3 && random() % 16 == 0) heights[random() % 8] = std::numeric_limits<double>::infinity();
+  return heights;
+}
+
+TEST(CubeHeights, OfManyRaysAreThoseOfEach) {
+  std::mt19937 random(8);
+  const std::vector<std::uint32_t> ends = ends_of_rays();
+  for (int i = 0; i < 6'000; ++i) {
+    const double epsilon = i % 3 == 0 ? 0.125 : 0.0;
+    const unsigned corners = 1u << random() % 3;
+    CubeRays rays;
+    std::vector<double> expected;
+    for (std::size_t wanted = 1 + random() % CubeRays::kMost; rays.count < wanted;) {
+      const std::uint32_t end = ends[random() % ends.size()];
+      if (std::popcount(end) != static_cast<int>(corners)) continue;
+      const CubeHeights cube{random_heights(random, random() % 4), epsilon};
+      expected.push_back(cube.level(end));
+      rays.add(cube.at, end);
+    }
+    std::array<double, CubeRays::kMost> levels;
+    cube_levels(rays, 3 - corners / 2, epsilon, levels);
+    for (std::size_t r = 0; r < expected.size(); ++r)
+      if (!std::isnan(expected[r])) ASSERT_EQ(levels[r], expected[r]) << "rays to " << corners << " corners, " << i;
+  }
+}
+
+TEST(CubesAlphas, AreThoseOfEachCube) {
+  std::mt19937 random(9);
+  for (unsigned kind = 0; kind < 4; ++kind) {
+    std::vector<double> values;
+    for (int i = 0; i < 64; ++i)
+      for (const double height : random_heights(random, kind)) values.push_back(height);
+    const Image<double, 4> image(values.data(), Grid<4>::unit({4, 4, 4, 8}));
+    const ImageSource<double, 4> source(image, 0.0, 0.01);
+    std::array<SampleIndex<4>, CubesWithEdges<4>::kMost> bases;
+    std::array<std::uint32_t, CubesWithEdges<4>::kMost> edges;
+    std::array<std::uint8_t, CubesWithEdges<4>::kMost> axes;
+    for (unsigned trial = 0; trial < 20; ++trial) {
+      std::size_t count = 0;
+      for (; count < bases.size() - kind; ++count) {
+        for (std::size_t& at : bases[count]) at = random() % 3;
+        axes[count] = static_cast<std::uint8_t>(15u ^ 1u << random() % 4);
+        std::array<double, 8> at_corners;
+        source.corner_values(bases[count], axes[count], at_corners.data());
+        edges[count] = 0;
+        for (unsigned e = 0; e < 12; ++e) {
+          const unsigned base = edge_base(3, e);
+          const bool is_critical = (at_corners[base] >= 0) != (at_corners[base | 1u << (e >> 2)] >= 0);
+          edges[count] |= static_cast<std::uint32_t>(is_critical && random() % 4 != 0) << e;
+        }
+      }
+      CubesWithEdges<4>::Alphas together;
+      source.cubes_alphas({axes.data(), bases.data(), edges.data(), count}, together);
+      for (std::size_t i = 0; i < count; ++i) {
+        std::array<double, 12> alone;
+        source.cell_alphas(bases[i], axes[i], edges[i], alone.data());
+        for (unsigned e = 0; e < 12; ++e)
+          if ((edges[i] >> e & 1u) != 0) ASSERT_EQ(together[e][i], alone[e]) << "cube " << i << ", edge " << e;
+      }
     }
   }
 }

@@ -3,8 +3,10 @@
 // Tiles of every signature, embedded in a larger grid of low or high samples: the contour is a closed oriented manifold
 // whose topology follows from the corners. Based on: the scheme of CGAL's Isosurfacing_3 tests (single cells, then
 // embedded), here in n dimensions.
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
@@ -15,6 +17,9 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "tegl/extract.hpp"
+#include "tile/edge_means.hpp"
+#include "tile/extract_tables.hpp"
+#include "tile/variant_table.hpp"
 
 namespace tegl::test {
 namespace {
@@ -115,6 +120,40 @@ TEST(Tile, TorusClassesIn4dAreClosedManifolds) {
   for (const unsigned s : {1910u, 2022u, 2038u, 4086u, 6076u, 7128u, 7129u, 7134u, 7164u, 7910u, 7926u, 8184u, 8185u,
                            15834u, 15853u, 28662u})
     expect_sound_tile<4>(s);
+}
+
+/// All different masks without corners of the own vertices of resolved cubes.
+std::vector<std::uint32_t> masks_of_edges() {
+  const tables::TileTable& table = detail::variant_table<3>(Triangulation::compact).tile;
+  std::vector<std::uint32_t> masks;
+  for (unsigned key = 0; key < detail::kKeys<3>; ++key) {
+    const detail::SimplexList<3> list(table, key);
+    for (unsigned j = 0; j < list.list().side_vertices; ++j)
+      if (!detail::is_on_ray(list.side_mask(j))) masks.push_back(static_cast<std::uint32_t>(list.side_mask(j)));
+  }
+  std::sort(masks.begin(), masks.end());
+  masks.erase(std::unique(masks.begin(), masks.end()), masks.end());
+  return masks;
+}
+
+TEST(EdgeMeans, AreTheOwnVerticesOfCubes) {
+  const std::vector<std::uint32_t> masks = masks_of_edges();
+  ASSERT_GT(masks.size(), 10u);
+  std::mt19937_64 bits(5);
+  for (int i = 0; i < 2'000; ++i) {
+    detail::EdgeMeans means;
+    means.count = 1 + bits() % detail::EdgeMeans::kMost;
+    for (auto& of_edge : means.alphas)
+      for (double& alpha : of_edge) alpha = bits() % 8 == 0 ? static_cast<double>(bits() % 3) / 2 : unit_random(bits);
+    for (std::size_t m = 0; m < means.count; ++m) means.edges[m] = masks[bits() % masks.size()] >> 8;
+    detail::EdgeMeans::Coordinates found;
+    detail::find_means(means, found);
+    for (std::size_t m = 0; m < means.count; ++m) {
+      const auto on_edge = [&](unsigned e) { return detail::edge_point<3>(e, means.alphas[e][m]); };
+      const auto expected = detail::cube_own_place(means.edges[m] << 8, on_edge, detail::NoRays());
+      for (unsigned a = 0; a < 3; ++a) ASSERT_EQ(found[a][m], expected[a]) << "edges " << means.edges[m];
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Own vertices of cubes at the means of points on edges, of many cubes at once. Compiled for several instruction sets,
+// the best of which is chosen at run time; all give identical bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+struct EdgeMeans {
+  static constexpr std::size_t kMost = 32;
+  using Coordinates = std::array<std::array<double, kMost>, 3>;
+
+  std::size_t count = 0;
+  std::array<std::uint32_t, kMost> edges;  ///< of each mean, as bits
+  /// By edge and mean: position of the point on the edge, from 0 to 1.
+  alignas(64) std::array<std::array<double, kMost>, tables::edge_count(3)> alphas;
+};
+
+/// Coordinates in the cube, equal to cube_own_place.
+void find_means(const EdgeMeans& means, EdgeMeans::Coordinates& out) noexcept;
+
+}  // namespace tegl::detail
