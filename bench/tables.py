@@ -168,7 +168,12 @@ def missed(result: dict, cases: list[dict]) -> list[str]:
 
 
 def resolved_verdict(verdict: dict) -> str:
-    reached = f"{verdict['ratio']:.2f}×" if "ratio" in verdict else f"{verdict['ms_per_tile']:.3f} ms a tile"
+    if "ratio" in verdict:
+        reached = f"{verdict['ratio']:.2f}×"
+    elif "ms_per_tile" in verdict:
+        reached = f"{verdict['ms_per_tile']:.3f} ms a tile"
+    else:
+        reached = f"{verdict['tiles_per_second']:,.0f} tiles/s".replace(",", " ")
     return f"{verdict['rule']} {reached} ({verdict['wanted']}: {'met' if verdict['met'] else 'not met'})"
 
 
