@@ -17,9 +17,8 @@ BuilderTexts emit_five_cube_builder(const BuilderRequest& request) {
   BuilderTexts texts;
   certify_five_cube_faces();
   texts.certificate =
-      "faces and incidence signs against the lattice of the 5-cube. Embedded: cones that hyperplanes divide are "
-      "proved, "
-      "other fillings neither proved nor searched";
+      "faces and incidence signs against the lattice of the 5-cube. "
+      "Embedded: cones that hyperplanes divide are proved, other fillings are neither proved nor searched";
   const std::string name = builder_name(request), space = builder_namespace(request);
   const BuilderRequest faces{.dim = 4, .leaf = request.leaf};
   const auto banner = [&](const char* what) { return builder_banner(request, Language::cpp, what, texts.certificate); };

@@ -337,9 +337,8 @@ BuilderTexts emit_tesseract_builder(const BuilderRequest& request) {
   BuilderTexts texts;
   texts.certificate = fmt::format(
       "the {} lists of the cube in both triangulations, {} regions of their sides; boundary, links and squares. "
-      "Embedded: lists and regions proved for all positions; so are the fillings made of them, which are one cone, "
-      "cones "
-      "that hyperplanes divide, and copies of regions",
+      "Embedded: lists and regions proved for all positions; so are the fillings made of them: one cone, cones that "
+      "hyperplanes divide, copies of regions, and nested copies from a root",
       arrays.lists.front().lists.size(), arrays.region_count());
   const auto banner = [&](const std::string& what) {
     return builder_banner(request, Language::cpp, what, texts.certificate);

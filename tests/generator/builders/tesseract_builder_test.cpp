@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <random>
 #include <vector>
 
 #include "../../support/share.hpp"
@@ -56,6 +57,23 @@ TEST(TesseractBuilder, EveryResolutionOfSquaresIsThatOfTheGeneralBuilderAndOfThe
         ASSERT_EQ(fault_of_tesseract(barycentric, general, key, Triangulation::barycentric, defined), "");
       }
     }
+}
+
+/// So nested copies are proved to be embedded for every resolution of squares: symmetries map roots to roots. Cubes are
+/// resolved at random.
+TEST(TesseractBuilder, EveryTesseractHasARootForNestedCopies) {
+  const GeneralTesseract general;
+  builders::ResolvedTesseract builder;
+  std::mt19937 random(1);
+  std::size_t without = 0;
+  for (ResolvedKey key : pairs_up_to_symmetry(general)) {
+    without += builder.has_root(key) ? 0 : 1;
+    const unsigned bits = random();
+    key.low_cubes = static_cast<std::uint8_t>(bits);
+    key.high_cubes = static_cast<std::uint8_t>(bits >> 8 & ~unsigned{key.low_cubes});
+    without += builder.has_root(key) ? 0 : 1;
+  }
+  EXPECT_EQ(without, 0u);
 }
 
 TEST(TesseractBuilder, FillingsOnEdgesAreProvedToBeEmbedded) {

@@ -245,9 +245,9 @@ static_assert(of_2_to_5_only<2, 4>([]<int N>() { return ExtractedByIndex<Image<f
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return ExtractedInto<Image<float, N>, N>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Streamed<LayerReader<float, N>, N>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return SeveralStreamed<LayerReader<float, N>, N>; }));
-static_assert(of_2_to_5_only<2, 4>([]<int N>() { return BecomesMesh<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 5>([]<int N>() { return BecomesMesh<Contour<N>>; }));
 static_assert(of_2_to_5_only<2, 4>([]<int N>() { return HasBorderPlanes<N>; }));
-static_assert(only_in<2, 4>([]<int N>() { return FromMesh<N>; }));
+static_assert(only_in<2, 5>([]<int N>() { return FromMesh<N>; }));
 static_assert(only_in<2, 4>([]<int N>() { return PolygonsTriangulated<N>; }));
 static_assert(only_in<2, 6>([]<int N>() { return HasTileFacets<N>; }));
 

@@ -239,7 +239,9 @@ TEST(CubeHeights, OfManyRaysAreThoseOfEach) {
     std::array<double, CubeRays::kMost> levels;
     cube_levels(rays, 3 - corners / 2, epsilon, levels);
     for (std::size_t r = 0; r < expected.size(); ++r)
-      if (!std::isnan(expected[r])) ASSERT_EQ(levels[r], expected[r]) << "rays to " << corners << " corners, " << i;
+      if (!std::isnan(expected[r])) {
+        ASSERT_EQ(levels[r], expected[r]) << "rays to " << corners << " corners, " << i;
+      }
   }
 }
 
@@ -274,7 +276,9 @@ TEST(CubesAlphas, AreThoseOfEachCube) {
         std::array<double, 12> alone;
         source.cell_alphas(bases[i], axes[i], edges[i], alone.data());
         for (unsigned e = 0; e < 12; ++e)
-          if ((edges[i] >> e & 1u) != 0) ASSERT_EQ(together[e][i], alone[e]) << "cube " << i << ", edge " << e;
+          if ((edges[i] >> e & 1u) != 0) {
+            ASSERT_EQ(together[e][i], alone[e]) << "cube " << i << ", edge " << e;
+          }
       }
     }
   }
