@@ -82,52 +82,58 @@ void certify(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Trian
             "a link that is neither a disc nor a sphere");
 }
 
+/// A nested copy that passes the contour (templates/builder4_nested.cpp.in) has the regions on both of its sides. If
+/// both had a double on the ray of the same barycentre, they would overlap beside it. `low`: doubles of the low
+/// regions.
+void require_other_doubles(const std::vector<std::uint32_t>& centres, bool high, std::uint32_t& low) {
+  for (const std::uint32_t centre : centres) {
+    if (centre < CubeRegions::kFirstDouble) continue;
+    if (high && (low & centre) != 0)
+      throw Error(ErrorCode::CertificateFailed, "regions of a cube: a barycentre with doubles on both sides");
+    low |= high ? 0 : centre;
+  }
+}
+
 }  // namespace
 
 CubeRegions make_cube_regions(const CubeLists& lists, bool is_cap) {
   const RegionProof proof;
   CubeRegions result;
   const std::size_t whole = lists.lists.size();
-  for (std::size_t number = 0; number <= whole; ++number) std::uint32_t doubles = 0;  // of the low side
-  for (const bool high : {false, true}) {
-    result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
-    if (is_cap && !high) continue;
-    const CubeLists::List list = number == whole ? CubeLists::List{} : lists.lists[number];
-    const CubeSide side{number == whole && high ? 255u : list.signature, list.high_squares, high};
-    std::vector<Triangle> contour;
-    const auto triangles = number == whole ? std::span<const std::uint8_t>() : lists.triangles_of(number);
-    for (std::size_t t = 0; t < triangles.size(); t += 3)
-      contour.push_back({static_cast<std::uint8_t>(kFirstEdge + triangles[t]),
-                         static_cast<std::uint8_t>(kFirstEdge + triangles[t + 1]),
-                         static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
-    const RegionFrame frame =
-        region_frame(std::span(list.masks).first(list.own_vertices), list.barycentres, contour, is_cap);
-    for (const std::vector<Triangle>& surface : side.regions(contour)) {
-      const auto division = divide_side_region(proof, frame, surface, high);
-      if (!division)
-        throw Error(ErrorCode::CertificateFailed,
-                    fmt::format("a {} of the cube of signature {} without a proved division", is_cap ? "cap" : "region",
-                                side.signature));
-      certify(division->tetrahedra, surface);
-      // A nested copy (builder4_nested) that passes the contour has both sides. Beside a barycentre with two doubles on
-      // its ray, they would overlap.
-      for (const std::uint32_t centre : division->centres) {
-        if (is_cap || centre < CubeRegions::kFirstDouble) continue;
-        if (high && (doubles & centre) != 0)
+  std::uint32_t doubles = 0;  // of the low regions of a list
+  for (std::size_t number = 0; number <= whole; ++number)
+    for (const bool high : {false, true}) {
+      doubles = high ? doubles : 0;
+      result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
+      if (is_cap && !high) continue;
+      const CubeLists::List list = number == whole ? CubeLists::List{} : lists.lists[number];
+      const CubeSide side{number == whole && high ? 255u : list.signature, list.high_squares, high};
+      std::vector<Triangle> contour;
+      const auto triangles = number == whole ? std::span<const std::uint8_t>() : lists.triangles_of(number);
+      for (std::size_t t = 0; t < triangles.size(); t += 3)
+        contour.push_back({static_cast<std::uint8_t>(kFirstEdge + triangles[t]),
+                           static_cast<std::uint8_t>(kFirstEdge + triangles[t + 1]),
+                           static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
+      const RegionFrame frame =
+          region_frame(std::span(list.masks).first(list.own_vertices), list.barycentres, contour, is_cap);
+      for (const std::vector<Triangle>& surface : side.regions(contour)) {
+        const auto division = divide_side_region(proof, frame, surface, high);
+        if (!division)
           throw Error(ErrorCode::CertificateFailed,
-                      fmt::format("the cube of signature {}: a barycentre with doubles on both sides", side.signature));
-        doubles |= high ? 0 : centre;
+                      fmt::format("a {} of the cube of signature {} without a proved division",
+                                  is_cap ? "cap" : "region", side.signature));
+        certify(division->tetrahedra, surface);
+        if (!is_cap) require_other_doubles(division->centres, high, doubles);
+        Set vertices = 0;
+        for (const Triangle& t : surface) vertices |= set_of(t);
+        result.regions.push_back(
+            {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(division->centres.size()),
+             static_cast<std::uint16_t>(division->tetrahedra.size()),
+             static_cast<std::uint32_t>(result.tetrahedra.size()), static_cast<std::uint32_t>(result.centres.size())});
+        result.tetrahedra.insert(result.tetrahedra.end(), division->tetrahedra.begin(), division->tetrahedra.end());
+        result.centres.insert(result.centres.end(), division->centres.begin(), division->centres.end());
       }
-      Set vertices = 0;
-      for (const Triangle& t : surface) vertices |= set_of(t);
-      result.regions.push_back(
-          {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(division->centres.size()),
-           static_cast<std::uint16_t>(division->tetrahedra.size()),
-           static_cast<std::uint32_t>(result.tetrahedra.size()), static_cast<std::uint32_t>(result.centres.size())});
-      result.tetrahedra.insert(result.tetrahedra.end(), division->tetrahedra.begin(), division->tetrahedra.end());
-      result.centres.insert(result.centres.end(), division->centres.begin(), division->centres.end());
     }
-  }
   result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
   return result;
 }
