@@ -68,7 +68,7 @@ TEST(TesseractBuilder, EveryTesseractHasARootForNestedCopies) {
   std::size_t without = 0;
   for (ResolvedKey key : pairs_up_to_symmetry(general)) {
     without += builder.has_root(key) ? 0 : 1;
-    const unsigned bits = random();
+    const auto bits = static_cast<unsigned>(random());
     key.low_cubes = static_cast<std::uint8_t>(bits);
     key.high_cubes = static_cast<std::uint8_t>(bits >> 8 & ~unsigned{key.low_cubes});
     without += builder.has_root(key) ? 0 : 1;
