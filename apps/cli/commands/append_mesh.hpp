@@ -9,7 +9,9 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "output/result.hpp"
 #include "tegl/error.hpp"
 #include "tegl/io/meshes.hpp"
 
@@ -40,6 +42,27 @@ inline void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
     append(all.vertex_attributes[i].values, one.vertex_attributes[i].values);
   for (std::size_t i = 0; i < all.simplex_attributes.size(); ++i)
     append(all.simplex_attributes[i].values, one.simplex_attributes[i].values);
+}
+
+/// Merges the contours of several isovalues into one mesh with the isovalue of each vertex and simplex. Their meshes
+/// are empty afterwards.
+inline ContourResult in_one_mesh(std::vector<ContourResult>& results) {
+  ContourResult all = results.front();
+  all.mesh = Mesh();
+  all.isovalue.reset();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    ContourResult& one = results[i];
+    all.isovalues.push_back(*one.isovalue);
+    if (i > 0) {
+      all.seconds.classify += one.seconds.classify;
+      all.seconds.find += one.seconds.find;
+      all.seconds.generate += one.seconds.generate;
+      all.seconds.close += one.seconds.close;
+      if (all.stats) all.stats->active_tiles += one.stats->active_tiles;
+    }
+    append_mesh(all.mesh, std::exchange(one.mesh, Mesh()), *one.isovalue);
+  }
+  return all;
 }
 
 }  // namespace tegl::cli

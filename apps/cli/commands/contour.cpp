@@ -478,23 +478,9 @@ class ContourCommand final : public Command {
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
   }
 
-  /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
+  /// The contours as one mesh, checked and written.
   ContourResult merged(std::vector<ContourResult>& results, ProgressBar& bar, WrittenFiles& written) const {
-    ContourResult all = results.front();
-    all.mesh = Mesh();
-    all.isovalue.reset();
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      ContourResult& one = results[i];
-      all.isovalues.push_back(*one.isovalue);
-      if (i > 0) {
-        all.seconds.classify += one.seconds.classify;
-        all.seconds.find += one.seconds.find;
-        all.seconds.generate += one.seconds.generate;
-        all.seconds.close += one.seconds.close;
-        if (all.stats) all.stats->active_tiles += one.stats->active_tiles;
-      }
-      append_mesh(all.mesh, std::exchange(one.mesh, Mesh()), *one.isovalue);
-    }
+    ContourResult all = in_one_mesh(results);
     check_and_write(all, bar, written);
     return all;
   }
