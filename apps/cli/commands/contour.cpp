@@ -503,9 +503,7 @@ class ContourCommand final : public Command {
     std::vector<double> point;
     if (app().count("--pick") == 0) return point;
     if (is_streamed() || !index_.empty() || facets_)
-      throw Error(
-          ErrorCode::InvalidArgument,
-          "--pick with --index, --facets or --stream; expected --pick without them: it searches the image in memory");
+      throw Error(ErrorCode::InvalidArgument, "--pick with --index, --facets or --stream; expected it without them");
     for (std::size_t at = 0; at <= pick_.size();) {
       const std::size_t comma = std::min(pick_.find(',', at), pick_.size());
       point.push_back(parse_finite("--pick", std::string_view(pick_).substr(at, comma - at)));
@@ -527,10 +525,8 @@ class ContourCommand final : public Command {
 
   template <int N>
   static void take_report(const PickReport<N>& report, Picked& picked) {
-    picked.tile.assign(report.at.begin(), report.at.end());
-    picked.distance = report.distance;
-    picked.tiles = report.tiles;
-    picked.components = report.components;
+    const std::vector<std::size_t> tile(report.at.begin(), report.at.end());
+    picked = {picked.point, tile, report.distance, report.tiles, report.components};
   }
 
   /// Extracts the component nearest to the point of --pick.
