@@ -211,7 +211,9 @@ TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
   EXPECT_EQ(error({{10, 10}, ValueType::uint8, ~std::uint64_t{0}}).code(), ErrorCode::MalformedFile);
   EXPECT_EQ(error({{10, 0}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
   EXPECT_EQ(error({{100}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
-  EXPECT_EQ(error({{2, 2, 5, 5, 1}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
+  EXPECT_EQ(error({{2, 2, 5, 5, 1, 1}, ValueType::uint8}).code(), ErrorCode::InvalidArgument);
+  // five axes are read as a whole only
+  EXPECT_EQ(error({{2, 2, 1, 5, 5}, ValueType::uint8}).code(), ErrorCode::UnsupportedData);
   EXPECT_THAT(error({{5, 5}, ValueType::uint32}).what(), AllOf(HasSubstr("'uint32'"), HasSubstr("uint16")));
   EXPECT_EQ(error({{5, 5}, ValueType::int64}).code(), ErrorCode::InvalidArgument);
   EXPECT_THAT(error({.sizes = {5, 5}}).what(), HasSubstr("no type of values; expected uint8"));
