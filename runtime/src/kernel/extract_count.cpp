@@ -242,20 +242,34 @@ class TileResolver {
                const TileRoom& room, TileCount& count)
       : estimator_(estimator), table_(table), base_(base), room_(room), count_(count) {}
 
-  /// Lists the ambiguous ones of tiles first ... end - 1, which lie in one word. Without branches on the tiles.
-  void list(std::uint32_t first, std::uint32_t end) {
+  /// Calls visit(word, count) for each word with ambiguous tiles, after listing these. Without branches on the tiles:
+  /// in smooth images few are ambiguous.
+  template <class Visit>
+  void for_words(const Visit& visit) {
     const auto& ambiguous = ambiguous_signatures<N>();
-    std::size_t found = 0;
-    for (std::uint32_t i = first; i < end; ++i) {
-      const unsigned signature = room_.signatures[i];
-      of_.bits[found] = static_cast<std::uint8_t>(room_.at[i] % kWordBits);
-      of_.signatures[found] = static_cast<std::uint8_t>(signature);
-      numbers_[found] = i;
-      found += ambiguous[signature] ? 1 : 0;
+    std::array<std::uint32_t, kAtOnce> numbers;
+    for (std::uint32_t first = 0; first < count_.active; first += kAtOnce) {
+      const auto end = std::min<std::uint32_t>(count_.active, first + kAtOnce);
+      std::size_t found = 0;
+      for (std::uint32_t i = first; i < end; ++i) {
+        numbers[found] = i;
+        found += ambiguous[room_.signatures[i]] ? 1 : 0;
+      }
+      for (std::size_t j = 0; j < found; j += of_.count) {
+        numbers_ = numbers.data() + j;
+        const std::size_t word = room_.at[numbers_[0]] / kWordBits;
+        std::size_t count = 0;
+        for (; count < found - j; ++count) {
+          const auto place = room_.at[numbers_[count]];
+          if (place / kWordBits != word) break;
+          of_.bits[count] = static_cast<std::uint8_t>(place % kWordBits);
+          of_.signatures[count] = static_cast<std::uint8_t>(room_.signatures[numbers_[count]]);
+        }
+        of_.count = count;
+        visit(word, of_.count);
+      }
     }
-    of_.count = found;
   }
-  [[nodiscard]] std::size_t listed() const noexcept { return of_.count; }
 
   /// Resolves the listed tiles one by one.
   void resolve_each(std::size_t word) {
@@ -293,8 +307,9 @@ class TileResolver {
   typename RowShape<N>::Index base_;
   const TileRoom& room_;
   TileCount& count_;
-  TilesOfWord of_;                                ///< ambiguous tiles of the current word
-  std::array<std::uint32_t, kWordBits> numbers_;  ///< theirs in the row
+  static constexpr std::uint32_t kAtOnce = 1024;
+  TilesOfWord of_;                          ///< ambiguous tiles of the current word
+  const std::uint32_t* numbers_ = nullptr;  ///< theirs in the row
 };
 
 }  // namespace
@@ -307,24 +322,13 @@ template <int N>
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
     TileResolver<N> resolver(*estimator_, *rows_, base, room, count);
-    // calls resolve_listed(word) for each word with ambiguous tiles
-    const auto for_words = [&](const auto& resolve_listed) {
-      std::uint32_t first = 0;
-      for (std::size_t word = 0; first < count.active; ++word) {
-        if (room.active[word] == 0) continue;
-        const auto end = first + static_cast<std::uint32_t>(std::popcount(room.active[word]));
-        resolver.list(first, end);
-        if (resolver.listed() != 0) resolve_listed(word);
-        first = end;
-      }
-    };
     if constexpr (N == 2) {
-      for_words([&](std::size_t word) { resolver.resolve_each(word); });
+      resolver.for_words([&](std::size_t word, std::size_t) { resolver.resolve_each(word); });
     } else {
       RowFaces<N> faces(*estimator_, base, shape_.size(0));
       const bool at_once = RowFaces<N>::can_use(*estimator_);
-      for_words([&](std::size_t word) {
-        if (at_once && resolver.listed() >= 2 * RowFaces<N>::kMany)  // one cube costs less than one tesseract
+      resolver.for_words([&](std::size_t word, std::size_t listed) {
+        if (at_once && listed >= 2 * RowFaces<N>::kMany)  // one cube costs less than one tesseract
           resolver.resolve_together(faces, word);
         else
           resolver.resolve_each(word);
