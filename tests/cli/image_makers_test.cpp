@@ -155,6 +155,12 @@ TEST_F(ImageMakers, ScaleSpacesOfFourAxesAreSavedCutAndTracked) {
                                   "--iso", "128", "--ambiguity", "mean", "-o", path("r.vtkhdf"), "--json"});
   ASSERT_EQ(raw.exit, 0) << raw.err;
   EXPECT_EQ(raw.json()["simplices"], contour.json()["simplices"]);
+  // files of 4 axes are one image of 5
+  const std::string next = write("next.nrrd", nrrd_bytes(noise({6, 5, 6, 4}, 2), ""));
+  const RunResult series = run_tegl({"contour", write("first.nrrd", nrrd_bytes(noise({6, 5, 6, 4}, 1), "")), next,
+                                     "--iso", "128", "--times", "0,2", "-o", path("series.vtkhdf"), "--json"});
+  ASSERT_EQ(series.exit, 0) << series.err;
+  EXPECT_EQ(read_mesh(path("series.vtkhdf")).axis_names, (std::vector<std::string>{"x", "y", "z", "t", "u"}));
   // what is for fewer dimensions
   expect_refused({"contour", path("a.nrrd"), "--iso", "128", "--ambiguity", "mean", "-o", path("c.ply")}, "4-simplices",
                  6);

@@ -256,10 +256,10 @@ class ContourCommand final : public Command {
     options_.require_to_5d();
     for (const char* const name : {"--index", "--pick", "--merge", "--merge-within", "--one-file"})
       if (app().get_option_no_throw(name) != nullptr && app().count(name) > 0)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("{} with an image of 5 axes; expected none", name));
+        throw Error(ErrorCode::InvalidArgument, fmt::format("{} with an image of 5 axes; expected 2 to 4 axes", name));
     if (!positions_.are_linear()) positions_.refuse("an image of 5 axes");
     if (attributes_.wanted())
-      throw Error(ErrorCode::InvalidArgument, "--attribute with an image of 5 axes; expected none");
+      throw Error(ErrorCode::InvalidArgument, "--attribute with an image of 5 axes; expected 2 to 4 axes");
   }
 
   /// Contours an image of 5 axes.

@@ -202,7 +202,7 @@ void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& 
 class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
-      : Command(program, "slice", "Cut a 4D contour at a time, or by any other hyperplane",
+      : Command(program, "slice", "Cut a contour at a time, or by any other hyperplane",
                 "an image in 3D to 5D, a 4D or 3D mesh, or a contour in 3D to 5D saved by 'tegl contour' (.vtkhdf ...)",
                 Files::image) {
     app()

@@ -19,7 +19,7 @@
 namespace tegl::cli {
 
 /// Formats of contours, for help and errors.
-inline constexpr const char* kContourFiles = ".ply, .gltf, .glb, .obj, .stl (3D only) or .vtkhdf (also 4D)";
+inline constexpr const char* kContourFiles = ".ply, .gltf, .glb, .obj, .stl (3D only) or .vtkhdf (also 4D and 5D)";
 
 /// Whether an input may be a folder, as for DICOM series.
 enum class Folders { refused, allowed };

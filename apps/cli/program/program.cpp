@@ -10,8 +10,8 @@ namespace tegl::cli {
 
 std::vector<std::unique_ptr<Command>> add_commands(CLI::App& program, const std::string& version) {
   program.description(
-      "Contours (isosurfaces) of images in 2, 3 and 4 dimensions: oriented manifolds.\n"
-      "Reads NIfTI, NRRD, MetaImage, NumPy, netCDF and DICOM; writes PLY, STL, OBJ, glTF and VTKHDF.");
+      "Contours (isosurfaces) of images and meshes in 2 to 5 dimensions: oriented manifolds.\n"
+      "Reads NIfTI, NRRD, MetaImage, NumPy, netCDF, DICOM and VTK; writes PLY, STL, OBJ, glTF and VTKHDF.");
   program.set_version_flag("--version", "tegl " + version);
   program.require_subcommand(1);
   program.footer(

@@ -5,6 +5,7 @@
 #include "images/members.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -187,7 +188,8 @@ SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options)
   std::vector<double> coordinates;
   for (const Member& member : members) coordinates.push_back(member.at);
   Axis axis = axis_of(coordinates);
-  axis.name = found.axis.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.axis.name;
+  constexpr std::array<const char*, 5> kNames = {"x", "y", "z", "t", "u"};
+  axis.name = found.axis.name.empty() ? kNames.at(members.front().grid.axes.size()) : found.axis.name;
   axis.unit = found.axis.unit;
   return {std::move(axis), found.direction};
 }
@@ -208,8 +210,8 @@ std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOp
     members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index(),
                        options.coordinates.empty() ? 0.0 : options.coordinates[i]});
     const std::size_t axes = members.back().grid.axes.size();
-    if (axes != 2 && axes != 3)
-      fail(ErrorCode::UnsupportedData, path, "has {} axes and is one of several files; expected 2 or 3 axes per file",
+    if (axes < 2 || axes > 4)
+      fail(ErrorCode::UnsupportedData, path, "has {} axes and is one of several files; expected 2 to 4 axes per file",
            axes);
     require_same(members.back(), members.front());
   }
