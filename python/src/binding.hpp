@@ -213,6 +213,7 @@ void put(py::dict& dict, const char* name, const T& value) {
 // The parts of the module.
 void bind_contour(py::module_& m);
 void bind_extract(py::module_& m);
+void bind_incidence(py::module_& m);
 void bind_operations(py::module_& m);
 void bind_elements(py::module_& m);
 void bind_track(py::module_& m);

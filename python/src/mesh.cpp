@@ -19,7 +19,7 @@ namespace tegl::python {
 namespace {
 
 using Doubles = py::array_t<double, py::array::c_style>;
-using Numbers = py::array_t<std::uint32_t, py::array::c_style>;
+using Corners = py::array_t<std::uint32_t, py::array::c_style>;
 using Types = py::array_t<std::uint8_t, py::array::c_style>;
 
 template <class T, class Array>
@@ -73,7 +73,7 @@ AnyComplex complex_of(const Doubles& points, const MeshArguments& mesh) {
   throw Error(ErrorCode::UnsupportedData, fmt::format("points have {} coordinates; expected 2 to 4", dim));
 }
 
-MeshArguments arguments_of(const Types& types, const Numbers& corners, const Doubles& values, const Doubles& times,
+MeshArguments arguments_of(const Types& types, const Corners& corners, const Doubles& values, const Doubles& times,
                            const std::vector<std::string>& axis_names) {
   MeshArguments mesh{{}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), axis_names};
   for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.types.push_back(static_cast<CellType>(type));
@@ -115,7 +115,7 @@ ContourArguments wanted_of(double level, bool is_double, const py::dict& argumen
   return {level, is_double, extract_options(arguments, call), arguments["normals"].cast<std::string>()};
 }
 
-std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& types, const Numbers& corners,
+std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& types, const Corners& corners,
                                          const Doubles& values, const Doubles& times,
                                          const std::vector<std::string>& axis_names, double level, bool is_double,
                                          const py::dict& arguments, const py::object& progress) {
@@ -132,7 +132,7 @@ struct MeshIndex {
   std::vector<std::string> axis_names;
 };
 
-std::unique_ptr<MeshIndex> make_index(const Doubles& points, const Types& types, const Numbers& corners,
+std::unique_ptr<MeshIndex> make_index(const Doubles& points, const Types& types, const Corners& corners,
                                       const Doubles& values, const Doubles& times,
                                       const std::vector<std::string>& axis_names, unsigned threads,
                                       const py::object& progress) {

@@ -146,6 +146,7 @@ PYBIND11_MODULE(_tegl, m) {
   m.attr("docs") = docs;
   bind_contour(m);
   bind_extract(m);
+  bind_incidence(m);
   bind_operations(m);
   bind_elements(m);
   bind_track(m);

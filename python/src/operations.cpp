@@ -5,6 +5,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "incidence.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
 #include "tegl/intersections.hpp"
@@ -42,11 +43,14 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
   });
 }
 
-py::dict check_any(const AnyContour& contour, unsigned threads, const py::object& progress) {
+py::dict check_any(const AnyContour& contour, const AnyIncidence* incidence, unsigned threads,
+                   const py::object& progress) {
   Call call(progress);
   const WorkOptions work{threads, call.progress()};
-  const MeshReport report =
-      call.run([&] { return std::visit([&](const auto& c) { return check(c, work); }, contour.contour); });
+  const MeshReport report = call.run([&] {
+    return visit_with(contour, incidence,
+                      [&](const auto& c, const auto&... shared) { return check(c, shared..., work); });
+  });
   py::dict result;
   put(result, "dim", report.dim);
   put(result, "vertices", report.vertices);
@@ -114,23 +118,22 @@ py::dict intersections_any(const AnyContour& contour, const std::optional<Number
       contour.contour);
 }
 
-py::dict measure_any(const AnyContour& contour, unsigned threads, const py::object& progress) {
+py::dict measure_any(const AnyContour& contour, const AnyIncidence* incidence, unsigned threads,
+                     const py::object& progress) {
   Call call(progress);
   const WorkOptions options{threads, call.progress()};
-  return std::visit(
-      [&](const auto& c) {
-        const auto measures = call.run([&] { return measure(c, options); });
-        py::dict result;
-        put(result, "size", measures.size);
-        put(result, "content", measures.content);
-        put(result, "centroid", to_list(measures.centroid));
-        put(result, "lowest", to_list(measures.lowest));
-        put(result, "highest", to_list(measures.highest));
-        put(result, "boundary_simplices", measures.boundary_simplices);
-        put(result, "open_simplices", measures.open_simplices);
-        return result;
-      },
-      contour.contour);
+  return visit_with(contour, incidence, [&](const auto& c, const auto&... shared) {
+    const auto measures = call.run([&] { return measure(c, shared..., options); });
+    py::dict result;
+    put(result, "size", measures.size);
+    put(result, "content", measures.content);
+    put(result, "centroid", to_list(measures.centroid));
+    put(result, "lowest", to_list(measures.lowest));
+    put(result, "highest", to_list(measures.highest));
+    put(result, "boundary_simplices", measures.boundary_simplices);
+    put(result, "open_simplices", measures.open_simplices);
+    return result;
+  });
 }
 
 /// (size, content) of each slice; content is NaN if undefined.
@@ -181,18 +184,16 @@ py::dict to_dict(const Component<N>& component) {
   return result;
 }
 
-py::list components_any(const AnyContour& contour, const ComponentLabels& labels, unsigned threads,
-                        const py::object& progress) {
+py::list components_any(const AnyContour& contour, const ComponentLabels& labels, const AnyIncidence* incidence,
+                        unsigned threads, const py::object& progress) {
   Call call(progress);
   const WorkOptions options{threads, call.progress()};
-  return std::visit(
-      [&](const auto& c) {
-        const auto found = call.run([&] { return components(c, labels, options); });
-        py::list result;
-        for (const auto& component : found) result.append(to_dict(component));
-        return result;
-      },
-      contour.contour);
+  return visit_with(contour, incidence, [&](const auto& c, const auto&... shared) {
+    const auto found = call.run([&] { return components(c, labels, shared..., options); });
+    py::list result;
+    for (const auto& component : found) result.append(to_dict(component));
+    return result;
+  });
 }
 
 std::vector<AnyContour> split_any(const AnyContour& contour, const ComponentLabels& labels,
@@ -352,10 +353,12 @@ void sample_any(AnyContour& contour, const AnyImage& image, const std::string& n
 void bind_operations(py::module_& m) {
   m.def("slice_stack", &cuts, py::arg("contour"), py::arg("normal"), py::arg("offsets"), py::arg("threads"),
         py::arg("progress"), doc::slice_stack);
-  m.def("check", &check_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::check_2);
+  m.def("check", &check_any, py::arg("contour"), py::arg("incidence"), py::arg("threads"), py::arg("progress"),
+        doc::check_2);
   m.def("find_intersections", &intersections_any, py::arg("contour"), py::arg("tile"), py::arg("origin"),
         py::arg("most_listed"), py::arg("threads"), py::arg("progress"), doc::find_intersections);
-  m.def("measure", &measure_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::measure);
+  m.def("measure", &measure_any, py::arg("contour"), py::arg("incidence"), py::arg("threads"), py::arg("progress"),
+        doc::measure);
   m.def("measure_cuts", &measure_cuts_any, py::arg("contour"), py::arg("at"), py::arg("threads"), py::arg("progress"),
         doc::measure_cuts);
   py::class_<ComponentLabels>(m, "ComponentLabels", doc::ComponentLabels)
@@ -372,8 +375,8 @@ void bind_operations(py::module_& m) {
       });
   m.def("label_components", &label_any, py::arg("contour"), py::arg("threads"), py::arg("progress"),
         doc::label_components);
-  m.def("components", &components_any, py::arg("contour"), py::arg("labels"), py::arg("threads"), py::arg("progress"),
-        doc::components);
+  m.def("components", &components_any, py::arg("contour"), py::arg("labels"), py::arg("incidence"), py::arg("threads"),
+        py::arg("progress"), doc::components);
   m.def("split_components", &split_any, py::arg("contour"), py::arg("labels"), py::arg("progress"),
         doc::split_components);
   m.def("select_components", &select_any, py::arg("contour"), py::arg("labels"), py::arg("keep"), py::arg("progress"),

@@ -5,6 +5,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "incidence.hpp"
 #include "tegl/io/tracks.hpp"
 
 namespace tegl::python {
@@ -13,7 +14,8 @@ namespace {
 
 std::unique_ptr<TrackGraph> track_any(const AnyContour& contour, double min_lifetime, const std::vector<double>& times,
                                       std::optional<double> first, std::optional<double> last, bool handles,
-                                      bool label_simplices, unsigned threads, const py::object& progress) {
+                                      bool label_simplices, const AnyIncidence* incidence, unsigned threads,
+                                      const py::object& progress) {
   Call call(progress);
   TrackOptions options;
   options.min_lifetime = min_lifetime;
@@ -24,11 +26,9 @@ std::unique_ptr<TrackGraph> track_any(const AnyContour& contour, double min_life
   options.label_simplices = label_simplices;
   options.work = {threads, call.progress()};
   return call.run([&] {
-    return std::visit(
-        [&]<int N, class Real>(const Contour<N, Real>& c) -> std::unique_ptr<TrackGraph> {
-          return std::make_unique<TrackGraph>(track(c, options));
-        },
-        contour.contour);
+    return visit_with(contour, incidence, [&](const auto& c, const auto&... shared) {
+      return std::make_unique<TrackGraph>(track(c, shared..., options));
+    });
   });
 }
 
@@ -141,8 +141,8 @@ void bind_track(py::module_& m) {
       .def("handles", &handles_of)
       .def_property_readonly("simplex_segments", &simplex_segments_of);
   m.def("track", &track_any, py::arg("contour"), py::arg("min_lifetime"), py::arg("times"), py::arg("first"),
-        py::arg("last"), py::arg("handles"), py::arg("label_simplices"), py::arg("threads"), py::arg("progress"),
-        doc::track);
+        py::arg("last"), py::arg("handles"), py::arg("label_simplices"), py::arg("incidence"), py::arg("threads"),
+        py::arg("progress"), doc::track);
   m.def("even_times", &even_times, py::arg("first"), py::arg("last"), py::arg("count"), doc::even_times);
   m.def("write_track", &write_any_track, py::arg("graph"), py::arg("path"), py::arg("title"), doc::write_track);
 }

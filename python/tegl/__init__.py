@@ -20,6 +20,7 @@ from ._contour import (Components, Contour, check, components, elements, interse
 from ._fields import fields, sample
 from ._filter import filter, most_stable_scale, scale_space
 from ._image import ContourSize, Image, contour, count, read, slice
+from ._incidence import Incidence
 from ._index import Index, PickReport
 from ._mesh import Mesh, MeshIndex, contour_mesh, contour_points, read_mesh
 from ._results import (Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MergeReport, MeshReport,
@@ -30,7 +31,7 @@ from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, Tra
 
 __all__ = [
     "Cancelled", "Component", "Components", "Contour", "ContourSize", "CutMeasures", "Elements", "ElementSum", "Image",
-    "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
+    "Incidence", "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
     "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__",
     "check", "components", "contour", "contour_mesh", "contour_points", "count", "elements", "fields", "filter",
     "intersections", "load", "marching_cubes", "measure", "merge_vertices", "most_stable_scale", "read", "read_mesh",

@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _export, _kinds, _results, _outside, _tegl
+from . import _arguments, _export, _incidence, _kinds, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
+from ._incidence import Incidence
 from ._results import Component, CutMeasures, Elements, Intersections, Measures, MergeReport, MeshReport, SimplifyStats
 from ._track import TrackGraph
 
@@ -269,30 +270,34 @@ class Contour:
         found = [Contour._of(cut, self._is_reversed, left) for cut in cuts]
         return found if several else found[0]
 
-    def components(self, *, threads: int = 0, progress: Progress | None = None) -> Components:
+    def components(self, *, incidence: Incidence | None = None, threads: int = 0,
+                   progress: Progress | None = None) -> Components:
         """The connected components: see `tegl.components`."""
-        core, threads = self._core, _arguments.threads_of(threads)
+        core, shared, threads = self._core, _incidence.core_or_none(incidence), _arguments.threads_of(threads)
         labels = _tegl.label_components(core, threads, _arguments.part_of(progress, 0.0, 0.3))
         found = []
-        for one in _tegl.components(core, labels, threads, _arguments.part_of(progress, 0.3, 1.0)):
+        for one in _tegl.components(core, labels, shared, threads, _arguments.part_of(progress, 0.3, 1.0)):
             for name in ("centroid", "lowest", "highest"):
                 one[name] = np.array(self._listed(one[name]))
             found.append(Component(**one))
         return Components(self, labels, found)
 
     @typing.overload
-    def measure(self, *, at: None = None, allow_empty: bool = False, threads: int = 0,
-                progress: Progress | None = None) -> Measures: ...
+    def measure(self, *, at: None = None, allow_empty: bool = False, incidence: Incidence | None = None,
+                threads: int = 0, progress: Progress | None = None) -> Measures: ...
 
     @typing.overload
     def measure(self, *, at: Place | Places | Labelled, allow_empty: bool = False, threads: int = 0,
                 progress: Progress | None = None) -> CutMeasures: ...
 
-    def measure(self, *, at=None, allow_empty: bool = False, threads: int = 0,
+    def measure(self, *, at=None, allow_empty: bool = False, incidence: Incidence | None = None, threads: int = 0,
                 progress: Progress | None = None) -> Measures | CutMeasures:
         """Size, content, centroid; with `at`, sizes and contents of cuts: see `tegl.measure`."""
         allow_empty = _arguments.as_bool("allow_empty", allow_empty)
+        shared = _incidence.core_or_none(incidence)
         if at is not None:
+            if shared is not None:
+                raise ValueError("incidence with at=; expected one of them: the measures of cuts need no incidence")
             unit = self.axis_units[self.time_axis]
             given = list(at) if _results.is_list(at) else [at]
             places = [_arguments.number_on_axis(place, unit) for place in given]
@@ -300,14 +305,16 @@ class Contour:
                 self._require_places(self.time_axis, places, given)
             size, content = _tegl.measure_cuts(self._core, places, _arguments.threads_of(threads), progress)
             return CutMeasures(np.array(places), np.array(size), np.array(content))
-        found = _tegl.measure(self._core, _arguments.threads_of(threads), progress)
+        found = _tegl.measure(self._core, shared, _arguments.threads_of(threads), progress)
         for name in ("centroid", "lowest", "highest"):
             found[name] = np.array(self._listed(found[name]))
         return Measures(**found)
 
-    def check(self, *, threads: int = 0, progress: Progress | None = None) -> MeshReport:
+    def check(self, *, incidence: Incidence | None = None, threads: int = 0,
+              progress: Progress | None = None) -> MeshReport:
         """Checks whether the contour is a manifold: see `tegl.check`."""
-        return MeshReport(**_tegl.check(self._core, _arguments.threads_of(threads), progress))
+        return MeshReport(**_tegl.check(self._core, _incidence.core_or_none(incidence), _arguments.threads_of(threads),
+                                        progress))
 
     def intersections(self, *, tile: float | Sequence[float] | None = None, origin: float | Sequence[float] = 0.0,
                       most_listed: int | None = None, threads: int = 0,
@@ -410,7 +417,8 @@ class Contour:
 
     def track(self, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
               first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
-              allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
+              allow_empty: bool = False, incidence: Incidence | None = None, threads: int = 0,
+              progress: Progress | None = None) -> TrackGraph:
         """Tracks the parts of the contour: see `tegl.track`."""
         allow_empty = _arguments.as_bool("allow_empty", allow_empty)
         unit = self.axis_units[self.time_axis]
@@ -429,8 +437,8 @@ class Contour:
                             None if first is None else _arguments.number_on_axis(first, unit),
                             None if last is None else _arguments.number_on_axis(last, unit),
                             _arguments.as_bool("handles", handles),
-                            _arguments.as_bool("label_simplices", label_simplices), _arguments.threads_of(threads),
-                            progress)
+                            _arguments.as_bool("label_simplices", label_simplices),
+                            _incidence.core_or_none(incidence), _arguments.threads_of(threads), progress)
         return TrackGraph(found, self._is_reversed, unit)
 
     @_arguments.documents("sample")
@@ -576,10 +584,11 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bo
 
 
 @_arguments.documents("MeshReport")
-def check(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> MeshReport:
+def check(contour: Contour, *, incidence: Incidence | None = None, threads: int = 0,
+          progress: Progress | None = None) -> MeshReport:
     """Checks whether a contour is an oriented manifold and closed, and counts its components and faults."""
     _arguments.core_of(contour)
-    return Contour.check(contour, threads=threads, progress=progress)
+    return Contour.check(contour, incidence=incidence, threads=threads, progress=progress)
 
 
 @_arguments.documents("find_intersections", "Intersections")
@@ -597,8 +606,8 @@ def intersections(contour: Contour, *, tile: float | Sequence[float] | None = No
 
 
 @typing.overload
-def measure(contour: Contour, *, at: None = None, allow_empty: bool = False, threads: int = 0,
-            progress: Progress | None = None) -> Measures: ...
+def measure(contour: Contour, *, at: None = None, allow_empty: bool = False, incidence: Incidence | None = None,
+            threads: int = 0, progress: Progress | None = None) -> Measures: ...
 
 
 @typing.overload
@@ -607,21 +616,23 @@ def measure(contour: Contour, *, at: Place | Places | Labelled, allow_empty: boo
 
 
 @_arguments.documents("measure", "Measures", "measure_cuts")
-def measure(contour: Contour, *, at=None, allow_empty: bool = False, threads: int = 0,
-            progress: Progress | None = None) -> Measures | CutMeasures:
+def measure(contour: Contour, *, at=None, allow_empty: bool = False, incidence: Incidence | None = None,
+            threads: int = 0, progress: Progress | None = None) -> Measures | CutMeasures:
     """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times.
 
     A time outside of the image is a ValueError, as in `slice`; with `allow_empty` its size and content are 0.
     """
     _arguments.core_of(contour)
-    return Contour.measure(contour, at=at, allow_empty=allow_empty, threads=threads, progress=progress)
+    return Contour.measure(contour, at=at, allow_empty=allow_empty, incidence=incidence, threads=threads,
+                           progress=progress)
 
 
 @_arguments.documents("label_components", "components", "Component")
-def components(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> Components:
+def components(contour: Contour, *, incidence: Incidence | None = None, threads: int = 0,
+               progress: Progress | None = None) -> Components:
     """The connected components of a contour: their labels and measures; contours of selected ones."""
     _arguments.core_of(contour)
-    return Contour.components(contour, threads=threads, progress=progress)
+    return Contour.components(contour, incidence=incidence, threads=threads, progress=progress)
 
 
 @_arguments.documents("merge_vertices", "MergeCounts", "MergeReport")
@@ -695,7 +706,8 @@ def simplify(contour: Contour, ratio: float | None = None, *, count: int | None 
 @_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
 def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
           first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
-          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
+          allow_empty: bool = False, incidence: Incidence | None = None, threads: int = 0,
+          progress: Progress | None = None) -> TrackGraph:
     """Tracks the parts of a contour along its time axis: births, merges, splits, deaths.
 
     times
@@ -704,4 +716,5 @@ def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | 
     """
     _arguments.core_of(contour)
     return Contour.track(contour, min_lifetime=min_lifetime, times=times, first=first, last=last, handles=handles,
-                         label_simplices=label_simplices, allow_empty=allow_empty, threads=threads, progress=progress)
+                         label_simplices=label_simplices, allow_empty=allow_empty, incidence=incidence, threads=threads,
+                         progress=progress)

@@ -66,7 +66,7 @@ def test_all_long_calls_tell_progress_that_rises_to_one(long_image, tmp_path):
                  contour.intersections, components.split,
                  lambda **k: components.select([0, 1], **k), lambda **k: components.largest(2, **k),
                  lambda **k: contour.slice([1.5, 2.5], **k), lambda **k: contour.measure(**k),
-                 lambda **k: tegl.measure(contour, at=[1.5, 2.5], **k),
+                 lambda **k: tegl.measure(contour, at=[1.5, 2.5], **k), lambda **k: tegl.Incidence(contour, **k),
                  lambda **k: tegl.slice(long_image, 0.0, at=[1.5, 2.5], **k),
                  lambda **k: tegl.load(tmp_path / "c.vtkhdf", **k), lambda **k: tegl.Index(long_image, **k),
                  lambda **k: tegl.Index(long_image, "full-scan").pick((6, 20, 20, 20), 0.0, **k)):

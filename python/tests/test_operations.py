@@ -220,6 +220,111 @@ def test_components(moving_balls):
         found.select([True, True, True])
 
 
+# Incidence.
+
+def dicts_of(results):
+    """Of dataclasses, for comparison: arrays become bytes."""
+    return [{name: value.tobytes() if isinstance(value, np.ndarray) else value for name, value in vars(one).items()}
+            for one in results]
+
+
+@pytest.mark.parametrize("time_axis", [0, -1])
+@pytest.mark.parametrize("ndim", [2, 3, 4, 5])
+def test_results_with_an_incidence_are_those_without(ndim, time_axis):
+    contour = tegl.contour(noise((6, 7, 5, 4)[:ndim] if ndim < 5 else (4, 4, 3, 3, 3), 3), 0.2 if ndim < 5 else 1.0,
+                           time_axis=time_axis)
+    shared = tegl.Incidence(contour, threads=2)
+    assert contour.check(incidence=shared) == contour.check() == tegl.check(contour, incidence=shared)
+    alone = dicts_of([contour.measure()])
+    assert dicts_of([contour.measure(incidence=shared), tegl.measure(contour, incidence=shared)]) == alone * 2
+    parts = contour.components()
+    for found in (contour.components(incidence=shared), tegl.components(contour, incidence=shared)):
+        assert len(found) > 1 and dicts_of(found) == dicts_of(parts)
+        assert np.array_equal(found.simplex_labels, parts.simplex_labels)
+    graph = contour.track(times=3)
+    for found in (contour.track(times=3, incidence=shared), tegl.track(contour, times=3, incidence=shared)):
+        assert len(found.events) > 1 and json.dumps(found.to_dict()) == json.dumps(graph.to_dict())  # NaN is "NaN"
+
+
+@pytest.mark.parametrize("time_axis", [0, -1])
+@pytest.mark.parametrize("ndim", [2, 3, 4, 5])
+def test_an_incidence_tells_simplices_around_vertices_and_across_faces(ndim, time_axis):
+    contour = tegl.contour(noise((6, 6, 5, 3)[:ndim] if ndim < 5 else (3,) * 5, 2), 0.2 if ndim < 5 else 1.0,
+                           time_axis=time_axis)
+    simplices, shared = contour.simplices, tegl.Incidence(contour)
+    assert (shared.vertex_count, shared.simplex_count) == (len(contour.vertices), len(simplices))
+    for vertex in range(0, len(contour.vertices), 7):
+        assert np.array_equal(shared.around(vertex), np.flatnonzero((simplices == vertex).any(axis=1)))
+    faces = {}
+    for number, simplex in enumerate(simplices.tolist()):
+        for corner in range(ndim):
+            faces.setdefault(frozenset(simplex[:corner] + simplex[corner + 1:]), []).append((number, corner))
+    expected = np.full(simplices.shape, 2**32 - 1)
+    for sides in faces.values():
+        if len(sides) == 2:
+            expected[sides[0]], expected[sides[1]] = sides[1][0], sides[0][0]
+    assert np.array_equal(shared.across, expected) and shared.across.dtype == np.uint32
+    assert (expected == 2**32 - 1).any() and (expected < 2**32 - 1).any()
+
+
+def test_an_incidence_tells_faces_in_several_simplices():
+    fan = tegl.Contour(np.eye(5, 3), [[0, 1, 2], [0, 1, 3], [1, 0, 4]])
+    shared = tegl.Incidence(fan)
+    assert shared.across.tolist() == [[2**32 - 1, 2**32 - 1, 2**32 - 2]] * 3
+    assert fan.check(incidence=shared) == fan.check() and fan.check().nonmanifold_simplices == 1
+
+
+def test_the_arrays_of_an_incidence_outlive_it_and_the_contour():
+    across, around = (lambda shared: (shared.across, shared.around(0)))(tegl.Incidence(tegl.contour(ball(3), 0.0)))
+    again = tegl.Incidence(tegl.contour(ball(3), 0.0))
+    assert np.array_equal(across, again.across) and np.array_equal(around, again.around(0)) and len(around) > 2
+    for array in (across, around):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1
+
+
+def test_an_incidence_fits_contours_with_the_same_simplices():
+    contour = tegl.contour(ball(3), 0.0)
+    shared = tegl.Incidence(contour)
+    moved = tegl.Contour(contour.vertices * 2, contour.simplices)
+    changed = np.array(contour.simplices)
+    changed[5] = np.roll(changed[5], 1)
+    others = [tegl.Contour(contour.vertices, changed), tegl.Contour(contour.vertices, contour.simplices[1:]),
+              tegl.Contour(np.vstack([contour.vertices, [[0, 0, 0]]]), contour.simplices), tegl.contour(ball(3, 13), 0.0)]
+    assert shared.fits(contour) and shared.fits(moved) and shared.fits(pickle.loads(pickle.dumps(contour)))
+    assert moved.measure(incidence=shared).content == moved.measure().content
+    for other in others:
+        assert not shared.fits(other)
+        for call in (other.check, other.measure, other.components, other.track):
+            with pytest.raises(ValueError, match="an incidence of .*; expected that of this contour"):
+                call(incidence=shared)
+    flat = tegl.contour(ball(2), 0.0)
+    assert not shared.fits(flat)
+    for call in (flat.check, flat.measure, flat.components, flat.track):
+        with pytest.raises(ValueError, match="an incidence of a 3D contour; expected that of this contour, of 2D"):
+            call(incidence=shared)
+
+
+def test_what_is_no_incidence_is_said():
+    contour = tegl.contour(ball(3), 0.0)
+    shared = tegl.Incidence(contour)
+    for call in (contour.check, contour.measure, contour.components, contour.track, lambda **k: tegl.check(contour, **k)):
+        with pytest.raises(TypeError, match="incidence is True; expected a tegl.Incidence of the contour, or None"):
+            call(incidence=True)
+    with pytest.raises(ValueError, match="incidence with at=; expected one of them"):
+        contour.measure(at=5, incidence=shared)
+    with pytest.raises(ValueError, match=f"vertex is {len(contour.vertices)}; expected a number below"):
+        shared.around(len(contour.vertices))
+    with pytest.raises(ValueError, match="vertex is -1; expected 0 or more"):
+        shared.around(-1)
+    with pytest.raises(TypeError, match="ndarray is not a contour"):
+        shared.fits(contour.vertices)
+    with pytest.raises(TypeError, match="pickle"):
+        pickle.dumps(shared)
+    empty = tegl.Incidence(tegl.contour(ball(3), 9.0, allow_empty=True))
+    assert empty.across.shape == (0, 3) and empty.vertex_count == 0
+
+
 # Elements.
 
 @pytest.mark.parametrize("time_axis", [0, -1])
@@ -581,7 +686,7 @@ def test_contours_are_pickled_and_copied():
 
 def test_what_is_no_contour_or_no_array_is_a_type_error():
     array = noise((5, 6, 7), 1)
-    for call in (tegl.check, tegl.intersections, tegl.measure, tegl.components, tegl.elements, tegl.track,
+    for call in (tegl.check, tegl.intersections, tegl.measure, tegl.components, tegl.elements, tegl.track, tegl.Incidence,
                  lambda value: tegl.simplify(value, ratio=0.5)):
         with pytest.raises(TypeError, match="ndarray is not a contour; expected a tegl.Contour"):
             call(array)

@@ -17,6 +17,13 @@ assert_type(contour.isovalue, Optional[float])
 assert_type(contour.ndim, int)
 assert_type(contour.axis_names, Tuple[str, ...])
 assert_type(contour.check().is_closed, bool)
+shared = tegl.Incidence(contour, threads=2)
+assert_type(contour.check(incidence=shared), tegl.MeshReport)
+assert_type(contour.measure(incidence=shared), tegl.Measures)
+assert_type(tegl.track(contour, incidence=shared), tegl.TrackGraph)
+assert_type(len(contour.components(incidence=shared)), int)
+assert_type(shared.fits(contour), bool)
+assert_type(len(shared.around(3)), int)
 assert_type(contour.normals is None, bool)
 
 # Cuts: one place is a contour, several are a list.
@@ -104,6 +111,8 @@ contour.simplify(0.5, ratios=2)  # type: ignore[call-overload]
 contour.track(handle=False)  # type: ignore[call-arg]
 contour.slice(1.5, allow_empty="yes")  # type: ignore[call-overload]
 tegl.Index(volume, "tree")  # type: ignore[arg-type]
+contour.measure(at=1.5, incidence=shared)  # type: ignore[call-overload]
+contour.check(incidence=contour)  # type: ignore[arg-type]
 contour.vertex  # type: ignore[attr-defined]
 contour.slice([1.5, 2]).vertices  # type: ignore[attr-defined]
 contour.vertices = volume  # type: ignore[misc]
