@@ -33,7 +33,7 @@ struct CubeHeights {
 
 /// Rays in many cubes, all to corners, all to edges or all to squares.
 struct CubeRays {
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMost = 16;
 
   std::size_t count = 0;
   /// Heights at the cube's corners, those nearest to the ray's end first. `cube_levels` writes zeros from `count` on.

@@ -13,7 +13,7 @@
 namespace tegl::detail {
 
 struct EdgeMeans {
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMost = 16;
   using Coordinates = std::array<std::array<double, kMost>, 3>;
 
   std::size_t count = 0;

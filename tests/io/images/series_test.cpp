@@ -400,9 +400,11 @@ TEST_F(Series, OfFilesThatAreTurnedOrShiftedInSpaceIsRefused) {
   EXPECT_EQ(read_series(files_).image.index(), 2U);  // writers' rounding errors are tolerated
 }
 
-TEST_F(Series, OfFourAxesIsRefused) {
+TEST_F(Series, OfFourAxesIsReadToFiveOnly) {
   for (const char* const name : {"a.nrrd", "b.nrrd"}) add(name, nrrd({2, 2, 2, 2}, 0));
-  expect_refused(ErrorCode::UnsupportedData, {"a.nrrd", "4 axes", "expected 2 or 3"});
+  expect_refused(ErrorCode::UnsupportedData, {"a.nrrd", "image of 5 axes", "5 only in memory"});
+  const auto read = read_series_to_5d(files_, SeriesOptions{});
+  ASSERT_TRUE(std::holds_alternative<ReadSeries5dResult>(read));
 }
 
 TEST_F(Series, OptionsThatDoNotFitAreRefused) {
