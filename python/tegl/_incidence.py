@@ -10,9 +10,6 @@ import numpy as np
 from . import _arguments, _tegl
 from ._arguments import Progress
 
-if typing.TYPE_CHECKING:
-    from ._contour import Contour
-
 
 class Incidence:
     """Which simplices of a contour are around a vertex, and which is across a face. Computed once, it serves several
@@ -27,7 +24,7 @@ class Incidence:
     """
 
     @_arguments.documents("Incidence")
-    def __init__(self, contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> None:
+    def __init__(self, contour: typing.Any, *, threads: int = 0, progress: Progress | None = None) -> None:
         """Finds the incidence of a contour."""
         self._core = _tegl.Incidence(_arguments.core_of(contour), _arguments.threads_of(threads), progress)
         self._is_reversed = contour._is_reversed
@@ -53,7 +50,7 @@ class Incidence:
         """The numbers of the simplices around a vertex (uint32), ascending, read-only."""
         return self._core.around(_arguments.as_whole("vertex", vertex, 0))
 
-    def fits(self, contour: Contour) -> bool:
+    def fits(self, contour: typing.Any) -> bool:
         """Whether it was made of a contour with these simplices and this number of vertices."""
         return self._core.fits(_arguments.core_of(contour))
 
