@@ -157,33 +157,30 @@ std::pair<std::uint32_t, std::uint32_t> with_points(std::uint32_t above, std::ui
                                                     std::span<const FourPoint> points) {
   const auto corner = [](unsigned v) {
     FourPoint point{};
-    for (unsigned a = 0; a < 4; ++a) point[a] = static_cast<int>(v >> a & 1u) * 1000;
+    for (unsigned a = 0; a < 4; ++a) point[a] = static_cast<int>(v >> a & 1u);
     return point;
   };
-  const auto minus = [](const FourPoint& p, const FourPoint& q) {
-    return FourPoint{p[0] - q[0], p[1] - q[1], p[2] - q[2], p[3] - q[3]};
-  };
-  std::vector<unsigned> inside;
+  std::vector<FourPoint> inside;
   for (unsigned v = 0; v < 16; ++v)
-    if (((above | below) >> v & 1u) == 0) inside.push_back(v);
-  const FourPoint base = corner(inside[0]);
-  const auto height = [&](const FourPoint& normal, const FourPoint& point) {
-    std::int64_t sum = 0;
-    for (unsigned a = 0; a < 4; ++a) sum += std::int64_t{normal[a]} * (point[a] - base[a]);
+    if (((above | below) >> v & 1u) == 0) inside.push_back(corner(v));
+  const FourPoint base = inside[0];
+  for (FourPoint& point : inside)
+    for (unsigned a = 0; a < 4; ++a) point[a] -= base[a];
+  // `unit`: the unit of the point's coordinates is an edge divided by it.
+  const auto height = [&](const FourPoint& normal, const FourPoint& point, int unit) {
+    int sum = 0;
+    for (unsigned a = 0; a < 4; ++a) sum += normal[a] * (point[a] - unit * base[a]);
     return sum;
   };
   for (std::size_t i = 1; i < inside.size(); ++i)
     for (std::size_t j = 1; j < i; ++j)
       for (std::size_t k = 1; k < j; ++k) {
-        std::array<FourPoint, 3> directions = {minus(corner(inside[i]), base), minus(corner(inside[j]), base),
-                                               minus(corner(inside[k]), base)};
-        for (FourPoint& direction : directions)
-          for (int& x : direction) x /= 1000;
-        FourPoint normal = cross_product(directions, 4);
+        const std::array<FourPoint, 3> directions = {inside[i], inside[j], inside[k]};
+        const FourPoint normal = cross_product(directions, 4);
         if (normal == FourPoint{}) continue;
-        const bool turn = height(normal, corner(static_cast<unsigned>(std::countr_zero(above)))) < 0;
+        const int up = height(normal, corner(static_cast<unsigned>(std::countr_zero(above))), 1) < 0 ? -1 : 1;
         for (std::size_t p = 0; p < points.size(); ++p) {
-          const std::int64_t at = turn ? -height(normal, points[p]) : height(normal, points[p]);
+          const int at = up * height(normal, points[p], 1000);
           if (at > 0) above |= 0x10000u << p;
           if (at < 0) below |= 0x10000u << p;
         }
