@@ -76,8 +76,8 @@ class CompactCells final : public BuiltCells {
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
                             std::span<const double> values) const noexcept override;
-  /// The triangles of the contour in a facet, as edges of the cell, oriented by the facet's own corners.
-  [[nodiscard]] std::vector<FaceFillings::Triangle> in_facet(std::size_t facet, const CellKey& key) const;
+  /// The triangles of the contour in a facet, as edges of the facet, oriented by the facet's own corners.
+  [[nodiscard]] std::span<const FaceFillings::Triangle> in_facet(std::size_t facet, const CellKey& key) const;
 
   /// The place in the unit tesseract of a side vertex of an image's contour, from its mask. `values`: at the corners.
   [[nodiscard]] static std::array<double, 4> place(const tables::CellTable& table, std::uint64_t mask,

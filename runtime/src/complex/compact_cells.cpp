@@ -16,6 +16,7 @@
 #include "base/workers.hpp"
 #include "complex/edge_alpha.hpp"
 #include "image/tile_heights.hpp"
+#include "regions/shape_volumes.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tile/extract_tables.hpp"
@@ -27,15 +28,6 @@ namespace {
 using tables::CellShape;
 using Triangle = FaceFillings::Triangle;
 using Tetrahedron = std::array<std::uint8_t, 4>;
-
-/// The edge of a cell between two corners.
-std::uint8_t edge_between(const tables::CellTable& table, unsigned p, unsigned q) noexcept {
-  std::uint8_t e = 0;
-  while (std::minmax({table.edges[2 * e], table.edges[2 * e + 1]}) !=
-         std::minmax({static_cast<std::uint8_t>(p), static_cast<std::uint8_t>(q)}))
-    ++e;
-  return e;
-}
 
 }  // namespace
 
@@ -70,12 +62,8 @@ CellKey CompactCells::key(unsigned signature, const Index* corners, std::span<co
   return key;
 }
 
-std::vector<Triangle> CompactCells::in_facet(std::size_t f, const CellKey& key) const {
-  const Facet& facet = facets_[f];
-  std::vector<Triangle> result;
-  for (const Triangle& t : facet.fillings->triangles(facet_signature(facet, key.signature), key.fillings[f]))
-    result.push_back({facet.edges[t[0]], facet.edges[t[1]], facet.edges[t[2]]});
-  return result;
+std::span<const Triangle> CompactCells::in_facet(std::size_t f, const CellKey& key) const {
+  return facets_[f].fillings->triangles(facet_signature(facets_[f], key.signature), key.fillings[f]);
 }
 
 class CompactCells::Filler {
@@ -85,7 +73,8 @@ class CompactCells::Filler {
     for (std::size_t f = 0; f < cells.facets_.size(); ++f) {
       for (const std::uint8_t e : std::span(cells.facets_[f].edges).first(table_of_facet(f).edge_count))
         facets_of_edge_[e] |= 1u << f;
-      for (const Triangle& t : cells.in_facet(f, key)) sigma_.push_back({t, f});
+      const auto& edges = cells.facets_[f].edges;
+      for (const Triangle& t : cells.in_facet(f, key)) sigma_.push_back({{edges[t[0]], edges[t[1]], edges[t[2]]}, f});
     }
   }
 

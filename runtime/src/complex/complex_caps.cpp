@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Caps of contours of complexes. The high part of an edge is a segment. That of a quadrilateral is triangulated by the
-// table that closes contours of images. Those of triangles, and of the polygons around a 3D facet, are fans from their
-// first vertex: so both facets at a polygon have the same triangles. The high regions of a 3D facet are cones over
-// these fans and over the contour's polygons in the facet: each region is a ball, as every such polygon is a disc.
+// table that closes contours of images, that of a triangle is a fan. The high part of a 3D facet is divided into
+// tetrahedra between fans in the polygons around it and the contour's triangles in the facet. The fans start at a
+// corner that depends on the numbers of the polygon's corners, so both facets at a polygon have the same triangles;
+// those of a grid's cubes are the image's.
 #include "complex/complex_caps.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include "ambiguity/face_decision.hpp"
-#include "base/disjoint_sets.hpp"
 #include "base/progress.hpp"
+#include "complex/edge_alpha.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -24,10 +26,9 @@ struct ComplexCaps<N>::Facet {
   std::array<Index, 8> points;
   unsigned high = 0;
   bool flip;
-  /// Of compact 4D cells: the cell's corners and table, and the contour's triangles in the facet as edges of the cell.
-  const Index* cell = nullptr;
-  const tables::CellTable* table = nullptr;
-  std::vector<FaceFillings::Triangle> triangles = {};
+  /// Of compact 4D cells: the contour's triangles in the facet, as edges of the facet.
+  bool is_compact = false;
+  std::span<const FaceFillings::Triangle> triangles = {};
 
   [[nodiscard]] bool is_high(unsigned i) const noexcept { return (high >> i & 1u) != 0; }
 };
@@ -36,7 +37,12 @@ template <int N>
 ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, const BorderFacets& border,
                             std::span<const double> values, double isovalue, const ExtractOptions& options,
                             const ContourNumbers& numbers, const Progress& progress)
-    : values_(values), isovalue_(isovalue), options_(options), numbers_(numbers) {
+    : values_(values),
+      isovalue_(isovalue),
+      options_(options),
+      numbers_(numbers),
+      divisions_(options.triangulation,
+                 options.ambiguity == Ambiguity::high ? tile::Alternative::high : tile::Alternative::low) {
   const bool descends = options.direction == GradientDirection::descent;
   constexpr std::size_t kStep = std::size_t{1} << 14;  // facets between two reports
   for (std::size_t i = 0; i < border.size(); ++i) {
@@ -58,8 +64,7 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
     if (const CellCases& cases = numbers.cases(g); cases.compact() != nullptr) {
       unsigned signature = 0;
       for (unsigned v = 0; v < group.corner_count; ++v) signature |= (values[corners[v]] >= isovalue ? 1u : 0u) << v;
-      facet.cell = corners;
-      facet.table = &cases.table();
+      facet.is_compact = true;
       facet.triangles = cases.compact()->in_facet(number, cases.compact()->key(signature, corners, values));
     }
     add_facet(facet);
@@ -88,7 +93,8 @@ void ComplexCaps<N>::add_facet(const Facet& facet) {
     std::vector<Part> parts;
     cut(facet, kAround, parts, nullptr);
     for (const Part& part : parts)
-      for (std::size_t i = 2; i < part.size(); ++i) add_simplex({part[0], part[i - 1], part[i]}, facet.flip);
+      for (std::size_t i = 2; i < part.size(); ++i)
+        add_simplex({vertex(facet, part[0]), vertex(facet, part[i - 1]), vertex(facet, part[i])}, facet.flip);
   } else {
     add_regions(facet);
   }
@@ -99,6 +105,13 @@ CapVertex ComplexCaps<N>::on_edge(Index p, Index q) const {
   const std::vector<EdgeEnds>& ends = numbers_.edge_ends();
   const auto found = std::lower_bound(ends.begin(), ends.end(), EdgeEnds{std::min(p, q), std::max(p, q)});
   return CapVertex::of_contour(static_cast<Index>(found - ends.begin()));
+}
+
+template <int N>
+CapVertex ComplexCaps<N>::vertex(const Facet& facet, unsigned local) const {
+  if (local < RegionVertices::kFirstEdge) return CapVertex::corner(facet.points[local]);
+  const std::uint8_t* const ends = table_of(facet.of.shape).edges + 2 * (local - RegionVertices::kFirstEdge);
+  return on_edge(facet.points[ends[0]], facet.points[ends[1]]);
 }
 
 template <int N>
@@ -114,27 +127,28 @@ bool ComplexCaps<N>::joins(const Facet& facet, std::span<const std::uint8_t> aro
 
 template <int N>
 void ComplexCaps<N>::cut(const Facet& facet, std::span<const std::uint8_t> around, std::vector<Part>& parts,
-                         std::vector<std::array<CapVertex, 2>>* segments) const {
+                         Segments* segments) const {
   const std::size_t count = around.size();
   const auto is_high = [&](std::size_t i) { return facet.is_high(around[i % count]); };
   const auto edge = [&](std::size_t i) {
-    return on_edge(facet.points[around[i % count]], facet.points[around[(i + 1) % count]]);
+    const unsigned e = edge_between(table_of(facet.of.shape), around[i % count], around[(i + 1) % count]);
+    return static_cast<Local>(RegionVertices::kFirstEdge + e);
   };
   const bool is_ambiguous =
       count == 4 && is_high(0) == is_high(2) && is_high(1) == is_high(3) && is_high(0) != is_high(1);
-  const auto add_segment = [&](CapVertex from, CapVertex to) {
-    if (segments != nullptr) segments->push_back({to, from});
+  const auto add_segment = [&](Local from, Local to) {
+    if (segments != nullptr) (*segments)[to] = from;
   };
   if (is_ambiguous && !joins(facet, around)) {
     for (std::size_t i = is_high(0) ? 0 : 1; i < 4; i += 2) {
-      parts.push_back({edge(i + 3), CapVertex::corner(facet.points[around[i]]), edge(i)});
+      parts.push_back({edge(i + 3), around[i], edge(i)});
       add_segment(edge(i), edge(i + 3));
     }
     return;
   }
   Part part;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_high(i)) part.push_back(CapVertex::corner(facet.points[around[i]]));
+    if (is_high(i)) part.push_back(around[i]);
     if (is_high(i) == is_high(i + 1)) continue;
     part.push_back(edge(i));
     if (!is_high(i)) continue;
@@ -148,14 +162,14 @@ void ComplexCaps<N>::cut(const Facet& facet, std::span<const std::uint8_t> aroun
 template <int N>
 void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& table) {
   const tables::RegionList& list = table.lists[facet.high];
-  const auto shared = [&](unsigned v) {
+  const auto shared = [&](unsigned v) {  // the table has 4 corners
     if (v < 4) return CapVertex::corner(facet.points[v]);
     const unsigned base = edge_base(2, v - 4);
     return on_edge(facet.points[base], facet.points[base | 1u << (v - 4) / 2]);
   };
   const std::uint64_t first = first_point_.size() - 1;
   for (unsigned j = 0; j < list.own_vertices; ++j) {
-    Part points;
+    std::vector<CapVertex> points;
     for (std::uint32_t mask = table.masks[list.first_mask + j]; mask != 0; mask &= mask - 1)
       points.push_back(shared(static_cast<unsigned>(std::countr_zero(mask))));
     (void)add_mean(points);
@@ -171,92 +185,134 @@ void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& ta
   }
 }
 
+/// The corner at which the fan of a part of a polygon starts: the one between two others, if there are three; else the
+/// one with the smallest number.
+template <int N>
+std::size_t ComplexCaps<N>::fan_start(const Facet& facet, const Part& part) {
+  const std::size_t size = part.size();
+  const auto is_corner = [&](std::size_t i) { return part[i % size] < RegionVertices::kFirstEdge; };
+  std::size_t corners = 0, start = size;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!is_corner(i)) continue;
+    ++corners;
+    if (start == size || facet.points[part[i]] < facet.points[part[start]]) start = i;
+  }
+  if (corners != 3) return start;
+  for (std::size_t i = 0; i < size; ++i)
+    if (is_corner(i) && is_corner(i + 1) && is_corner(i + 2) && size > 3) return (i + 1) % size;
+  return start;
+}
+
 template <int N>
 typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet) const {
-  Boundary boundary;
-  std::vector<std::array<CapVertex, 2>> segments;
+  std::vector<Part> parts;
+  Segments next;
+  for (Local v = 0; v < next.size(); ++v) next[v] = v;
   for (const CellFacet& face : facets_of(facet.of.shape)) {
     std::array<std::uint8_t, 4> around = {face.corners[0], face.corners[1], face.corners[2], face.corners[3]};
     if (face.corner_count == 4) std::swap(around[2], around[3]);
     if (!face.is_inverted) std::reverse(around.begin(), around.begin() + face.corner_count);
-    cut(facet, {around.data(), face.corner_count}, boundary.parts, &segments);
+    cut(facet, {around.data(), face.corner_count}, parts, &next);
   }
-  for (Part& part : boundary.parts) {
-    std::rotate(part.begin(), std::min_element(part.begin(), part.end()), part.end());
+  Boundary boundary;
+  for (Part& part : parts) {
+    std::rotate(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(fan_start(facet, part)), part.end());
     for (std::size_t i = 2; i < part.size(); ++i) boundary.triangles.push_back({part[0], part[i - 1], part[i]});
   }
-  // the contour's polygons: their segments, one after the other
-  std::map<CapVertex, CapVertex> next;
-  for (const auto& [from, to] : segments) next[from] = to;
-  add_compact(facet, next, boundary.triangles);
-  while (!next.empty()) {
-    Part loop;
-    for (auto at = next.begin(); at != next.end();) {
-      loop.push_back(at->first);
-      const CapVertex to = at->second;
-      next.erase(at);
-      at = next.find(to);
-    }
-    boundary.parts.push_back(loop);
-    if (facet.table != nullptr) continue;
-    std::vector<Index> key;
-    for (const CapVertex v : loop) key.push_back(static_cast<Index>(v.number()));
-    if (const Index centre = numbers_.polygon(key); centre == kNoPoint)
-      boundary.triangles.push_back({loop[0], loop[1], loop[2]});
-    else
-      for (std::size_t i = 0; i < loop.size(); ++i)
-        boundary.triangles.push_back({CapVertex::of_contour(centre), loop[i], loop[(i + 1) % loop.size()]});
-  }
+  if (facet.is_compact)
+    add_compact(facet, next, boundary.triangles);
+  else
+    add_polygons(facet, next, boundary);
   return boundary;
+}
+
+template <int N>
+void ComplexCaps<N>::add_polygons(const Facet& facet, Segments next, Boundary& to) const {
+  for (Local v = RegionVertices::kFirstEdge; v < RegionVertices::kFirstCentre; ++v) {
+    Part loop;
+    std::vector<Index> key;
+    for (Local at = v; next[at] != at; at = std::exchange(next[at], at)) {
+      loop.push_back(at);
+      key.push_back(static_cast<Index>(vertex(facet, at).number()));
+    }
+    if (loop.empty()) continue;
+    const Index centre = numbers_.polygon(key);
+    if (centre == kNoPoint) {
+      to.triangles.push_back({loop[0], loop[1], loop[2]});
+      continue;
+    }
+    const auto number = static_cast<Local>(RegionVertices::kFirstCentre + to.centres.size());
+    to.centres.push_back(CapVertex::of_contour(centre));
+    to.polygons.push_back(loop);
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      to.triangles.push_back({number, loop[i], loop[(i + 1) % loop.size()]});
+  }
 }
 
 /// All triangles have the same orientation in the facet, so one side of the contour fixes it.
 template <int N>
-void ComplexCaps<N>::add_compact(const Facet& facet, const std::map<CapVertex, CapVertex>& next,
-                                 std::vector<Triangle>& triangles) const {
+void ComplexCaps<N>::add_compact(const Facet& facet, const Segments& next,
+                                 std::vector<RegionDivision::Triangle>& triangles) const {
   const std::size_t first = triangles.size();
   for (const FaceFillings::Triangle& edges : facet.triangles) {
-    Triangle& t = triangles.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i)
-      t[i] = on_edge(facet.cell[facet.table->edges[2 * edges[i]]], facet.cell[facet.table->edges[2 * edges[i] + 1]]);
+    auto& t = triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) t[i] = static_cast<Local>(RegionVertices::kFirstEdge + edges[i]);
   }
-  const auto is_side = [&](CapVertex from, CapVertex to) { return next.at(from) == to; };
-  const auto is_reversed = [&](const Triangle& t) {
-    return is_side(t[1], t[0]) || is_side(t[2], t[1]) || is_side(t[0], t[2]);
+  const auto is_along = [&](const auto& t) { return next[t[0]] == t[1] || next[t[1]] == t[2] || next[t[2]] == t[0]; };
+  const auto is_reversed = [&](const auto& t) {
+    return next[t[1]] == t[0] || next[t[2]] == t[1] || next[t[0]] == t[2];
   };
-  const auto is_along = [&](const Triangle& t) {
-    return is_side(t[0], t[1]) || is_side(t[1], t[2]) || is_side(t[2], t[0]);
-  };
-  const std::span<Triangle> added = std::span(triangles).subspan(first);
+  const auto added = std::span(triangles).subspan(first);
   const auto at_border =
-      std::find_if(added.begin(), added.end(), [&](const Triangle& t) { return is_along(t) != is_reversed(t); });
+      std::find_if(added.begin(), added.end(), [&](const auto& t) { return is_along(t) != is_reversed(t); });
   if (at_border == added.end() || !is_reversed(*at_border)) return;
-  for (Triangle& t : added) std::swap(t[1], t[2]);
+  for (auto& t : added) std::swap(t[1], t[2]);
+}
+
+template <int N>
+ShapePlaces ComplexCaps<N>::places_of(const Facet& facet, const Boundary& boundary) const {
+  const tables::CellTable& table = table_of(facet.of.shape);
+  ShapePlaces places(table);
+  for (unsigned e = 0; e < table.edge_count; ++e) {
+    const Index p = facet.points[table.edges[2 * e]], q = facet.points[table.edges[2 * e + 1]];
+    if ((values_[p] >= isovalue_) == (values_[q] >= isovalue_)) continue;
+    const double alpha = alpha_of(values_[std::min(p, q)], values_[std::max(p, q)], isovalue_, options_.epsilon);
+    places.set_alpha(e, p < q ? alpha : 1 - alpha);
+  }
+  for (std::size_t i = 0; i < boundary.polygons.size(); ++i)
+    places.set_centre(static_cast<unsigned>(RegionVertices::kFirstCentre + i), boundary.polygons[i]);
+  return places;
 }
 
 template <int N>
 void ComplexCaps<N>::add_regions(const Facet& facet) {
-  const Boundary boundary = boundary_of(facet);
-  // regions: parts that have vertices in common
-  std::map<CapVertex, Index> numbers;
-  for (const Part& part : boundary.parts)
-    for (const CapVertex v : part) numbers.emplace(v, static_cast<Index>(numbers.size()));
-  DisjointSets sets(numbers.size());
-  for (const Part& part : boundary.parts)
-    for (const CapVertex v : part) sets.join(numbers[part[0]], numbers[v]);
-  std::map<Index, Part> regions;
-  for (const auto& [v, number] : numbers) regions[sets.find(number)].push_back(v);
-  std::map<Index, CapVertex> centres;
-  for (const auto& [root, points] : regions) centres[root] = add_mean(points);
-  for (const Triangle& triangle : boundary.triangles) {
-    // the first vertex may be a polygon's barycentre, which is not in `numbers`
-    const CapVertex centre = centres[sets.find(numbers[triangle[1]])];
-    if constexpr (N == 4) add_simplex({centre, triangle[0], triangle[1], triangle[2]}, facet.flip);
+  Boundary boundary = boundary_of(facet);
+  const RegionDivision& division = divisions_.of(facet.of.shape, std::move(boundary.triangles));
+  std::array<CapVertex, RegionVertices::kEnd> vertices;
+  for (std::size_t i = 0; i < boundary.centres.size(); ++i)
+    vertices[RegionVertices::kFirstCentre + i] = boundary.centres[i];
+  std::uint64_t known = 0;
+  const auto at = [&](unsigned v) {
+    if (v < RegionVertices::kFirstCentre && (known >> v & 1u) == 0) vertices[v] = vertex(facet, v);
+    known |= std::uint64_t{1} << v;
+    return vertices[v];
+  };
+  for (std::size_t j = 0; j < division.own.size(); ++j) {
+    std::vector<CapVertex> points;
+    for (std::uint32_t rest = division.own[j]; rest != 0; rest &= rest - 1)
+      points.push_back(at(static_cast<unsigned>(std::countr_zero(rest))));
+    std::sort(points.begin(), points.end());
+    vertices[RegionVertices::kFirstOwn + j] = add_mean(points);
   }
+  for (const RegionDivision::Near& near : division.near)
+    between_.push_back({static_cast<std::size_t>(vertices[near.own].number()), facet.points[near.corner],
+                        division.weight(near, places_of(facet, boundary))});
+  if constexpr (N == 4)
+    for (const auto& [a, b, c, d] : division.tetrahedra) add_simplex({at(a), at(b), at(c), at(d)}, facet.flip);
 }
 
 template <int N>
-CapVertex ComplexCaps<N>::add_mean(const Part& points) {
+CapVertex ComplexCaps<N>::add_mean(std::span<const CapVertex> points) {
   points_.insert(points_.end(), points.begin(), points.end());
   first_point_.push_back(points_.size());
   return CapVertex::added(first_point_.size() - 2);

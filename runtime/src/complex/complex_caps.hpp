@@ -5,11 +5,12 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
+#include <span>
 #include <vector>
 
 #include "complex/border_facets.hpp"
 #include "complex/contour_numbers.hpp"
+#include "regions/region_divisions.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
@@ -49,10 +50,17 @@ class ComplexCaps {
   [[nodiscard]] const std::vector<Index>& corners() const noexcept { return corners_; }
   /// Number of vertices beside those of the contour: corners first, then added ones.
   [[nodiscard]] std::size_t vertex_count() const noexcept { return corners_.size() + first_point_.size() - 1; }
-  /// The points of the contour and corners whose mean an added vertex is.
+  /// The points of the contour and corners whose mean an added vertex is, or on the way to whose mean it is.
   [[nodiscard]] std::span<const CapVertex> points_of(std::size_t added) const noexcept {
     return {points_.data() + first_point_[added], points_.data() + first_point_[added + 1]};
   }
+  /// A vertex on the way from a corner to a mean.
+  struct Between {
+    std::size_t added;  ///< number of the vertex
+    Index corner;
+    double weight;  ///< of the mean
+  };
+  [[nodiscard]] const std::vector<Between>& between() const noexcept { return between_; }
   [[nodiscard]] const std::vector<Simplex>& simplices() const noexcept { return simplices_; }
   /// The number of a vertex.
   [[nodiscard]] Index number(CapVertex vertex) const noexcept;
@@ -60,38 +68,46 @@ class ComplexCaps {
  private:
   /// A facet's corners and what is known about them.
   struct Facet;
-  /// A convex part of a polygon, in the order around it.
-  using Part = std::vector<CapVertex>;
-  using Triangle = std::array<CapVertex, 3>;
-  /// The boundary of a facet's high part.
+  /// Vertices of a facet, numbered as RegionVertices; parts of polygons are convex and in the order around it.
+  using Local = std::uint8_t;
+  using Part = std::vector<Local>;
+  /// The boundary of a facet's high part, facing outwards, and the barycentres of the contour's polygons in it.
   struct Boundary {
-    std::vector<Part> parts;          ///< parts of polygons around the facet, and the contour's polygons in it
-    std::vector<Triangle> triangles;  ///< facing outwards
+    std::vector<RegionDivision::Triangle> triangles;
+    std::vector<CapVertex> centres;
+    std::vector<Part> polygons;  ///< by barycentre
   };
 
   void add_facet(const Facet& facet);
   void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
-  void add_compact(const Facet& facet, const std::map<CapVertex, CapVertex>& next,
-                   std::vector<Triangle>& triangles) const;
+  /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.
+  using Segments = std::array<Local, RegionVertices::kFirstCentre>;
+  void add_polygons(const Facet& facet, Segments next, Boundary& to) const;
+  void add_compact(const Facet& facet, const Segments& next, std::vector<RegionDivision::Triangle>& triangles) const;
   void add_regions(const Facet& facet);
+  [[nodiscard]] ShapePlaces places_of(const Facet& facet, const Boundary& boundary) const;
+  [[nodiscard]] static std::size_t fan_start(const Facet& facet, const Part& part);
   [[nodiscard]] CapVertex on_edge(Index p, Index q) const;
+  [[nodiscard]] CapVertex vertex(const Facet& facet, unsigned local) const;
   /// Adds the high parts of a polygon with corners `around`, and the contour's segments in it, against their direction
   /// around the parts.
   void cut(const Facet& facet, std::span<const std::uint8_t> around, std::vector<Part>& parts,
-           std::vector<std::array<CapVertex, 2>>* segments) const;
+           Segments* segments) const;
   [[nodiscard]] bool joins(const Facet& facet, std::span<const std::uint8_t> around) const;
   void add_simplex(Simplex simplex, bool flip);
   /// A vertex at the mean of the given ones.
-  CapVertex add_mean(const Part& points);
+  CapVertex add_mean(std::span<const CapVertex> points);
 
   std::span<const double> values_;
   double isovalue_;
   const ExtractOptions& options_;
   const ContourNumbers& numbers_;
+  RegionDivisions divisions_;
   std::vector<Index> corners_;
   std::vector<CapVertex> points_;
   std::vector<std::uint64_t> first_point_{0};
+  std::vector<Between> between_;
   std::vector<Simplex> simplices_;
 };
 

@@ -126,6 +126,7 @@ class ComplexWriter {
       if (gradients_ != nullptr) contour_.normals[v] = normal_of(gradients_->at(p));
       ++v;
     }
+    auto between = caps.between().begin();
     for (std::size_t j = 0; v < contour_.vertices.size(); ++j, ++v) {
       Mean mean(*this);
       for (const CapVertex point : caps.points_of(j))
@@ -134,6 +135,11 @@ class ComplexWriter {
         else
           mean.add_vertex(static_cast<Index>(point.number()));
       write(v, mean);
+      if (between == caps.between().end() || between->added != j) continue;
+      const Point at_mean = mean.mean(), &corner = complex_.points()[between->corner];
+      for (std::size_t i = 0; i < N; ++i)
+        contour_.vertices[v][i] = static_cast<Real>(corner[i] + between->weight * (at_mean[i] - corner[i]));
+      ++between;
     }
     contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
     for (const auto& simplex : caps.simplices()) {

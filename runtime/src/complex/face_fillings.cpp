@@ -4,12 +4,13 @@
 #include "complex/face_fillings.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <utility>
 
 #include "complex/border_facets.hpp"
 #include "complex/cell_contour.hpp"
+#include "regions/cube_frame.hpp"
+#include "regions/shape_volumes.hpp"
 #include "tegl/generated/cells.hpp"
 
 namespace tegl::detail {
@@ -58,38 +59,6 @@ std::vector<Cycle> outlines_of(const std::vector<FaceFillings::Triangle>& triang
     }
   }
   return cycles;
-}
-
-/// A frame of a cube: the corner at its origin and its axes.
-struct CubeFrame {
-  unsigned origin;
-  std::array<unsigned, 3> axes;
-
-  /// The cube's corner for a corner of the frame.
-  [[nodiscard]] unsigned corner(unsigned v) const noexcept {
-    unsigned of_cube = origin;
-    for (unsigned i = 0; i < 3; ++i) of_cube ^= (v >> i & 1u) << axes[i];
-    return of_cube;
-  }
-  [[nodiscard]] bool is_mirrored() const noexcept {
-    const bool odd = (axes[0] > axes[1]) != ((axes[0] > axes[2]) != (axes[1] > axes[2]));
-    return odd != (std::popcount(origin) % 2 == 1);
-  }
-};
-
-/// Frames: six orders of the axes for each origin.
-constexpr std::array<std::array<unsigned, 3>, 6> kAxisOrders = {
-    {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
-constexpr unsigned kFrames = 48;
-
-/// The frame of a cube whose corners have these numbers.
-unsigned frame_of(const Index* corners) noexcept {
-  const auto origin = static_cast<unsigned>(std::min_element(corners, corners + 8) - corners);
-  std::array<unsigned, 3> axes = {0, 1, 2};
-  std::sort(axes.begin(), axes.end(),
-            [&](unsigned a, unsigned b) { return corners[origin ^ 1u << a] < corners[origin ^ 1u << b]; });
-  return 6 * origin +
-         static_cast<unsigned>(std::find(kAxisOrders.begin(), kAxisOrders.end(), axes) - kAxisOrders.begin());
 }
 
 /// The ends of an edge as numbers, the smaller one first.
@@ -164,19 +133,12 @@ void FaceFillings::add_fans(const Triangles& table, Case& to) const {
 }
 
 void FaceFillings::add_frames(unsigned signature, bool high_connected, Case& to) const {
-  std::array<std::array<std::uint8_t, 8>, 8> edge_between{};
-  for (std::uint8_t e = 0; e < table_.edge_count; ++e) {
-    const unsigned a = table_.edges[2 * e], b = table_.edges[2 * e + 1];
-    edge_between[a][b] = edge_between[b][a] = e;
-  }
-  for (unsigned f = 0; f < kFrames; ++f) {
-    const CubeFrame frame{f / 6, kAxisOrders[f % 6]};
-    unsigned in_frame = 0;
-    for (unsigned v = 0; v < 8; ++v) in_frame |= (signature >> frame.corner(v) & 1u) << v;
-    Triangles triangles = of_table(in_frame, high_connected);
+  for (unsigned f = 0; f < CubeFrame::kCount; ++f) {
+    const CubeFrame frame = CubeFrame::of_number(f);
+    Triangles triangles = of_table(frame.signature(signature), high_connected);
     for (Triangle& t : triangles) {
       for (std::uint8_t& e : t)
-        e = edge_between[frame.corner(table_.edges[2 * e])][frame.corner(table_.edges[2 * e + 1])];
+        e = edge_between(table_, frame.corner(table_.edges[2 * e]), frame.corner(table_.edges[2 * e + 1]));
       if (frame.is_mirrored()) std::swap(t[1], t[2]);
     }
     to.of_frames.push_back(number_of(std::move(triangles), to.fillings));
@@ -186,7 +148,7 @@ void FaceFillings::add_frames(unsigned signature, bool high_connected, Case& to)
 std::uint8_t FaceFillings::choose(unsigned signature, const Index* corners) const noexcept {
   const Case& of = cases_[signature];
   if (of.fillings.size() == 1) return 0;
-  if (shape_ == CellShape::hexahedron) return of.of_frames[frame_of(corners)];
+  if (shape_ == CellShape::hexahedron) return of.of_frames[CubeFrame::number_of(corners)];
   unsigned number = 0;
   for (const Polygon& polygon : of.polygons) {
     const auto smallest = std::min_element(polygon.apexes.begin(), polygon.apexes.end(), [&](unsigned a, unsigned b) {

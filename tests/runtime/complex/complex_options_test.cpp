@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "meshes.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/intersections.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
 
@@ -160,6 +162,43 @@ TEST(ComplexOptions, InFourDimensionsClosedPartsOfBothSidesFillTheMesh) {
   }
   const MeshData<4> simplices = kuhn_mesh(grid_points<4>({4, 4, 4, 4}, 0.1));
   EXPECT_NEAR(16.0, content_of_both(complex_of(simplices, open_noise(simplices, 3)), 0.4, {}), 1e-9);
+}
+
+/// Expects that contours of noise, closed at the border, are manifolds that do not intersect themselves.
+void expect_embedded_closed(Complex<4> complex, const std::string& name) {
+  std::mt19937_64 random(7);
+  std::vector<double> values(complex.points().size());
+  for (double& value : values) value = static_cast<double>(random() >> 11) * 0x1p-53;
+  complex.set_values(values);
+  ExtractOptions options;
+  options.close = true;
+  for (options.triangulation = Triangulation::compact;; options.triangulation = Triangulation::barycentric) {
+    const bool is_compact = options.triangulation == Triangulation::compact;
+    for (const Ambiguity rule : {Ambiguity::low, Ambiguity::high, Ambiguity::decider}) {
+      if (is_compact && rule == Ambiguity::decider) continue;
+      SCOPED_TRACE(testing::Message() << name << (is_compact ? " compact " : " barycentric ")
+                                      << static_cast<int>(rule));
+      options.ambiguity = rule;
+      const auto contour = extract<double>(complex, 0.5, options);
+      EXPECT_GT(contour.simplices.size(), 800u);
+      expect_closed_manifold(contour);
+      EXPECT_TRUE(find_intersections(contour).is_embedded());
+    }
+    if (!is_compact) return;
+  }
+}
+
+TEST(ComplexOptions, InFourDimensionsClosedContoursDoNotIntersectThemselves) {
+  const auto points = grid_points<3>({4, 4, 4});
+  const std::vector<double> times = {0.0, 0.5, 2.0};
+  const std::vector<double> values(3 * points.points.size());
+  expect_embedded_closed(in_time(kuhn_mesh(points).complex(), times, values), "tetrahedra");
+  expect_embedded_closed(in_time(wedge_mesh(points).complex(), times, values), "wedges");
+  expect_embedded_closed(in_time(cube_mesh(points).complex(), times, values), "hexahedra");
+  for (const MeshData<3>& mesh : {pyramid_mesh(points), mixed_mesh(points, 5)})  // more points
+    expect_embedded_closed(in_time(mesh.complex(), times, std::vector<double>(3 * mesh.points.size())), "mixed");
+  const OwnedImage<double, 4> samples{Grid<4>::unit({4, 4, 4, 3}), Values<double>(std::vector<double>(192))};
+  expect_embedded_closed(lattice_complex(samples.view(), Lattice::fcc_in_time), "octahedra");
 }
 
 TEST(ComplexOptions, ABallThatTheBorderCutsIsClosedThere) {
