@@ -54,8 +54,8 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
         as the last coordinate; `slice`, `track` and `measure` cut it at any time.
     triangulation, ambiguity, direction, close, epsilon, normals, dtype, allow_empty, threads, progress
         As for `tegl.contour`. `close` makes caps at the border of the mesh. Normals: True or "gradient", "geometric" or
-        "flat". In 4D, rules that read the values need triangulation="barycentric"; "mean"
-        and "saddle" are for tetrahedra over time.
+        "flat". In 4D, `close` with rules that read the values needs triangulation="barycentric";
+        with "mean" and "saddle" it is for tetrahedra over time.
 
     The columns of the vertices are the columns of `points`, then the time. Errors: ValueError, with the library's message;
     TypeError for an argument of a wrong type; Cancelled if `progress` returns False.

@@ -170,12 +170,15 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// Options: all, except as follows. Neighbouring cells of any types agree in their common faces, with every rule.
 /// - triangulation: the diagonals of compact 4D contours in faces between cells depend on the numbers of the points.
-/// - ambiguity: in 2D and 3D all but custom. In 4D low and high; in the barycentric triangulation also squares and
-///   decider, and mean and saddle if no cell has a hexahedron as a facet: there are no tunnels in 4D. With rules that
-///   read the data, hexahedra in 3D are resolved as the cubes of an image; in wedges and pyramids every polygon is a
-///   disc. (The interpolant of a wedge has no tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous.
-/// - close: caps are the high part of the complex's border, the facets of one cell only. Without missing values, the
-///   contour is then closed if the border is a manifold. Facets of cells with missing corners have no caps.
+/// - ambiguity: all but custom. With rules that read the data, hexahedra are resolved as the cubes of an image; in
+///   wedges and pyramids every polygon is a disc. (The interpolant of a wedge has no tunnels; so in wedges `saddle` is
+///   exact.) Octahedra are not ambiguous. The 3D facets of 4D cells are resolved likewise, by their own values.
+///   Hexahedra over time are resolved as the tesseracts of an image. In other 4D cells spheres of the boundary are
+///   filled one by one.
+/// - close: not in 4D with rules that read the data if the triangulation is compact, nor with mean and saddle if a cell
+///   has a hexahedron as a facet. Caps are the high part of the complex's border, the facets of one cell only. Without
+///   missing values, the contour is then closed if the border is a manifold. Facets of cells with missing corners have
+///   no caps.
 /// - normals: differences. The gradient at a point belongs to the linear function that best fits the differences to
 ///   the points at the other ends of its edges, by least squares weighted by the inverse squares of the distances. At
 ///   the points of a grid it is the mean of forward and backward difference quotients, as for images. Normals are

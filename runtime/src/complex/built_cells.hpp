@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,17 +16,32 @@
 #include "complex/border_facets.hpp"
 #include "complex/cell_contour.hpp"
 #include "complex/face_fillings.hpp"
-#include "tegl/tile/face_lattice.hpp"
+#include "tegl/tile/choices.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
 
+class ResolvedCells;
+
 /// Everything that a cell's contour depends on.
 struct CellKey {
   std::uint16_t signature = 0;
-  std::array<std::uint8_t, 16> fillings{};  ///< compact, by facet: FaceFillings; decided: one bit by quadrilateral
+  /// By facet: FaceFillings; of a hexahedron that is decided: CubeFrame.
+  std::array<std::uint8_t, 16> fillings{};
+  std::uint32_t squares = 0;  ///< decided: whether quadrilaterals are high, as bits
+  std::uint16_t cubes = 0;    ///< decided: tile::Choice of facet f in bits 2 f and 2 f + 1
+  tile::Choice tile = tile::Choice::separate;
   auto operator<=>(const CellKey&) const = default;
 };
+
+/// Masks of shared vertices: a vertex of its own of facet f, which is a hexahedron, has bit kOwnOfFacet + f. The other
+/// bits are its mask in the cube of images (ResolvedCubes::mask), as corners and edges of the cell.
+inline constexpr unsigned kOwnOfFacet = 48;
+/// Bit of the mask of a tesseract's side vertex: weights are slightly unequal (mask_place).
+inline constexpr std::uint64_t kIsUneven = std::uint64_t{1} << 63;
+/// First of four bits of the mask of a double (ResolvedTesseract::kIsDouble): the cube of images whose own vertex is
+/// doubled, with the other bits as in ResolvedCubes::mask; 8: the vertex on an edge.
+inline constexpr unsigned kDoubled = 56;
 
 /// A contour before it is in a table: tetrahedra of local vertices, and the masks of added vertices by kind.
 struct BuiltContour {
@@ -52,13 +68,29 @@ class BuiltCells {
   /// Whether a contour is that of the tesseract in images. Its side vertices are on rays, where the interpolant has the
   /// isovalue.
   [[nodiscard]] bool is_of_image(std::uint32_t variant) const noexcept { return of_image_[variant] != 0; }
+  /// The place in the unit tesseract of a side vertex of an image's contour, from its mask, which has the edges'
+  /// numbers in images, and kIsUneven, ResolvedTesseract::kIsDouble and kRepeats. `values`: at the corners.
+  [[nodiscard]] static std::array<double, 4> place(std::uint64_t mask, const std::array<double, 16>& values,
+                                                   double isovalue, double epsilon) noexcept;
 
  protected:
-  explicit BuiltCells(const tables::CellTable& table);
+  struct Facet {
+    const CellFacet* of;
+    std::array<std::uint8_t, 12> edges;  ///< of the cell, by edge of the facet
+    bool has_own;                        ///< the filling of the facet's own table
+  };
+
+  /// `is_swept`: the first two facets, the ends of prisms, have the fillings of their own tables (CellGroups).
+  BuiltCells(tables::CellShape shape, bool is_swept);
+  [[nodiscard]] static unsigned facet_signature(const Facet& facet, unsigned signature) noexcept;
+  /// The points at the corners of a facet.
+  [[nodiscard]] static std::array<Index, 8> points_of(const Facet& facet, const Index* corners) noexcept;
   /// Builds contours, on any thread.
   virtual void fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const = 0;
 
+  tables::CellShape shape_;
   tables::CellTable table_;  ///< of the contours built
+  std::vector<Facet> facets_;
 
  private:
   std::vector<CellKey> keys_;
@@ -71,7 +103,6 @@ class BuiltCells {
 /// The compact contours of the cells of one 4D shape.
 class CompactCells final : public BuiltCells {
  public:
-  /// `is_swept`: the first two facets, the ends of prisms, have the fillings of their own tables (CellGroups).
   CompactCells(tables::CellShape shape, bool high_connected, bool is_swept);
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
@@ -79,52 +110,48 @@ class CompactCells final : public BuiltCells {
   /// The triangles of the contour in a facet, as edges of the facet, oriented by the facet's own corners.
   [[nodiscard]] std::span<const FaceFillings::Triangle> in_facet(std::size_t facet, const CellKey& key) const;
 
-  /// The place in the unit tesseract of a side vertex of an image's contour, from its mask. `values`: at the corners.
-  [[nodiscard]] static std::array<double, 4> place(const tables::CellTable& table, std::uint64_t mask,
-                                                   std::array<double, 16> values, double isovalue,
-                                                   double epsilon) noexcept;
-
  private:
-  struct Facet {
-    const FaceFillings* fillings;
-    const CellFacet* of;
-    std::array<std::uint8_t, 12> edges;  ///< of the cell, by edge of the facet
-    bool has_own;                        ///< the filling of the facet's table
-  };
   /// Builds one contour.
   class Filler;
 
   void fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const override;
-  [[nodiscard]] unsigned facet_signature(const Facet& facet, unsigned signature) const noexcept;
 
-  tables::CellShape shape_;
   bool high_connected_;
   const tables::CellTable& barycentric_;
   std::map<tables::CellShape, FaceFillings> fillings_;
-  std::vector<Facet> facets_;
+  std::vector<const FaceFillings*> fillings_of_;  ///< by facet
 };
 
-/// The barycentric contours of the cells of one 4D shape whose ambiguous quadrilaterals are decided from the data. Each
-/// polygon in a 3D face is a disc, coned from its barycentre; no tunnels.
+/// The contours of the cells of one 4D shape whose ambiguous faces are decided from the data. The contour in a facet is
+/// the 3D contour there: in hexahedra that of a resolved cube of images, elsewhere discs. Neighbours have the same one,
+/// as it depends on values and, in hexahedra and compact contours, on the order of the points' numbers.
 class DecidedCells final : public BuiltCells {
  public:
-  /// `rule`: not a caller's. Throws InvalidArgument for a rule that has tunnels in cubes, if the shape has cubes.
-  DecidedCells(tables::CellShape shape, FaceRule rule, double isovalue);
+  /// `rule`: not a caller's.
+  DecidedCells(tables::CellShape shape, Triangulation triangulation, FaceRule rule, double isovalue, bool is_swept);
+  ~DecidedCells() override;
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
                             std::span<const double> values) const noexcept override;
 
  private:
-  void fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const override;
-  [[nodiscard]] bool is_reversed() const;
+  /// Builds one contour.
+  class Filler;
 
+  void fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const override;
+  /// Which of a facet's quadrilaterals are ambiguous, or high, as bits by quadrilaterals_of.
+  [[nodiscard]] unsigned ambiguous_in(std::size_t facet, unsigned signature) const noexcept;
+  [[nodiscard]] unsigned high_in(std::size_t facet, const CellKey& key) const noexcept;
+  /// Whether a hexahedron's contour depends on the order of the points' numbers.
+  [[nodiscard]] bool has_frame(unsigned signature, unsigned squares, tile::Choice choice) const noexcept;
+
+  Triangulation triangulation_;
   FaceRule rule_;
   double isovalue_;
-  tile::FaceLattice lattice_;
-  std::vector<std::uint8_t> edge_of_;                        ///< by face of the lattice
-  std::vector<std::uint32_t> faces_;                         ///< quadrilaterals, in the lattice
-  std::vector<std::array<std::uint8_t, 4>> quadrilaterals_;  ///< their corners; bit i of the place is a coordinate
-  bool reversed_ = false;  ///< whether the lattice is oriented against the coordinates
+  std::map<tables::CellShape, std::array<FaceFillings, 2>> fillings_;  ///< of facets other than cubes: low, high
+  std::unique_ptr<const ResolvedCells> wedges_;
+  std::vector<std::array<std::uint8_t, 4>> quadrilaterals_;   ///< their corners; bit i of the place is a coordinate
+  std::vector<std::vector<std::uint8_t>> quadrilaterals_in_;  ///< by facet and quadrilaterals_of
 };
 
 }  // namespace tegl::detail

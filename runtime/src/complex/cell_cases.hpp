@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,13 @@
 #include "tegl/ambiguity.hpp"
 
 namespace tegl::detail {
+
+/// The quadrilaterals of a 2D or 3D shape, as corners: bit i is a coordinate of the quadrilateral. Those of hexahedra
+/// in the order of CubeKey.
+[[nodiscard]] std::span<const std::array<std::uint8_t, 4>> quadrilaterals_of(tables::CellShape shape) noexcept;
+
+/// Whether two opposite corners of a quadrilateral are high and two low.
+[[nodiscard]] bool is_ambiguous_square(unsigned signature, const std::array<std::uint8_t, 4>& corners) noexcept;
 
 /// The contours of the cells of one shape whose ambiguous quadrilaterals are resolved from the data.
 class ResolvedCells {
@@ -31,12 +39,18 @@ class ResolvedCells {
   /// The variant of an ambiguous cell with these values at its corners: 0 if all faces are low-connected, 1 if all are
   /// high-connected, otherwise the number of a list.
   [[nodiscard]] std::uint16_t variant(const double* values, unsigned signature) const noexcept;
+  /// The same for a shape that is no hexahedron, with these ambiguous quadrilaterals (quadrilaterals_of) and those of
+  /// them that are high, as bits.
+  [[nodiscard]] static std::uint16_t variant(unsigned signature, unsigned ambiguous, unsigned high) noexcept;
   /// The contour of a variant above 1.
   [[nodiscard]] CellContour contour(unsigned variant) const noexcept { return {table_, lists_[variant - 2]}; }
   /// The place in the unit cube of a side vertex of a hexahedron, from its mask: on a ray from the centre, where the
   /// trilinear interpolant has the isovalue.
   [[nodiscard]] std::array<double, 3> place(std::uint64_t mask, const std::array<double, 8>& values,
                                             double epsilon) const noexcept;
+  /// The same for a mask of corners (bit v) and edges (bit 8 + e) of the cube of images.
+  [[nodiscard]] static std::array<double, 3> place_in_cube(std::uint32_t mask, const std::array<double, 8>& values,
+                                                           double isovalue, double epsilon) noexcept;
 
  private:
   void add_hexahedra(Triangulation triangulation);

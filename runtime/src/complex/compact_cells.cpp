@@ -14,12 +14,15 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/workers.hpp"
+#include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
 #include "image/tile_heights.hpp"
 #include "regions/shape_volumes.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
+#include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
 
@@ -29,41 +32,65 @@ using tables::CellShape;
 using Triangle = FaceFillings::Triangle;
 using Tetrahedron = std::array<std::uint8_t, 4>;
 
+/// The place in the unit tesseract of a vertex that has a double (kDoubled).
+template <class OnEdge>
+TilePoint<4> doubled_place(unsigned cube, std::uint64_t mask, const std::array<double, 16>& values, double isovalue,
+                           double epsilon, const OnEdge& on_edge) noexcept {
+  if (cube == 8) return on_edge(static_cast<unsigned>(std::countr_zero(mask >> 16)));
+  std::array<double, 8> of_cube;
+  for (unsigned v = 0; v < 8; ++v) of_cube[v] = values[lifted_corner(cube, v)];
+  if ((mask & 0xffu) != 0)
+    return cube_point(cube, ResolvedCells::place_in_cube(static_cast<std::uint32_t>(mask), of_cube, isovalue, epsilon));
+  Weighted<4> sum;  // the barycentre of a polygon
+  for (std::uint64_t edges = mask >> 8; edges != 0; edges &= edges - 1)
+    sum.add(on_edge(ResolvedCubes::lifted(cube, static_cast<unsigned>(std::countr_zero(edges)))), 1.0);
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
 }  // namespace
 
-BuiltCells::BuiltCells(const tables::CellTable& table) : table_(table) { table_.element_of = nullptr; }
-
-CompactCells::CompactCells(CellShape shape, bool high_connected, bool is_swept)
-    : BuiltCells(table_of(shape)), shape_(shape), high_connected_(high_connected), barycentric_(table_of(shape)) {
+BuiltCells::BuiltCells(CellShape shape, bool is_swept) : shape_(shape), table_(table_of(shape)) {
+  table_.element_of = nullptr;
   for (const CellFacet& of : facets_of(shape)) {
-    const FaceFillings& fillings = fillings_.try_emplace(of.shape, of.shape, high_connected).first->second;
-    Facet& facet = facets_.emplace_back(Facet{&fillings, &of, {}, is_swept && facets_.size() < 2});
+    Facet& facet = facets_.emplace_back(Facet{&of, {}, is_swept && facets_.size() < 2});
     const tables::CellTable& table = table_of(of.shape);
     for (unsigned e = 0; e < table.edge_count; ++e)
       facet.edges[e] = edge_between(table_, of.corners[table.edges[2 * e]], of.corners[table.edges[2 * e + 1]]);
   }
 }
 
-unsigned CompactCells::facet_signature(const Facet& facet, unsigned signature) const noexcept {
+unsigned BuiltCells::facet_signature(const Facet& facet, unsigned signature) noexcept {
   unsigned bits = 0;
   for (unsigned v = 0; v < facet.of->corner_count; ++v) bits |= (signature >> facet.of->corners[v] & 1u) << v;
   return bits;
 }
 
+std::array<Index, 8> BuiltCells::points_of(const Facet& facet, const Index* corners) noexcept {
+  std::array<Index, 8> points{};
+  for (unsigned v = 0; v < facet.of->corner_count; ++v) points[v] = corners[facet.of->corners[v]];
+  return points;
+}
+
+CompactCells::CompactCells(CellShape shape, bool high_connected, bool is_swept)
+    : BuiltCells(shape, is_swept), high_connected_(high_connected), barycentric_(table_of(shape)) {
+  for (const Facet& facet : facets_)
+    fillings_of_.push_back(&fillings_.try_emplace(facet.of->shape, facet.of->shape, high_connected).first->second);
+}
+
 CellKey CompactCells::key(unsigned signature, const Index* corners, std::span<const double> /*values*/) const noexcept {
-  CellKey key{static_cast<std::uint16_t>(signature), {}};
+  CellKey key;
+  key.signature = static_cast<std::uint16_t>(signature);
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Facet& facet = facets_[f];
-    const unsigned bits = facet_signature(facet, signature);
-    std::array<Index, 8> points{};
-    for (unsigned v = 0; v < facet.of->corner_count; ++v) points[v] = corners[facet.of->corners[v]];
-    key.fillings[f] = facet.has_own ? facet.fillings->own(bits) : facet.fillings->choose(bits, points.data());
+    const unsigned bits = facet_signature(facets_[f], signature);
+    const FaceFillings& of = *fillings_of_[f];
+    key.fillings[f] = facets_[f].has_own ? of.own(bits) : of.choose(bits, points_of(facets_[f], corners).data());
   }
   return key;
 }
 
 std::span<const Triangle> CompactCells::in_facet(std::size_t f, const CellKey& key) const {
-  return facets_[f].fillings->triangles(facet_signature(facets_[f], key.signature), key.fillings[f]);
+  return fillings_of_[f]->triangles(facet_signature(facets_[f], key.signature), key.fillings[f]);
 }
 
 class CompactCells::Filler {
@@ -239,7 +266,7 @@ class CompactCells::Filler {
       std::uint64_t mask = 0;
       for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-        mask |= std::uint64_t{1} << (bit < 16 ? list.mapped_corner(bit) : 16u + edge[list.mapped(bit - 16)]);
+        mask |= std::uint64_t{1} << (bit < 16 ? list.mapped_corner(bit) : 16u + list.mapped(bit - 16));
       }
       built_.sides.push_back(mask);
     }
@@ -307,19 +334,27 @@ void BuiltCells::build(std::vector<CellKey> keys, const WorkOptions& work) {
   table_.masks = masks_.data();
 }
 
-std::array<double, 4> CompactCells::place(const tables::CellTable& table, std::uint64_t mask,
-                                          std::array<double, 16> values, double isovalue, double epsilon) noexcept {
+std::array<double, 4> BuiltCells::place(std::uint64_t mask, const std::array<double, 16>& values, double isovalue,
+                                        double epsilon) noexcept {
   const auto on_edge = [&](unsigned e) {
-    const unsigned p = table.edges[2 * e], q = table.edges[2 * e + 1];
-    TilePoint<4> point = corner_point<4>(std::min(p, q));
-    point[static_cast<std::size_t>(std::countr_zero(p ^ q))] =
-        alpha_of(values[std::min(p, q)], values[std::max(p, q)], isovalue, epsilon);
-    return point;
+    const unsigned base = edge_base(4, e);
+    return edge_point<4>(e, alpha_of(values[base], values[base | 1u << e / 8], isovalue, epsilon));
   };
   std::array<double, 16> heights;
   for (std::size_t v = 0; v < 16; ++v) heights[v] = values[v] - isovalue;
   const TileHeights<4> rays(heights, epsilon);
-  return mask_place<4>(mask, std::identity(), on_edge, false, [&](const TilePoint<4>& end) { return rays.level(end); });
+  const std::uint64_t points = mask & ((std::uint64_t{1} << 48) - 1);
+  TilePoint<4> point;
+  if ((mask & ResolvedTesseract::kIsDouble) != 0) {
+    point = doubled_place(static_cast<unsigned>(mask >> kDoubled & 15u), points, values, isovalue, epsilon, on_edge);
+    for (double& x : point) x = 0.25 + 0.5 * x;
+  } else {
+    point = mask_place<4>(points, std::identity(), on_edge, (mask & kIsUneven) != 0,
+                          [&](const TilePoint<4>& end) { return rays.level(end); });
+  }
+  for (auto i = (mask & ResolvedTesseract::kRepeats) >> ResolvedTesseract::kRepeat; i != 0; --i)
+    for (double& x : point) x = repeated_coordinate(x);
+  return point;
 }
 
 std::uint32_t BuiltCells::variant(const CellKey& key) const noexcept {

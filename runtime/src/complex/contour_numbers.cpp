@@ -18,9 +18,21 @@ namespace tegl::detail {
 
 namespace {
 
+/// Whether a 4D shape has hexahedra as facets: contours in them may have tunnels.
+bool has_cubes(tables::CellShape shape) {
+  const auto facets = facets_of(shape);
+  return std::any_of(facets.begin(), facets.end(),
+                     [](const CellFacet& facet) { return facet.shape == tables::CellShape::hexahedron; });
+}
+
 CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOptions& options) {
   CellTables tables;
   for (const CellGroup& group : cells.groups) {
+    if (options.close && has_cubes(group.shape) && is_estimated(options.ambiguity) &&
+        !face_rule(options.ambiguity).separates)
+      throw Error(ErrorCode::InvalidArgument,
+                  "close and ambiguity by means or saddles in 4D cells with hexahedra as facets; expected low, high, "
+                  "squares or decider");
     const tables::CellTable& table = tables::cell_table(group.shape, options.triangulation);
     std::shared_ptr<const ResolvedCells> resolved;
     const bool is_decided = is_estimated(options.ambiguity);
@@ -30,7 +42,8 @@ CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOpti
     std::shared_ptr<BuiltCells> built;
     const bool high_connected = options.ambiguity == Ambiguity::high;
     if (is_decided && table.dim == 4)
-      built = std::make_shared<DecidedCells>(group.shape, face_rule(options.ambiguity), isovalue);
+      built = std::make_shared<DecidedCells>(group.shape, options.triangulation, face_rule(options.ambiguity), isovalue,
+                                             group.is_swept);
     else if (table.dim == 4 && options.triangulation == Triangulation::compact)
       built = std::make_shared<CompactCells>(group.shape, high_connected, group.is_swept);
     tables.of_group.emplace_back(table, high_connected, std::move(resolved), std::move(built));
@@ -50,10 +63,11 @@ void check_complex_options(int dim, double isovalue, const ExtractOptions& optio
     throw Error(
         ErrorCode::InvalidArgument,
         "ambiguity resolved by a custom estimator; expected another rule for meshes, lattices and divided cells");
-  if (dim == 4 && is_estimated(options.ambiguity) && options.triangulation == Triangulation::compact)
-    throw Error(ErrorCode::InvalidArgument,
-                "ambiguity resolved from the data and the compact triangulation; expected the barycentric one in 4D for "
-                "meshes, lattices and divided cells");
+  if (dim == 4 && options.close && is_estimated(options.ambiguity) && options.triangulation == Triangulation::compact)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        "ambiguity resolved from the data, the compact triangulation and close; expected the barycentric one in "
+        "4D for meshes, lattices and divided cells");
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(
         ErrorCode::InvalidArgument,
@@ -76,7 +90,7 @@ ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edge
                                 : blocks_of_cells(cells, tables_, *active, values, isovalue,
                                                   work_of(options, part_of(progress, 0.2, 0.5)))),
       crossings_(cells, tables_, blocks_, edges, values.size(), work_of(options, part_of(progress, 0.5, 0.8))),
-      shared_(number_shared_points(tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
+      shared_(number_shared_points(cells, tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
       first_shared_(sums_before(blocks_, &ActiveBlock::shared)),
       first_own_(sums_before(blocks_, &ActiveBlock::own)),
       first_simplex_(sums_before(blocks_, &ActiveBlock::simplices)),

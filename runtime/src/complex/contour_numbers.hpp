@@ -32,6 +32,8 @@ class ContourNumbers {
   [[nodiscard]] const std::vector<ActiveBlock>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] const std::vector<EdgeEnds>& edge_ends() const noexcept { return crossings_.ends(); }
   [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
+  /// The shared vertices that are no barycentres of polygons; their numbers are in `polygons`.
+  [[nodiscard]] const std::vector<CubePoint>& points_in_cubes() const noexcept { return shared_.in_cubes; }
   [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept { return cases(group).table(); }
   [[nodiscard]] const CellCases& cases(std::size_t group) const noexcept { return tables_.of_group[group]; }
   /// The vertices on crossed edges of a block's cells: one cell after the other, by edge.

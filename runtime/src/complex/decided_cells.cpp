@@ -1,132 +1,700 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Builds the contours of 4D cells with decided quadrilaterals by tile::FacetBuilder.
+// Builds the contours of 4D cells whose ambiguous faces are decided from the data. Sigma, the contour in the cell's
+// boundary, is put together from the contours in its facets. Components that are spheres are coned: in compact contours
+// from one of their vertices if every triangle in a facet with that vertex has it, otherwise from their barycentre.
+// Other components, and all if the cell's centre joins them, are filled with copies of the regions of one side of the
+// boundary, moved towards the centre. A region of a facet is a cone, as each of its polygons is a disc; in a hexahedron
+// with a tunnel it is the table's (CubeRegions). A tesseract whose facets are those of an image's tesseract has the
+// image's contour.
 #include <algorithm>
 #include <bit>
-
-#include <fmt/format.h>
-#include <Eigen/LU>
+#include <deque>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
 
 #include "ambiguity/face_decision.hpp"
+#include "base/disjoint_sets.hpp"
 #include "complex/built_cells.hpp"
-#include "tegl/error.hpp"
-#include "tegl/tile/facets.hpp"
-#include "tegl/tile/local_contour.hpp"
+#include "complex/cell_cases.hpp"
+#include "regions/cube_frame.hpp"
+#include "tegl/generated/cells.hpp"
+#include "tegl/tile/corners.hpp"
+#include "tile/extract_tables.hpp"
+#include "tile/tesseract_fill.hpp"
+#include "tile/variant_table.hpp"
 
 namespace tegl::detail {
 
 namespace {
 
 using tables::CellShape;
+/// Vertices of a cell while its contour is built: edges, then shared vertices; the others from these numbers on.
+using Local = std::uint16_t;
+constexpr Local kShared = 64, kCones = 256, kSides = 512, kCorners = 768, kCentres = 1024, kLocals = 2048;
+using Triangle = std::array<Local, 3>;
+using Tetrahedron = std::array<Local, 4>;
 
-tile::FaceLattice lattice_of(CellShape shape) {
-  std::vector<tile::Signature> facets;
-  for (const CellFacet& facet : facets_of(shape)) {
-    tile::Signature& corners = facets.emplace_back(0);
-    for (unsigned v = 0; v < facet.corner_count; ++v) corners |= tile::Signature{1} << facet.corners[v];
-  }
-  return {4, facets};
+template <std::size_t Count>
+std::array<Local, Count> sorted(std::array<Local, Count> vertices) noexcept {
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
 }
 
-/// The number of the edge with these two corners.
-std::uint8_t edge_of(const tables::CellTable& table, tile::Signature corners) noexcept {
-  std::uint8_t e = 0;
-  while ((tile::Signature{1} << table.edges[2 * e] | tile::Signature{1} << table.edges[2 * e + 1]) != corners) ++e;
-  return e;
+/// A face of a tetrahedron, in the order that the tetrahedron induces.
+Triangle face_of(const Tetrahedron& t, unsigned opposite) noexcept {
+  static constexpr std::uint8_t kFaces[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+  const auto& of = kFaces[opposite];
+  return {t[of[0]], t[of[1]], t[of[2]]};
 }
 
-/// The corners of a quadrilateral: the first one, its neighbours, the opposite one.
-std::array<std::uint8_t, 4> around(const tables::CellTable& table, tile::Signature corners) noexcept {
-  std::array<std::uint8_t, 4> result{static_cast<std::uint8_t>(std::countr_zero(corners))};
-  tile::Signature neighbours = 0;
-  for (unsigned e = 0; e < table.edge_count; ++e) {
-    const tile::Signature ends = tile::Signature{1} << table.edges[2 * e] | tile::Signature{1}
-                                                                                << table.edges[2 * e + 1];
-    if ((ends & ~corners) == 0 && (ends >> result[0] & 1u) != 0) neighbours |= ends & (ends - 1);
+/// Whether two orders of the same vertices are rotations of each other.
+bool same_turn(const Triangle& a, const Triangle& b) noexcept {
+  return b == a || b == Triangle{a[1], a[2], a[0]} || b == Triangle{a[2], a[0], a[1]};
+}
+
+/// A contour in a cube, as the cube sees it.
+struct CubeContour {
+  CubeFrame frame;
+  std::uint16_t list;
+
+  CubeContour(unsigned number, unsigned signature, unsigned squares, tile::Choice choice) noexcept
+      : frame(CubeFrame::of_number(number)) {
+    unsigned high = 0;
+    for (unsigned q = 0; q < 6; ++q) high |= (squares >> frame.square(q) & 1u) << q;
+    list = ResolvedCubes::list(frame.signature(signature), high, choice);
   }
-  result[1] = static_cast<std::uint8_t>(std::countr_zero(neighbours));
-  result[2] = static_cast<std::uint8_t>(std::countr_zero(neighbours & (neighbours - 1)));
-  result[3] = static_cast<std::uint8_t>(std::countr_zero(corners & ~neighbours & (corners - 1)));
-  return result;
+};
+
+bool has_tunnel(const ResolvedCubes& cubes, unsigned list) noexcept {
+  bool has_corners = false;
+  for (unsigned j = 0; j < cubes.own_vertices(list); ++j) has_corners = has_corners || is_on_ray(cubes.mask(list, j));
+  return has_corners;
 }
 
 }  // namespace
 
-DecidedCells::DecidedCells(CellShape shape, FaceRule rule, double isovalue)
-    : BuiltCells(table_of(shape)), rule_(rule), isovalue_(isovalue), lattice_(lattice_of(shape)) {
-  const auto is_cube = [](const CellFacet& facet) { return facet.shape == CellShape::hexahedron; };
-  const auto facets = facets_of(shape);
-  if (!rule.separates && std::any_of(facets.begin(), facets.end(), is_cube))
-    throw Error(ErrorCode::InvalidArgument,
-                "ambiguity by means or saddles in 4D cells with hexahedra as facets; expected low, high, squares or "
-                "decider");
-  const std::vector<tile::Face>& faces = lattice_.faces();
-  edge_of_.resize(faces.size());
-  for (std::uint32_t f = 0; f < faces.size(); ++f) {
-    if (faces[f].dim == 1) edge_of_[f] = edge_of(table_, faces[f].corners);
-    if (faces[f].dim != 2 || std::popcount(faces[f].corners) != 4) continue;
-    faces_.push_back(f);
-    quadrilaterals_.push_back(around(table_, faces[f].corners));
+DecidedCells::DecidedCells(CellShape shape, Triangulation triangulation, FaceRule rule, double isovalue, bool is_swept)
+    : BuiltCells(shape, is_swept), triangulation_(triangulation), rule_(rule), isovalue_(isovalue) {
+  for (const Facet& facet : facets_) {
+    std::vector<std::uint8_t>& in_facet = quadrilaterals_in_.emplace_back();
+    for (const auto& corners : quadrilaterals_of(facet.of->shape)) {
+      std::array<std::uint8_t, 4> of_cell{};
+      for (std::size_t i = 0; i < 4; ++i) of_cell[i] = facet.of->corners[corners[i]];
+      auto found = std::find_if(quadrilaterals_.begin(), quadrilaterals_.end(), [&](const auto& q) {
+        return std::is_permutation(q.begin(), q.end(), of_cell.begin());
+      });
+      if (found == quadrilaterals_.end()) found = quadrilaterals_.insert(found, of_cell);
+      in_facet.push_back(static_cast<std::uint8_t>(found - quadrilaterals_.begin()));
+    }
+    if (facet.of->shape == CellShape::wedge && wedges_ == nullptr)
+      wedges_ = std::make_unique<ResolvedCells>(CellShape::wedge, tables::cell_table(CellShape::wedge, triangulation),
+                                                triangulation, rule, isovalue);
+    if (triangulation == Triangulation::compact && facet.of->shape != CellShape::hexahedron &&
+        fillings_.count(facet.of->shape) == 0)
+      fillings_.try_emplace(facet.of->shape,
+                            std::array{FaceFillings(facet.of->shape, false), FaceFillings(facet.of->shape, true)});
   }
-  reversed_ = is_reversed();
 }
 
-/// The contour around the single high corner 0 is convex, so one of its simplices fixes the sign for all.
-bool DecidedCells::is_reversed() const {
-  const tile::LocalContour contour =
-      local_contour(lattice_, edge_of_, table_.edge_count, tile::build_facets(lattice_, 1), false);
-  const auto corner = [&](unsigned v) {
-    return Eigen::Vector4d(table_.corners[4 * v], table_.corners[4 * v + 1], table_.corners[4 * v + 2],
-                           table_.corners[4 * v + 3]);
-  };
-  const auto place = [&](unsigned v) {  // the mean of the midpoints of edges
-    std::uint64_t edges =
-        v < table_.edge_count ? std::uint64_t{1} << v : contour.masks[v - table_.edge_count] >> table_.corner_count;
-    const double count = std::popcount(edges);
-    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-    for (; edges != 0; edges &= edges - 1) {
-      const auto e = static_cast<unsigned>(std::countr_zero(edges));
-      sum += (corner(table_.edges[2 * e]) + corner(table_.edges[2 * e + 1])) / 2;
-    }
-    return Eigen::Vector4d(sum / count);
-  };
-  const auto& simplex = contour.simplices.front();
-  Eigen::Matrix4d columns;
-  for (int k = 0; k < 3; ++k) columns.col(k) = place(simplex[static_cast<std::size_t>(k) + 1]) - place(simplex[0]);
-  columns.col(3) = corner(0) - place(simplex[0]);
-  return columns.determinant() < 0;
+DecidedCells::~DecidedCells() = default;
+
+unsigned DecidedCells::ambiguous_in(std::size_t facet, unsigned signature) const noexcept {
+  unsigned bits = 0;
+  const auto& in_facet = quadrilaterals_in_[facet];
+  for (unsigned q = 0; q < in_facet.size(); ++q)
+    bits |= (is_ambiguous_square(signature, quadrilaterals_[in_facet[q]]) ? 1u : 0u) << q;
+  return bits;
+}
+
+unsigned DecidedCells::high_in(std::size_t facet, const CellKey& key) const noexcept {
+  unsigned bits = 0;
+  const auto& in_facet = quadrilaterals_in_[facet];
+  for (unsigned q = 0; q < in_facet.size(); ++q) bits |= (key.squares >> in_facet[q] & 1u) << q;
+  return bits;
+}
+
+bool DecidedCells::has_frame(unsigned signature, unsigned squares, tile::Choice choice) const noexcept {
+  if (triangulation_ == Triangulation::compact) return true;
+  return has_tunnel(ResolvedCubes::instance(triangulation_), CubeContour(0, signature, squares, choice).list);
 }
 
 CellKey DecidedCells::key(unsigned signature, const Index* corners, std::span<const double> values) const noexcept {
-  CellKey key{static_cast<std::uint16_t>(signature), {}};
+  CellKey key;
+  key.signature = static_cast<std::uint16_t>(signature);
+  std::array<double, 16> at{};
+  for (unsigned v = 0; v < table_.corner_count; ++v) at[v] = values[corners[v]];
   for (std::size_t q = 0; q < quadrilaterals_.size(); ++q) {
-    const auto& at = quadrilaterals_[q];
-    const auto is_high = [&](std::size_t i) { return (signature >> at[i] & 1u) != 0; };
-    if (is_high(0) != is_high(3) || is_high(1) != is_high(2) || is_high(0) == is_high(1)) continue;
-    const std::array<double, 4> of_corners = {values[corners[at[0]]], values[corners[at[1]]], values[corners[at[2]]],
-                                              values[corners[at[3]]]};
-    if (is_square_high(rule_, of_corners, isovalue_))
-      key.fillings[q / 8] = static_cast<std::uint8_t>(key.fillings[q / 8] | 1u << q % 8);
+    const auto& of = quadrilaterals_[q];
+    if (!is_ambiguous_square(signature, of)) continue;
+    const std::array<double, 4> of_corners = {at[of[0]], at[of[1]], at[of[2]], at[of[3]]};
+    key.squares |= (is_square_high(rule_, of_corners, isovalue_) ? 1u : 0u) << q;
   }
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const Facet& facet = facets_[f];
+    const unsigned bits = facet_signature(facet, signature);
+    if (bits == 0 || bits + 1 == 1u << facet.of->corner_count) continue;
+    const std::array<Index, 8> points = points_of(facet, corners);
+    if (facet.of->shape != CellShape::hexahedron) {
+      if (triangulation_ == Triangulation::barycentric) continue;
+      const std::uint16_t variant = ResolvedCells::variant(bits, ambiguous_in(f, signature), high_in(f, key));
+      if (variant > 1) continue;
+      const FaceFillings& of = fillings_.at(facet.of->shape)[variant];
+      key.fillings[f] = facet.has_own ? of.own(bits) : of.choose(bits, points.data());
+      continue;
+    }
+    std::array<double, 8> of_cube;
+    for (std::size_t v = 0; v < 8; ++v) of_cube[v] = at[facet.of->corners[v]];
+    const tile::Choice choice = cube_key(rule_, of_cube, isovalue_, bits).choice();
+    key.cubes = static_cast<std::uint16_t>(key.cubes | static_cast<unsigned>(choice) << 2 * f);
+    if (!facet.has_own && has_frame(bits, high_in(f, key), choice))
+      key.fillings[f] = static_cast<std::uint8_t>(CubeFrame::number_of(points.data()));
+  }
+  if (shape_ == CellShape::hexahedron_prism && !rule_.separates &&
+      !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(signature)))
+    key.tile = is_mean_high(at, isovalue_) ? tile::Choice::high : tile::Choice::low;
   return key;
 }
 
-void DecidedCells::fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const {
-  tile::FacetBuilder builder(lattice_);
-  std::vector<tile::Choice> choices(lattice_.faces().size(), tile::Choice::separate);
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    for (std::size_t q = 0; q < faces_.size(); ++q)
-      choices[faces_[q]] = (keys[k].fillings[q / 8] >> q % 8 & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
-    const tile::TileFacets& facets = builder.build(keys[k].signature, {choices, tile::Alternative::low});
-    tile::LocalContour contour = local_contour(lattice_, edge_of_, table_.edge_count, facets, reversed_);
-    contours[k].tetrahedra = std::move(contour.simplices);
-    auto mask = contour.masks.begin();
-    std::size_t kind = 0;
-    for (auto* const masks : {&contours[k].shared, &contours[k].cones, &contours[k].sides}) {
-      masks->assign(mask, mask + contour.added_count[kind]);
-      mask += contour.added_count[kind++];
+/// Builds contours one after the other.
+class DecidedCells::Filler {
+ public:
+  explicit Filler(const DecidedCells& cells)
+      : cells_(cells),
+        corners_(cells.table_.corner_count),
+        edges_(cells.table_.edge_count),
+        cubes_(ResolvedCubes::instance(cells.triangulation_)),
+        regions_of_(CubeRegions::instance(cells.triangulation_)),
+        tesseract_(make_resolved_tesseract(cells.triangulation_)) {
+    for (std::uint8_t e = 0; e < edges_; ++e) {
+      const unsigned p = cells.table_.edges[2 * e], q = cells.table_.edges[2 * e + 1];
+      edge_between_[16 * p + q] = edge_between_[16 * q + p] = e;
+    }
+    for (std::size_t f = 0; f < cells.facets_.size(); ++f)
+      for (unsigned e = 0; e < table_of(cells.facets_[f].of->shape).edge_count; ++e)
+        facets_of_edge_[cells.facets_[f].edges[e]] |= 1u << f;
+  }
+
+  BuiltContour operator()(const CellKey& key) {
+    begin(key);
+    const bool has_image = cells_.shape_ == CellShape::hexahedron_prism && key.fillings == CellKey().fillings;
+    has_image ? take_from_image() : fill();
+    return std::move(built_);
+  }
+
+ private:
+  /// A triangle of Sigma and its facet.
+  struct Piece {
+    Triangle triangle;
+    std::size_t facet;
+  };
+  using Component = std::vector<Piece>;
+
+  void begin(const CellKey& key) {
+    key_ = &key;
+    built_ = {};
+    sigma_.clear();
+    tetrahedra_.clear();
+    fans_.clear();
+    centres_.clear();
+    side_of_.assign(kLocals, 0);
+    contours_.assign(cells_.facets_.size(), std::nullopt);
+  }
+
+  void fill() {
+    for (std::size_t f = 0; f < cells_.facets_.size(); ++f) add_contour(f);
+    DisjointSets sets(kCones);
+    for (const auto& [t, facet] : sigma_) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
+    std::map<Index, Component> components;
+    for (const Piece& piece : sigma_) components[sets.find(piece.triangle[0])].push_back(piece);
+    const bool joins = key_->tile != tile::Choice::separate && components.size() > 1;
+    if (joins || std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
+      copy_regions(key_->tile != tile::Choice::high, components);
+    for (const auto& [root, component] : components) add_sphere(component);
+    finish();
+  }
+
+  static Local corner_of(const Facet& facet, unsigned v) { return static_cast<Local>(kCorners + facet.of->corners[v]); }
+  [[nodiscard]] std::uint64_t bit_of(Local v) const noexcept {
+    return std::uint64_t{1} << (v < edges_ ? corners_ + v : v - unsigned{kCorners});
+  }
+
+  void add_contour(std::size_t f) {
+    const Facet& facet = cells_.facets_[f];
+    const unsigned bits = facet_signature(facet, key_->signature);
+    if (bits == 0 || bits + 1 == 1u << facet.of->corner_count) return;
+    if (facet.of->shape == CellShape::hexahedron) return add_cube(f, bits);
+    const auto variant =
+        ResolvedCells::variant(bits, cells_.ambiguous_in(f, key_->signature), cells_.high_in(f, *key_));
+    if (variant < 2 && cells_.triangulation_ == Triangulation::compact) {
+      for (const auto& t : cells_.fillings_.at(facet.of->shape)[variant].triangles(bits, key_->fillings[f]))
+        sigma_.push_back({{facet.edges[t[0]], facet.edges[t[1]], facet.edges[t[2]]}, f});
+      return;
+    }
+    const tables::CellTable& table = tables::cell_table(facet.of->shape, cells_.triangulation_);
+    const CellContour contour = variant < 2 ? CellContour(table, bits, variant == 1) : cells_.wedges_->contour(variant);
+    const auto first = static_cast<Local>(kShared + built_.shared.size());
+    for (unsigned j = 0; j < contour.list().added(); ++j) {
+      std::uint64_t mask = 0;
+      for (std::uint64_t rest = contour.mask(j) >> table.corner_count; rest != 0; rest &= rest - 1)
+        mask |= bit_of(facet.edges[static_cast<std::size_t>(std::countr_zero(rest))]);
+      built_.shared.push_back(mask);
+    }
+    for (unsigned i = 0; i < contour.list().simplex_count; ++i) {
+      Triangle t;
+      for (unsigned k = 0; k < 3; ++k) {
+        const unsigned v = contour.vertex(i, k);
+        t[k] = v < table.edge_count ? facet.edges[v] : static_cast<Local>(first + v - table.edge_count);
+      }
+      if (contour.reverses()) std::swap(t[1], t[2]);
+      sigma_.push_back({t, f});
     }
   }
+
+  /// The cell's vertex on an edge of a cube's frame.
+  [[nodiscard]] Local on_edge(const Facet& facet, const CubeFrame& frame, unsigned e) const noexcept {
+    const unsigned base = edge_base(3, e);
+    const unsigned p = facet.of->corners[frame.corner(base)], q = facet.of->corners[frame.corner(base | 1u << e / 4)];
+    return edge_between_[16 * p + q];
+  }
+  /// The mask in the cell of corners (bit v) and edges (bit 8 + e) of a cube's frame.
+  [[nodiscard]] std::uint64_t mask_of(const Facet& facet, const CubeFrame& frame, std::uint32_t mask) const noexcept {
+    std::uint64_t result = 0;
+    for (unsigned v = 0; v < 8; ++v)
+      if ((mask >> v & 1u) != 0) result |= bit_of(corner_of(facet, frame.corner(v)));
+    for (unsigned e = 0; e < 12; ++e)
+      if ((mask >> (8 + e) & 1u) != 0) result |= bit_of(on_edge(facet, frame, e));
+    return result;
+  }
+
+  /// Adds a cube's own vertex.
+  void add_shared(std::size_t f, const CubeFrame& frame, unsigned list, unsigned own) {
+    const bool is_mean = own < cubes_.summary(list).barycentres;
+    built_.shared.push_back(mask_of(cells_.facets_[f], frame, cubes_.mask(list, own)) |
+                            (is_mean ? 0 : std::uint64_t{1} << (kOwnOfFacet + f)));
+  }
+
+  void add_cube(std::size_t f, unsigned bits) {
+    const Facet& facet = cells_.facets_[f];
+    const auto choice = static_cast<tile::Choice>(key_->cubes >> 2 * f & 3u);
+    const CubeContour& of = contours_[f].emplace(key_->fillings[f], bits, cells_.high_in(f, *key_), choice);
+    first_own_[f] = static_cast<Local>(kShared + built_.shared.size());
+    for (unsigned j = 0; j < cubes_.own_vertices(of.list); ++j) add_shared(f, of.frame, of.list, j);
+    const std::span<const std::uint8_t> triangles = cubes_.triangles_of(of.list);
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+      Triangle t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const unsigned v = triangles[i + k];
+        t[k] = v < 12 ? on_edge(facet, of.frame, v) : static_cast<Local>(first_own_[f] + v - 12);
+      }
+      if (of.frame.is_mirrored()) std::swap(t[1], t[2]);
+      sigma_.push_back({t, f});
+    }
+  }
+
+  static std::vector<Local> vertices_of(const Component& component) {
+    std::vector<Local> vertices;
+    for (const Piece& piece : component) vertices.insert(vertices.end(), piece.triangle.begin(), piece.triangle.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+  /// By the Euler characteristic of a closed surface.
+  static bool is_sphere(const Component& component) {
+    return 2 * vertices_of(component).size() == component.size() + 4;
+  }
+  static bool has(const Triangle& t, Local v) noexcept { return std::find(t.begin(), t.end(), v) != t.end(); }
+
+  /// The tetrahedron between a triangle and a vertex inside the cell, with its positive side towards high.
+  [[nodiscard]] Tetrahedron cone_of(const Piece& piece, Local apex) const noexcept {
+    const Triangle& t = piece.triangle;
+    const bool is_inverted = cells_.facets_[piece.facet].of->is_inverted;
+    return {t[0], is_inverted ? t[1] : t[2], is_inverted ? t[2] : t[1], apex};
+  }
+
+  void add_sphere(const Component& component) {
+    const std::vector<Local> vertices = vertices_of(component);
+    Local apex = kLocals;
+    std::ptrdiff_t most = 0;  // triangles at the apex, which need no tetrahedra
+    for (const Local v : vertices) {
+      if (v >= edges_ || (cells_.triangulation_ == Triangulation::barycentric && component.size() > 4)) break;
+      const auto around =
+          std::count_if(component.begin(), component.end(), [&](const Piece& piece) { return has(piece.triangle, v); });
+      const bool is_apex =
+          component.size() == 4 || std::all_of(component.begin(), component.end(), [&](const Piece& p) {
+            return (facets_of_edge_[v] >> p.facet & 1u) == 0 || has(p.triangle, v);
+          });
+      if (around > most && is_apex) apex = v, most = around;
+    }
+    if (most == 0) {
+      apex = static_cast<Local>(kCones + built_.cones.size());
+      std::uint64_t mask = 0;
+      for (const Local v : vertices) mask |= v < edges_ ? bit_of(v) : 0;
+      built_.cones.push_back(mask);
+    }
+    for (const Piece& piece : component)
+      if (most == 0 || !has(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
+  }
+
+  /// Fills components with copies of the regions beside them on one side, and removes them.
+  void copy_regions(bool high, std::map<Index, Component>& components) {
+    regions_.clear();
+    for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
+      for (std::size_t f = 0; f < cells_.facets_.size(); ++f)
+        if ((contours_[f] && has_tunnel(cubes_, contours_[f]->list)) == tunnels)
+          tunnels ? add_cube_regions(f, high) : add_regions(f, high);
+    DisjointSets sets(kLocals);
+    for (const Tetrahedron& t : regions_)
+      for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
+    std::map<Index, std::vector<const Component*>> beside;
+    for (const auto& [root, component] : components)
+      beside[sets.find(component.front().triangle[0])].push_back(&component);
+    std::map<Index, bool> is_copied;
+    for (const auto& [region, of] : beside)
+      is_copied[region] =
+          (of.size() > 1 && key_->tile != tile::Choice::separate) ||
+          std::any_of(of.begin(), of.end(), [](const Component* component) { return !is_sphere(*component); });
+    std::map<Triangle, const Piece*> starts;
+    for (auto at = components.begin(); at != components.end();) {
+      if (!is_copied[sets.find(at->second.front().triangle[0])]) {
+        ++at;
+        continue;
+      }
+      done_.push_back(std::move(at->second));
+      for (const Piece& piece : done_.back()) starts[sorted(piece.triangle)] = &piece;
+      at = components.erase(at);
+    }
+    std::vector<bool> is_sigma(kLocals);
+    for (const Piece& piece : sigma_)
+      for (const Local v : piece.triangle) is_sigma[v] = true;
+    std::vector<Tetrahedron> copies;
+    for (Tetrahedron t : regions_) {
+      if (!is_copied[sets.find(t[0])]) continue;
+      for (Local& v : t)
+        if (!is_sigma[v]) v = copy_of(v);
+      copies.push_back(t);
+    }
+    orient(copies, starts);
+    tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
+    done_.clear();
+  }
+
+  Local copy_of(Local v) {
+    if (side_of_[v] == 0) {
+      side_of_[v] = static_cast<Local>(kSides + built_.sides.size());
+      built_.sides.push_back(v < kCentres ? bit_of(v) : centres_[v - kCentres]);
+    }
+    return side_of_[v];
+  }
+
+  /// Orients connected tetrahedra like their triangles in Sigma.
+  void orient(std::vector<Tetrahedron>& copies, const std::map<Triangle, const Piece*>& starts) const {
+    std::map<Triangle, std::vector<std::size_t>> at_face;
+    for (std::size_t i = 0; i < copies.size(); ++i)
+      for (unsigned k = 0; k < 4; ++k) at_face[sorted(face_of(copies[i], k))].push_back(i);
+    std::vector<bool> is_known(copies.size());
+    std::deque<std::size_t> open;
+    const auto take = [&](std::size_t i, const Triangle& face, bool same) {
+      if (is_known[i]) return;
+      is_known[i] = true;
+      Tetrahedron& t = copies[i];
+      for (unsigned k = 0; k < 4; ++k)
+        if (const Triangle own = face_of(t, k); sorted(own) == sorted(face)) {
+          if (same_turn(own, face) != same) std::swap(t[2], t[3]);
+          break;
+        }
+      open.push_back(i);
+    };
+    for (const auto& [face, piece] : starts) {
+      take(at_face.at(face).front(), face_of(cone_of(*piece, kLocals), 3), true);
+      for (; !open.empty(); open.pop_front()) {
+        const Tetrahedron t = copies[open.front()];
+        for (unsigned k = 0; k < 4; ++k)
+          for (const std::size_t other : at_face.at(sorted(face_of(t, k)))) take(other, face_of(t, k), false);
+      }
+    }
+  }
+
+  Local add_centre(std::uint64_t mask) {
+    centres_.push_back(mask);
+    return static_cast<Local>(kCentres + centres_.size() - 1);
+  }
+
+  /// The corners that a vertex in a quadrilateral lies between; all if it is not in the cell's edges.
+  [[nodiscard]] unsigned span_of(Local v) const noexcept {
+    if (v < edges_) return 1u << cells_.table_.edges[2 * v] | 1u << cells_.table_.edges[2 * v + 1];
+    return v >= kCorners && v < kCentres ? 1u << (v - kCorners) : 0xffffu;
+  }
+
+  /// The regions of a cube with a tunnel.
+  void add_cube_regions(std::size_t f, bool high) {
+    const Facet& facet = cells_.facets_[f];
+    const auto& [frame, list] = *contours_[f];
+    std::map<Triangle, unsigned> faces;
+    for (const CubeRegions::Region& region : regions_of_.regions(list, high)) {
+      const auto first = static_cast<Local>(kCentres + centres_.size());
+      for (const std::uint32_t mask : regions_of_.centres(region)) {
+        const std::uint32_t doubled = mask / CubeRegions::kFirstDouble;
+        (void)add_centre(mask_of(
+            facet, frame, doubled != 0 ? cubes_.mask(list, static_cast<unsigned>(std::countr_zero(doubled))) : mask));
+      }
+      const auto local = [&](unsigned v) {
+        if (v < CubeRegions::kFirstEdge) return corner_of(facet, frame.corner(v));
+        if (v < CubeRegions::kFirstOwn) return on_edge(facet, frame, v - CubeRegions::kFirstEdge);
+        if (v < CubeRegions::kFirstCentre) return static_cast<Local>(first_own_[f] + v - CubeRegions::kFirstOwn);
+        return static_cast<Local>(first + v - CubeRegions::kFirstCentre);
+      };
+      for (const auto& [a, b, c, d] : regions_of_.tetrahedra(region)) {
+        const Tetrahedron& t = regions_.emplace_back(Tetrahedron{local(a), local(b), local(c), local(d)});
+        for (unsigned k = 0; k < 4; ++k) ++faces[sorted(face_of(t, k))];
+      }
+    }
+    for (const Piece& piece : sigma_)
+      if (piece.facet == f) faces.erase(sorted(piece.triangle));
+    for (const std::uint8_t q : cells_.quadrilaterals_in_[f]) {
+      const unsigned square = corners_of(q);
+      std::vector<Triangle> fan;
+      for (const auto& [t, count] : faces)
+        if (count == 1 && ((span_of(t[0]) | span_of(t[1]) | span_of(t[2])) & ~square) == 0) fan.push_back(t);
+      const auto [at, is_new] = fans_.try_emplace(square, fan);
+      if (!is_new && at->second != fan) join_fans(at->second, fan);
+    }
+  }
+
+  /// Fills the space between two triangulations of the same polygons: a ball, coned, between any two diagonals that
+  /// both have.
+  void join_fans(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
+    std::vector<Triangle> different;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(different));
+    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(different));
+    std::map<std::array<Local, 2>, std::vector<Index>> at_edge;
+    for (std::size_t i = 0; i < different.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        at_edge[sorted(std::array{different[i][k], different[i][(k + 1) % 3]})].push_back(static_cast<Index>(i));
+    DisjointSets sets(different.size());
+    for (const auto& [edge, triangles] : at_edge)
+      if (triangles.size() == 2) sets.join(triangles[0], triangles[1]);  // four at a diagonal of both
+    std::map<Index, std::vector<Triangle>> balls;
+    for (std::size_t i = 0; i < different.size(); ++i) balls[sets.find(static_cast<Index>(i))].push_back(different[i]);
+    for (const auto& [root, triangles] : balls) {
+      std::uint64_t mask = 0;
+      for (const Triangle& t : triangles)
+        for (const Local v : t) mask |= bit_of(v);
+      const Local apex = add_centre(mask);
+      for (const Triangle& t : triangles) regions_.push_back({t[0], t[1], t[2], apex});
+    }
+  }
+
+  /// The regions of a facet in which all polygons are discs.
+  void add_regions(std::size_t f, bool high) {
+    const Facet& facet = cells_.facets_[f];
+    std::vector<std::vector<Local>> parts;
+    std::vector<Triangle> triangles, of_contour;
+    for (const CellFacet& face : facets_of(facet.of->shape)) {
+      std::vector<std::uint8_t> around;
+      for (unsigned i = 0; i < face.corner_count; ++i) around.push_back(facet.of->corners[face.corners[i]]);
+      if (face.corner_count == 4) std::swap(around[2], around[3]);
+      add_parts(around, high, parts, triangles);
+    }
+    for (const Piece& piece : sigma_)
+      if (piece.facet == f) of_contour.push_back(piece.triangle);
+    DisjointSets sets(kLocals);
+    for (const auto& part : parts)
+      for (const Local v : part) sets.join(part[0], v);
+    for (const Triangle& t : of_contour) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
+    std::map<Index, std::vector<Local>> regions;  // by set: corners and edges
+    for (const auto& part : parts)
+      for (const Local v : part) regions[sets.find(v)].push_back(v);
+    for (auto& [root, vertices] : regions) {
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      const bool is_tip = vertices.size() < 2 || vertices[vertices.size() - 2] < kCorners;  // one corner
+      std::uint64_t mask = 0;
+      for (const Local v : vertices) mask |= bit_of(v);
+      const Local apex = is_tip ? vertices.back() : add_centre(mask);
+      for (const auto* const of : {&triangles, &of_contour})
+        for (const Triangle& t : *of)
+          if (sets.find(t[0]) == root && !has(t, apex)) regions_.push_back({t[0], t[1], t[2], apex});
+    }
+  }
+
+  /// The parts of a polygon on one side, with their triangles. `around`: its corners in order.
+  void add_parts(std::span<const std::uint8_t> around, bool high, std::vector<std::vector<Local>>& parts,
+                 std::vector<Triangle>& triangles) const {
+    const std::size_t count = around.size();
+    unsigned polygon = 0;
+    for (const std::uint8_t v : around) polygon |= 1u << v;
+    const auto is_in = [&](std::size_t i) { return (key_->signature >> around[i % count] & 1u) == (high ? 1u : 0u); };
+    const auto edge = [&](std::size_t i) {
+      return Local{edge_between_[16u * around[i % count] + around[(i + 1) % count]]};
+    };
+    const auto corner = [&](std::size_t i) { return static_cast<Local>(kCorners + around[i]); };
+    const std::size_t first = parts.size();
+    if (count == 4 && is_in(0) == is_in(2) && is_in(1) == is_in(3) && is_in(0) != is_in(1) &&
+        is_square_joined(polygon) != high) {
+      for (std::size_t i = is_in(0) ? 0 : 1; i < 4; i += 2) parts.push_back({edge(i + 3), corner(i), edge(i)});
+    } else {
+      std::vector<Local> part;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (is_in(i)) part.push_back(corner(i));
+        if (is_in(i) != is_in(i + 1)) part.push_back(edge(i));
+      }
+      if (!part.empty()) parts.push_back(std::move(part));
+    }
+    if (const auto fan = fans_.find(polygon); fan != fans_.end()) {
+      triangles.insert(triangles.end(), fan->second.begin(), fan->second.end());
+      return;
+    }
+    for (std::size_t p = first; p < parts.size(); ++p) {
+      auto& part = parts[p];  // corners have the largest numbers; each triangle has one, so it is moved into the cell
+      std::rotate(part.begin(), std::max_element(part.begin(), part.end()), part.end());
+      for (std::size_t i = 2; i < part.size(); ++i) triangles.push_back({part[0], part[i - 1], part[i]});
+    }
+  }
+
+  /// `square`: its corners.
+  [[nodiscard]] bool is_square_joined(unsigned square) const noexcept {
+    for (std::size_t q = 0; q < cells_.quadrilaterals_.size(); ++q)
+      if (corners_of(q) == square) return (key_->squares >> q & 1u) != 0;
+    return false;
+  }
+  [[nodiscard]] unsigned corners_of(std::size_t quadrilateral) const noexcept {
+    const auto& of = cells_.quadrilaterals_[quadrilateral];
+    return 1u << of[0] | 1u << of[1] | 1u << of[2] | 1u << of[3];
+  }
+
+  void finish() {
+    const std::size_t first_cone = edges_ + built_.shared.size(), first_side = first_cone + built_.cones.size();
+    if (first_side + built_.sides.size() > 256) throw std::length_error("a cell with more than 256 vertices");
+    for (const Tetrahedron& t : tetrahedra_) {
+      auto& to = built_.tetrahedra.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t v = t[k];
+        to[k] = static_cast<std::uint8_t>(v >= kSides    ? first_side + v - kSides
+                                          : v >= kCones  ? first_cone + v - kCones
+                                          : v >= kShared ? edges_ + v - kShared
+                                                         : v);
+      }
+    }
+  }
+
+  /// The tesseract of an image with this key. Facet f is its cube of the same corners, in the same order.
+  [[nodiscard]] ResolvedKey image_key(std::array<std::size_t, 8>& facet_of) const noexcept {
+    ResolvedKey key;
+    key.signature = key_->signature;
+    key.tile = key_->tile;
+    for (std::size_t f = 0; f < 8; ++f) {
+      unsigned all = 15, some = 0;
+      for (const std::uint8_t v : cells_.facets_[f].of->corners) all &= v, some |= v;
+      const auto axis = static_cast<unsigned>(std::countr_zero(15u ^ some ^ all));
+      const unsigned cube = 2 * axis + (all >> axis & 1u);
+      facet_of[cube] = f;
+      const auto choice = static_cast<tile::Choice>(key_->cubes >> 2 * f & 3u);
+      if (choice == tile::Choice::low) key.low_cubes = static_cast<std::uint8_t>(key.low_cubes | 1u << cube);
+      if (choice == tile::Choice::high) key.high_cubes = static_cast<std::uint8_t>(key.high_cubes | 1u << cube);
+    }
+    for (unsigned q = 0; q < 24; ++q) {
+      const auto [base, axes] = kTesseractSquares[q];
+      unsigned square = 0;
+      for (unsigned v = 0; v < 16; ++v)
+        if ((v & ~unsigned{axes}) == base) square |= 1u << v;
+      key.squares |= (is_square_joined(square) ? 1u : 0u) << q;
+    }
+    return key;
+  }
+
+  void take_from_image() {
+    std::array<std::size_t, 8> facet_of{};
+    const ResolvedKey key = image_key(facet_of);
+    const ResolvedCubes::Lists lists = ResolvedTesseract::lists_of(key);
+    const ResolvedView& view = tesseract_.find(key, lists);
+    std::array<Local, 256> local{};
+    for (unsigned e = 0; e < 32; ++e) {
+      const unsigned base = edge_base(4, e);
+      local[e] = edge_between_[16 * base + (base | 1u << e / 8)];
+    }
+    for (unsigned cube = 0; cube < 8; ++cube) add_own_of_cube(cube, facet_of[cube], lists[cube], local);
+    // as images: a compact contour that does not depend on the data has plain means
+    const bool is_even = cells_.triangulation_ == Triangulation::compact && !ambiguous_signatures<4>()[key_->signature];
+    for (unsigned j = 0; j < view.own_vertices; ++j) {
+      const std::uint64_t mask = view.masks[j];
+      Local& to = local[ResolvedTesseract::kFirstOwn + j];
+      if ((mask & ResolvedTesseract::kIsBarycentre) != 0) {
+        to = static_cast<Local>(kCones + built_.cones.size());
+        built_.cones.push_back(edges_around(view, ResolvedTesseract::kFirstOwn + j));
+        continue;
+      }
+      to = static_cast<Local>(kSides + built_.sides.size());
+      built_.sides.push_back((mask & ResolvedTesseract::kIsDouble) != 0
+                                 ? doubled_mask(lists, static_cast<unsigned>(mask & 0xffu)) |
+                                       (mask & (ResolvedTesseract::kIsDouble | ResolvedTesseract::kRepeats))
+                                 : mask | (is_even ? 0 : kIsUneven));
+    }
+    for (std::uint32_t i = 0; i < view.simplex_count; ++i) {
+      Tetrahedron& t = tetrahedra_.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) t[k] = local[view.simplices[4 * i + k]];
+    }
+    built_.of_image = true;
+    finish();
+  }
+
+  void add_own_of_cube(unsigned cube, std::size_t f, unsigned list, std::array<Local, 256>& local) {
+    if (list == ResolvedCubes::kNone) return;
+    for (unsigned j = 0; j < cubes_.own_vertices(list); ++j) {
+      local[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] =
+          static_cast<Local>(kShared + built_.shared.size());
+      add_shared(f, CubeFrame::of_number(0), list, j);
+    }
+  }
+
+  /// A vertex on an edge or a cube's own, as in the mask of its double (kDoubled).
+  [[nodiscard]] std::uint64_t doubled_mask(const ResolvedCubes::Lists& lists, unsigned vertex) const noexcept {
+    if (vertex < ResolvedCubes::kEdges) return std::uint64_t{8} << kDoubled | std::uint64_t{1} << (16 + vertex);
+    const unsigned cube = (vertex - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
+    const std::uint64_t mask = cubes_.mask(lists[cube], (vertex - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn);
+    return std::uint64_t{cube} << kDoubled | mask;
+  }
+
+  /// The edges of the triangles that a vertex is coned to.
+  [[nodiscard]] std::uint64_t edges_around(const ResolvedView& view, unsigned apex) const noexcept {
+    std::uint64_t mask = 0;
+    for (std::uint32_t i = 0; i < view.simplex_count; ++i) {
+      const std::uint8_t* const t = view.simplices + 4 * std::size_t{i};
+      if (t[0] != apex) continue;
+      for (unsigned k = 1; k < 4; ++k) {
+        const unsigned base = edge_base(4, t[k] % 32u);
+        if (t[k] < 32) mask |= bit_of(edge_between_[16 * base + (base | 1u << t[k] / 8)]);
+      }
+    }
+    return mask;
+  }
+
+  const DecidedCells& cells_;
+  unsigned corners_, edges_;
+  const ResolvedCubes& cubes_;
+  const CubeRegions& regions_of_;
+  ResolvedTesseract tesseract_;
+  std::array<std::uint8_t, 256> edge_between_{};    ///< by 16 * corner + corner
+  std::array<std::uint32_t, 32> facets_of_edge_{};  ///< as bits
+  // The current contour:
+  const CellKey* key_ = nullptr;
+  BuiltContour built_;
+  Component sigma_;
+  std::vector<Component> done_;
+  std::vector<Tetrahedron> tetrahedra_, regions_;
+  std::map<unsigned, std::vector<Triangle>> fans_;  ///< by corners of the quadrilateral: its triangles, sorted
+  std::vector<std::uint64_t> centres_;              ///< masks
+  std::vector<Local> side_of_;                      ///< 0: no copy yet
+  std::vector<std::optional<CubeContour>> contours_;
+  std::array<Local, 16> first_own_{};
+};
+
+void DecidedCells::fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const {
+  Filler filler(*this);
+  for (std::size_t k = 0; k < keys.size(); ++k) contours[k] = filler(keys[k]);
 }
 
 }  // namespace tegl::detail

@@ -65,6 +65,8 @@ std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumb
           list.side_vertices > 0 || list.collar_vertices > 0)
         points.insert(points.end(), group.cell(cell.cell), group.cell(cell.cell) + group.corner_count);
   }
+  for (const CubePoint& point : numbers.points_in_cubes())
+    points.insert(points.end(), point.corners.begin(), point.corners.end());
   return points;
 }
 
@@ -93,7 +95,10 @@ class ComplexWriter {
   void write_polygon_centres(const WorkOptions& work) {
     const auto& polygons = numbers_.polygons();
     const std::size_t first = numbers_.edge_ends().size();
+    for_each_item(numbers_.points_in_cubes().size(), work.threads, nullptr,
+                  [&](std::size_t i) { write_in_cube(numbers_.points_in_cubes()[i], first); });
     for_each_item(polygons.size(), work.threads, work.progress, [&](std::size_t i) {
+      if (polygons[i].back() == kInCube) return;
       Mean mean(*this);
       for (const Index v : polygons[i])
         if (v != kNoPoint) mean.add_vertex(v);
@@ -306,7 +311,7 @@ class ComplexWriter {
     if constexpr (N == 3) {
       return cases.resolved()->place(mask, values, epsilon_);
     } else if constexpr (N == 4) {
-      return CompactCells::place(cases.table(), mask, values, isovalue_, epsilon_);
+      return BuiltCells::place(mask, values, isovalue_, epsilon_);
     } else {
       return {};  // squares have no side vertices
     }
@@ -316,11 +321,25 @@ class ComplexWriter {
   void write_side(const CellCases& cases, const Index* corners, std::uint64_t mask, Index number) const noexcept {
     std::array<double, std::size_t{1} << N> values;
     for (std::size_t v = 0; v < values.size(); ++v) values[v] = complex_.values()[corners[v]];
-    const std::array<double, N> place = place_on_ray(cases, mask, values);
+    write_inside<N>(corners, place_on_ray(cases, mask, values), number);
+  }
+
+  /// A vertex in a hexahedron between two cells. `first`: number of the first shared vertex.
+  void write_in_cube(const CubePoint& of, std::size_t first) const noexcept {
+    std::array<double, 8> values;
+    for (std::size_t v = 0; v < 8; ++v) values[v] = complex_.values()[of.corners[v]];
+    const std::array<double, 3> place = ResolvedCells::place_in_cube(of.mask, values, isovalue_, epsilon_);
+    write_inside<3>(of.corners.data(), place, static_cast<Index>(first + of.number));
+  }
+
+  /// A vertex at a place in the unit cube of dimension K.
+  template <int K>
+  void write_inside(const Index* corners, const std::array<double, K>& place, Index number) const noexcept {
+    constexpr std::size_t kLast = (std::size_t{1} << K) - 1;
     Point point{}, gradient{};
-    for (std::size_t v = 0; v < values.size(); ++v) {
+    for (std::size_t v = 0; v <= kLast; ++v) {
       double weight = 1.0;
-      for (std::size_t a = 0; a < N; ++a) weight *= (v >> a & 1u) != 0 ? place[a] : 1.0 - place[a];
+      for (std::size_t a = 0; a < K; ++a) weight *= (v >> a & 1u) != 0 ? place[a] : 1.0 - place[a];
       for (std::size_t i = 0; i < N; ++i) {
         point[i] += weight * complex_.points()[corners[v]][i];
         if (gradients_ != nullptr) gradient[i] += weight * gradients_->at(corners[v])[i];
@@ -328,7 +347,7 @@ class ComplexWriter {
     }
     Vertex& vertex = contour_.vertices[number];
     for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(point[i]);
-    if (is_layered_) keep_between(corners[0], corners[values.size() - 1], vertex);
+    if (is_layered_) keep_between(corners[0], corners[kLast], vertex);
     if (gradients_ != nullptr) contour_.normals[number] = normal_of(gradient);
   }
 

@@ -22,21 +22,6 @@ namespace {
 
 using tables::CellShape;
 
-/// The quadrilaterals of shapes that are not hexahedra, as corners: bit i is a coordinate of the quadrilateral.
-std::span<const std::array<std::uint8_t, 4>> quadrilaterals_of(CellShape shape) noexcept {
-  static constexpr std::array<std::uint8_t, 4> kBase[] = {{0, 1, 2, 3}};
-  static constexpr std::array<std::uint8_t, 4> kSides[] = {{0, 1, 3, 4}, {1, 2, 4, 5}, {2, 0, 5, 3}};
-  if (shape == CellShape::wedge) return kSides;
-  if (shape == CellShape::quadrilateral || shape == CellShape::pyramid) return kBase;
-  return {};
-}
-
-bool is_ambiguous_square(unsigned signature, const std::array<std::uint8_t, 4>& corners) noexcept {
-  unsigned bits = 0;
-  for (unsigned i = 0; i < 4; ++i) bits |= (signature >> corners[i] & 1u) << i;
-  return ambiguous_signatures<2>()[bits];
-}
-
 /// Lists of hexahedra: three for each entry of kTile3Resolved, then one for each signature that is not ambiguous.
 constexpr std::size_t kPlainHexahedra = 3 * 656;
 
@@ -56,6 +41,23 @@ constexpr unsigned wedge_list(unsigned odd, unsigned joined, bool is_odd_high) n
 }
 
 }  // namespace
+
+std::span<const std::array<std::uint8_t, 4>> quadrilaterals_of(CellShape shape) noexcept {
+  static constexpr std::array<std::uint8_t, 4> kBase[] = {{0, 1, 2, 3}};
+  static constexpr std::array<std::uint8_t, 4> kSides[] = {{0, 1, 3, 4}, {1, 2, 4, 5}, {2, 0, 5, 3}};
+  static constexpr std::array<std::uint8_t, 4> kSquares[] = {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5},
+                                                             {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
+  if (shape == CellShape::wedge) return kSides;
+  if (shape == CellShape::hexahedron) return kSquares;
+  if (shape == CellShape::quadrilateral || shape == CellShape::pyramid) return kBase;
+  return {};
+}
+
+bool is_ambiguous_square(unsigned signature, const std::array<std::uint8_t, 4>& corners) noexcept {
+  unsigned bits = 0;
+  for (unsigned i = 0; i < 4; ++i) bits |= (signature >> corners[i] & 1u) << i;
+  return ambiguous_signatures<2>()[bits];
+}
 
 ResolvedCells::ResolvedCells(CellShape shape, const tables::CellTable& table, Triangulation triangulation,
                              FaceRule rule, double isovalue)
@@ -166,19 +168,21 @@ std::uint16_t ResolvedCells::variant(const double* values, unsigned signature) c
     const unsigned entry = tables::kTile3Resolved.first_entry[signature] + key.resolution();
     return static_cast<std::uint16_t>(2 + 3 * entry + static_cast<unsigned>(key.choice()));
   }
-  unsigned faces = 0, high = 0;
-  unsigned joined = 0;  // of a wedge: the side that is high-connected
+  unsigned ambiguous = 0, high = 0;
   const auto quadrilaterals = quadrilaterals_of(shape_);
   for (unsigned q = 0; q < quadrilaterals.size(); ++q) {
     const auto& corners = quadrilaterals[q];
     if (!is_ambiguous_square(signature, corners)) continue;
     const std::array<double, 4> at = {values[corners[0]], values[corners[1]], values[corners[2]], values[corners[3]]};
-    ++faces;
-    if (!is_square_high(rule_, at, isovalue_)) continue;
-    ++high;
-    joined = q;
+    ambiguous |= 1u << q;
+    high |= (is_square_high(rule_, at, isovalue_) ? 1u : 0u) << q;
   }
-  if (high == 0 || high == faces) return high == 0 ? 0 : 1;
+  return variant(signature, ambiguous, high);
+}
+
+std::uint16_t ResolvedCells::variant(unsigned signature, unsigned ambiguous, unsigned high) noexcept {
+  if (high == 0 || high == ambiguous) return high == 0 ? 0 : 1;
+  const auto joined = static_cast<unsigned>(std::countr_zero(high));  // a wedge's side that is high-connected
   unsigned odd = 0;  // the corner whose column is unlike the two others
   const unsigned lower = signature & 7u;
   while (lower != 1u << odd && lower != (7u ^ 1u << odd)) ++odd;
@@ -190,13 +194,18 @@ std::array<double, 3> ResolvedCells::place(std::uint64_t mask, const std::array<
                                            double epsilon) const noexcept {
   std::uint32_t cube = static_cast<std::uint32_t>(mask & 255u);
   for (unsigned e = 0; e < 12; ++e) cube |= static_cast<std::uint32_t>(mask >> (8 + cube_edges_[e]) & 1u) << (8 + e);
+  return place_in_cube(cube, values, isovalue_, epsilon);
+}
+
+std::array<double, 3> ResolvedCells::place_in_cube(std::uint32_t mask, const std::array<double, 8>& values,
+                                                   double isovalue, double epsilon) noexcept {
   const auto on_edge = [&](unsigned e) {
     const unsigned base = edge_base(3, e);
-    return edge_point<3>(e, alpha_of(values[base], values[base | 1u << e / 4], isovalue_, epsilon));
+    return edge_point<3>(e, alpha_of(values[base], values[base | 1u << e / 4], isovalue, epsilon));
   };
-  return cube_own_place(cube, on_edge, [&](std::uint32_t corners) {
+  return cube_own_place(mask, on_edge, [&](std::uint32_t corners) {
     CubeHeights heights{values, epsilon};
-    for (double& at : heights.at) at -= isovalue_;
+    for (double& at : heights.at) at -= isovalue;
     return heights.level(corners);
   });
 }

@@ -9,6 +9,9 @@
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
+#include "complex/border_facets.hpp"
+#include "regions/cube_frame.hpp"
+#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 
@@ -29,28 +32,113 @@ PolygonKey key_of(std::uint64_t edges, const Index* numbers) noexcept {
   return key;
 }
 
+/// The edge of the cube of images between two of its corners.
+unsigned cube_edge(unsigned p, unsigned q) noexcept {
+  unsigned e = 0;
+  while (edge_base(3, e) != std::min(p, q) || 1u << e / 4 != (p ^ q)) ++e;
+  return e;
+}
+
+/// A vertex in a hexahedron, from its mask in the cell (kOwnOfFacet).
+CubePoint cube_point(const CellGroup& group, const tables::CellTable& table, const Index* corners,
+                     std::uint64_t mask) noexcept {
+  const CellFacet& facet = facets_of(group.shape)[static_cast<std::size_t>(std::countr_zero(mask >> kOwnOfFacet))];
+  std::array<unsigned, 16> in_facet;
+  in_facet.fill(8);
+  CubePoint point{{}, 0, 0};
+  for (unsigned v = 0; v < 8; ++v) {
+    in_facet[facet.corners[v]] = v;
+    point.corners[v] = corners[facet.corners[v]];
+    point.mask |= static_cast<std::uint32_t>(mask >> facet.corners[v] & 1u) << v;
+  }
+  for (unsigned e = 0; e < table.edge_count; ++e)
+    if ((mask >> (table.corner_count + e) & 1u) != 0)
+      point.mask |= 256u << cube_edge(in_facet[table.edges[2 * e]], in_facet[table.edges[2 * e + 1]]);
+  return point;
+}
+
+/// The key of a vertex in a hexahedron, whatever cell it is found in: a crossed edge, the ends of the diagonal from the
+/// smallest point, and the mask in the frame of the points' numbers.
+PolygonKey key_of(const CubePoint& point, Index crossing) noexcept {
+  const CubeFrame frame = CubeFrame::of_number(CubeFrame::number_of(point.corners.data()));
+  Index mask = 0;
+  for (unsigned v = 0; v < 8; ++v) mask |= (point.mask >> frame.corner(v) & 1u) << v;
+  for (unsigned e = 0; e < 12; ++e) {
+    const unsigned base = edge_base(3, e);
+    mask |= (point.mask >> (8 + cube_edge(frame.corner(base), frame.corner(base | 1u << e / 4))) & 1u) << (8 + e);
+  }
+  PolygonKey key;
+  key.fill(kNoPoint);
+  key[0] = crossing;
+  key[1] = point.corners[frame.corner(0)];
+  key[2] = point.corners[frame.corner(7)];
+  key[3] = mask;
+  key.back() = kInCube;
+  return key;
+}
+
+/// The smallest number of a vertex on the edges of a facet.
+Index first_crossing(const CellGroup& group, const tables::CellTable& table, unsigned signature, std::uint64_t mask,
+                     const Index* numbers) noexcept {
+  const CellFacet& facet = facets_of(group.shape)[static_cast<std::size_t>(std::countr_zero(mask >> kOwnOfFacet))];
+  unsigned corners = 0;
+  for (unsigned v = 0; v < 8; ++v) corners |= 1u << facet.corners[v];
+  Index first = kNoPoint;
+  for (std::uint32_t edges = crossed_edges(table, signature); edges != 0; edges &= edges - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(edges));
+    if ((corners >> table.edges[2 * e] & corners >> table.edges[2 * e + 1] & 1u) != 0)
+      first = std::min(first, numbers[e]);
+  }
+  return first;
+}
+
+/// Keeps one of the cubes for each vertex.
+std::vector<CubePoint> distinct(const std::vector<std::vector<CubePoint>>& of_blocks) {
+  std::vector<CubePoint> points;
+  for (const std::vector<CubePoint>& of_block : of_blocks)
+    points.insert(points.end(), of_block.begin(), of_block.end());
+  std::stable_sort(points.begin(), points.end(),
+                   [](const CubePoint& a, const CubePoint& b) { return a.number < b.number; });
+  points.erase(std::unique(points.begin(), points.end(),
+                           [](const CubePoint& a, const CubePoint& b) { return a.number == b.number; }),
+               points.end());
+  return points;
+}
+
 }  // namespace
 
-SharedPoints number_shared_points(const CellTables& tables, const std::vector<ActiveBlock>& blocks,
-                                  const CrossingNumbers& crossings, const WorkOptions& work) {
+SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tables,
+                                  const std::vector<ActiveBlock>& blocks, const CrossingNumbers& crossings,
+                                  const WorkOptions& work) {
   SharedPoints points;
   const auto first = sums_before(blocks, &ActiveBlock::shared);
   if (first.back() == 0) return points;
   // list
   std::vector<SharedUse> uses(first.back());
-  for_each_block(blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5),
-                 [&](std::size_t b, std::size_t, std::size_t) {
-                   const CellCases& cases = tables.of_group[blocks[b].group];
-                   std::uint64_t place = first[b];
-                   std::size_t crossing = 0;
-                   std::array<Index, 32> numbers{};
-                   for (const ActiveCell& cell : blocks[b].cells) {
-                     const CellContour contour = cases.of(cell.signature, cell.variant);
-                     crossings.of_cell(b, cell, crossing, numbers.data());
-                     for (unsigned j = 0; j < contour.list().shared_vertices; ++j, ++place)
-                       uses[place] = {key_of(contour.mask(j) >> cases.table().corner_count, numbers.data()), place};
-                   }
-                 });
+  std::vector<std::vector<CubePoint>> in_cubes(blocks.size());  // their numbers are places in the block
+  for_each_block(
+      blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5), [&](std::size_t b, std::size_t, std::size_t) {
+        const CellCases& cases = tables.of_group[blocks[b].group];
+        const CellGroup& group = cells.groups[blocks[b].group];
+        std::uint64_t place = first[b];
+        std::size_t crossing = 0;
+        std::array<Index, 32> numbers{};
+        for (const ActiveCell& cell : blocks[b].cells) {
+          const CellContour contour = cases.of(cell.signature, cell.variant);
+          crossings.of_cell(b, cell, crossing, numbers.data());
+          for (unsigned j = 0; j < contour.list().shared_vertices; ++j, ++place) {
+            const std::uint64_t mask = contour.mask(j);
+            if (mask >> kOwnOfFacet == 0) {
+              uses[place] = {key_of(mask >> cases.table().corner_count, numbers.data()), place};
+              continue;
+            }
+            CubePoint& point = in_cubes[b].emplace_back(cube_point(group, cases.table(), group.cell(cell.cell), mask));
+            point.number = static_cast<Index>(place - first[b]);
+            uses[place] = {key_of(point, first_crossing(group, cases.table(), cell.signature, mask, numbers.data())),
+                           place};
+          }
+        }
+      });
   // sort by the first vertex, then among equal ones by the others
   const auto bits = static_cast<unsigned>(std::bit_width(crossings.ends().size()));
   sort_by_bits(uses, bits, [](const SharedUse& use) { return std::uint64_t{use.key[0]}; });
@@ -66,6 +154,9 @@ SharedPoints number_shared_points(const CellTables& tables, const std::vector<Ac
     if (i == 0 || uses[i].key != uses[i - 1].key) points.keys.push_back(uses[i].key);
     points.numbers[uses[i].place] = static_cast<Index>(points.keys.size() - 1);
   }
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (CubePoint& point : in_cubes[b]) point.number = points.numbers[first[b] + point.number];
+  points.in_cubes = distinct(in_cubes);
   tell(work.progress, 1.0);
   return points;
 }

@@ -15,16 +15,26 @@ namespace tegl::detail {
 /// A barycentre by the vertices of its polygon: ascending numbers, unused entries at the end kNoPoint. The polygons of
 /// a complex have different vertices, whatever the numbering of the cells that they are in.
 using PolygonKey = std::array<Index, 12>;
-inline constexpr Index kNoPoint = ~Index{0};
+inline constexpr Index kNoPoint = ~Index{0}, kInCube = kNoPoint - 1;
 
-/// The shared barycentres of a contour, ordered by their keys.
+/// A vertex of the contour's own in a hexahedron between two cells, as in a cube of images.
+struct CubePoint {
+  std::array<Index, 8> corners;
+  std::uint32_t mask;  ///< corners (bit v) and edges (bit 8 + e) of the cube of images
+  Index number;        ///< in SharedPoints
+};
+
+/// The shared vertices of a contour, ordered by their keys: barycentres, and vertices in cubes. The key of the latter
+/// names the cube and the mask; its last entry is kInCube.
 struct SharedPoints {
   std::vector<PolygonKey> keys;
+  std::vector<CubePoint> in_cubes;
   std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell
 };
 
 /// Numbers the shared barycentres of all active cells. Errors: TooLarge, Cancelled.
-[[nodiscard]] SharedPoints number_shared_points(const CellTables& tables, const std::vector<ActiveBlock>& blocks,
+[[nodiscard]] SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tables,
+                                                const std::vector<ActiveBlock>& blocks,
                                                 const CrossingNumbers& crossings, const WorkOptions& work);
 
 }  // namespace tegl::detail

@@ -43,6 +43,10 @@ struct CubeFrame {
     for (unsigned v = 0; v < 8; ++v) in_frame |= (of_cube >> corner(v) & 1u) << v;
     return in_frame;
   }
+  /// The cube's square for a square of the frame (2 * axis + side).
+  [[nodiscard]] unsigned square(unsigned q) const noexcept {
+    return 2 * axes[q / 2] + ((q ^ origin >> axes[q / 2]) & 1u);
+  }
   [[nodiscard]] bool is_mirrored() const noexcept {
     const bool odd = (axes[0] > axes[1]) != ((axes[0] > axes[2]) != (axes[1] > axes[2]));
     return odd != (std::popcount(origin) % 2 == 1);

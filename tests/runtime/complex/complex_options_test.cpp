@@ -361,11 +361,14 @@ TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {
   });
   refuse(complex, "expected differences", [](ExtractOptions& o) { o.normals = Normals::sobel; });
   const Complex<4> swept = in_time(complex, std::vector<double>{0.0, 1.0}, std::vector<double>(2 * mesh.points.size()));
-  refuse(swept, "expected the barycentric one in 4D for meshes, lattices and divided cells",
-         [](ExtractOptions& o) { o.ambiguity = Ambiguity::squares; });
+  refuse(swept, "expected the barycentric one in 4D for meshes, lattices and divided cells", [](ExtractOptions& o) {
+    o.ambiguity = Ambiguity::squares;
+    o.close = true;
+  });
   refuse(swept, "expected low, high, squares or decider", [](ExtractOptions& o) {
     o.ambiguity = Ambiguity::mean;
     o.triangulation = Triangulation::barycentric;
+    o.close = true;
   });
 }
 
