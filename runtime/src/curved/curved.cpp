@@ -49,13 +49,20 @@ class Mover {
     return place;
   }
 
-  /// Moves points to space; NaN where coordinates are unknown.
-  void move(detail::CurvedBlock& block) const noexcept {
+  /// The axes, as bits, whose coordinates `move` reads and writes.
+  [[nodiscard]] unsigned read() const noexcept {
+    return is_straight_and_needed_ ? (1u << N) - 1 : map_.along() | map_.curved();
+  }
+  [[nodiscard]] unsigned written() const noexcept { return map_.curved(); }
+  /// Finds the places of points in the grid, and starts to load coordinates there.
+  void look_up(detail::CurvedBlock& block) const noexcept {
     for (int a = 0; a < N && !is_straight_and_needed_; ++a)
       if (steps_[a] != 0.0) detail::find_places(block, a, steps_[a]);
     if (is_straight_and_needed_) locate_all(block);
-    map_.move(block);
+    map_.look_up(block);
   }
+  /// Moves points that were looked up to space; NaN where coordinates are unknown.
+  void move(detail::CurvedBlock& block) const noexcept { map_.move(block); }
 
   /// The normal in space of one on the index grid: the gradient g becomes the solution x of J^T x = g.
   [[nodiscard]] std::array<double, N> turned(const std::array<double, N>& point,
@@ -105,13 +112,13 @@ class Mover {
   bool is_straight_and_needed_ = false;  ///< whether curved coordinates differ along an axis with its own coordinates
 };
 
-/// The first point with a coordinate that is not finite; block.count if there is none.
+/// The first point with a coordinate along some axes that is not finite; block.count if there is none.
 template <int N>
-std::size_t first_unknown(const detail::CurvedBlock& block) noexcept {
+std::size_t first_unknown(const detail::CurvedBlock& block, unsigned axes) noexcept {
   std::size_t i = 0;
-  if (detail::are_finite(block, N)) return block.count;
+  if (detail::are_finite(block, axes)) return block.count;
   for (bool is_known = true; i < block.count; ++i) {
-    for (int a = 0; a < N; ++a) is_known = is_known && std::isfinite(block.point[a][i]);
+    for (int a = 0; a < N; ++a) is_known = is_known && ((axes >> a & 1u) == 0 || std::isfinite(block.point[a][i]));
     if (!is_known) break;
   }
   return i;
@@ -201,16 +208,19 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Re
   // The first vertex without a place keeps its indices, for the message.
   std::atomic<std::size_t> unknown{vertices};
   detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    detail::CurvedBlock block;
-    for (std::size_t first = from; first < to; first += block.kMost) {
+    std::array<detail::CurvedBlock, 2> blocks;  // one is looked up before the other is moved, as memory is slow
+    const auto look_up = [&](std::size_t first) {
+      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
       block.count = std::min(to - first, block.kMost);
-      for (int a = 0; a < N; ++a) {
-        for (std::size_t i = 0; i < block.count; ++i)
-          block.point[a][i] = static_cast<double>(contour.vertices[first + i][a]);
-        std::fill(block.point[a].begin() + block.count, block.point[a].end(), 0.0);
-      }
+      detail::load_points(contour.vertices[first].data(), N, mover.read(), block);
+      mover.look_up(block);
+    };
+    if (from < to) look_up(from);
+    for (std::size_t first = from; first < to; first += detail::CurvedBlock::kMost) {
+      if (to - first > detail::CurvedBlock::kMost) look_up(first + detail::CurvedBlock::kMost);
+      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
       mover.move(block);
-      if (const std::size_t i = first_unknown<N>(block); i < block.count) {
+      if (const std::size_t i = first_unknown<N>(block, mover.written()); i < block.count) {
         detail::lower_to(unknown, first + i);
         continue;
       }
@@ -219,8 +229,7 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Re
             mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
         for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
       }
-      for (std::size_t i = 0; i < block.count; ++i)
-        for (int a = 0; a < N; ++a) contour.vertices[first + i][a] = static_cast<Real>(block.point[a][i]);
+      detail::store_points(block, N, mover.written(), contour.vertices[first].data());
     }
   });
   if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));

@@ -4,10 +4,13 @@
 // so no branch depends on it.
 #include "curved/curved_block.hpp"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "curved/curved_block.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "hwy/cache_control.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,10 +52,10 @@ void edges(CurvedBlock& block, unsigned along) {
   }
 }
 
-void coordinates(CurvedBlock& block, const CurvedArrays& arrays) {
+/// The ends of edges in arrays: the numbers of their samples, and the weights of the second ends.
+void ends(const CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& of) {
   const BlockTag d;
   const hn::RebindToSigned<BlockTag> di;
-  const auto one = hn::Set(d, 1.0);
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     auto at = hn::Zero(d), step = hn::Zero(d);
     for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a) {
@@ -62,23 +65,106 @@ void coordinates(CurvedBlock& block, const CurvedArrays& arrays) {
       const auto share = hn::LoadU(d, block.share[a].data() + i);
       step = hn::Add(step, hn::IfThenElseZero(hn::Ne(share, hn::Zero(d)), stride));
     }
-    const auto first = hn::ConvertTo(di, at), second = hn::ConvertTo(di, hn::Add(at, step));
+    hn::StoreU(hn::ConvertTo(di, at), di, of.first.data() + i);
+    hn::StoreU(hn::ConvertTo(di, hn::Add(at, step)), di, of.second.data() + i);
     // the weights 1 and 0 for a coordinate that does not differ along the edge
-    const auto share = hn::IfThenElseZero(hn::Ne(step, hn::Zero(d)), hn::LoadU(d, block.edge_share.data() + i));
-    for (std::size_t k = 0; k < arrays.count; ++k) {
-      const auto here = hn::GatherIndex(d, arrays.values[k], first);
-      const auto next = hn::GatherIndex(d, arrays.values[k], second);
-      hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d,
-                 block.point[arrays.axis[k]].data() + i);
-    }
+    hn::StoreU(hn::IfThenElseZero(hn::Ne(step, hn::Zero(d)), hn::LoadU(d, block.edge_share.data() + i)), d,
+               of.weight.data() + i);
   }
 }
 
-bool finite(const CurvedBlock& block, std::size_t axes) {
+/// The coordinates between the values at the ends.
+void between(CurvedBlock& block, const CurvedBlock::Ends& ends, std::size_t axis) {
+  const BlockTag d;
+  const auto one = hn::Set(d, 1.0);
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
+    const auto share = hn::LoadU(d, ends.weight.data() + i);
+    const auto here = hn::LoadU(d, block.here.data() + i), next = hn::LoadU(d, block.next.data() + i);
+    hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d, block.point[axis].data() + i);
+  }
+}
+
+/// Vectors of coordinates as doubles, and back.
+HWY_INLINE hn::Vec<BlockTag> widened(BlockTag d, hn::Vec<hn::Rebind<float, BlockTag>> v) { return hn::PromoteTo(d, v); }
+HWY_INLINE hn::Vec<BlockTag> widened(BlockTag /*d*/, hn::Vec<BlockTag> v) { return v; }
+template <class Real>
+HWY_INLINE auto narrowed(hn::Vec<BlockTag> v) {
+  if constexpr (sizeof(Real) == sizeof(double))
+    return v;
+  else
+    return hn::DemoteTo(hn::Rebind<Real, BlockTag>(), v);
+}
+
+/// Loads points of `Dim` coordinates; of the last ones, which fill no vector, one by one.
+template <std::size_t Dim, class Real>
+void load(const Real* points, unsigned axes, CurvedBlock& block) {
+  const BlockTag d;
+  const hn::Rebind<Real, BlockTag> of_points;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= block.count; i += hn::Lanes(d)) {
+    hn::Vec<decltype(of_points)> x, y, z, t;
+    const auto keep = [&](std::size_t a, auto v) {
+      if ((axes >> a & 1u) != 0) hn::StoreU(widened(d, v), d, block.point[a].data() + i);
+    };
+    if constexpr (Dim == 2) hn::LoadInterleaved2(of_points, points + Dim * i, x, y);
+    if constexpr (Dim == 3) hn::LoadInterleaved3(of_points, points + Dim * i, x, y, z);
+    if constexpr (Dim == 4) hn::LoadInterleaved4(of_points, points + Dim * i, x, y, z, t);
+    keep(0, x);
+    keep(1, y);
+    if constexpr (Dim > 2) keep(2, z);
+    if constexpr (Dim > 3) keep(3, t);
+  }
+  for (std::size_t a = 0; a < Dim; ++a) {
+    if ((axes >> a & 1u) == 0) continue;
+    for (std::size_t j = i; j < block.count; ++j) block.point[a][j] = static_cast<double>(points[Dim * j + a]);
+    std::fill(block.point[a].begin() + block.count, block.point[a].end(), 0.0);
+  }
+}
+
+template <std::size_t Dim, class Real>
+void store(const CurvedBlock& block, unsigned axes, Real* points) {
+  const BlockTag d;
+  const hn::Rebind<Real, BlockTag> of_points;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= block.count; i += hn::Lanes(d)) {
+    hn::Vec<decltype(of_points)> x, y, z, t;
+    const auto take = [&](std::size_t a, auto& v) {
+      if ((axes >> a & 1u) != 0) v = narrowed<Real>(hn::LoadU(d, block.point[a].data() + i));
+    };
+    if constexpr (Dim == 2) hn::LoadInterleaved2(of_points, points + Dim * i, x, y);
+    if constexpr (Dim == 3) hn::LoadInterleaved3(of_points, points + Dim * i, x, y, z);
+    if constexpr (Dim == 4) hn::LoadInterleaved4(of_points, points + Dim * i, x, y, z, t);
+    take(0, x);
+    take(1, y);
+    if constexpr (Dim > 2) take(2, z);
+    if constexpr (Dim > 3) take(3, t);
+    if constexpr (Dim == 2) hn::StoreInterleaved2(x, y, of_points, points + Dim * i);
+    if constexpr (Dim == 3) hn::StoreInterleaved3(x, y, z, of_points, points + Dim * i);
+    if constexpr (Dim == 4) hn::StoreInterleaved4(x, y, z, t, of_points, points + Dim * i);
+  }
+  for (std::size_t a = 0; a < Dim; ++a)
+    for (std::size_t j = i; j < block.count && (axes >> a & 1u) != 0; ++j)
+      points[Dim * j + a] = static_cast<Real>(block.point[a][j]);
+}
+
+void load_float(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) {
+  dim == 2 ? load<2>(points, axes, block) : dim == 3 ? load<3>(points, axes, block) : load<4>(points, axes, block);
+}
+void load_double(const double* points, std::size_t dim, unsigned axes, CurvedBlock& block) {
+  dim == 2 ? load<2>(points, axes, block) : dim == 3 ? load<3>(points, axes, block) : load<4>(points, axes, block);
+}
+void store_float(const CurvedBlock& block, std::size_t dim, unsigned axes, float* points) {
+  dim == 2 ? store<2>(block, axes, points) : dim == 3 ? store<3>(block, axes, points) : store<4>(block, axes, points);
+}
+void store_double(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) {
+  dim == 2 ? store<2>(block, axes, points) : dim == 3 ? store<3>(block, axes, points) : store<4>(block, axes, points);
+}
+
+bool finite(const CurvedBlock& block, unsigned axes) {
   const BlockTag d;
   auto sum = hn::Zero(d);  // 0 times infinity or NaN is NaN
-  for (std::size_t a = 0; a < axes; ++a)
-    for (std::size_t i = 0; i < block.count; i += hn::Lanes(d))
+  for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a)
+    for (std::size_t i = 0; (axes >> a & 1u) != 0 && i < block.count; i += hn::Lanes(d))
       sum = hn::MulAdd(hn::Zero(d), hn::LoadU(d, block.point[a].data() + i), sum);
   return hn::AllTrue(d, hn::Eq(sum, sum));
 }
@@ -93,8 +179,13 @@ namespace tegl::detail {
 
 HWY_EXPORT(places);
 HWY_EXPORT(edges);
-HWY_EXPORT(coordinates);
+HWY_EXPORT(ends);
+HWY_EXPORT(between);
 HWY_EXPORT(finite);
+HWY_EXPORT(load_float);
+HWY_EXPORT(load_double);
+HWY_EXPORT(store_float);
+HWY_EXPORT(store_double);
 
 void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept {
   HWY_DYNAMIC_DISPATCH(places)(block, axis, step);
@@ -102,12 +193,40 @@ void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept {
 
 void find_edges(CurvedBlock& block, unsigned along) noexcept { HWY_DYNAMIC_DISPATCH(edges)(block, along); }
 
-bool are_finite(const CurvedBlock& block, std::size_t axes) noexcept {
-  return HWY_DYNAMIC_DISPATCH(finite)(block, axes);
+void load_points(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept {
+  HWY_DYNAMIC_DISPATCH(load_float)(points, dim, axes, block);
+}
+void load_points(const double* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept {
+  HWY_DYNAMIC_DISPATCH(load_double)(points, dim, axes, block);
+}
+void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, float* points) noexcept {
+  HWY_DYNAMIC_DISPATCH(store_float)(block, dim, axes, points);
+}
+void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) noexcept {
+  HWY_DYNAMIC_DISPATCH(store_double)(block, dim, axes, points);
 }
 
-void interpolate(CurvedBlock& block, const CurvedArrays& arrays) noexcept {
-  HWY_DYNAMIC_DISPATCH(coordinates)(block, arrays);
+bool are_finite(const CurvedBlock& block, unsigned axes) noexcept { return HWY_DYNAMIC_DISPATCH(finite)(block, axes); }
+
+void find_ends(CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& ends) noexcept {
+  HWY_DYNAMIC_DISPATCH(ends)(block, arrays, ends);
+  for (std::size_t k = 0; arrays.is_large && k < arrays.count; ++k)
+    for (std::size_t i = 0; i < block.count; ++i) {
+      hwy::Prefetch(arrays.values[k] + ends.first[i]);
+      hwy::Prefetch(arrays.values[k] + ends.second[i]);
+    }
+}
+
+void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends) noexcept {
+  for (std::size_t k = 0; k < arrays.count; ++k) {
+    // here, for the baseline: many processors load one by one faster than they gather
+    const double* const values = arrays.values[k];
+    for (std::size_t i = 0; i < block.count; ++i) {
+      block.here[i] = values[ends.first[i]];
+      block.next[i] = values[ends.second[i]];
+    }
+    HWY_DYNAMIC_DISPATCH(between)(block, ends, arrays.axis[k]);
+  }
 }
 
 }  // namespace tegl::detail

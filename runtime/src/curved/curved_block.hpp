@@ -20,13 +20,21 @@ struct CurvedBlock {
   std::array<Numbers, kMostAxes> base{};  ///< whole numbers, exact as the arrays have fewer than 2^53 samples
   /// Of places on an edge: the share along it.
   Numbers edge_share{};
-  std::uint64_t inside = 0;  ///< bit i: place i is not on an edge, or at its second end
+  /// Of the edges in arrays of coordinates: numbers of the ends, and weights of the second ones.
+  struct Ends {
+    std::array<std::int64_t, kMost> first{}, second{};
+    Numbers weight{};
+  };
+  std::array<Ends, kMostAxes> ends{};  ///< by CurvedArrays
+  Numbers here{}, next{};              ///< values at ends
+  std::uint64_t inside = 0;            ///< bit i: place i is not on an edge, or at its second end
 };
 
 /// Arrays of coordinates with the same axes.
 struct CurvedArrays {
   using Strides = std::array<std::size_t, CurvedBlock::kMostAxes>;
-  Strides strides{};  ///< distance of neighbours along each axis; 0 along axes that the arrays do not have
+  Strides strides{};      ///< distance of neighbours along each axis; 0 along axes that the arrays do not have
+  bool is_large = false;  ///< whether values do not stay in the nearest caches
   std::size_t count = 0;
   std::array<const double*, CurvedBlock::kMostAxes> values{};
   std::array<std::size_t, CurvedBlock::kMostAxes> axis{};  ///< of each array's coordinates
@@ -36,9 +44,16 @@ struct CurvedArrays {
 void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept;
 /// Sets edge_share and inside; `along`: bits of the axes that have shares.
 void find_edges(CurvedBlock& block, unsigned along) noexcept;
-/// Whether the coordinates of all points, along the first axes, are finite.
-bool are_finite(const CurvedBlock& block, std::size_t axes) noexcept;
-/// Replaces coordinates of points by those at their places, except places inside.
-void interpolate(CurvedBlock& block, const CurvedArrays& arrays) noexcept;
+/// Loads block.count points of `dim` coordinates, or stores them: only those along axes with bits in `axes`.
+void load_points(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept;
+void load_points(const double* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept;
+void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, float* points) noexcept;
+void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) noexcept;
+/// Whether the coordinates of all points along the axes with bits in `axes` are finite.
+bool are_finite(const CurvedBlock& block, unsigned axes) noexcept;
+/// Finds the ends of edges in arrays, and starts to load the values there if the arrays are large.
+void find_ends(CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& ends) noexcept;
+/// Replaces coordinates of points by those between the ends of their edges.
+void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends) noexcept;
 
 }  // namespace tegl::detail

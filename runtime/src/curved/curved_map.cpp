@@ -51,6 +51,8 @@ CurvedMap<N>::CurvedMap(const Grid<N>& grid, std::span<const CurvedAxis> curved)
     std::copy(strides_[k].begin(), strides_[k].end(), strides.begin());
     auto same = std::find_if(arrays_.begin(), arrays_.end(), [&](const auto& of) { return of.strides == strides; });
     if (same == arrays_.end()) same = arrays_.insert(same, {.strides = strides});
+    constexpr std::size_t kLarge = std::size_t{1} << 17;
+    same->is_large = axes_[k].values.size() > kLarge;
     same->values[same->count] = axes_[k].values.data();
     same->axis[same->count++] = static_cast<std::size_t>(axes_[k].axis);
   }
@@ -105,9 +107,14 @@ double CurvedMap<N>::main_orientation() const {
 }
 
 template <int N>
-void CurvedMap<N>::move(CurvedBlock& block) const noexcept {
+void CurvedMap<N>::look_up(CurvedBlock& block) const noexcept {
   find_edges(block, along_);  // nearly all places are on an edge
-  for (const CurvedArrays& arrays : arrays_) interpolate(block, arrays);
+  for (std::size_t k = 0; k < arrays_.size(); ++k) find_ends(block, arrays_[k], block.ends[k]);
+}
+
+template <int N>
+void CurvedMap<N>::move(CurvedBlock& block) const noexcept {
+  for (std::size_t k = 0; k < arrays_.size(); ++k) interpolate(block, arrays_[k], block.ends[k]);
   for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     CellPlace<N> place{};

@@ -38,7 +38,9 @@ class CurvedMap {
   /// The orientation of most of some cells that are spread over the grid: 1 or -1.
   [[nodiscard]] double main_orientation() const;
 
-  /// Replaces the curved coordinates of points by those of their places in the grid.
+  /// Finds the ends of the edges of places in the grid, and starts to load coordinates there.
+  void look_up(CurvedBlock& block) const noexcept;
+  /// Replaces the curved coordinates of points, which were looked up, by those of their places in the grid.
   void move(CurvedBlock& block) const noexcept;
   /// The derivatives by index, derivatives[c][a], of coordinate c along axis a, at a place: central differences between
   /// samples, interpolated. Only those of curved coordinates are set, the others are 0.
