@@ -95,6 +95,14 @@ HWY_INLINE auto narrowed(hn::Vec<BlockTag> v) {
     return hn::DemoteTo(hn::Rebind<Real, BlockTag>(), v);
 }
 
+/// The coordinates of as many points as fit into a vector.
+template <std::size_t Dim, class D, class V>
+HWY_INLINE void load_columns(D d, const hn::TFromD<D>* points, V& x, V& y, V& z, V& t) {
+  if constexpr (Dim == 2) hn::LoadInterleaved2(d, points, x, y);
+  if constexpr (Dim == 3) hn::LoadInterleaved3(d, points, x, y, z);
+  if constexpr (Dim == 4) hn::LoadInterleaved4(d, points, x, y, z, t);
+}
+
 /// Loads points of `Dim` coordinates; of the last ones, which fill no vector, one by one.
 template <std::size_t Dim, class Real>
 void load(const Real* points, unsigned axes, CurvedBlock& block) {
@@ -106,9 +114,7 @@ void load(const Real* points, unsigned axes, CurvedBlock& block) {
     const auto keep = [&](std::size_t a, auto v) {
       if ((axes >> a & 1u) != 0) hn::StoreU(widened(d, v), d, block.point[a].data() + i);
     };
-    if constexpr (Dim == 2) hn::LoadInterleaved2(of_points, points + Dim * i, x, y);
-    if constexpr (Dim == 3) hn::LoadInterleaved3(of_points, points + Dim * i, x, y, z);
-    if constexpr (Dim == 4) hn::LoadInterleaved4(of_points, points + Dim * i, x, y, z, t);
+    load_columns<Dim>(of_points, points + Dim * i, x, y, z, t);
     keep(0, x);
     keep(1, y);
     if constexpr (Dim > 2) keep(2, z);
@@ -131,9 +137,7 @@ void store(const CurvedBlock& block, unsigned axes, Real* points) {
     const auto take = [&](std::size_t a, auto& v) {
       if ((axes >> a & 1u) != 0) v = narrowed<Real>(hn::LoadU(d, block.point[a].data() + i));
     };
-    if constexpr (Dim == 2) hn::LoadInterleaved2(of_points, points + Dim * i, x, y);
-    if constexpr (Dim == 3) hn::LoadInterleaved3(of_points, points + Dim * i, x, y, z);
-    if constexpr (Dim == 4) hn::LoadInterleaved4(of_points, points + Dim * i, x, y, z, t);
+    load_columns<Dim>(of_points, points + Dim * i, x, y, z, t);
     take(0, x);
     take(1, y);
     if constexpr (Dim > 2) take(2, z);
