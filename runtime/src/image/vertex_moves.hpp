@@ -14,10 +14,12 @@ namespace tegl::detail {
 template <int N>
 class VertexMoves {
  public:
-  /// The moves of vertices on edges along `axis` that start in layer k, at most kWordBits, with these interpolation
-  /// parameters: differences of positions.
-  virtual void find_moves(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
-                          std::array<double, N>* out) const noexcept = 0;
+  /// Moves vertices on edges along `axis` that start in layer k, at most kWordBits, with these interpolation
+  /// parameters.
+  virtual void move(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
+                    std::array<float, N>* vertices) const noexcept = 0;
+  virtual void move(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
+                    std::array<double, N>* vertices) const noexcept = 0;
 
  protected:
   ~VertexMoves() = default;

@@ -269,14 +269,9 @@ class EdgeWriter {
   }
 
   void move_points(int axis, const EdgesInRows& edges, const double* alphas, Vertex* out) const noexcept {
-    std::array<std::array<double, N>, kWordBits> moves;
     for (std::size_t first = 0; first < edges.count; first += kWordBits) {
       const std::size_t count = std::min(kWordBits, edges.count - first);
-      moves_->find_moves(run(axis).layer, axis, {edges.rows + first, edges.at + first, count}, alphas + first,
-                         moves.data());
-      Real* const to = out[first].data();
-      const double* const by = moves[0].data();
-      for (std::size_t i = 0; i < count * N; ++i) to[i] = static_cast<Real>(to[i] + by[i]);
+      moves_->move(run(axis).layer, axis, {edges.rows + first, edges.at + first, count}, alphas + first, out + first);
     }
   }
 

@@ -21,21 +21,27 @@ SampleSigns<N>::SampleSigns(const SampleClassifier<N>& samples, const Index& siz
     rows_ *= sizes[a];
   }
   const std::size_t pitch = words_ + 1;
-  high_.assign(rows_ * pitch, 0);
-  // classify
+  high_.assign(rows_ * pitch + 1, 0);
+  // rows along axis 1 together, up to a word; the bits of missing samples only if there are any
   std::atomic<bool> any_missing = false;
+  const auto classify = [&](std::size_t from, std::size_t end, Word* missing, std::size_t missing_pitch) {
+    for (std::size_t row = from; row < end;) {
+      const Index index = index_of(row);
+      const std::size_t rows = N > 2 ? std::min({end - row, sizes[1] - index[1], kWordBits}) : 1;
+      if (samples.classify(index, rows, {high_.data() + first_word(row), pitch},
+                           {missing + missing_pitch * row, missing_pitch}) != 0)
+        any_missing = true;
+      row += rows;
+    }
+  };
   for_each_part(rows_, threads, {}, [&](std::size_t from, std::size_t end) {
     std::vector<Word> missing(pitch);
-    for (std::size_t row = from; row < end; ++row)
-      if (samples.classify(index_of(row), 1, {high_.data() + row * pitch, pitch}, {missing.data(), pitch}) != 0)
-        any_missing = true;
+    classify(from, end, missing.data(), 0);
   });
   if (any_missing) {
-    missing_.assign(rows_ * pitch, 0);
-    for_each_part(rows_, threads, {}, [&](std::size_t from, std::size_t end) {
-      for (std::size_t row = from; row < end; ++row)
-        samples.classify(index_of(row), 1, {high_.data() + row * pitch, pitch}, {missing_.data() + row * pitch, pitch});
-    });
+    missing_.assign(rows_ * pitch + 1, 0);
+    for_each_part(rows_, threads, {},
+                  [&](std::size_t from, std::size_t end) { classify(from, end, missing_.data() + 1, pitch); });
   }
 }
 

@@ -48,16 +48,21 @@ class SampleSigns {
     return !missing_.empty() && bit(missing_, row, i);
   }
   /// The bits of the high samples of a row, and a word of zeros after them.
-  [[nodiscard]] const Word* high(std::size_t row) const noexcept { return high_.data() + row * (words_ + 1); }
+  [[nodiscard]] const Word* high(std::size_t row) const noexcept { return high_.data() + first_word(row); }
+  /// The same as bytes, from one word before the row on, which can be read.
+  [[nodiscard]] const std::byte* bytes_before(std::size_t row) const noexcept {
+    return reinterpret_cast<const std::byte*>(high(row) - 1);
+  }
+  [[nodiscard]] std::size_t row_bytes() const noexcept { return (words_ + 1) * sizeof(Word); }
   [[nodiscard]] bool any_missing() const noexcept { return !missing_.empty(); }
   /// Bits of the missing samples of a word.
   [[nodiscard]] Word missing(std::size_t row, std::size_t w) const noexcept {
-    return missing_.empty() ? 0 : missing_[row * (words_ + 1) + w];
+    return missing_.empty() ? 0 : missing_[first_word(row) + w];
   }
   /// Bits of the critical edges along `axis` that start at the 64 samples of a word. `in_grid`: whether the row has a
   /// neighbour along the axis (ignored for axis 0).
   [[nodiscard]] Word critical(int axis, std::size_t row, std::size_t w, bool in_grid) const noexcept {
-    const std::size_t at = row * (words_ + 1) + w;
+    const std::size_t at = first_word(row) + w;
     if (axis == 0) {
       const Word differ = high_[at] ^ (high_[at] >> 1 | high_[at + 1] << (kWordBits - 1));
       Word unusable = ~edges_in_word(w);
@@ -71,8 +76,9 @@ class SampleSigns {
   }
 
  private:
+  [[nodiscard]] std::size_t first_word(std::size_t row) const noexcept { return 1 + row * (words_ + 1); }
   [[nodiscard]] bool bit(const Buffer<Word>& bits, std::size_t row, std::size_t i) const noexcept {
-    return (bits[row * (words_ + 1) + i / kWordBits] >> (i % kWordBits) & 1u) != 0;
+    return (bits[first_word(row) + i / kWordBits] >> (i % kWordBits) & 1u) != 0;
   }
   /// Edges along axis 0 that start at the samples of word w.
   [[nodiscard]] Word edges_in_word(std::size_t w) const noexcept {
@@ -85,7 +91,7 @@ class SampleSigns {
   std::array<std::size_t, N> strides_{};
   std::size_t rows_ = 1;
   std::size_t words_;
-  Buffer<Word> high_;     ///< rows x (words + 1); the last word of a row is 0
+  Buffer<Word> high_;     ///< a word of 0, then rows x (words + 1); the last word of a row is 0
   Buffer<Word> missing_;  ///< as high_; empty if no sample is missing
 };
 

@@ -10,13 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdlib>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "image/vertex_moves.hpp"
 #include "position/critical_edges.hpp"
 #include "position/placed_source.hpp"
+#include "position/pulls.hpp"
 
 namespace tegl::detail {
 
@@ -26,9 +27,11 @@ class Gravitation final : public PositionsOnEdges<N> {
  public:
   Gravitation(const SampleSource<N>& samples, const Grid<N>& grid, unsigned threads)
       : samples_(samples), signs_(samples, grid.sizes(), threads), linear_(grid.linear), mapped_(grid.has_world_map()) {
-    for (int a = 0; a < N; ++a)
+    for (int a = 0; a < N; ++a) {
       for (std::size_t i = 0; i + 1 < grid.axes[a].size(); ++i)
         steps_[a].push_back(grid.axes[a][i + 1] - grid.axes[a][i]);
+      for (const double step : steps_[a]) equal_steps_ = equal_steps_ && step == steps_[a].front();
+    }
     for (int a = 0; a < N; ++a) steps_[a].push_back(0.0);  // of the last sample, which nothing pulls outwards
   }
 
@@ -36,13 +39,21 @@ class Gravitation final : public PositionsOnEdges<N> {
     samples_.edge_alphas(edges.k, edges.axis, edges.edges, out);
   }
   /// As VertexMoves. The rows of `edges.edges` are not read.
-  void find_moves(const LayerEdges<N>& edges, const double* alphas, std::array<double, N>* out) const noexcept {
+  template <class Real>
+  void move(const LayerEdges<N>& edges, const double* alphas, std::array<Real, N>* vertices) const noexcept {
     const auto along = [&]<int A>(std::integral_constant<int, A>) {
       if (edges.axis != A) return false;
+      std::array<std::uint16_t, LayerEdges<N>::kMost> numbers;
       if (signs_.any_missing())
-        find_moves_along<A, true>(edges, alphas, out);
+        find_pulls<A, true>(edges, numbers.data());
       else
-        find_moves_along<A, false>(edges, alphas, out);
+        find_pulls<A, false>(edges, numbers.data());
+      if (mapped_)
+        move_along<A, true, false>(edges, numbers.data(), alphas, vertices);
+      else if (equal_steps_)
+        move_along<A, false, true>(edges, numbers.data(), alphas, vertices);
+      else
+        move_along<A, false, false>(edges, numbers.data(), alphas, vertices);
       return true;
     };
     [&]<int... A>(std::integer_sequence<int, A...>) {
@@ -52,98 +63,68 @@ class Gravitation final : public PositionsOnEdges<N> {
   }
 
  private:
+  using Numbers = PullNumbers<N>;
+  static constexpr std::size_t kDirections = Numbers::kDirections;
+  static_assert(Numbers::kCount <= 1u << 16);
   /// Vertices stay inside the double pyramid with the ends of the edge as tips, |d_1| + ... + |d_(N-1)| < distance from
   /// the nearer end. Then the corner of a tile is on the same side of all simplices around it.
   static constexpr double kInside = 0.999;
-  using Pulls = std::array<int, N>;
-  /// By the sum of all pulls: the move for a pull of 1, as a share of the distance from the nearer end.
-  static constexpr auto kShares = [] {
-    std::array<double, 2 * N - 1> shares{};
-    for (std::size_t all = 0; all < shares.size(); ++all)
-      shares[all] = all < 2 ? 0.5 : kInside / static_cast<double>(all);
-    return shares;
+  /// The moves by directions across an edge.
+  struct Move {
+    std::array<double, kDirections> share;           ///< of the distance from the nearer end
+    std::array<std::ptrdiff_t, kDirections> before;  ///< -1: towards the sample before; else 0
+  };
+  static constexpr auto kMoves = [] {
+    std::array<Move, Numbers::kCount> moves{};
+    for (std::size_t number = 0; number < moves.size(); ++number) {
+      int all = 0;
+      for (std::size_t j = 0; j < kDirections; ++j) {
+        const int pull = Numbers::pull(number, j);
+        all += pull < 0 ? -pull : pull;
+        moves[number].before[j] = pull < 0 ? -1 : 0;
+      }
+      const double each = all < 2 ? 0.5 : kInside / static_cast<double>(all);
+      for (std::size_t j = 0; j < kDirections; ++j) moves[number].share[j] = each * Numbers::pull(number, j);
+    }
+    return moves;
   }();
 
-  template <int AxisOfEdges, bool AnyMissing>
-  void find_moves_along(const LayerEdges<N>& edges, const double* alphas, std::array<double, N>* out) const noexcept {
-    Beside beside{};
+  template <int A, bool AnyMissing>
+  void find_pulls(const LayerEdges<N>& edges, std::uint16_t* numbers) const noexcept {
+    const PullsInLayer<N, A> pulls(signs_, edges.rows, edges.k);
+    for (std::size_t i = 0; i < edges.edges.count; ++i)
+      numbers[i] = static_cast<std::uint16_t>(
+          pulls.template number<AnyMissing>(static_cast<std::size_t>(edges.row[i]), edges.edges.at[i]));
+  }
+
+  template <int A, bool Mapped, bool EqualSteps, class Real>
+  void move_along(const LayerEdges<N>& edges, const std::uint16_t* numbers, const double* alphas,
+                  std::array<Real, N>* vertices) const noexcept {
     std::array<const double*, N> steps;
-    for (int j = 0; j < N; ++j) steps[j] = steps_[j].data();
-    for (std::size_t i = 0; i < edges.edges.count; ++i) {
-      if (i == 0 || edges.row[i] != edges.row[i - 1]) enter_row(edges, i, beside);
-      const std::size_t at = edges.edges.at[i];
-      Pulls pulls{};
-      if constexpr (AnyMissing)
-        find_pulls_by_sample(beside, at, pulls);
-      else
-        find_pulls<AxisOfEdges>(beside, at, pulls);
-      int all = 0;
-      for (const int pull : pulls) all += std::abs(pull);
-      const double each = std::min(alphas[i], 1.0 - alphas[i]) * kShares[static_cast<std::size_t>(all)];
-      for (int j = 0; j < N; ++j) {  // without branches, which would be mispredicted
-        const std::size_t to = j == 0 ? at : beside.index[j];
-        out[i][j] = j == AxisOfEdges ? 0.0 : each * pulls[j] * steps[j][to - (pulls[j] < 0 ? 1 : 0)];
-      }
-      if (mapped_) out[i] = mapped(out[i]);
-    }
-  }
-
-  /// The rows around the edges of a row.
-  struct Beside {
-    int axis = 0;
-    SampleIndex<N> index{};                ///< of the first sample of the row
-    std::array<std::size_t, 2> rows{};     ///< the rows of both ends
-    std::array<const Word*, 2> high{};     ///< bits of the high samples of both
-    std::array<std::ptrdiff_t, N> step{};  ///< by axis > 0: words to the next row; 0: along the edges, or at the border
-    std::size_t inner = 0;                 ///< samples of a row without those at its ends
-  };
-  void enter_row(const LayerEdges<N>& edges, std::size_t i, Beside& beside) const noexcept {
-    beside.axis = edges.axis;
-    beside.index = edges.start(i);
-    const std::size_t row = edges.row_of_all(i);
-    beside.rows = {row, edges.axis == 0 ? row : row + signs_.stride(edges.axis)};
-    beside.high = {signs_.high(beside.rows[0]), signs_.high(beside.rows[1])};
-    beside.inner = signs_.sizes()[0] - 2;
-    // vertices on the border stay on it
-    for (int j = 1; j < N; ++j) {
-      const bool inside = j != edges.axis && beside.index[j] > 0 && beside.index[j] + 1 < signs_.sizes()[j];
-      beside.step[j] = inside ? signs_.high(signs_.stride(j)) - signs_.high(0) : 0;
-    }
-  }
-  [[nodiscard]] bool pulls_along_row(const Beside& beside, std::size_t at) const noexcept {
-    return beside.axis != 0 && at - 1 < beside.inner;
-  }
-
-  template <int AxisOfEdges>
-  void find_pulls(const Beside& beside, std::size_t at, Pulls& pulls) const noexcept {
-    const auto bit = [](const Word* bits, std::size_t i) {
-      return static_cast<int>(bits[i / kWordBits] >> (i % kWordBits) & 1u);
-    };
-    const std::size_t end = AxisOfEdges == 0 ? at + 1 : at;
-    const auto [lower, upper] = beside.high;
-    const int sign = 2 * bit(lower, at) - 1;  // the sums are for a high lower end
-    if (AxisOfEdges != 0 && pulls_along_row(beside, at))
-      pulls[0] = sign * (bit(lower, at + 1) - bit(lower, at - 1) - bit(upper, at + 1) + bit(upper, at - 1));
-    for (int j = 1; j < N; ++j) {
-      if (j == AxisOfEdges) continue;
-      const std::ptrdiff_t step = beside.step[j];  // 0 on the border, where the sum is 0, too
-      pulls[j] =
-          sign * (bit(lower + step, at) - bit(lower - step, at) - bit(upper + step, end) + bit(upper - step, end));
-    }
-  }
-  /// The same beside missing samples, which count as samples on the side of the end.
-  void find_pulls_by_sample(const Beside& beside, std::size_t at, Pulls& pulls) const noexcept {
-    const bool high = signs_.is_high(beside.rows[0], at);
+    std::array<double, N> step{};
     for (int j = 0; j < N; ++j) {
-      if (j == 0 ? !pulls_along_row(beside, at) : beside.step[j] == 0) continue;
-      const std::size_t rows = j == 0 ? 0 : signs_.stride(j), along = j == 0 ? 1 : 0;
-      for (std::size_t end = 0; end < 2; ++end) {
-        const std::size_t row = beside.rows[end], place = beside.axis == 0 ? at + end : at;
-        const auto is_alike = [&](std::size_t r, std::size_t i) {
-          return signs_.is_missing(r, i) || signs_.is_high(r, i) == (high != (end == 1)) ? 1 : 0;
-        };
-        pulls[j] += is_alike(row + rows, place + along) - is_alike(row - rows, place - along);
+      steps[j] = steps_[j].data();
+      step[j] = steps[j][0];
+    }
+    for (std::size_t i = 0; i < edges.edges.count; ++i) {
+      const Move& move = kMoves[numbers[i]];
+      const double nearer = std::min(alphas[i], 1.0 - alphas[i]);
+      std::array<double, N> by{};
+      for (int j = 0; j < N; ++j) {
+        if (j == A) continue;
+        const int direction = j < A ? j : j - 1;
+        if constexpr (!EqualSteps) {
+          const std::size_t at = j == 0       ? edges.edges.at[i]
+                                 : j == N - 1 ? edges.k
+                                              : edges.rows.start(static_cast<std::size_t>(edges.row[i]))[j];
+          step[j] = (steps[j] + at)[move.before[direction]];
+        }
+        by[j] = nearer * move.share[direction] * step[j];
       }
+      if constexpr (Mapped) by = mapped(by);
+      std::array<Real, N>& vertex = vertices[i];
+      for (int j = 0; j < N; ++j)
+        if (Mapped || j != A) vertex[j] = static_cast<Real>(vertex[j] + by[j]);
     }
   }
   [[nodiscard]] std::array<double, N> mapped(const std::array<double, N>& move) const noexcept {
@@ -156,6 +137,7 @@ class Gravitation final : public PositionsOnEdges<N> {
   const SampleSource<N>& samples_;
   SampleSigns<N> signs_;
   std::array<std::vector<double>, N> steps_;  ///< by axis and sample: to the next one; 0 for the last
+  bool equal_steps_ = true;                   ///< all steps of each axis are equal
   Matrix<N> linear_;
   bool mapped_;
 };
@@ -169,9 +151,13 @@ class GravitationSource final : public PlacedSource<N>, public VertexMoves<N> {
                     const Gravitation<N>& gravitation, double epsilon)
       : PlacedSource<N>(samples, rows, last_axis, gravitation, epsilon), gravitation_(gravitation) {}
 
-  void find_moves(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
-                  std::array<double, N>* out) const noexcept override {
-    gravitation_.find_moves({this->rows(), k, axis, edges.rows, edges}, alphas, out);
+  void move(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
+            std::array<float, N>* vertices) const noexcept override {
+    gravitation_.move({this->rows(), k, axis, edges.rows, edges}, alphas, vertices);
+  }
+  void move(std::size_t k, int axis, const EdgesInRows& edges, const double* alphas,
+            std::array<double, N>* vertices) const noexcept override {
+    gravitation_.move({this->rows(), k, axis, edges.rows, edges}, alphas, vertices);
   }
 
  private:

@@ -43,6 +43,8 @@ class LayerRows {
   [[nodiscard]] const typename EdgeCrossings<N>::Strides& numbers() const noexcept { return numbers_; }
   /// Offset of a row's first sample in its layer.
   [[nodiscard]] std::ptrdiff_t offset(std::size_t row) const noexcept { return offsets_[row]; }
+  /// Index of a row's first sample along the axes between the first and the last; 0 along these.
+  [[nodiscard]] const SampleIndex<N>& start(std::size_t row) const noexcept { return starts_[row]; }
   /// Index of sample i of a row of layer k.
   [[nodiscard]] SampleIndex<N> index(std::size_t k, std::size_t row, std::size_t i) const noexcept {
     SampleIndex<N> index = starts_[row];

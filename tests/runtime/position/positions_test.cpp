@@ -484,6 +484,36 @@ TEST(Gravitation, IsItsFormulaAlsoBesideMissingSamples) {
   expect_gravitation(image);
 }
 
+TEST(Gravitation, StepsOfTheAxesAndTheWorldMapScaleMoves) {
+  OwnedImage<float, 3> image{Grid<3>::unit({9, 8, 7}), std::vector<float>(9 * 8 * 7)};
+  std::mt19937_64 random(6);
+  for (float& value : image.values) value = static_cast<float>(random() % 2);
+  const auto unit = extract_placed<double>(image.view(), 0.5, by(Positions::gravitation));
+  for (const bool mapped : {false, true}) {
+    for (int a = 0; a < 3; ++a) {
+      std::vector<double> positions;
+      for (std::size_t i = 0; i < image.grid.axes[a].size(); ++i)
+        positions.push_back(0.25 * static_cast<double>(i * i) + (a + 1) * static_cast<double>(i));
+      image.grid.axes[a] = Axis::rectilinear(positions);
+    }
+    if (mapped) image.grid.linear = {{{2, 1, 0}, {0, 1, 0}, {-1, 0, 0.5}}};
+    const auto moved = extract_placed<double>(image.view(), 0.5, by(Positions::gravitation));
+    ASSERT_EQ(moved.vertices.size(), unit.vertices.size());
+    for (std::size_t v = 0; v < unit.vertices.size(); ++v) {
+      Point<3> place, expected{};
+      for (int a = 0; a < 3; ++a) {
+        const auto i = static_cast<std::size_t>(unit.vertices[v][a]);
+        const Axis& axis = image.grid.axes[a];
+        const double rest = unit.vertices[v][a] - static_cast<double>(i);
+        place[a] = axis[i] + (rest == 0 ? 0 : rest * (axis[i + 1] - axis[i]));
+      }
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) expected[a] += image.grid.linear[a][b] * place[b];
+      for (int a = 0; a < 3; ++a) EXPECT_NEAR(moved.vertices[v][a], expected[a], 1e-12) << v;
+    }
+  }
+}
+
 // ---- digital straight segments ----
 
 /// Whether a line separates the pixels on both sides of a path, by trying many.
