@@ -94,12 +94,12 @@ void alphas_4d(const double* corners, double isovalue, double epsilon, double* o
   alphas_of(from, to, kEdges, isovalue, epsilon, out);
 }
 
-/// Interpolation parameters of all edges of cubes.
-void alphas_3d(const double* corners, std::size_t count, std::size_t pitch, double isovalue, double epsilon,
-               double* out) {
-  for (unsigned e = 0; e < tables::edge_count(3); ++e) {
-    const unsigned base = edge_base(3, e);
-    alphas_of(corners + base * pitch, corners + (base | 1u << (e >> 2)) * pitch, count, isovalue, epsilon,
+/// Interpolation parameters of all edges of cells.
+void alphas_by_edges(unsigned dim, const double* corners, std::size_t count, std::size_t pitch, double isovalue,
+                     double epsilon, double* out) {
+  for (unsigned e = 0; e < dim << (dim - 1); ++e) {
+    const unsigned base = edge_base(dim, e);
+    alphas_of(corners + base * pitch, corners + (base | 1u << (e >> (dim - 1))) * pitch, count, isovalue, epsilon,
               out + e * pitch);
   }
 }
@@ -142,10 +142,10 @@ void tile_alphas(const double* corners, double isovalue, double epsilon, double*
   HWY_DYNAMIC_DISPATCH(alphas_4d)(corners, isovalue, epsilon, out);
 }
 
-HWY_EXPORT(alphas_3d);
-void cube_alphas(const double* corners, std::size_t count, std::size_t pitch, double isovalue, double epsilon,
-                 double* out) noexcept {
-  HWY_DYNAMIC_DISPATCH(alphas_3d)(corners, count, pitch, isovalue, epsilon, out);
+HWY_EXPORT(alphas_by_edges);
+void alphas_of_cells(unsigned dim, const double* corners, std::size_t count, std::size_t pitch, double isovalue,
+                     double epsilon, double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_by_edges)(dim, corners, count, pitch, isovalue, epsilon, out);
 }
 
 TEGL_DISPATCH(std::uint8_t, alphas_u8)

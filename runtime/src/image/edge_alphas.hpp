@@ -32,9 +32,9 @@ void alphas_between(const double* from, const double* to, std::size_t count, dou
 /// Interpolation parameters for all 32 edges of a 4D tile, from the values at its 16 corners. Results for non-critical
 /// edges are undefined.
 void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept;
-/// The same for the 12 edges of each of `count` cubes: edge e of cube i to out[e * pitch + i]. `corners`: corner v of
-/// cube i at corners[v * pitch + i].
-void cube_alphas(const double* corners, std::size_t count, std::size_t pitch, double isovalue, double epsilon,
-                 double* out) noexcept;
+/// The same for all edges of each of `count` cells of `dim` axes: edge e of cell i to out[e * pitch + i]. `corners`:
+/// corner v of cell i at corners[v * pitch + i].
+void alphas_of_cells(unsigned dim, const double* corners, std::size_t count, std::size_t pitch, double isovalue,
+                     double epsilon, double* out) noexcept;
 
 }  // namespace tegl::detail

@@ -142,17 +142,18 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
 }
 
 template <Value T, int N>
-void RowSource<T, N>::cubes_alphas(const CubesWithEdges<N>& cubes,
-                                   typename CubesWithEdges<N>::Alphas& out) const noexcept {
+template <int K>
+void RowSource<T, N>::alphas_together(const CellsWithEdges<N, K>& cells,
+                                      typename CellsWithEdges<N, K>::Alphas& out) const noexcept {
   // All edges: faster than gathering those asked for.
-  constexpr std::size_t kPitch = CubesWithEdges<N>::kMost;
-  std::array<std::array<double, kPitch>, 8> corners;
+  constexpr std::size_t kPitch = CellsWithEdges<N, K>::kMost;
+  std::array<std::array<double, kPitch>, std::size_t{1} << K> corners;
   std::array<double, std::size_t{1} << N> values;
-  for (std::size_t i = 0; i < cubes.count; ++i) {
-    corner_values(cubes.bases[i], cubes.axes[i], values.data());
-    for (std::size_t v = 0; v < 8 && v < values.size(); ++v) corners[v][i] = values[v];
+  for (std::size_t i = 0; i < cells.count; ++i) {
+    corner_values(cells.bases[i], cells.axes[i], values.data());
+    for (std::size_t v = 0; v < corners.size() && v < values.size(); ++v) corners[v][i] = values[v];
   }
-  cube_alphas(corners[0].data(), cubes.count, kPitch, this->isovalue(), epsilon_, out[0].data());
+  alphas_of_cells(K, corners[0].data(), cells.count, kPitch, this->isovalue(), epsilon_, out[0].data());
 }
 
 namespace {

@@ -6,9 +6,8 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
-#include "image/corner_levels.hpp"
+#include "image/many_rays.hpp"
 
 namespace tegl::detail {
 
@@ -26,9 +25,9 @@ class TileHeights {
   /// of 2^-32: level_inside. 0.5 if a sample is infinite.
   [[nodiscard]] double level(const std::array<double, K>& end) const noexcept;
 
-  /// The levels of the rays to `corners`, equal to those of `level`. The other entries of `out` are undefined.
-  void corner_levels(std::uint32_t corners, std::array<double, kCorners>& out) const noexcept requires(K == 4) {
-    detail::corner_levels(products_, epsilon_, corners, out);
+  /// Sets the levels of `rays`, equal to those of `level`.
+  void find_levels(TesseractRays& rays) const noexcept requires(K == 4) {
+    detail::find_levels(products_, epsilon_, rays);
   }
 
  private:

@@ -28,7 +28,7 @@ class TileWriter {
  public:
   using Vertex = std::array<Real, N>;
   using Simplex = std::array<Index, N>;
-  using OwnCubes = CubeVertices<N, Real>;
+  using OwnCells = CellVertices<N, Real>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
   /// `flip`: reverses the tables' orientation. `rows`: flat table for the fast path, or null. `estimator`: as in
@@ -46,11 +46,11 @@ class TileWriter {
         has_cubes_(has_cubes) {}
 
   /// `tiles`: the row's active tiles (Counter::tiles). `simplices`: destination of simplex `first_simplex`. `scratch`:
-  /// of the calling thread. `cubes`: N = 3: takes own vertices to be written later; null: they are written at once. If
+  /// of the calling thread. `cells`: takes own vertices of cells that are resolved from the data; null: none is. If
   /// a caller's estimator changed its answers after the row was counted, reports this and writes nothing.
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const RowTiles& tiles,
              VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex, CountScratch& scratch,
-             OwnCubes* cubes) const noexcept {
+             OwnCells* cells) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
     if (view.slab->active_count[row] == 0) return;
@@ -59,9 +59,9 @@ class TileWriter {
       return estimator_->report_change(index);
     Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
     if (rows_ != nullptr && view.slab->all_valid)
-      write_quickly(view, row, index, tiles, vertices, out, scratch, cubes);
+      write_quickly(view, row, index, tiles, vertices, out, scratch, cells);
     else
-      write_one_by_one(view, row, index, vertices, out, scratch);
+      write_one_by_one(view, row, index, vertices, out, scratch, cells);
   }
 
   /// Whether barycentres of cubes in a slab and in the layer above it (and layer 0) are written together with its
@@ -79,7 +79,7 @@ class TileWriter {
     const SlabView<N>& view;
     std::size_t row;
     CountScratch& scratch;
-    OwnCubes* cubes;
+    OwnCells* cells;
     typename RowShape<N>::Index index;  ///< of the current tile
     VertexRun<Vertex> vertices;
     BitWalk active;
@@ -95,8 +95,8 @@ class TileWriter {
       const SimplexList<N> list(own.writer.table_, key);
       const Index first = own.next;
       own.next += list.own_vertices();
-      if (own.cubes != nullptr && list.list().cone_vertices == 0) {
-        own.cubes->add(list, own.index, kAll, first);
+      if (own.cells != nullptr && list.list().cone_vertices == 0) {
+        own.cells->add(list, own.index, kAll, first);
       } else {
         SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), nullptr);
         own.writer.write_own(list, places, own.index, first, own.vertices);
@@ -112,12 +112,12 @@ class TileWriter {
           if (own.at < own.end) {
             const ResolvedView filling = own.assembled->read(own.at, tile);
             return own.writer.write_resolved(own.view, own.row, own.index, key, tile, filling, edge_ids, own.next,
-                                             own.vertices, out);
+                                             *own.cells, out);
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
           return own.writer.write_resolved(own.view, own.row, own.index, key, tile,
                                            own.scratch.tesseract->find(tile.key, tile.lists, tile.is_connected),
-                                           edge_ids, own.next, own.vertices, out);
+                                           edge_ids, own.next, *own.cells, out);
         }
       Ids ids;
       std::copy_n(edge_ids, tables::edge_count(N), ids.data());
@@ -133,14 +133,14 @@ class TileWriter {
   /// Writes a row whose tiles are all valid. Then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
                      const RowTiles& tiles, VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch,
-                     OwnCubes* cubes) const noexcept {
+                     OwnCells* cells) const noexcept {
     TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
     TilesWithOwnVertices own{*this,
                              view,
                              row,
                              scratch,
-                             cubes,
+                             cells,
                              start,
                              vertices,
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
@@ -173,7 +173,8 @@ class TileWriter {
 
   /// Writes a row tile by tile from bits.
   void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
-                        VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch) const noexcept {
+                        VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch,
+                        [[maybe_unused]] OwnCells* own_cells) const noexcept {
     const RowShape<N>& shape = *view.shape;
     const Word* const active = view.slab->active.data() + row * shape.words();
     CellBits<N, kAll> cells(view, row);
@@ -200,7 +201,7 @@ class TileWriter {
             const ResolvedTile tile = tile_of(scratch.answers, index, signature);
             out = write_resolved(view, row, index, signature, tile,
                                  scratch.tesseract->find(tile.key, tile.lists, tile.is_connected), ids.data(), own,
-                                 vertices, out);
+                                 *own_cells, out);
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
@@ -308,7 +309,7 @@ class TileWriter {
   /// its edges' vertices.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
                           unsigned signature, const ResolvedTile& tile, const ResolvedView& filling,
-                          const Index* edge_ids, Index& own, VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+                          const Index* edge_ids, Index& own, OwnCells& cells, Simplex* out) const noexcept {
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     // numbers of the cubes' vertices
     std::array<Index, ResolvedCubes::kCubes * ResolvedCubes::kMostOwn> cube_ids;
@@ -322,19 +323,8 @@ class TileWriter {
     }
     // own vertices
     const Index first_own = own;
-    if constexpr (N == 4)
-      if (filling.own_vertices != 0) {
-        const auto alphas = ResolvedPlaces::needs_edges(filling) ? EdgePlaces<N, kAll>(source_, index, signature)
-                                                                 : EdgePlaces<N, kAll>(source_, index);
-        ResolvedPlaces shared(alphas, estimator_->triangulation(), tile.lists);
-        const typename Placement<N, Real>::Cell in_cell(placement_, index);
-        for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
-          const TilePoint<N> place = shared.own_vertex(filling, j);
-          vertices[own] = in_cell(place);
-          if (placement_.normals() != nullptr)
-            vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
-        }
-      }
+    if constexpr (N == 4) cells.add(filling, tile.lists, estimator_->triangulation(), index, signature, first_own);
+    own += filling.own_vertices;
     // simplices
     if constexpr (N == 4)
       write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, edge_ids,

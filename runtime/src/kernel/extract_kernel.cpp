@@ -88,13 +88,13 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         workers_(
             options.work.threads,
             [this] {
-              return Scratch{counter_.make_scratch(), {source_, placement_, shape_, uncertainty_}, make_own_cubes()};
+              return Scratch{counter_.make_scratch(), {source_, placement_, shape_, uncertainty_}, make_own_cells()};
             }),
         ahead_(workers_.count() > 1 && source.are_in_memory()),
         batch_(plan.batch == 0
                    ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
                                   EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals != Normals::none) +
-                                      own_cubes_bytes(),
+                                      own_cells_bytes(),
                                   ahead_)
                    : std::min(plan.batch, shape_.layers() - 1)),
         layers_((ahead_ ? 2 : 1) * batch_ + 2),
@@ -168,23 +168,23 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
 
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
-  using OwnCubes = typename TileWriter<N, Real>::OwnCubes;
+  using OwnCells = typename TileWriter<N, Real>::OwnCells;
   using SteppedExtraction<N, Real>::stats_;
 
   /// Working storage of one thread.
   struct Scratch {
     CountScratch counting;
     EdgeWriter<N, Real> edges;
-    std::unique_ptr<OwnCubes> own_cubes;  ///< N = 3 or 4, if ambiguities are resolved from the data
+    std::unique_ptr<OwnCells> own_cells;  ///< N = 3 or 4, if ambiguities are resolved from the data
   };
 
-  [[nodiscard]] std::size_t own_cubes_bytes() const {
-    if constexpr (N > 2) return estimator_ != nullptr ? sizeof(OwnCubes) : 0;
+  [[nodiscard]] std::size_t own_cells_bytes() const {
+    if constexpr (N > 2) return estimator_ != nullptr ? sizeof(OwnCells) : 0;
     return 0;
   }
-  [[nodiscard]] std::unique_ptr<OwnCubes> make_own_cubes() const {
+  [[nodiscard]] std::unique_ptr<OwnCells> make_own_cells() const {
     if constexpr (N > 2)
-      if (estimator_ != nullptr) return std::make_unique<OwnCubes>(source_, placement_);
+      if (estimator_ != nullptr) return std::make_unique<OwnCells>(source_, placement_);
     return nullptr;
   }
 
@@ -396,7 +396,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     start_vertices(scratch, {run_in_layer(0, chunk, vertices), {}, vertices});
     for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
       scratch.edges.add_by_bits(&layer(0), nullptr, row);
-      generate_layer_cubes(0, row, vertices, scratch.own_cubes.get());
+      generate_layer_cubes(0, row, vertices, scratch.own_cells.get());
     }
     finish_vertices(scratch);
   }
@@ -404,12 +404,12 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   void start_vertices(Scratch& scratch, const EdgeTarget<Vertex>& target) {
     scratch.edges.start(target);
     if constexpr (N > 2)
-      if (scratch.own_cubes != nullptr) scratch.own_cubes->start(target.vertices);
+      if (scratch.own_cells != nullptr) scratch.own_cells->start(target.vertices);
   }
   void finish_vertices(Scratch& scratch) {
     scratch.edges.finish();
     if constexpr (N > 2)
-      if (scratch.own_cubes != nullptr) scratch.own_cubes->finish();
+      if (scratch.own_cells != nullptr) scratch.own_cells->finish();
   }
 
   /// Writes the vertices and simplices of a chunk of slab k, and the vertices of the layer above it.
@@ -420,7 +420,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     std::uint32_t busy = here.chunks[chunk].busy;
     if (busy == 0) return;
     EdgeWriter<N, Real>& edges = scratch.edges;
-    OwnCubes* const own_cubes = scratch.own_cubes.get();
+    OwnCells* const own_cells = scratch.own_cells.get();
     start_vertices(scratch, {run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
     for (; busy != 0; busy &= busy - 1) {
       const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(busy));
@@ -429,9 +429,9 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         edges.add_by_tiles(around, row, tiles);
       else
         edges.add_by_bits(&layer(k + 1), &here, row);
-      generate_layer_cubes(k + 1, row, vertices, own_cubes);
-      generate_slab_cubes(around, k, row, vertices, own_cubes);
-      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting, own_cubes);
+      generate_layer_cubes(k + 1, row, vertices, own_cells);
+      generate_slab_cubes(around, k, row, vertices, own_cells);
+      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting, own_cells);
     }
     finish_vertices(scratch);
   }
@@ -442,27 +442,27 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
 
   void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
                             [[maybe_unused]] VertexRun<Vertex> vertices,
-                            [[maybe_unused]] OwnCubes* own_cubes) noexcept {
+                            [[maybe_unused]] OwnCells* own_cells) noexcept {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
         const Layer<N>& here = layer(k);
         if (counter_.lists_cubes())
           return generate_listed_cubes<7u>(source_, cubes_by_key(), placement_, {&shape_, {&here, nullptr}, nullptr},
-                                           here.cubes, row, k, vertices, *own_cubes);
+                                           here.cubes, row, k, vertices, *own_cells);
         generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
                            vertices);
       }
   }
   void generate_slab_cubes([[maybe_unused]] const SlabView<N>& around, [[maybe_unused]] std::size_t k,
                            [[maybe_unused]] std::size_t row, [[maybe_unused]] VertexRun<Vertex> vertices,
-                           [[maybe_unused]] OwnCubes* own_cubes) const noexcept {
+                           [[maybe_unused]] OwnCells* own_cells) const noexcept {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
         const auto& cubes = around.slab->cubes;
         if (counter_.lists_cubes()) {
           const auto list = [&]<unsigned Axes>(std::integral_constant<unsigned, Axes>, const CubePlane& plane) {
             generate_listed_cubes<Axes>(source_, cubes_by_key(), placement_, around, plane, row, k, vertices,
-                                        *own_cubes);
+                                        *own_cells);
           };
           list(std::integral_constant<unsigned, 14u>(), cubes[0]);
           list(std::integral_constant<unsigned, 13u>(), cubes[1]);

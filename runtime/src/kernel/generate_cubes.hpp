@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pass 4 of the extraction: writes the vertices that cubes own, those of 3D tiles that are resolved from the data and,
-// in 4D, the barycentres of a row's cubes.
+// in 4D, the barycentres of a row's cubes and the means that tiles own.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <type_traits>
 
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_count.hpp"
@@ -17,21 +18,23 @@
 
 namespace tegl::detail {
 
-/// Collects the own vertices of cubes and writes many at once: their arithmetic is done in the lanes of
-/// registers, and without branches on the kind of each, which noise makes hard to predict. One per thread.
+/// Collects the own vertices of cubes, and of tesseracts those at means of vertices on edges, and writes many at once:
+/// their arithmetic is done in the lanes of registers, and without branches on the kind of each, which noise makes hard
+/// to predict. One per thread.
 template <int N, class Real>
-class CubeVertices {
+class CellVertices {
  public:
   using Base = SampleIndex<N>;
   using Run = VertexRun<std::array<Real, N>>;
 
-  CubeVertices(const EdgeCrossings<N>& source, const Placement<N, Real>& placement) noexcept
+  CellVertices(const EdgeCrossings<N>& source, const Placement<N, Real>& placement) noexcept
       : source_(source), placement_(placement) {}
 
   /// Vertices added between start() and finish() are written to `vertices`.
   void start(const Run& vertices) noexcept { vertices_ = vertices; }
   void finish() noexcept {
-    write_means();
+    write_means(in_cubes_);
+    if constexpr (N == 4) write_means(in_tesseracts_);
     for (unsigned kind = 0; kind < rays_.size(); ++kind) write_rays(kind);
   }
 
@@ -42,9 +45,7 @@ class CubeVertices {
     for (unsigned j = 0; j < list.own_vertices(); ++j) {
       const auto mask = static_cast<std::uint32_t>(list.side_mask(j));
       if (!is_on_ray(mask)) {
-        if (means_.count == kAtOnce) write_means();
-        means_.edges[means_.count] = mask >> 8;
-        of_means_.set(means_.count++, base, axes, first + j);
+        add_mean(in_cubes_, mask >> 8, base, axes, first + j);
         continue;
       }
       const auto kind = static_cast<unsigned>(std::popcount(mask)) / 2;  // 1, 2 or 4 corners
@@ -57,9 +58,24 @@ class CubeVertices {
     }
   }
 
+  /// Adds the own vertices of a tesseract that is combined from its cubes, which have `lists`. Those that are no means
+  /// are written at once. `first`: number of the first.
+  void add(const ResolvedView& filling, const ResolvedCubes::Lists& lists, Triangulation triangulation,
+           const Base& base, unsigned signature, Index first) noexcept requires(N == 4) {
+    std::uint64_t others = 0;  // masks
+    for (unsigned j = 0; j < filling.own_vertices; ++j) {
+      const std::uint64_t mask = filling.masks[j];
+      if (ResolvedPlaces::is_mean(mask))
+        add_mean(in_tesseracts_, ResolvedPlaces::edges_of(mask), base, 15u, first + j);
+      else
+        others |= mask;
+    }
+    if (others == 0) return;
+    write_others(filling, others, lists, triangulation, base, signature, first);
+  }
+
  private:
   static constexpr std::size_t kAtOnce = CubeRays::kMost;
-  static_assert(kAtOnce == EdgeMeans::kMost && kAtOnce == CubesWithEdges<N>::kMost);
 
   struct Targets {
     std::array<Base, kAtOnce> bases;
@@ -72,14 +88,33 @@ class CubeVertices {
     }
   };
 
-  void write_means() noexcept {
-    if (means_.count == 0) return;
-    source_.cubes_alphas({of_means_.axes.data(), of_means_.bases.data(), means_.edges.data(), means_.count},
-                         means_.alphas);
-    EdgeMeans::Coordinates found;
-    find_means(means_, found);
-    for (std::size_t i = 0; i < means_.count; ++i) write(of_means_, i, {found[0][i], found[1][i], found[2][i]});
-    means_.count = 0;
+  template <int K>
+  struct Means {
+    static_assert(kAtOnce == EdgeMeans<K>::kMost && kAtOnce == CellsWithEdges<N, K>::kMost);
+    EdgeMeans<K> means;
+    Targets targets;
+  };
+
+  template <int K>
+  void add_mean(Means<K>& to, std::uint32_t edges, const Base& base, unsigned axes, Index id) noexcept {
+    if (to.means.count == kAtOnce) write_means(to);
+    to.means.edges[to.means.count] = edges;
+    to.targets.set(to.means.count++, base, axes, id);
+  }
+  template <int K>
+  void write_means(Means<K>& of) noexcept {
+    EdgeMeans<K>& means = of.means;
+    if (means.count == 0) return;
+    source_.cells_alphas({of.targets.axes.data(), of.targets.bases.data(), means.edges.data(), means.count},
+                         means.alphas);
+    typename EdgeMeans<K>::Coordinates found;
+    find_means<K>(means, found);
+    for (std::size_t i = 0; i < means.count; ++i) {
+      TilePoint<K> point;
+      for (std::size_t a = 0; a < K; ++a) point[a] = found[a][i];
+      write<K>(of.targets, i, point);
+    }
+    means.count = 0;
   }
 
   /// `kind`: 0, 1, 2 for rays to corners, edges, squares.
@@ -88,13 +123,30 @@ class CubeVertices {
     if (rays.count == 0) return;
     std::array<double, kAtOnce> levels;
     cube_levels(rays, 3 - kind, epsilon_, levels);
-    for (std::size_t i = 0; i < rays.count; ++i) write(of_rays_[kind], i, ray_place(corners_[kind][i], levels[i]));
+    for (std::size_t i = 0; i < rays.count; ++i) write<3>(of_rays_[kind], i, ray_place(corners_[kind][i], levels[i]));
     rays.count = 0;
   }
 
-  void write(const Targets& of, std::size_t i, const TilePoint<3>& point) noexcept {
-    if constexpr (N == 3) {
-      write_along<7u>(of, i, point);
+  /// Writes the own vertices of a tesseract that are no means; `masks`: of all of them. Not inlined, because its stack
+  /// frame is large.
+  [[gnu::noinline]] void write_others(const ResolvedView& filling, std::uint64_t masks,
+                                      const ResolvedCubes::Lists& lists, Triangulation triangulation, const Base& base,
+                                      unsigned signature, Index first) noexcept requires(N == 4) {
+    const auto edges = ResolvedPlaces::needs_edges(masks) ? EdgePlaces<4, 15>(source_, base, signature)
+                                                          : EdgePlaces<4, 15>(source_, base);
+    ResolvedPlaces places(edges, triangulation, lists);
+    const typename Placement<N, Real>::Cell in_cell(placement_, base);
+    places.own_vertices(filling, [&](unsigned j, const TilePoint<N>& place) {
+      vertices_[first + j] = in_cell(place);
+      if (placement_.normals() != nullptr)
+        vertices_.normal(first + j) = placement_.normals()->template in_cell<CellFrame<N, 15u>>(base, place);
+    });
+  }
+
+  template <int K>
+  void write(const Targets& of, std::size_t i, const TilePoint<K>& point) noexcept {
+    if constexpr (N == K) {
+      write_along<(1u << N) - 1>(of, i, point);
     } else {
       switch (of.axes[i]) {
         case 7u:
@@ -109,7 +161,7 @@ class CubeVertices {
     }
   }
   template <unsigned Axes>
-  void write_along(const Targets& of, std::size_t i, const TilePoint<3>& point) noexcept {
+  void write_along(const Targets& of, std::size_t i, const TilePoint<std::popcount(Axes)>& point) noexcept {
     using Frame = CellFrame<N, Axes>;
     vertices_[of.ids[i]] = placement_.template in_cell<Frame>(of.bases[i], point);
     if (placement_.normals() != nullptr)
@@ -120,8 +172,9 @@ class CubeVertices {
   const Placement<N, Real>& placement_;
   Run vertices_{};
   double epsilon_ = 0.0;
-  EdgeMeans means_;
-  Targets of_means_;
+  Means<3> in_cubes_;
+  struct None {};
+  std::conditional_t<N == 4, Means<4>, None> in_tesseracts_;
   std::array<CubeRays, 3> rays_;
   std::array<Targets, 3> of_rays_;
   std::array<std::array<std::uint8_t, kAtOnce>, 3> corners_;
@@ -169,7 +222,7 @@ template <unsigned Axes, class Real>
 void generate_listed_cubes(const EdgeCrossings<4>& source, const tables::TileTable& table,
                            const Placement<4, Real>& placement, const SlabView<4>& view, const CubePlane& plane,
                            std::size_t row, std::size_t layer, VertexRun<typename Placement<4, Real>::Vertex> vertices,
-                           CubeVertices<4, Real>& together) noexcept {
+                           CellVertices<4, Real>& together) noexcept {
   if (plane.count[row] == 0) return;
   auto index = view.shape->index_of(row);
   index[3] = layer;

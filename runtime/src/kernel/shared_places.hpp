@@ -31,10 +31,8 @@ class CellRays {
   [[nodiscard]] double operator()(const End& end) noexcept {
     return heights().level(end);
   }
-  /// Levels of the rays to corners (TileHeights::corner_levels).
-  void corner_levels(std::uint32_t corners, std::array<double, std::size_t{1} << K>& out) noexcept {
-    heights().corner_levels(corners, out);
-  }
+  /// Sets the levels of some rays.
+  void find_levels(TesseractRays& rays) noexcept requires(K == 4) { heights().find_levels(rays); }
 
  private:
   const CellHeights<K>& heights() noexcept {
@@ -187,40 +185,75 @@ class ResolvedPlaces {
     return places_[v];
   }
 
-  /// Whether an own vertex of a filling depends on vertices on edges. Not if all are copies of corners.
-  static bool needs_edges(const ResolvedView& filling) noexcept {
-    std::uint64_t all = 0;
-    for (unsigned j = 0; j < filling.own_vertices; ++j) all |= filling.masks[j];
-    return all >> 16 != 0;
+  /// Whether an own vertex lies at the mean of vertices on edges (CellVertices::add_mean), and has no repetition.
+  static bool is_mean(std::uint64_t mask) noexcept { return (mask & ~kEdgesOfMask) == 0; }
+  static std::uint32_t edges_of(std::uint64_t mask) noexcept { return static_cast<std::uint32_t>(mask >> 16); }
+
+  /// Whether own vertices with these masks, all combined, depend on vertices on edges. Not if all are copies of
+  /// corners.
+  static bool needs_edges(std::uint64_t masks) noexcept { return masks >> 16 != 0; }
+  /// Calls write(j, position) for all own vertices of a filling (ResolvedView::masks) except those that are means.
+  template <class Write>
+  void own_vertices(const ResolvedView& filling, const Write& write) noexcept {
+    TesseractRays rays;
+    find_rays(filling, rays);
+    std::size_t ray = 0;
+    for (unsigned j = 0; j < filling.own_vertices; ++j) {
+      const std::uint64_t mask = filling.masks[j];
+      if (is_mean(mask)) continue;
+      TilePoint<4> place;
+      if (is_on_ray(mask)) {
+        for (unsigned a = 0; a < 4; ++a) place[a] = ray_coordinate(rays.ends[a][ray], rays.levels[ray]);
+        ++ray;
+        repeat(place, mask);
+      } else {
+        place = place_off_rays(filling, j);
+      }
+      write(j, place);
+    }
   }
-  /// Position of own vertex j of a filling (ResolvedView::masks).
-  [[nodiscard]] TilePoint<4> own_vertex(const ResolvedView& filling, unsigned j) noexcept {
+
+ private:
+  static constexpr std::uint64_t kEdgesOfMask = std::uint64_t{0xffffffffu} << 16;
+
+  static void repeat(TilePoint<4>& place, std::uint64_t mask) noexcept {
+    for (std::uint64_t i = (mask & ResolvedTesseract::kRepeats) >> ResolvedTesseract::kRepeat; i != 0; --i)
+      for (double& x : place) x = repeated_coordinate(x);
+  }
+
+  /// Whether an own vertex depends on corners.
+  static bool is_on_ray(std::uint64_t mask) noexcept {
+    return (mask & (ResolvedTesseract::kIsBarycentre | ResolvedTesseract::kIsDouble)) == 0 && (mask & 0xffffu) != 0;
+  }
+  [[nodiscard]] auto on_edge() const noexcept {
+    return [this](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
+  }
+  /// The rays of a filling's own vertices, in their order, and their levels.
+  void find_rays(const ResolvedView& filling, TesseractRays& rays) noexcept {
+    for (unsigned j = 0; j < filling.own_vertices; ++j) {
+      const std::uint64_t mask = filling.masks[j];
+      if (!is_on_ray(mask)) continue;
+      const std::uint64_t points = mask & ~ResolvedTesseract::kRepeats;
+      if ((points & (points - 1)) == 0)  // one corner: the most frequent copies
+        rays.add(kCornerPoints<4>[static_cast<unsigned>(std::countr_zero(points))]);
+      else
+        rays.add(mask_mean<4>(points, std::identity(), on_edge(), true));
+    }
+    if (rays.count != 0) rays_.find_levels(rays);
+  }
+
+  [[nodiscard]] TilePoint<4> place_off_rays(const ResolvedView& filling, unsigned j) noexcept {
     const std::uint64_t mask = filling.masks[j];
     if ((mask & ResolvedTesseract::kIsBarycentre) != 0) return barycentre(filling, ResolvedTesseract::kFirstOwn + j);
     TilePoint<4> place;
     if ((mask & ResolvedTesseract::kIsDouble) != 0) {
       place = (*this)(static_cast<unsigned>(mask & 0xffu));
       for (double& x : place) x = 0.25 + 0.5 * x;
-      repeat(place, mask);
-      return place;
+    } else {
+      place = mask_place<4>(mask & ~ResolvedTesseract::kRepeats, std::identity(), on_edge(), true, rays_);
     }
-    if (is_corner(mask)) {  // the most frequent copies
-      if (!has_corner_levels_) find_corner_levels(filling);
-      const auto v = static_cast<unsigned>(std::countr_zero(mask));
-      place = kCornerPoints<4>[v];
-      for (double& x : place) x = ray_coordinate(x, corner_levels_[v]);
-      return place;
-    }
-    const auto on_edge = [&](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
-    place = mask_place<4>(mask & ~ResolvedTesseract::kRepeats, std::identity(), on_edge, true, rays_);
     repeat(place, mask);
     return place;
-  }
-
- private:
-  static void repeat(TilePoint<4>& place, std::uint64_t mask) noexcept {
-    for (std::uint64_t i = (mask & ResolvedTesseract::kRepeats) >> ResolvedTesseract::kRepeat; i != 0; --i)
-      for (double& x : place) x = repeated_coordinate(x);
   }
 
   /// Position of own vertex `apex` of a filling: area-weighted mean of the triangles that it is joined with.
@@ -243,17 +276,6 @@ class ResolvedPlaces {
     if (v < ResolvedCubes::kEdges) return false;
     const unsigned cube = (v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
     return (v - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn < cubes_.summary(lists_[cube]).barycentres;
-  }
-
-  /// Whether an own vertex copies a corner.
-  static bool is_corner(std::uint64_t mask) noexcept { return (mask & (mask - 1)) == 0 && mask >> 16 == 0; }
-
-  void find_corner_levels(const ResolvedView& filling) noexcept {
-    std::uint32_t corners = 0;
-    for (unsigned j = 0; j < filling.own_vertices; ++j)
-      if (is_corner(filling.masks[j])) corners |= static_cast<std::uint32_t>(filling.masks[j]);
-    rays_.corner_levels(corners, corner_levels_);
-    has_corner_levels_ = true;
   }
 
   [[gnu::noinline]] void find(unsigned v) noexcept {
@@ -282,8 +304,6 @@ class ResolvedPlaces {
   CellRays<4, 4> rays_;
   std::uint64_t known_ = 0;
   std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< valid if known_ has the bit
-  bool has_corner_levels_ = false;
-  std::array<double, 16> corner_levels_;  ///< of the filling's own vertices that copy corners
 };
 
 }  // namespace tegl::detail

@@ -19,34 +19,40 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void means_of_edges(const EdgeMeans& means, EdgeMeans::Coordinates& out) {
+template <int K>
+HWY_INLINE void means_of_edges(const EdgeMeans<K>& means, typename EdgeMeans<K>::Coordinates& out) {
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<std::uint64_t, decltype(d)> bits;
-  constexpr unsigned kEdges = tables::edge_count(3);
-  alignas(64) std::array<std::uint64_t, EdgeMeans::kMost> edges{};
+  constexpr unsigned kEdges = tables::edge_count(K);
+  alignas(64) std::array<std::uint64_t, EdgeMeans<K>::kMost> edges{};
   for (std::size_t i = 0; i < means.count; ++i) edges[i] = means.edges[i];
   for (std::size_t i = 0; i < means.count; i += hn::Lanes(d)) {
-    hn::Vec<decltype(d)> sums[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    hn::Vec<decltype(d)> sums[K];
+    for (auto& sum : sums) sum = hn::Zero(d);
     auto total = hn::Zero(d);
     const auto of_lanes = hn::Load(bits, edges.data() + i);
     for (unsigned e = 0; e < kEdges; ++e) {
       const auto has = hn::RebindMask(d, hn::TestBit(of_lanes, hn::Set(bits, std::uint64_t{1} << e)));
-      const auto weight = hn::IfThenElseZero(has, hn::Set(d, kUnevenWeights[8 + e]));
+      const auto weight = hn::IfThenElseZero(has, hn::Set(d, kUnevenWeights[(1u << K) + e]));
       const auto alpha = hn::IfThenElseZero(has, hn::Load(d, means.alphas[e].data() + i));
-      for (unsigned a = 0; a < 3; ++a) {
-        if (a == e >> 2)
+      for (unsigned a = 0; a < K; ++a) {
+        if (a == e >> (K - 1))
           sums[a] = hn::Add(sums[a], hn::Mul(weight, alpha));
-        else if (kEdgeBases<3>[e][a] != 0)
+        else if (kEdgeBases<K>[e][a] != 0)
           sums[a] = hn::Add(sums[a], weight);
       }
       total = hn::Add(total, weight);
     }
-    for (unsigned a = 0; a < 3; ++a) {
+    for (unsigned a = 0; a < K; ++a) {
       const auto mean = hn::Mul(hn::Set(d, 0.9), hn::Div(sums[a], total));
       hn::StoreU(hn::Add(hn::Set(d, own_coordinate(0.0, static_cast<int>(a), true)), mean), d, out[a].data() + i);
     }
   }
 }
+
+// Highway's dispatch tables cannot hold templates.
+void means_in_cubes(const EdgeMeans<3>& means, EdgeMeans<3>::Coordinates& out) { means_of_edges<3>(means, out); }
+void means_in_tesseracts(const EdgeMeans<4>& means, EdgeMeans<4>::Coordinates& out) { means_of_edges<4>(means, out); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
@@ -56,10 +62,16 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-HWY_EXPORT(means_of_edges);
+HWY_EXPORT(means_in_cubes);
+HWY_EXPORT(means_in_tesseracts);
 
-void find_means(const EdgeMeans& means, EdgeMeans::Coordinates& out) noexcept {
-  HWY_DYNAMIC_DISPATCH(means_of_edges)(means, out);
+template <>
+void find_means<3>(const EdgeMeans<3>& means, EdgeMeans<3>::Coordinates& out) noexcept {
+  HWY_DYNAMIC_DISPATCH(means_in_cubes)(means, out);
+}
+template <>
+void find_means<4>(const EdgeMeans<4>& means, EdgeMeans<4>::Coordinates& out) noexcept {
+  HWY_DYNAMIC_DISPATCH(means_in_tesseracts)(means, out);
 }
 
 }  // namespace tegl::detail

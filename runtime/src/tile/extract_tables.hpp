@@ -256,6 +256,26 @@ struct NoRays {
   }
 };
 
+/// Mean of the points of a mask, with slightly unequal weights if `uneven` and not all are corners (mask_place).
+template <int K, class Corner, class Place>
+TilePoint<K> mask_mean(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
+  constexpr unsigned kCorners = 1u << K;
+  const bool has_uneven = uneven && mask >> kCorners != 0;
+  const auto weight = [has_uneven](unsigned v) { return has_uneven ? kUnevenWeights[v] : 1.0; };
+  Weighted<K> sum;
+  for (std::uint64_t rest = mask & ((std::uint64_t{1} << kCorners) - 1); rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    sum.add(kCornerPoints<K>[corner(v)], weight(v));
+  }
+  for (std::uint64_t rest = mask >> kCorners; rest != 0; rest &= rest - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(rest));
+    sum.add(place(e), weight(kCorners + e));
+  }
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) point[a] = sum.point[a] / sum.weight;
+  return point;
+}
+
 /// Position of an own vertex from its mask (bit v: corner v, bit 2^K + e: edge e). With edges only, it is their mean;
 /// with corners, on the ray from the tile's centre to the mean of all, as copies of a side must be. `corner(v)`: maps a
 /// corner to the current frame. `rays(end)`: level of a ray (TileHeights).
@@ -275,21 +295,8 @@ TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& p
     for (double& x : point) x = ray_coordinate(x, level);
     return point;
   }
-  const bool has_uneven = uneven && mask >> kCorners != 0;
-  const auto weight = [has_uneven](unsigned v) { return has_uneven ? kUnevenWeights[v] : 1.0; };
-  Weighted<K> sum;
-  for (std::uint64_t rest = mask & ((std::uint64_t{1} << kCorners) - 1); rest != 0; rest &= rest - 1) {
-    const auto v = static_cast<unsigned>(std::countr_zero(rest));
-    sum.add(kCornerPoints<K>[corner(v)], weight(v));
-  }
-  for (std::uint64_t rest = mask >> kCorners; rest != 0; rest &= rest - 1) {
-    const auto e = static_cast<unsigned>(std::countr_zero(rest));
-    sum.add(place(e), weight(kCorners + e));
-  }
-  const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
-  TilePoint<K> point;
-  for (int a = 0; a < K; ++a) point[a] = sum.point[a] / sum.weight;
-  if (has_corners) {
+  TilePoint<K> point = mask_mean<K>(mask, corner, place, uneven);
+  if ((mask & ((std::uint64_t{1} << kCorners) - 1)) != 0) {
     const double level = rays(point);
     for (double& x : point) x = ray_coordinate(x, level);
   } else {

@@ -182,11 +182,11 @@ TEST(TileHeights, AreZeroAtTheLevelsOfRays) {
   expect_zeros_at_levels<5>();
 }
 
-TEST(TileHeights, OfCornersTogetherAreThoseOfEach) {
+TEST(TileHeights, OfManyRaysAreThoseOfEach) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int i = 0; i < 20'000; ++i) {
-    std::array<double, 16> heights, levels;
+    std::array<double, 16> heights;
     const auto kind = random() % 4;
     for (double& height : heights) {
       height = uniform(random);
@@ -196,14 +196,18 @@ TEST(TileHeights, OfCornersTogetherAreThoseOfEach) {
     if (kind == 3 && i % 8 == 0) heights[random() % 16] = std::ldexp(uniform(random), 1023);
     if (kind == 3 && i % 16 == 1) heights[random() % 16] = std::numeric_limits<double>::infinity();
     const TileHeights<4> tile(heights, i % 3 == 0 ? 0.125 : 0.0);
-    const std::uint32_t corners = static_cast<std::uint32_t>(random()) & 0xffffu;
-    tile.corner_levels(corners, levels);
-    for (std::uint32_t rest = corners; rest != 0; rest &= rest - 1) {
-      const auto v = static_cast<unsigned>(std::countr_zero(rest));
-      std::array<double, 4> corner;
-      for (unsigned a = 0; a < 4; ++a) corner[a] = v >> a & 1u;
-      ASSERT_EQ(tile.level(corner), levels[v]) << "tile " << i << ", corner " << v;
+    // to corners, and to other points of the boundary
+    TesseractRays rays;
+    std::vector<std::array<double, 4>> ends(1 + random() % (i % 64 == 0 ? TesseractRays::kMost : 20));
+    for (auto& end : ends) {
+      for (double& x : end) x = static_cast<double>(random() % 2);
+      if (random() % 2 == 0)
+        for (std::size_t a = 1; a < 4; ++a) end[(a + random() % 4) % 4] = 0.5 + 0.5 * uniform(random);
+      rays.add(end);
     }
+    tile.find_levels(rays);
+    for (std::size_t r = 0; r < ends.size(); ++r)
+      ASSERT_EQ(tile.level(ends[r]), rays.levels[r]) << "tile " << i << ", ray " << r;
   }
 }
 
@@ -245,7 +249,10 @@ TEST(CubeHeights, OfManyRaysAreThoseOfEach) {
   }
 }
 
-TEST(CubesAlphas, AreThoseOfEachCube) {
+template <int K>
+void expect_alphas_of_each_cell() {
+  using Cells = CellsWithEdges<4, K>;
+  constexpr unsigned kEdges = static_cast<unsigned>(K) << (K - 1);
   std::mt19937 random(9);
   for (unsigned kind = 0; kind < 4; ++kind) {
     std::vector<double> values;
@@ -253,35 +260,40 @@ TEST(CubesAlphas, AreThoseOfEachCube) {
       for (const double height : random_heights(random, kind)) values.push_back(height);
     const Image<double, 4> image(values.data(), Grid<4>::unit({4, 4, 4, 8}));
     const ImageSource<double, 4> source(image, 0.0, 0.01);
-    std::array<SampleIndex<4>, CubesWithEdges<4>::kMost> bases;
-    std::array<std::uint32_t, CubesWithEdges<4>::kMost> edges;
-    std::array<std::uint8_t, CubesWithEdges<4>::kMost> axes;
+    std::array<SampleIndex<4>, Cells::kMost> bases;
+    std::array<std::uint32_t, Cells::kMost> edges;
+    std::array<std::uint8_t, Cells::kMost> axes;
     for (unsigned trial = 0; trial < 20; ++trial) {
       std::size_t count = 0;
       for (; count < bases.size() - kind; ++count) {
         for (std::size_t& at : bases[count]) at = random() % 3;
-        axes[count] = static_cast<std::uint8_t>(15u ^ 1u << random() % 4);
-        std::array<double, 8> at_corners;
+        axes[count] = static_cast<std::uint8_t>(K == 4 ? 15u : 15u ^ 1u << random() % 4);
+        std::array<double, std::size_t{1} << K> at_corners;
         source.corner_values(bases[count], axes[count], at_corners.data());
         edges[count] = 0;
-        for (unsigned e = 0; e < 12; ++e) {
-          const unsigned base = edge_base(3, e);
-          const bool is_critical = (at_corners[base] >= 0) != (at_corners[base | 1u << (e >> 2)] >= 0);
+        for (unsigned e = 0; e < kEdges; ++e) {
+          const unsigned base = edge_base(K, e);
+          const bool is_critical = (at_corners[base] >= 0) != (at_corners[base | 1u << (e >> (K - 1))] >= 0);
           edges[count] |= static_cast<std::uint32_t>(is_critical && random() % 4 != 0) << e;
         }
       }
-      CubesWithEdges<4>::Alphas together;
-      source.cubes_alphas({axes.data(), bases.data(), edges.data(), count}, together);
+      typename Cells::Alphas together;
+      source.cells_alphas(Cells{axes.data(), bases.data(), edges.data(), count}, together);
       for (std::size_t i = 0; i < count; ++i) {
-        std::array<double, 12> alone;
+        std::array<double, kEdges> alone;
         source.cell_alphas(bases[i], axes[i], edges[i], alone.data());
-        for (unsigned e = 0; e < 12; ++e)
+        for (unsigned e = 0; e < kEdges; ++e)
           if ((edges[i] >> e & 1u) != 0) {
-            ASSERT_EQ(together[e][i], alone[e]) << "cube " << i << ", edge " << e;
+            ASSERT_EQ(together[e][i], alone[e]) << "cell " << i << ", edge " << e;
           }
       }
     }
   }
+}
+
+TEST(CellsAlphas, AreThoseOfEachCell) {
+  expect_alphas_of_each_cell<3>();
+  expect_alphas_of_each_cell<4>();
 }
 
 TEST(TileHeights, KeepEpsilonFromBothEndsAndAreHalfWayIfInfinite) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -136,24 +137,36 @@ std::vector<std::uint32_t> masks_of_edges() {
   return masks;
 }
 
+/// `some_edges(bits)`: the edges of a mean, as bits.
+template <int K, class SomeEdges>
+void expect_own_vertices(const SomeEdges& some_edges) {
+  using Means = detail::EdgeMeans<K>;
+  std::mt19937_64 bits(5);
+  for (int i = 0; i < 2'000; ++i) {
+    Means means;
+    means.count = 1 + bits() % Means::kMost;
+    for (auto& of_edge : means.alphas)
+      for (double& alpha : of_edge) alpha = bits() % 8 == 0 ? static_cast<double>(bits() % 3) / 2 : unit_random(bits);
+    for (std::size_t m = 0; m < means.count; ++m) means.edges[m] = some_edges(bits);
+    typename Means::Coordinates found;
+    detail::find_means<K>(means, found);
+    for (std::size_t m = 0; m < means.count; ++m) {
+      const auto on_edge = [&](unsigned e) { return detail::edge_point<K>(e, means.alphas[e][m]); };
+      const auto expected = detail::mask_place<K>(std::uint64_t{means.edges[m]} << (1u << K), std::identity(), on_edge,
+                                                  true, detail::NoRays());
+      for (unsigned a = 0; a < K; ++a) ASSERT_EQ(found[a][m], expected[a]) << "edges " << means.edges[m];
+    }
+  }
+}
+
 TEST(EdgeMeans, AreTheOwnVerticesOfCubes) {
   const std::vector<std::uint32_t> masks = masks_of_edges();
   ASSERT_GT(masks.size(), 10u);
-  std::mt19937_64 bits(5);
-  for (int i = 0; i < 2'000; ++i) {
-    detail::EdgeMeans means;
-    means.count = 1 + bits() % detail::EdgeMeans::kMost;
-    for (auto& of_edge : means.alphas)
-      for (double& alpha : of_edge) alpha = bits() % 8 == 0 ? static_cast<double>(bits() % 3) / 2 : unit_random(bits);
-    for (std::size_t m = 0; m < means.count; ++m) means.edges[m] = masks[bits() % masks.size()] >> 8;
-    detail::EdgeMeans::Coordinates found;
-    detail::find_means(means, found);
-    for (std::size_t m = 0; m < means.count; ++m) {
-      const auto on_edge = [&](unsigned e) { return detail::edge_point<3>(e, means.alphas[e][m]); };
-      const auto expected = detail::cube_own_place(means.edges[m] << 8, on_edge, detail::NoRays());
-      for (unsigned a = 0; a < 3; ++a) ASSERT_EQ(found[a][m], expected[a]) << "edges " << means.edges[m];
-    }
-  }
+  expect_own_vertices<3>([&](auto& bits) { return masks[bits() % masks.size()] >> 8; });
+}
+
+TEST(EdgeMeans, AreTheOwnVerticesOfTesseracts) {
+  expect_own_vertices<4>([](auto& bits) { return static_cast<std::uint32_t>(bits() & bits()) | 1u << bits() % 32; });
 }
 
 }  // namespace

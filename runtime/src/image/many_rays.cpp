@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Roots of the multilinear interpolant on the rays to a tile's corners (see corner_levels.hpp), and on rays of many
-// cubes (cube_levels in cube_heights.hpp). Highway's foreach_target compiles this file once per instruction set. The
+// Roots of the multilinear interpolant on the rays of a tesseract (see many_rays.hpp), and on rays of many cubes
+// (cube_levels in cube_heights.hpp). Highway's foreach_target compiles this file once per instruction set. The
 // operations are those of tile_heights.cpp, cube_heights.cpp and ray_level.hpp, in the same order, so that the levels
 // are equal bit by bit.
-#include "image/corner_levels.hpp"
+#include "image/many_rays.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <iterator>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "image/cube_heights.hpp"
 #include "image/ray_level.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "image/corner_levels.cpp"
+#define HWY_TARGET_INCLUDE "image/many_rays.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
 #include "hwy/highway.h"
@@ -53,23 +53,24 @@ struct RayPolynomials {
   }
 };
 
-/// On the rays to a tesseract's corners from `first` on.
-HWY_INLINE RayPolynomials<5> corner_polynomials(const std::array<double, 16>& products, std::size_t first) {
-  // By set of axes and corner: the product of u = 2 x - 1 over the axes.
-  alignas(64) static constexpr auto kProducts = [] {
-    std::array<std::array<double, 16>, 16> result{};
-    for (unsigned set = 0; set < 16; ++set)
-      for (unsigned corner = 0; corner < 16; ++corner)
-        result[set][corner] = std::popcount(set & ~corner) % 2 == 0 ? 1.0 : -1.0;
-    return result;
-  }();
-  // Unrolled, so that the coefficients stay in registers.
+/// The interpolant on rays of a tesseract. `u`: by axis 2 x - 1 of their ends.
+HWY_INLINE RayPolynomials<5> tesseract_polynomials(const std::array<double, 16>& products, const RayLanes (&u)[4]) {
+  // Unrolled, so that the coefficients stay in registers. The weight of a set of axes is the product of u over them.
   return [&]<std::size_t... Set>(std::index_sequence<Set...>) HWY_ATTR {
     const RayTag d;
-    RayLanes sums[5] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    ((sums[std::popcount(Set)] = hn::Add(
-          sums[std::popcount(Set)], hn::Mul(hn::Set(d, products[Set]), hn::LoadU(d, kProducts[Set].data() + first)))),
-     ...);
+    RayLanes weights[16], sums[5];
+    for (auto& sum : sums) sum = hn::Zero(d);
+    const auto add = [&]<std::size_t S>(std::integral_constant<std::size_t, S>) HWY_ATTR {
+      if constexpr (S == 0) {
+        weights[0] = hn::Set(d, 1.0);
+      } else {
+        constexpr std::size_t kLast = std::bit_width(S) - 1;
+        weights[S] = hn::Mul(weights[S ^ std::size_t{1} << kLast], u[kLast]);
+      }
+      constexpr int kDegree = std::popcount(S);
+      sums[kDegree] = hn::Add(sums[kDegree], hn::Mul(hn::Set(d, products[S]), weights[S]));
+    };
+    (add(std::integral_constant<std::size_t, Set>{}), ...);
     return RayPolynomials<5>{{sums[0], sums[1], sums[2], sums[3], sums[4]}};
   }
   (std::make_index_sequence<16>());
@@ -128,20 +129,21 @@ struct LevelsInside {
   }
 };
 
-void levels_of_corners(const std::array<double, 16>& products, double epsilon, std::uint32_t corners,
-                       std::array<double, 16>& out) {
+void levels_of_tesseract(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) {
   const RayTag d;
-  constexpr std::size_t kLanes = hn::MaxLanes(d);
-  const auto one = hn::Set(d, 1.0), zero = hn::Zero(d);
+  const std::size_t lanes = hn::Lanes(d);
+  const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), zero = hn::Zero(d);
   const LevelsInside inside(epsilon);
-  for (std::size_t first = 0; first < 16; first += kLanes) {
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(corners >> first & ((1u << kLanes) - 1))};
-    if (bits[0] == 0) continue;
-    const RayPolynomials<5> polynomials = corner_polynomials(products, first);
-    auto level = last_roots(polynomials, hn::LoadMaskBits(d, bits));
+  const std::size_t end = (rays.count + lanes - 1) / lanes * lanes;
+  for (auto& ends : rays.ends) std::fill(ends.begin() + rays.count, ends.begin() + end, 0.0);
+  for (std::size_t i = 0; i < end; i += lanes) {
+    RayLanes u[4];
+    for (std::size_t a = 0; a < 4; ++a) u[a] = hn::Sub(hn::Mul(two, hn::Load(d, rays.ends[a].data() + i)), one);
+    const RayPolynomials<5> polynomials = tesseract_polynomials(products, u);
+    auto level = last_roots(polynomials, hn::FirstN(d, rays.count - i));
     const auto is_nearer = hn::Lt(hn::Abs(polynomials.value(one)), hn::Abs(polynomials.of[0]));
     level = hn::IfThenElse(hn::Lt(level, zero), hn::IfThenElseZero(is_nearer, one), level);
-    hn::StoreU(inside(level), d, out.data() + first);
+    hn::Store(inside(level), d, rays.levels.data() + i);
   }
 }
 
@@ -208,15 +210,14 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-HWY_EXPORT(levels_of_corners);
+HWY_EXPORT(levels_of_tesseract);
 HWY_EXPORT(levels_of_cubes);
 
-void corner_levels(const std::array<double, 16>& products, double epsilon, std::uint32_t corners,
-                   std::array<double, 16>& out) noexcept {
+void find_levels(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) noexcept {
   if (is_finite_enough(products[0]))
-    HWY_DYNAMIC_DISPATCH(levels_of_corners)(products, epsilon, corners, out);
+    HWY_DYNAMIC_DISPATCH(levels_of_tesseract)(products, epsilon, rays);
   else
-    out.fill(0.5);
+    std::fill_n(rays.levels.begin(), rays.count, 0.5);
 }
 
 void cube_levels(CubeRays& rays, unsigned degree, double epsilon, std::array<double, CubeRays::kMost>& out) noexcept {
