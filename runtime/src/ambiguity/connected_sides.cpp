@@ -111,9 +111,11 @@ void connected_sides(BoundarySides& sides) {
     const Connections connections(sides, i);
     // from the lowest corner
     auto reached = hn::And(connections.corners, hn::Sub(hn::Zero(d), connections.corners));
-    for (auto before = hn::Zero(d); !hn::AllTrue(d, hn::Eq(before, reached));) {
-      before = reached;
+    auto is_final = hn::Eq(reached, connections.corners);
+    while (!hn::AllTrue(d, is_final)) {
+      const auto before = reached;
       reached = connections.grown(reached);
+      is_final = hn::Or(hn::Eq(reached, before), hn::Eq(reached, connections.corners));
     }
     const auto connected = hn::Eq(reached, connections.corners);
     hn::Store(hn::IfThenElseZero(connected, hn::Set(d, std::uint16_t{1})), d, sides.connected.data() + i);

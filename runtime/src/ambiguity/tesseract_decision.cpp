@@ -190,7 +190,7 @@ class WordResolver {
       const auto high_cubes = static_cast<unsigned>(block_.high[of_.bits[j]] >> kFirstCube<4>);
       unsigned with_choice = 0;
       for (unsigned f = 0; f < 8; ++f) {
-        const ResolvedCubes::Entry entry = cubes_.at_entry(entries_[j][f]);
+        const ResolvedCubes::Entry& entry = cubes_.at_entry(entries_[j][f]);  // a copy would be stored and loaded again
         tile.lists[f] = entry.lists[entry.has_choice * (1 + (high_cubes >> f & 1u))];
         with_choice |= unsigned{entry.has_choice} << f;
       }
@@ -264,10 +264,6 @@ class WordResolver {
       unsigned with_vertices = 0;  // without branches: few cubes have vertices, which is hard to predict
       for (unsigned f = 0; f < 8; ++f) with_vertices |= (cubes_.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
       tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
-      for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
-        const auto f = static_cast<unsigned>(std::countr_zero(rest));
-        tile.cubes[f] = cubes_.key(tile.lists[f]);
-      }
     }
   }
 

@@ -11,10 +11,10 @@
 
 namespace tegl::detail {
 
-/// The filling of a 4D tile: its resolution, the lists of its cubes, and the keys of the cubes that own vertices.
+/// The filling of a 4D tile: its resolution and the lists of its cubes.
 struct ResolvedTile {
   ResolvedKey key;
-  std::array<std::uint16_t, 8> cubes{};
+  std::array<std::uint16_t, 8> cubes{};  ///< keys; only from resolved_tile
   ResolvedCubes::Lists lists{};
   std::uint8_t with_vertices = 0;  ///< bit set of the cubes that own vertices
   bool is_connected = false;       ///< whether Sigma is known to be connected (ResolvedTesseract::find)

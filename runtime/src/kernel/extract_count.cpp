@@ -385,6 +385,7 @@ template <int N>
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
+    const bool callers = estimator_->is_callers();  // their answers are compared by key
     RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active},
                           *scratch.of_word);
     for (std::uint32_t i = 0; i < count.active; ++i) {
@@ -400,7 +401,7 @@ template <int N>
       if (found == nullptr || tile.with_vertices == 0) continue;
       const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
         if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
-          plane.add(row, at, tile.cubes[cube], own);
+          plane.add(row, at, callers ? tile.cubes[cube] : cubes.key(tile.lists[cube]), own);
       };
       take(found->in_slab[0], 0, base[0]);
       if (base[0] + 2 == shape_.size(0)) take(found->in_slab[0], 1, base[0] + 1);

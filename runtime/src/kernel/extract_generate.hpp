@@ -88,6 +88,7 @@ class TileWriter {
     RowOfTesseracts* tesseracts = nullptr;      ///< N = 4, if resolved from the data without a caller's estimator
     const AssembledTiles* assembled = nullptr;  ///< with `tesseracts`: the row's first tiles may be kept here
     std::size_t at = 0, end = 0;                ///< offset of the next one, and the end
+    CubesOfTiles* cubes = nullptr;              ///< N = 4, if resolved from the data
 
     static Index first_own(void* self, unsigned key, std::size_t ordinal) noexcept requires(N == 3) {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
@@ -105,17 +106,17 @@ class TileWriter {
     }
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
-      own.index[0] = own.active.place_of(ordinal);
+      own.index[0] = own.listed != nullptr ? own.listed[ordinal] : own.active.place_of(ordinal);
       if constexpr (N == 4)
         if (own.writer.is_estimated_tile(key)) {
           ResolvedTile tile;
           if (own.at < own.end) {
             const ResolvedView filling = own.assembled->read(own.at, tile);
-            return own.writer.write_resolved(own.view, own.row, own.index, key, tile, filling, edge_ids, own.next,
-                                             *own.cells, out);
+            return own.writer.write_resolved(*own.cubes, own.index, key, tile, filling, edge_ids, own.next, *own.cells,
+                                             out);
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
-          return own.writer.write_resolved(own.view, own.row, own.index, key, tile,
+          return own.writer.write_resolved(*own.cubes, own.index, key, tile,
                                            own.scratch.tesseract->find(tile.key, tile.lists, tile.is_connected),
                                            edge_ids, own.next, *own.cells, out);
         }
@@ -146,9 +147,9 @@ class TileWriter {
                              BitWalk(view.slab->active.data() + row * view.shape->words()),
                              view.shape->size(0) <= kMostListed ? tiles.at : nullptr,
                              view.slab->first_own(row)};
-    // 4D tiles resolved by mean or saddle
+    // 4D tiles resolved from the data
     if constexpr (N == 4)
-      if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
+      if (estimator_ != nullptr) return write_tesseracts(output, start, tiles, own);
     if constexpr (N == 3)
       write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::first_own, &own});
     else
@@ -158,8 +159,10 @@ class TileWriter {
   /// write_tile_row for tiles resolved from the data. Not inlined, because its stack frame is large.
   [[gnu::noinline]] void write_tesseracts(const TileOutput<N>& output, const typename RowShape<N>::Index& start,
                                           const RowTiles& tiles, TilesWithOwnVertices& own) const noexcept {
+    CubesOfTiles cubes(own.view, own.row);
+    own.cubes = &cubes;
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, *own.scratch.of_word);
-    own.tesseracts = &tesseracts;
+    if (!estimator_->is_callers()) own.tesseracts = &tesseracts;
     // read for one tile after the other, and seldom in a cache
     for (std::uint32_t i = 0; i < tiles.count; ++i) hwy::Prefetch(&ambiguous_signatures<N>()[tiles.signatures[i]]);
     const Slab<N>& slab = *own.view.slab;
@@ -180,8 +183,11 @@ class TileWriter {
     CellBits<N, kAll> cells(view, row);
     CellEdges<N, kAll> edges(view, row);
     [[maybe_unused]] std::optional<TileCubes> cubes;
-    if constexpr (N == 4)
+    [[maybe_unused]] std::optional<CubesOfTiles> resolved_cubes;
+    if constexpr (N == 4) {
       if (has_cubes_) cubes.emplace(view, row);
+      if (estimator_ != nullptr) resolved_cubes.emplace(view, row);
+    }
     Ids ids;
     Index own = view.slab->first_own(row);
     // active tiles, 64 positions at a time
@@ -199,7 +205,7 @@ class TileWriter {
         if constexpr (N == 4)
           if (is_estimated_tile(signature)) {
             const ResolvedTile tile = tile_of(scratch.answers, index, signature);
-            out = write_resolved(view, row, index, signature, tile,
+            out = write_resolved(*resolved_cubes, index, signature, tile,
                                  scratch.tesseract->find(tile.key, tile.lists, tile.is_connected), ids.data(), own,
                                  *own_cells, out);
             continue;
@@ -306,30 +312,25 @@ class TileWriter {
   }
 
   /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `edge_ids`: numbers of
-  /// its edges' vertices.
-  Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
-                          unsigned signature, const ResolvedTile& tile, const ResolvedView& filling,
-                          const Index* edge_ids, Index& own, OwnCells& cells, Simplex* out) const noexcept {
-    const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
-    // numbers of the cubes' vertices
+  /// its edges' vertices. `cubes`: of its row.
+  Simplex* write_resolved(CubesOfTiles& cubes, const typename RowShape<N>::Index& index, unsigned signature,
+                          const ResolvedTile& tile, const ResolvedView& filling, const Index* edge_ids, Index& own,
+                          OwnCells& cells, Simplex* out) const noexcept {
+    // numbers of the cubes' vertices: of as many as a cube can have, without a branch on how many it has
     std::array<Index, ResolvedCubes::kCubes * ResolvedCubes::kMostOwn> cube_ids;
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
       const auto cube = static_cast<unsigned>(std::countr_zero(rest));
-      const unsigned count = cubes.own_vertices(tile.lists[cube]);
-      const unsigned axis = cube / 2, side = cube % 2;
-      const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
-      const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));
-      for (unsigned j = 0; j < count; ++j) cube_ids[ResolvedCubes::kMostOwn * cube + j] = first + j;
+      const Index first = cubes.first_vertex(cube, index[0]);
+      for (unsigned j = 0; j < ResolvedCubes::kMostOwn; ++j) cube_ids[ResolvedCubes::kMostOwn * cube + j] = first + j;
     }
-    // own vertices
-    const Index first_own = own;
-    if constexpr (N == 4) cells.add(filling, tile.lists, estimator_->triangulation(), index, signature, first_own);
-    own += filling.own_vertices;
-    // simplices
-    if constexpr (N == 4)
+    if constexpr (N == 4) {
       write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, edge_ids,
-                                   tile.with_vertices != 0 ? cube_ids.data() : nullptr, first_own, flip_},
+                                   tile.with_vertices != 0 ? cube_ids.data() : nullptr, own, flip_},
                     out);
+      // after the simplices: `index` has just been written in parts, and reading it as a whole would wait
+      cells.add(filling, tile.lists, estimator_->triangulation(), index, signature, own);
+    }
+    own += filling.own_vertices;
     return out + filling.simplex_count;
   }
 

@@ -301,4 +301,31 @@ struct SlabView {
   }
 };
 
+/// Numbers of the own vertices of the cubes of a row's tiles, if ambiguities are resolved from the data. The tiles come
+/// in order along the row, so no list is searched.
+class CubesOfTiles {
+ public:
+  CubesOfTiles(const SlabView<4>& view, std::size_t row) noexcept {
+    for (unsigned cube = 0; cube < next_.size(); ++cube) {
+      const unsigned axis = cube / 2, side = cube % 2;
+      const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == 3 ? side : 0);
+      const std::size_t of_cube = view.shape->shifted(row, side << axis);
+      if (plane.count[of_cube] == 0) continue;
+      next_[cube] = plane.lists.row(of_cube).data();
+      first_[cube] = plane.first(of_cube);
+    }
+  }
+  /// First vertex of a cube of the tile at position `at`; the cube must own vertices.
+  [[nodiscard]] Index first_vertex(unsigned cube, std::size_t at) noexcept {
+    const ListedCube*& next = next_[cube];
+    at += cube == 1 ? 1 : 0;
+    while (next->at < at) ++next;
+    return first_[cube] + next->before;
+  }
+
+ private:
+  std::array<const ListedCube*, 8> next_{};
+  std::array<Index, 8> first_{};
+};
+
 }  // namespace tegl::detail

@@ -50,18 +50,19 @@ HWY_INLINE void write_by_registers(const LocalSimplices& simplices, Simplex* out
   const __m512i first_own = _mm512_set1_epi32(64);
   const __m128i order = simplices.flip ? _mm_setr_epi8(0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14)
                                        : _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  for (std::uint32_t q = 0; q < simplices.count; q += 4) {
-    const std::uint32_t rest = simplices.count - q;
-    const auto mask = static_cast<__mmask16>(rest >= 4 ? 0xffffu : (1u << (4 * rest)) - 1);
-    const __m128i bytes = _mm_maskz_loadu_epi8(mask, simplices.local + 4 * std::size_t{q});
+  const auto numbers_of = [&](__m128i bytes) HWY_ATTR {
     const __m512i local = _mm512_cvtepu8_epi32(_mm_shuffle_epi8(bytes, order));
     __m512i numbers = _mm512_permutex2var_epi32(edges[0], local, edges[1]);
     if constexpr (kHasCubes)
       numbers = _mm512_mask_mov_epi32(numbers, _mm512_test_epi32_mask(local, _mm512_set1_epi32(32)),
                                       _mm512_permutex2var_epi32(cubes[0], local, cubes[1]));
-    numbers = _mm512_mask_add_epi32(numbers, _mm512_cmpge_epu32_mask(local, first_own), local, after_own);
-    _mm512_mask_storeu_epi32(out + q, mask, numbers);
-  }
+    return _mm512_mask_add_epi32(numbers, _mm512_cmpge_epu32_mask(local, first_own), local, after_own);
+  };
+  const std::uint8_t* local = simplices.local;
+  for (std::uint32_t fours = simplices.count / 4; fours != 0; --fours, local += 16, out += 4)
+    _mm512_storeu_si512(out, numbers_of(_mm_loadu_si128(reinterpret_cast<const __m128i*>(local))));
+  const auto rest = static_cast<__mmask16>((1u << (4 * (simplices.count % 4))) - 1);
+  if (rest != 0) _mm512_mask_storeu_epi32(out, rest, numbers_of(_mm_maskz_loadu_epi8(rest, local)));
 }
 
 #endif
@@ -79,21 +80,22 @@ void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t*
 #if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
   builders::ResolvedTesseract::map_tetrahedra(from, count, to, swap, out);
 #else
-  const hn::FixedTag<std::uint8_t, 16> d;
+  const hn::CappedTag<std::uint8_t, 32> d;  // the 16 entries of each half of `to` are in every block of 16 lanes
   alignas(16) static constexpr std::uint8_t kOrders[2][16] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
                                                               {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14}};
-  const auto order = hn::Load(d, kOrders[swap ? 1 : 0]);
+  const auto order = hn::LoadDup128(d, kOrders[swap ? 1 : 0]);
   // Not loaded at once: the words have just been written.
-  const hn::FixedTag<std::uint64_t, 2> words;
+  const hn::Repartition<std::uint64_t, decltype(d)> words;
   const auto entries = [&](std::size_t i) HWY_ATTR {
     return hn::BitCast(d, hn::InterleaveLower(words, hn::Set(words, to[i]), hn::Set(words, to[i + 1])));
   };
   const auto lower = entries(0);
   const auto upper = entries(2);
   const auto last_of_lower = hn::Set(d, 15);
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
   // 16 at once: most regions have no more
   for (std::size_t q = 0; q < count; q += kMoreSimplices + 1)
-    for (std::size_t i = q; i < q + kMoreSimplices + 1; i += 4) {
+    for (std::size_t i = q; i < q + kMoreSimplices + 1; i += kLanes / 4) {
       const auto local = hn::TableLookupBytes(hn::LoadU(d, from + 4 * i), order);
       const auto in_half = hn::And(local, last_of_lower);
       const auto mapped = hn::IfThenElse(hn::Gt(local, last_of_lower), hn::TableLookupBytes(upper, in_half),
