@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <set>
 #include <sstream>
 
@@ -68,6 +69,41 @@ TEST_F(Contour, OfMovingBallsIsAManifoldOfTetrahedra) {
   const nlohmann::json closed = contour(file, "0", "closed.vtkhdf", {"--close"});
   EXPECT_EQ(closed["boundary_simplices"], 0);
   EXPECT_EQ(closed["euler"], 0) << "a closed 3-manifold";
+}
+
+TEST_F(Contour, OfIntegersWithASlopeIsTheContourOfTheirValues) {
+  Samples stored = noise({9, 10, 11}, 5);  // 0 to 255: many samples are equal
+  for (float& value : stored.values) value = std::round(value / 8);
+  for (const float slope : {0.3f, -0.3f}) {
+    Samples values = stored;
+    for (float& value : values.values)
+      value = static_cast<float>(static_cast<double>(slope) * static_cast<double>(value) + static_cast<double>(-2.7f));
+    const std::string integers = write("integers.nii", nifti_bytes_int16(stored, slope, -2.7f));
+    const std::string floats = write("floats.nii", nifti_bytes(values, {}));
+    const auto exact = [](double number) {
+      std::ostringstream text;
+      text << std::setprecision(17) << number;
+      return text.str();
+    };
+    const auto number = [&](std::size_t at) { return exact(static_cast<double>(values.values[at])); };
+    // the value of a sample as it is rounded to float, a value between, and one that only the range has
+    for (const std::string& iso : {number(3), number(17), exact(slope * 15.37)}) {
+      SCOPED_TRACE(iso);
+      const auto one = contour(integers, iso, "a.ply", {"--normals"});
+      const auto other = contour(floats, iso, "b.ply", {"--normals"});
+      for (const char* const key : {"isovalue", "vertices", "simplices", "boundary_simplices", "euler"})
+        EXPECT_EQ(one[key], other[key]) << key;
+      const Mesh a = read_mesh(path("a.ply"));
+      const Mesh b = read_mesh(path("b.ply"));
+      EXPECT_EQ(a.simplices, b.simplices);
+      ASSERT_EQ(a.coordinates.size(), b.coordinates.size());
+      for (std::size_t i = 0; i < a.coordinates.size(); ++i) ASSERT_NEAR(a.coordinates[i], b.coordinates[i], 1e-5);
+    }
+  }
+  const std::string file = write("integers.nii", nifti_bytes_int16(stored, -0.3f, 1));
+  const RunResult run = run_tegl({"contour", file, "--iso", "2", "-o", path("none.ply")});
+  EXPECT_EQ(run.exit, 5) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("outside of the values, which are -8.6"));
 }
 
 TEST_F(Contour, GoesIntoStlAndObjWhereTheseHoldIt) {

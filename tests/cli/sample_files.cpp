@@ -16,8 +16,9 @@ namespace tegl::test {
 
 namespace {
 
-std::string bytes_of(const std::vector<float>& values) {
-  std::string bytes(values.size() * sizeof(float), '\0');
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  std::string bytes(values.size() * sizeof(T), '\0');
   std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
 }
@@ -110,6 +111,18 @@ std::string nifti_bytes(const Samples& samples, const std::vector<float>& spacin
   put(252, std::int16_t{1});      // qform: scanner; the zero quaternion is the identity
   std::memcpy(header.data() + 344, "n+1", 4);
   return header + bytes_of(samples.values);
+}
+
+std::string nifti_bytes_int16(const Samples& samples, float slope, float intercept) {
+  std::string header = nifti_bytes(samples, {}).substr(0, 352);
+  const auto put = [&](std::size_t at, auto value) { std::memcpy(header.data() + at, &value, sizeof(value)); };
+  put(70, std::int16_t{4});   // datatype: int16
+  put(72, std::int16_t{16});  // bits
+  put(112, slope);
+  put(116, intercept);
+  std::vector<std::int16_t> stored;
+  for (const float value : samples.values) stored.push_back(static_cast<std::int16_t>(std::lround(value)));
+  return header + bytes_of(stored);
 }
 
 std::string metaimage_bytes(const Samples& samples) {

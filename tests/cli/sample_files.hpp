@@ -37,6 +37,9 @@ std::string nrrd_bytes_uint8(const Samples& samples);
 /// NIfTI-1, float, with spacings (mm; s along t) and without a rotation.
 std::string nifti_bytes(const Samples& samples, const std::vector<float>& spacing);
 
+/// As nifti_bytes, with int16 values, which are the samples rounded, and this slope and intercept.
+std::string nifti_bytes_int16(const Samples& samples, float slope, float intercept);
+
 /// MetaImage, float, attached data.
 std::string metaimage_bytes(const Samples& samples);
 

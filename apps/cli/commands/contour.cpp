@@ -331,7 +331,8 @@ class ContourCommand final : public Command {
 
   void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     Stopwatch watch;
-    auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused);
+    auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused,
+                          takes_stored_integers(options));
     if (!sigmas_.empty()) make_scale_space(any, bar.stage("scale space"));
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       return contour_5d(*in_5d, options, watch, bar, results);
@@ -346,7 +347,7 @@ class ContourCommand final : public Command {
       result.variable = input.info.variable;
       result.image_dim = image_dim(input.image);
       result.folded_cells = folded_cells;
-      require_contour(input, *result.isovalue, options_.allows_empty());
+      result.isovalue_of_samples = require_contour(input, *result.isovalue, options_.allows_empty());
     }
     placed_ = positions_.library_options(input.image, image_options(bar.stage("positions")), position_values_);
     results.front().seconds.read = watch.lap();  // read once for all isovalues
@@ -357,7 +358,7 @@ class ContourCommand final : public Command {
       if (result.merging)
         remark(MergeArguments::require_left(*result.merging, left, true));
       else if (left == 0)
-        remark(remark_without_contour(input.image, *result.isovalue));
+        remark(remark_without_contour(input.image, *result.isovalue, result.isovalue_of_samples));
       if (one_file_) return;
       if (&result == &results.back()) input.image = AnyImage();  // frees the image's memory for the check
       check_and_write(result, bar, written);
@@ -424,6 +425,14 @@ class ContourCommand final : public Command {
     result.mesh = Mesh();
   }
 
+  /// Whether the samples may be stored integers: for contours that depend on the samples' sides and, along edges, on
+  /// their differences only. Other rules compare sums, and files beside the image have its values.
+  [[nodiscard]] bool takes_stored_integers(const ExtractOptions& options) const {
+    return index_.empty() && sigmas_.empty() && positions_.are_linear() && options_.tiling().is_plain() &&
+           !options_.polygon_triangulation() &&
+           (options.ambiguity == Ambiguity::low || options.ambiguity == Ambiguity::high);
+  }
+
   /// Extracts the contour of one isovalue, without an index.
   void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     options.work.progress = bar.stage("contour");
@@ -436,15 +445,16 @@ class ContourCommand final : public Command {
     };
     const bool single_precision = options_.single_precision();
     if (const auto method = options_.polygon_triangulation())
-      result.mesh = std::visit(
-          finished,
-          triangulated_polygons(
-              image, {*result.isovalue, options, single_precision, no_check_, compress_.compression()}, *method, bar));
+      result.mesh = std::visit(finished, triangulated_polygons(image,
+                                                               {result.isovalue_of_samples, options, single_precision,
+                                                                no_check_, compress_.compression()},
+                                                               *method, bar));
     else if (!positions_.are_linear())
-      result.mesh =
-          extract_placed_and_use<Mesh>(image, *result.isovalue, placed_, options, single_precision, tiling_, finished);
+      result.mesh = extract_placed_and_use<Mesh>(image, result.isovalue_of_samples, placed_, options, single_precision,
+                                                 tiling_, finished);
     else
-      result.mesh = extract_and_use<Mesh>(image, *result.isovalue, options, single_precision, finished, tiling_);
+      result.mesh =
+          extract_and_use<Mesh>(image, result.isovalue_of_samples, options, single_precision, finished, tiling_);
   }
 
   /// As `make`, for an image on a curved grid: makes the contour on the indices and moves it.
@@ -539,9 +549,9 @@ class ContourCommand final : public Command {
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
       const std::array<double, N> point = picked_place<N>(*result.picked);
       if (options_.single_precision())
-        keep(extract_component<float>(owned.view(), *result.isovalue, point, options));
+        keep(extract_component<float>(owned.view(), result.isovalue_of_samples, point, options));
       else
-        keep(extract_component<double>(owned.view(), *result.isovalue, point, options));
+        keep(extract_component<double>(owned.view(), result.isovalue_of_samples, point, options));
     };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
     result.seconds.generate += watch.lap();
@@ -661,15 +671,6 @@ class ContourCommand final : public Command {
                                   compress_.compression()};
     for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));
     for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);
-  }
-
-  static void require_output_grows(const std::string& output) {
-    const MeshFileFormat* const format = find_mesh_file_format(output);
-    if (format != nullptr && format->extension == ".vtkhdf") return;
-    throw Error(
-        ErrorCode::WriteFailed,
-        fmt::format("{}: this format cannot be written in parts, which a streamed contour needs; expected .vtkhdf",
-                    output));
   }
 
   ExtractionOptions options_;

@@ -99,6 +99,15 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
 
 }  // namespace
 
+void require_output_grows(const std::string& output) {
+  const MeshFileFormat* const format = find_mesh_file_format(output);
+  if (format != nullptr && format->extension == ".vtkhdf") return;
+  throw Error(
+      ErrorCode::WriteFailed,
+      fmt::format("{}: this format cannot be written in parts, which a streamed contour needs; expected .vtkhdf",
+                  output));
+}
+
 void require_open_files(std::size_t contours) {
   constexpr rlim_t kOthers = 32;  // standard streams, inputs, files opened by libraries
   rlimit limit{};

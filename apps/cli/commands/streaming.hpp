@@ -18,6 +18,9 @@ namespace tegl::cli {
 /// necessary.
 void require_open_files(std::size_t contours);
 
+/// Throws WriteFailed unless the file can be written in parts.
+void require_output_grows(const std::string& output);
+
 /// Options of streaming.
 struct StreamOptions {
   ExtractOptions extract;

@@ -66,8 +66,9 @@ ReadImageResult Command::read(const Progress& progress, CurvedGrids curved) {
   return {std::move(result.image), std::move(result.info)};
 }
 
-std::variant<ReadImageResult, ReadImage5dResult> Command::read_to_5d(const Progress& progress, CurvedGrids curved) {
-  auto any = images_.read_to_5d(worked_on_, progress);
+std::variant<ReadImageResult, ReadImage5dResult> Command::read_to_5d(const Progress& progress, CurvedGrids curved,
+                                                                     bool keep_stored) {
+  auto any = images_.read_to_5d(worked_on_, progress, keep_stored);
   std::visit([&](const auto& read) { take_order(read.files); }, any);
   if (auto* const read = std::get_if<ReadSeries5dResult>(&any)) {
     settle_curved(read->info, curved);

@@ -94,9 +94,10 @@ class Command {
   /// Reads the image of FILE and these options. Then the current files are in the order of the series.
   /// Curved grids are errors unless they are allowed or --index-grid is given.
   [[nodiscard]] ReadImageResult read(const Progress& progress, CurvedGrids curved = CurvedGrids::refused);
-  /// The same for images of up to 5 axes.
+  /// The same for images of up to 5 axes. `keep_stored`: as in ReadImageOptions.
   [[nodiscard]] std::variant<ReadImageResult, ReadImage5dResult> read_to_5d(const Progress& progress,
-                                                                            CurvedGrids curved = CurvedGrids::refused);
+                                                                            CurvedGrids curved = CurvedGrids::refused,
+                                                                            bool keep_stored = false);
   /// Opens the image to be read layer by layer. Curved grids are errors unless --index-grid is given.
   [[nodiscard]] OpenLayersResult open();
   /// Throws FileNotFound unless the current files are readable.

@@ -307,22 +307,29 @@ void require_samples(std::span<const Axis> axes) {
 }
 
 template <class Input>
-void require_both_sides(const Input& input, double isovalue) {
-  const ValueRange range = value_range(input.image, isovalue);
-  if (!range.has_both_sides(isovalue)) throw outside_error(isovalue, range, input.info.value_unit);
+void require_both_sides(const Input& input, double isovalue, double of_samples) {
+  ValueRange range = value_range(input.image, of_samples);
+  if (range.has_both_sides(of_samples)) return;
+  if (input.info.scaling) {
+    range.min = input.info.scaling->value_of(range.min);
+    range.max = input.info.scaling->value_of(range.max);
+  }
+  throw outside_error(isovalue, range, input.info.value_unit);
 }
 
 }  // namespace
 
-void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
+double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
   const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
-  if (!allow_empty) require_both_sides(input, isovalue);
+  const double of_samples = input.info.scaling ? input.info.scaling->stored_isovalue(isovalue) : isovalue;
+  if (!allow_empty) require_both_sides(input, isovalue, of_samples);
+  return of_samples;
 }
 
 void require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty) {
   std::visit([](const auto& owned) { require_samples(owned.grid.axes); }, input.image);
-  if (!allow_empty) require_both_sides(input, isovalue);
+  if (!allow_empty) require_both_sides(input, isovalue, isovalue);
 }
 
 std::string remark_on_missing(double isovalue) {

@@ -125,17 +125,22 @@ EmptyResult outside_error(double isovalue, const ValueRange& range, const std::s
 
 /// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every
 /// axis, and samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`.
-void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
+/// The first function returns the isovalue of the samples, which may be stored integers (ImageInfo::scaling).
+double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
 void require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty);
 
 /// The remark that missing samples prevent a contour.
 std::string remark_on_missing(double isovalue);
 
 /// The remark about an empty contour: empty if the isovalue is outside of the values, which was allowed; else that
-/// missing samples prevent a contour.
+/// missing samples prevent a contour. `of_samples`: the result of require_contour.
+template <class Image>
+std::string remark_without_contour(const Image& image, double isovalue, double of_samples) {
+  return value_range(image, of_samples).has_both_sides(of_samples) ? remark_on_missing(isovalue) : std::string();
+}
 template <class Image>
 std::string remark_without_contour(const Image& image, double isovalue) {
-  return value_range(image, isovalue).has_both_sides(isovalue) ? remark_on_missing(isovalue) : std::string();
+  return remark_without_contour(image, isovalue, isovalue);
 }
 
 /// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD. Throws InvalidArgument for other names.

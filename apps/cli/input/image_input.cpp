@@ -243,12 +243,13 @@ RawLayout ImageOptions::raw_layout() const {
 }
 
 template <class Function>
-auto ImageOptions::read_by(const Function& function, const std::vector<std::string>& files,
-                           const Progress& progress) const {
+auto ImageOptions::read_by(const Function& function, const std::vector<std::string>& files, const Progress& progress,
+                           bool keep_stored) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
   options.work.progress = progress;
   options.separate_process = separate_process();
+  options.keep_stored = keep_stored;
   return with_hint(variable(), files, options, [&] { return function(paths_of(files), options); });
 }
 
@@ -259,8 +260,9 @@ ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const
 }
 
 std::variant<ReadSeriesResult, ReadSeries5dResult> ImageOptions::read_to_5d(const std::vector<std::string>& files,
-                                                                            const Progress& progress) const {
-  auto result = read_by(&read_series_to_5d, files, progress);
+                                                                            const Progress& progress,
+                                                                            bool keep_stored) const {
+  auto result = read_by(&read_series_to_5d, files, progress, keep_stored);
   std::visit([&](const auto& read) { remember(read.info); }, result);
   return result;
 }

@@ -35,9 +35,10 @@ class ImageOptions {
   /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that conflict with each
   /// other or the files, and for files in the order of a shell.
   [[nodiscard]] ReadSeriesResult read(const std::vector<std::string>& files, const Progress& progress) const;
-  /// The same for images of up to 5 axes.
+  /// The same for images of up to 5 axes. `keep_stored`: as in ReadImageOptions.
   [[nodiscard]] std::variant<ReadSeriesResult, ReadSeries5dResult> read_to_5d(const std::vector<std::string>& files,
-                                                                              const Progress& progress) const;
+                                                                              const Progress& progress,
+                                                                              bool keep_stored = false) const;
 
   /// Opens the files as one image to be read layer by layer.
   [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
@@ -71,7 +72,8 @@ class ImageOptions {
   [[nodiscard]] RawLayout raw_layout() const;
   /// Reads the files by `function`, and adds hints to its errors.
   template <class Function>
-  auto read_by(const Function& function, const std::vector<std::string>& files, const Progress& progress) const;
+  auto read_by(const Function& function, const std::vector<std::string>& files, const Progress& progress,
+               bool keep_stored = false) const;
   /// Stores the remarks of a result.
   void remember(const ImageInfo& info) const {
     for (const std::string& remark : info.remarks)  // a file may be opened before it is read as a whole

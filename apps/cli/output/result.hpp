@@ -133,6 +133,7 @@ struct ContourResult {
   std::uint64_t output_bytes = 0;
   int image_dim = 0;
   std::optional<double> isovalue;  ///< none for saved contours without it, and for several isovalues
+  double isovalue_of_samples = 0;  ///< of an image that may have stored integers (ImageInfo::scaling)
   std::vector<double> isovalues;   ///< for several contours in one file
   std::optional<Cut> cut;
   std::optional<Picked> picked;

@@ -76,7 +76,7 @@ StoredImage open_stored(const fs::path& path, Format format, const ReadImageOpti
          options.fixed[0].dimension);
   switch (format) {
     case Format::Nifti:
-      return open_nifti(path);
+      return open_nifti(path, options.keep_stored);
     case Format::Nrrd:
       return open_nrrd(path, options.allow_outside_paths);
     case Format::Npy:
@@ -205,7 +205,9 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   if (format == Format::NetCdf) return open_netcdf_layers(path, options);
   if (format == Format::Vtk) return open_vtk_layers(path, options);
   if (format == Format::Pvd) return open_pvd_layers(path, options);
-  StoredImage stored = open_stored(path, format, options);
+  ReadImageOptions converted = options;
+  converted.keep_stored = false;
+  StoredImage stored = open_stored(path, format, converted);
   drop_trailing_axes(stored.grid, stored.info);
   return open_stored_layers(std::move(stored), path);
 }

@@ -28,112 +28,12 @@
 #include "base/common.hpp"
 #include "base/reading_process.hpp"
 #include "images/netcdf_file.hpp"
+#include "images/netcdf_packing.hpp"
+#include "images/stored_integers.hpp"
 
 namespace tegl::io_detail {
 
 namespace {
-
-/// The conversion of stored values: v * scale + offset, or missing.
-struct Packing {
-  double scale = 1;
-  double offset = 0;
-  bool scaled = false;
-  std::vector<double> missing;  ///< stored values that stand for missing values
-  double least = -std::numeric_limits<double>::infinity();
-  double greatest = std::numeric_limits<double>::infinity();
-  bool any_attribute = false;
-};
-
-Packing read_packing(const NcFile& file, const NcVariable& variable) {
-  Packing packing;
-  const auto scale = file.number(variable, "scale_factor");
-  const auto offset = file.number(variable, "add_offset");
-  packing.scale = scale.value_or(1.0);
-  packing.offset = offset.value_or(0.0);
-  packing.scaled = scale.has_value() || offset.has_value();
-  const auto fill = file.numbers(variable, "_FillValue");
-  packing.missing = fill;
-  for (const double value : file.numbers(variable, "missing_value")) packing.missing.push_back(value);
-  packing.any_attribute = packing.scaled || !packing.missing.empty();
-  const auto range = file.numbers(variable, "valid_range");
-  const auto limit = [&](const char* name, std::size_t index, double& value) {
-    if (range.size() == 2) value = range[index];
-    if (const auto single = file.number(variable, name)) value = *single;
-    packing.any_attribute |= std::isfinite(value);
-  };
-  limit("valid_min", 0, packing.least);
-  limit("valid_max", 1, packing.greatest);
-  // Floats without a _FillValue attribute have the library's default fill value where they were never written.
-  if (fill.empty() && variable.type == NC_FLOAT) packing.missing.push_back(NC_FILL_FLOAT);
-  if (fill.empty() && variable.type == NC_DOUBLE) packing.missing.push_back(NC_FILL_DOUBLE);
-  return packing;
-}
-
-/// Unpacks values in simple loops, which the compiler vectorizes.
-template <class Real, class T>
-void unpack_block(std::span<const T> stored, const Packing& packing, Real* to) {
-  constexpr Real kMissing = std::numeric_limits<Real>::quiet_NaN();
-  const std::size_t count = stored.size();
-  if (packing.scaled) {
-    for (std::size_t i = 0; i < count; ++i)
-      to[i] = static_cast<Real>(static_cast<double>(stored[i]) * packing.scale + packing.offset);
-  } else {
-    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<Real>(stored[i]);
-  }
-  // Attributes are compared in the variable's own type: as a float, a fill value of -1e34 is another number.
-  for (const double value : packing.missing) {
-    const T missing = static_cast<T>(value);
-    for (std::size_t i = 0; i < count; ++i) to[i] = stored[i] == missing ? kMissing : to[i];
-  }
-  if (!(packing.least > -std::numeric_limits<double>::infinity() ||
-        packing.greatest < std::numeric_limits<double>::infinity()))
-    return;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto value = static_cast<double>(stored[i]);
-    to[i] = value < packing.least || value > packing.greatest ? kMissing : to[i];
-  }
-}
-
-/// Unpacks values to `to`, which may be the same memory: in blocks that stay in the cache.
-template <class Real, class T>
-void unpack_all(std::span<const T> stored, const Packing& packing, Real* to) {
-  constexpr std::size_t kBlock = 2048;
-  std::array<T, kBlock> block;
-  for (std::size_t first = 0; first < stored.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, stored.size() - first);
-    std::copy_n(stored.data() + first, count, block.data());
-    unpack_block<Real, T>(std::span<const T>(block).first(count), packing, to + first);
-  }
-}
-
-template <class Real, class T>
-ValueVector<Real> unpacked(const ValueVector<T>& stored, const Packing& packing) {
-  ValueVector<Real> result(stored.size());
-  unpack_all<Real, T>(stored, packing, result.data());
-  return result;
-}
-
-/// Unpacks to float if it is exact, including integers of up to 16 bits; else to double.
-ValueArray unpack(ValueArray&& values, Packing packing) {
-  return std::visit(
-      [&]<class T>(ValueVector<T>& stored) -> ValueArray {
-        // Values outside of the type's range never occur, and casting them is undefined behaviour.
-        std::erase_if(packing.missing, [](double value) {
-          constexpr auto kLowest = static_cast<double>(std::numeric_limits<T>::lowest());
-          constexpr auto kHighest = static_cast<double>(std::numeric_limits<T>::max());
-          return !(value >= kLowest && value <= kHighest) || (std::is_integral_v<T> && value >= 0x1p63);
-        });
-        if constexpr (std::is_floating_point_v<T>) {
-          unpack_all<T, T>(stored, packing, stored.data());
-          return std::move(stored);
-        } else {
-          if (!packing.any_attribute) return std::move(stored);
-          if constexpr (sizeof(T) <= 2) return unpacked<float>(stored, packing);
-          return unpacked<double>(stored, packing);
-        }
-      },
-      values);
-}
 
 /// Number of dimensions longer than 1.
 std::size_t rank(const std::vector<std::size_t>& sizes) {
@@ -635,6 +535,17 @@ ValueArray unpacked_values(const NcFile& file, const NcVariable& variable, const
   return all.take();
 }
 
+/// Reads the values of a slab as they are stored and sets their scaling; unpacked if that is not possible.
+ValueArray stored_values(const NcFile& file, const NcVariable& variable, const NcSlab& slab, const Packing& packing,
+                         const Progress& progress, std::optional<ValueScaling>& scaling) {
+  if (variable.type == NC_FLOAT || variable.type == NC_DOUBLE)
+    return unpacked_values(file, variable, slab, packing, progress);
+  ValueArray values = file.values(variable, slab, progress);
+  scaling = stored_scaling(values, packing);
+  if (!scaling) return unpack(std::move(values), packing);
+  return scaling->slope < 0 ? in_reverse_order(std::move(values)) : std::move(values);
+}
+
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
@@ -648,7 +559,10 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
-  image.values = unpacked_values(file, found.variable, slab, packing, options.work.progress);
+  if (options.keep_stored && packing.any_attribute && extent == Extent::whole && found.info.curved.empty())
+    image.values = stored_values(file, found.variable, slab, packing, options.work.progress, found.info.scaling);
+  else
+    image.values = unpacked_values(file, found.variable, slab, packing, options.work.progress);
   if (extent == Extent::whole) image.values = in_order(std::move(image.values), grid, grid.grid.axes.back().size());
   if (extent == Extent::whole) hide_unknown(found.info.curved, grid.grid.axes, image.values);
   image.grid = std::move(grid.grid);

@@ -15,6 +15,7 @@
 
 #include "base/common.hpp"
 #include "base/inflate.hpp"
+#include "images/stored_integers.hpp"
 
 namespace tegl::io_detail {
 
@@ -298,7 +299,7 @@ struct Scaling {
 
 }  // namespace
 
-StoredImage open_nifti(const fs::path& path) {
+StoredImage open_nifti(const fs::path& path, bool keep_stored) {
   const std::string name = lower_name(path);
   const bool is_img = name.ends_with(".img") || name.ends_with(".img.gz");
   const fs::path header_path = is_img ? partner(path, ".hdr") : path;
@@ -319,7 +320,12 @@ StoredImage open_nifti(const fs::path& path) {
   image.info.stored_type = parse_value_type(header.type.name);
   if (header.sform_code > 0 || header.qform_code > 0) image.info.world_frame = "RAS";
   const Scaling scaling{header.slope, header.intercept};
-  if (!scaling.is_plain()) image.convert = [scaling](ValueArray&& values) { return scaling.apply(values); };
+  if (scaling.is_plain()) return image;
+  if (keep_stored) image.info.scaling = integer_scaling(array_of_type(samples.type), scaling.slope, scaling.intercept);
+  if (!image.info.scaling)
+    image.convert = [scaling](ValueArray&& values) { return scaling.apply(values); };
+  else if (scaling.slope < 0)
+    image.convert = [](ValueArray&& values) { return in_reverse_order(std::move(values)); };
   return image;
 }
 

@@ -9,6 +9,7 @@
 
 namespace tegl::io_detail {
 
-StoredImage open_nifti(const std::filesystem::path& path);
+/// `keep_stored`: see ReadImageOptions.
+StoredImage open_nifti(const std::filesystem::path& path, bool keep_stored);
 
 }  // namespace tegl::io_detail

@@ -32,7 +32,8 @@ ReadImageOptions member_options(const SeriesOptions& options, const Progress& pr
   return {.variable = options.variable,
           .work = {.progress = progress},
           .fixed = options.fixed,
-          .allow_outside_paths = options.allow_outside_paths};
+          .allow_outside_paths = options.allow_outside_paths,
+          .keep_stored = options.keep_stored};
 }
 
 RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {
@@ -67,7 +68,8 @@ RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions&
   return open_dicom(files, options.variable, options.work.progress);
 }
 
-LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions& options) {
+LayersOfFiles open_several(std::span<const fs::path> files, SeriesOptions options) {
+  options.keep_stored = false;  // several files may have several scalings
   if (options.raw || !are_dicom_files(files))
     return open_members(files, options, [options](const fs::path& path, Extent extent, const Progress& progress) {
       return read_member(path, extent, options, progress);

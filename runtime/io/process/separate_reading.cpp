@@ -142,6 +142,8 @@ void put_info(Packer& packer, const ImageInfo& info) {
   put_list(packer, info.cell_faces, [&](const std::vector<double>& faces) {
     put_list(packer, faces, [&](double value) { packer.number(value); });
   });
+  packer.number(static_cast<std::uint64_t>(info.scaling.has_value()));
+  if (info.scaling) packer.number(*info.scaling);
   put_texts(packer, info.remarks);
 }
 
@@ -167,6 +169,7 @@ ImageInfo get_info(Unpacker& unpacker) {
     get_list(unpacker, faces, [&] { return unpacker.number<double>(); });
     return faces;
   });
+  if (unpacker.number<std::uint64_t>() != 0) info.scaling = unpacker.number<ValueScaling>();
   get_texts(unpacker, info.remarks);
   return info;
 }

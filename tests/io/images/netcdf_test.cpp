@@ -109,7 +109,8 @@ TEST(NetCdf, IntegersWithoutFillStayIntegers) {
 
 /// A 2 x 3 variable of one type with attributes set by `attributes(file, variable)`.
 template <class Attributes>
-ReadImageResult read_six(nc_type type, const std::vector<double>& values, Attributes&& attributes) {
+ReadImageResult read_six(nc_type type, const std::vector<double>& values, Attributes&& attributes,
+                         const ReadImageOptions& options = {}) {
   TempDir dir;
   {
     NcWriter file(dir / "a.nc", NC_NETCDF4);
@@ -120,7 +121,7 @@ ReadImageResult read_six(nc_type type, const std::vector<double>& values, Attrib
     file.end();
     file.values(v, values);
   }
-  return read_image(dir / "a.nc");
+  return read_image(dir / "a.nc", options);
 }
 
 TEST(NetCdf, PackedShortsBecomeFloatsWithNanForMissing) {
@@ -140,6 +141,35 @@ TEST(NetCdf, ScaledIntegersOf32BitsBecomeDoubles) {
                                [](NcWriter& file, int v) { file.number(v, "scale_factor", NC_DOUBLE, {0.001}); });
   const auto values = image_as<double, 2>(result.image).values;
   EXPECT_EQ(values[5], 2147483647 * 0.001);
+}
+
+TEST(NetCdf, PackedIntegersAreKeptOnRequestIfNoneIsMissing) {
+  const auto read = [](double scale, const std::vector<double>& stored, bool keep) {
+    const auto attributes = [&](NcWriter& file, int v) {
+      file.number(v, "scale_factor", NC_DOUBLE, {scale});
+      file.number(v, "add_offset", NC_DOUBLE, {10.1});
+      file.number(v, "_FillValue", NC_SHORT, {-32768});
+      file.number(v, "valid_max", NC_SHORT, {1000});
+    };
+    ReadImageOptions options;
+    options.keep_stored = keep;
+    return read_six(NC_SHORT, stored, attributes, options);
+  };
+  const std::vector<double> stored = {0, 1, -32767, 100, -999, 1000};
+  for (const double scale : {0.3, -0.3}) {
+    const auto values = image_as<float, 2>(read(scale, stored, false).image).values;
+    const auto [any, info] = read(scale, stored, true);
+    const auto kept = image_as<std::int16_t, 2>(any).values;
+    ASSERT_TRUE(info.scaling.has_value());
+    for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(info.scaling->value_of(kept[i]), values[i]) << i;
+  }
+  for (const double missing : {-32768.0, 1001.0}) {
+    std::vector<double> with = stored;
+    with[3] = missing;
+    const auto [any, info] = read(0.3, with, true);
+    EXPECT_FALSE(info.scaling.has_value());
+    EXPECT_TRUE(std::isnan(image_as<float, 2>(any).values[3]));
+  }
 }
 
 TEST(NetCdf, FillValueIsComparedInTheVariablesOwnType) {

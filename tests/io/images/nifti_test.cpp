@@ -124,6 +124,68 @@ TEST(Nifti, SlopeAndInterceptGiveFloats) {
   EXPECT_EQ(info.stored_type, ValueType::int16);
 }
 
+TEST(Nifti, KeptIntegersHaveTheValuesOfTheScaling) {
+  TempDir dir;
+  std::vector<std::int16_t> stored(6 * 5 * 4);
+  for (std::size_t i = 0; i < stored.size(); ++i) stored[i] = static_cast<std::int16_t>(i * 7919 % 65536);
+  for (const float slope : {0.3F, -0.3F}) {
+    write_file(dir / "a.nii", NiftiHeader({6, 5, 4}, kInt16, 16).scaling(slope, -3.7F).bytes() + bytes_of(stored));
+    const auto values = image_as<float, 3>(read_image(dir / "a.nii").image).values;
+    ReadImageOptions options;
+    options.keep_stored = true;
+    const auto [any, info] = read_image(dir / "a.nii", options);
+    const auto kept = image_as<std::int16_t, 3>(any).values;
+    EXPECT_EQ(info.stored_type, ValueType::int16);
+    ASSERT_TRUE(info.scaling.has_value());
+    for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(info.scaling->value_of(kept[i]), values[i]) << slope;
+    if (slope > 0) {
+      EXPECT_EQ(kept, stored);
+    }
+  }
+}
+
+TEST(Nifti, IntegersWithoutScalingOrWithTooSmallSlopeAreNotKept) {
+  TempDir dir;
+  const auto stored = counting<std::int16_t>(8);
+  ReadImageOptions options;
+  options.keep_stored = true;
+  const auto read = [&](float slope, float intercept) {
+    write_file(dir / "a.nii", NiftiHeader({2, 2, 2}, kInt16, 16).scaling(slope, intercept).bytes() + bytes_of(stored));
+    return read_image(dir / "a.nii", options);
+  };
+  EXPECT_FALSE(read(0, 3).info.scaling.has_value());
+  const auto [any, info] = read(1e-3F, 1e5F);  // float has no number between the values of neighbours
+  EXPECT_FALSE(info.scaling.has_value());
+  EXPECT_EQ((image_as<float, 3>(any).values[1]), static_cast<float>(1e5 + static_cast<double>(1e-3F)));
+}
+
+/// Compares the integers at or above the mapped isovalue with the values at or above the isovalue. Both ascend, so that
+/// integers near the isovalue suffice, and the least and the greatest.
+void expect_equal_sides(const ValueScaling& scaling, double isovalue) {
+  const double mapped = scaling.stored_isovalue(isovalue);
+  const auto near = static_cast<std::int64_t>(std::floor(mapped));
+  for (const std::int64_t any : {scaling.least, near - 1, near, near + 1, near + 2, scaling.greatest}) {
+    const std::int64_t i = std::clamp(any, scaling.least, scaling.greatest);
+    const auto stored = static_cast<double>(i);
+    ASSERT_EQ(scaling.value_of(stored) >= isovalue, stored >= mapped) << scaling.slope << " " << isovalue << " " << i;
+    ASSERT_EQ(scaling.value_of(stored) == isovalue, stored == mapped) << scaling.slope << " " << isovalue << " " << i;
+  }
+}
+
+TEST(ValueScaling, IntegersAreOnTheSidesOfTheirValues) {
+  for (const double slope : {0.1, 1.0 / 3.0, 1.0, 7.3e4, -0.1, -2.0})
+    for (const double intercept : {0.0, -3.3, 1024.0})
+      for (const bool single_precision : {false, true}) {
+        const ValueScaling scaling{slope, intercept, -128, 127, single_precision};
+        for (double i = -130; i <= 130; i += 0.5) {
+          // beside a value as it is rounded, and as it is not
+          for (const double value : {slope * i + intercept, scaling.value_of(i), scaling.value_of(std::floor(i))})
+            for (const double isovalue : {value, std::nextafter(value, 1e30), std::nextafter(value, -1e30)})
+              expect_equal_sides(scaling, isovalue);
+        }
+      }
+}
+
 TEST(Nifti, ScaledValuesOfManyBlocksComeBackInOrder) {
   TempDir dir;
   constexpr std::size_t kCount = 128 * 100 * 60;

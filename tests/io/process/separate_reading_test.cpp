@@ -147,6 +147,20 @@ TEST(SeparateReading, ImagesAndLayersAreTheSame) {
   }
 }
 
+TEST(SeparateReading, KeptIntegersHaveTheirScaling) {
+  TempDir dir;
+  write_image(dir / "a.nc", {.type = NC_SHORT, .sizes = {3, 4, 5}, .packed = true});
+  ReadImageOptions options = kSeparate;
+  options.keep_stored = true;
+  const auto [any, info] = read_image(dir / "a.nc", options);
+  ASSERT_TRUE(info.scaling.has_value());
+  EXPECT_EQ(info.scaling->slope, 0.01);
+  EXPECT_EQ(info.scaling->greatest, 32767);
+  const auto values = image_as<float, 3>(read_image(dir / "a.nc").image).values;
+  const auto kept = image_as<std::int16_t, 3>(any).values;
+  for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(info.scaling->value_of(kept[i]), values[i]);
+}
+
 TEST(SeparateReading, ValuesOfAFileThatIsMuchSmallerHaveMemory) {
   TempDir dir;
   const std::size_t count = std::size_t{72} * 512 * 512;  // 75 MB; the file has less than 1

@@ -32,6 +32,24 @@ using AnyImage5d = std::variant<OwnedImage<float, 5>, OwnedImage<double, 5>>;
 /// pressures increase downwards.
 enum class AxisDirection : std::uint8_t { unknown, up, down };
 
+/// The map from stored integers to the values of an image (`ReadImageOptions::keep_stored`). Values ascend with the
+/// integers, and different integers have different values. If the slope is below 0, the image has the integers
+/// least + greatest - i in place of the file's i. Thread-safe.
+struct ValueScaling {
+  double slope = 1.0;             ///< of the file; not 0
+  double intercept = 0.0;         ///< of the file: the value of its integer 0
+  std::int64_t least = 0;         ///< the smallest integer of the type
+  std::int64_t greatest = 0;      ///< the largest integer of the type
+  bool single_precision = false;  ///< values are rounded to float, else to double
+
+  /// The value of an integer of the image: the one that `read_image` gives without `keep_stored`.
+  [[nodiscard]] double value_of(double stored) const noexcept;
+  /// The isovalue of the integers that gives the contour of the values at `isovalue`, a finite number. The same samples
+  /// are below it, and the same are equal to it, so signatures and simplices are those of the values. Positions are
+  /// computed without the rounding of values. Takes at most 33 steps.
+  [[nodiscard]] double stored_isovalue(double isovalue) const noexcept;
+};
+
 /// Metadata of an image file besides values and grid.
 struct ImageInfo {
   std::string format = {};                          ///< "NIfTI", "NRRD", "MetaImage", "NumPy", "netCDF", "DICOM", "raw"
@@ -51,6 +69,7 @@ struct ImageInfo {
   /// VTK: values of cells; NRRD: `centers: cell` on all axes. The samples then lie at the centres of cells, which
   /// tegl/cells.hpp makes contours of.
   bool samples_are_cells = false;
+  std::optional<ValueScaling> scaling = {};  ///< set if the image has stored integers (`keep_stored`)
   std::vector<std::string> remarks =
       {};  ///< DICOM: skipped files, uneven slice distances; coordinates that are not used
 };
@@ -89,6 +108,11 @@ struct ReadImageOptions {
   /// plus some 20 ms for each gigabyte that this process has in small pages. Other threads may run meanwhile. Linux
   /// only.
   bool separate_process = false;
+  /// NIfTI and netCDF: integers with a scale and an offset stay as they are stored, in half of the memory or less, and
+  /// ImageInfo::scaling maps them to values. For integers of up to 32 bits, not uint32. By default they are converted;
+  /// also if values are missing, if the grid is curved, and if float (of 32 bits: double) has not four numbers between
+  /// the values of neighbouring integers.
+  bool keep_stored = false;
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
@@ -102,11 +126,11 @@ struct ReadImageOptions {
 /// any position); 2, 3 or 4 axes must remain (read_series_to_5d of tegl/io/series.hpp reads 5). Units are those of the
 /// file. Orientations that couple axes become Grid::linear and offset, exactly, even if sheared; other orientations
 /// become part of the axes. NRRD spaces RAS and LAS are converted to LPS. Values are those stored; uint32, int64 and
-/// uint64 become int32 if all values fit, else double. NIfTI slope and intercept and netCDF packing are applied.
-/// Missing values of netCDF become NaN, in float, or in double if float cannot represent the values. netCDF variables
-/// on curved grids, with longitude and latitude (or a vertical coordinate) in arrays of two or more dimensions, have
-/// indices on those axes, and the arrays in ImageInfo::curved; longitudes are continued across 360 degrees, and samples
-/// with unknown coordinates are missing.
+/// uint64 become int32 if all values fit, else double. NIfTI slope and intercept and netCDF packing are applied (see
+/// `keep_stored`). Missing values of netCDF become NaN, in float, or in double if float cannot represent the values.
+/// netCDF variables on curved grids, with longitude and latitude (or a vertical coordinate) in arrays of two or more
+/// dimensions, have indices on those axes, and the arrays in ImageInfo::curved; longitudes are continued across 360
+/// degrees, and samples with unknown coordinates are missing.
 ///
 /// Errors, all naming the file: FileNotFound, MalformedFile (damaged, truncated or inconsistent; compressed data are
 /// checked to the last byte), UnsupportedFormat, UnsupportedData (colours, vectors, other than 2 to 4 axes; a file of

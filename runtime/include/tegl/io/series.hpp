@@ -38,6 +38,7 @@ struct SeriesOptions {
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
+  bool keep_stored = false;                ///< as in ReadImageOptions, for read_series and a single file
 };
 
 /// An image read from several files, and the list of files.
