@@ -36,14 +36,17 @@ struct Measures {
 
 /// Measures a contour in N = 2 to 5 dimensions. The content is 1/N of the flux of the position vector, by the
 /// divergence theorem. Sums are compensated, in an order that does not depend on the number of threads. For a smooth
-/// surface {f = 0} the errors of size and content decrease with the square of the grid step (docs/measures.md). Errors:
-/// InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S log s) time for s
-/// simplices around a vertex; memory of 4 N + 4 bytes per simplex and 12 per vertex, for N = 3 and 4 also 8 per vertex
-/// and thread. Thread-safe.
+/// surface {f = 0} the errors of size and content decrease with the square of the grid step (docs/measures.md). Open
+/// faces are found with fixed random numbers: each is overlooked with a probability below 1e-16 (docs/measures.md).
+/// Errors: InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S + b log b)
+/// time for b faces between vertices of open faces; memory of 8 N - 11 bytes per vertex, 8 more per vertex and thread,
+/// and that of the b faces. If most vertices are on open faces: O(#S log s) for s simplices around a vertex, and 4 N +
+/// 4 bytes per simplex. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work = {});
-/// The same, in less time, with the contour's incidence. Errors: also InvalidArgument if it is another contour's.
+/// The same with the contour's incidence, without random numbers. Errors: also InvalidArgument if it is another
+/// contour's.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Measures<N> measure(const Contour<N, Real>& contour, const Incidence<N>& incidence,
@@ -69,8 +72,8 @@ struct CutMeasures {
 /// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0.
 ///
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range); Cancelled. O(#S
-/// log s + h) time for h pairs of a simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each
-/// value. Thread-safe.
+/// + h) time, and that of `measure` for open faces, for h pairs of a simplex and its cut; memory as `measure`, plus up
+/// to 32 MiB, or 32 bytes for each value. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,

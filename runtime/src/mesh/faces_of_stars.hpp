@@ -35,6 +35,57 @@ struct FaceCounts {
   }
 };
 
+/// One side of a face: its vertices, ascending, or all but the smallest. `orientation`: 1 if the simplex induces the
+/// ascending order of the face's vertices, else -1.
+template <std::size_t Size>
+struct RidgeSide {
+  std::array<Index, Size> vertices;
+  int orientation;
+  bool operator<(const RidgeSide& other) const noexcept { return vertices < other.vertices; }
+};
+
+/// Sorts numbers, and returns 1 for an even number of exchanges, else -1.
+template <std::size_t Size>
+int sort_signed(std::array<Index, Size>& numbers) noexcept {
+  int sign = 1;
+  for (std::size_t i = 1; i < Size; ++i)  // insertion sort, to count the exchanges
+    for (std::size_t j = i; j > 0 && numbers[j] < numbers[j - 1]; --j) {
+      std::swap(numbers[j], numbers[j - 1]);
+      sign = -sign;
+    }
+  return sign;
+}
+
+/// The side of a simplex with the vertices from `first` except one. `sorted`: the vertices of the simplex, ascending;
+/// `orientation`: 1 if this order has the simplex's orientation, else -1.
+template <int N, int First = 0>
+RidgeSide<N - 1 - First> side_without(const std::array<Index, N>& sorted, int omitted, int orientation,
+                                      int first = First) noexcept {
+  RidgeSide<N - 1 - First> side;
+  side.orientation = omitted % 2 == 0 ? orientation : -orientation;
+  for (int j = first, k = 0; j < N; ++j)
+    if (j != omitted) side.vertices[k++] = sorted[j];
+  return side;
+}
+
+/// Sorts sides of faces and counts the faces: boundary faces, and those whose orientations do not cancel, for which it
+/// calls on_open(vertices). Returns the number of faces.
+template <std::size_t Size, class OnOpen>
+std::int64_t count_sides(std::vector<RidgeSide<Size>>& sides, FaceCounts& counts, const OnOpen& on_open) {
+  std::sort(sides.begin(), sides.end());
+  std::int64_t faces = 0;
+  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
+    int balance = 0;
+    while (j < sides.size() && sides[j].vertices == sides[i].vertices) balance += sides[j++].orientation;
+    ++faces;
+    if (j - i == 1) ++counts.boundary;
+    if (balance == 0) continue;
+    ++counts.open;
+    on_open(sides[i].vertices);
+  }
+  return faces;
+}
+
 /// Face counter for a complex of simplices with N vertices each. Use one per thread.
 template <int N>
 class FacesOfStars {
@@ -61,7 +112,7 @@ class FacesOfStars {
       if (load(v, rows_ + std::size_t{s} * N)) ++simplices;
     }
     FaceCounts counts;
-    const std::int64_t ridges = count_ridges(v, counts, on_open);
+    const std::int64_t ridges = count_sides(sides_, counts, [&](const Rest& rest) { on_open(ridge_of(v, rest)); });
     if (!with_euler_) return counts;
     counts.euler = 1;
     if constexpr (N >= 4) counts.euler -= distinct(edges_);
@@ -73,14 +124,15 @@ class FacesOfStars {
 
  private:
   using Rest = std::array<Index, N - 2>;  // the vertices of a ridge except the smallest
-  /// One side of a ridge. `orientation`: 1 if the simplex induces the ascending order of the ridge's vertices, else -1.
-  struct Side {
-    Rest rest;
-    int orientation;
-    bool operator<(const Side& other) const noexcept { return rest < other.rest; }
-  };
 
   static constexpr std::int64_t sign(int dimension) { return dimension % 2 == 0 ? 1 : -1; }
+
+  static Ridge ridge_of(Index v, const Rest& rest) noexcept {
+    Ridge ridge;
+    ridge[0] = v;
+    std::copy(rest.begin(), rest.end(), ridge.begin() + 1);
+    return ridge;
+  }
 
   /// In place of LinkAbove in other dimensions.
   struct NoLink {
@@ -90,12 +142,7 @@ class FacesOfStars {
   template <class OnOpen>
   FaceCounts count_usual(Index v, const OnOpen& on_open) {
     FaceCounts counts;
-    counts.open = counts.boundary = usual_.visit_open([&](const Rest& rest) {
-      Ridge ridge;
-      ridge[0] = v;
-      std::copy(rest.begin(), rest.end(), ridge.begin() + 1);
-      on_open(ridge);
-    });
+    counts.open = counts.boundary = usual_.visit_open([&](const Rest& rest) { on_open(ridge_of(v, rest)); });
     if (!with_euler_) return counts;
     const auto ridges = static_cast<std::int64_t>(usual_.ridges());
     counts.euler = 1 + sign(N - 2) * ridges + sign(N - 1) * static_cast<std::int64_t>(usual_.simplices());
@@ -114,20 +161,10 @@ class FacesOfStars {
   bool load(Index v, const Index* row) {
     std::array<Index, N> sorted;
     std::copy_n(row, N, sorted.begin());
-    int orientation = 1;
-    for (int i = 1; i < N; ++i)  // insertion sort, to count the exchanges
-      for (int j = i; j > 0 && sorted[j] < sorted[j - 1]; --j) {
-        std::swap(sorted[j], sorted[j - 1]);
-        orientation = -orientation;
-      }
+    const int orientation = sort_signed(sorted);
     const auto at = static_cast<int>(std::find(sorted.begin(), sorted.end(), v) - sorted.begin());
-    for (int omitted = at == 0 ? 1 : 0; at <= 1 && omitted < (at == 0 ? N : 1); ++omitted) {
-      Side side;
-      side.orientation = omitted % 2 == 0 ? orientation : -orientation;
-      for (int j = at + 1, k = 0; j < N; ++j)
-        if (j != omitted) side.rest[k++] = sorted[j];
-      sides_.push_back(side);
-    }
+    for (int omitted = at == 0 ? 1 : 0; at <= 1 && omitted < (at == 0 ? N : 1); ++omitted)
+      sides_.push_back(side_without<N, 1>(sorted, omitted, orientation, at + 1));
     if (!with_euler_) return at == 0;
     if constexpr (N >= 4) edges_.insert(edges_.end(), sorted.begin() + at + 1, sorted.end());
     if constexpr (N == 5)
@@ -136,29 +173,10 @@ class FacesOfStars {
     return at == 0;
   }
 
-  template <class OnOpen>
-  std::int64_t count_ridges(Index v, FaceCounts& counts, const OnOpen& on_open) {
-    std::sort(sides_.begin(), sides_.end());
-    std::int64_t ridges = 0;
-    for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
-      int balance = 0;
-      while (j < sides_.size() && sides_[j].rest == sides_[i].rest) balance += sides_[j++].orientation;
-      ++ridges;
-      if (j - i == 1) ++counts.boundary;
-      if (balance == 0) continue;
-      ++counts.open;
-      Ridge ridge;
-      ridge[0] = v;
-      std::copy(sides_[i].rest.begin(), sides_[i].rest.end(), ridge.begin() + 1);
-      on_open(ridge);
-    }
-    return ridges;
-  }
-
   const Index* rows_;
   bool with_euler_;
   std::conditional_t<N == 3 || N == 4, LinkAbove<N == 3 ? 3 : 4>, NoLink> usual_;
-  std::vector<Side> sides_;
+  std::vector<RidgeSide<N - 2>> sides_;
   std::vector<Index> edges_;
   std::vector<std::array<Index, 2>> triangles_;
 };

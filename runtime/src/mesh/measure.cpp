@@ -16,6 +16,7 @@
 #include "mesh/cut_sums.hpp"
 #include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
+#include "mesh/open_ridges.hpp"
 
 namespace tegl {
 namespace {
@@ -65,27 +66,24 @@ class CutValues {
 template <int N>
 std::vector<bool> find_open_cuts(const detail::SimplexView<N>& contour, const CutValues& values,
                                  const WorkOptions& work) {
-  std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertex_count(), kBlock));
-  const detail::Stars stars = detail::make_stars<N>(contour.rows(), contour.vertex_count(), work.threads,
-                                                    detail::part_of(work.progress, 0.0, 0.1));
-  detail::count_faces<N>(contour.rows(), stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.6),
-                         [&](std::size_t block, const auto& ridge) {
-                           const auto time = [&](Index v) { return contour.coordinate(v, N - 1); };
-                           std::pair<double, double> span(time(ridge[0]), time(ridge[0]));
-                           for (const Index v : ridge) {
-                             span.first = std::min(span.first, time(v));
-                             span.second = std::max(span.second, time(v));
-                           }
-                           spans[block].push_back(span);
-                         });
+  std::vector<std::pair<double, double>> spans;
+  detail::find_open_ridges<N>(contour.rows(), contour.vertex_count(), work.threads,
+                              detail::part_of(work.progress, 0.0, 0.6), [&](const std::array<Index, N - 1>& ridge) {
+                                const auto time = [&](Index v) { return contour.coordinate(v, N - 1); };
+                                std::pair<double, double> span(time(ridge[0]), time(ridge[0]));
+                                for (const Index v : ridge) {
+                                  span.first = std::min(span.first, time(v));
+                                  span.second = std::max(span.second, time(v));
+                                }
+                                spans.push_back(span);
+                              });
   // count open faces by value, from the changes at their ends
   std::vector<std::int64_t> changes(values.size() + 1, 0);
-  for (const auto& block : spans)
-    for (const auto& [low, high] : block) {
-      const auto [from, to] = values.between(low, high);
-      ++changes[from];
-      --changes[to];
-    }
+  for (const auto& [low, high] : spans) {
+    const auto [from, to] = values.between(low, high);
+    ++changes[from];
+    --changes[to];
+  }
   std::vector<bool> open(values.size());
   std::int64_t faces = 0;
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = (faces += changes[i]) > 0;
@@ -116,27 +114,22 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
     result.content = 0.0;  // it has no boundary
     return result;
   }
-  // boundary faces; label 0 for all simplices and their vertices, 1 for other vertices
+  // boundary faces; label 0 for vertices of simplices, 1 for others
   const std::span<const Index> rows = contour.rows();
   detail::FaceCounts faces;
   Buffer<Index> of_vertices(contour.vertex_count());
   if (incidence != nullptr) {
     faces = detail::count_faces<N>(*incidence, {}, 1).front();
   } else {
-    const detail::Stars stars =
-        detail::make_stars<N>(rows, contour.vertex_count(), work.threads, detail::part_of(work.progress, 0.0, 0.1));
-    faces = detail::count_faces<N>(rows, stars, {}, 1, false, work.threads, detail::part_of(work.progress, 0.1, 0.7),
-                                   [](std::size_t, const auto&) { /* counted */ })
-                .front();
+    faces = detail::find_open_ridges<N>(rows, contour.vertex_count(), work.threads,
+                                        detail::part_of(work.progress, 0.0, 0.7), [](const auto&) { /* counted */ });
   }
-  Buffer<Index> of_simplices(contour.simplices().size());
   std::fill(of_vertices.begin(), of_vertices.end(), Index{1});
-  std::fill(of_simplices.begin(), of_simplices.end(), Index{0});
   for (const Index v : rows) of_vertices[v] = 0;
   // sums over simplices
-  const detail::PieceMeasures<N> all = detail::measure_pieces<N>(contour, of_vertices, of_simplices, 1, work.threads,
-                                                                 detail::part_of(work.progress, 0.7, 1.0))
-                                           .front();
+  const detail::PieceMeasures<N> all =
+      detail::measure_pieces<N>(contour, of_vertices, {}, 1, work.threads, detail::part_of(work.progress, 0.7, 1.0))
+          .front();
   result.size = all.size;
   result.content = detail::content_of(all, faces, direction);
   result.centroid = all.centroid;

@@ -61,8 +61,17 @@ struct Extent {
   }
 };
 
+/// The labels of items; without an array, all have the label 0.
+struct Labels {
+  std::span<const Index> of;
+  std::size_t items;
+
+  [[nodiscard]] std::size_t size() const noexcept { return items; }
+  [[nodiscard]] Index operator[](std::size_t i) const noexcept { return of.empty() ? 0 : of[i]; }
+};
+
 /// The first item with each label.
-std::vector<Index> first_items(std::span<const Index> labels, Index count) {
+std::vector<Index> first_items(const Labels& labels, Index count) {
   std::vector<Index> first(count, 0);
   std::vector<bool> is_known(count, false);
   for (std::size_t i = 0, missing = count; missing > 0 && i < labels.size(); ++i) {
@@ -76,11 +85,12 @@ std::vector<Index> first_items(std::span<const Index> labels, Index count) {
 
 constexpr std::size_t kFewItems = 64;
 
-/// Calls add(found, item) for each item with a label below `count`, in parallel by block; `add` is made by
-/// make_add(from, to) for at most kFewItems items at a time. Then calls merge(found of a block, label) in order.
+/// Calls add(found, first, end) for all items with a label below `count`, in parallel by block: for consecutive items
+/// with one label. `add` is made by make_add(from, to) for at most kFewItems items at a time. Then calls merge(found of
+/// a block, label) in order.
 template <class Found, class Make, class MakeAdd, class Merge>
-void for_labelled(std::span<const Index> labels, Index count, unsigned threads, const Progress& progress,
-                  const Make& make, const MakeAdd& make_add, const Merge& merge) {
+void for_labelled(const Labels& labels, Index count, unsigned threads, const Progress& progress, const Make& make,
+                  const MakeAdd& make_add, const Merge& merge) {
   std::vector<typename FoundByLabel<Found>::Part> parts(block_count(labels.size(), kBlock));
   for_each_block(
       labels.size(), kBlock, threads, progress, [&] { return FoundByLabel<Found>(count); },
@@ -88,8 +98,11 @@ void for_labelled(std::span<const Index> labels, Index count, unsigned threads, 
         for (std::size_t few = from; few < to; few += kFewItems) {
           const std::size_t end = std::min(to, few + kFewItems);
           const auto add = make_add(few, end);
-          for (std::size_t i = few; i < end; ++i)
-            if (labels[i] < count) add(found.at(parts[block], labels[i], make), static_cast<Index>(i));
+          for (std::size_t i = few, next = few; i < end; i = next) {
+            const Index label = labels[i];
+            while (next < end && labels[next] == label) ++next;
+            if (label < count) add(found.at(parts[block], label, make), i, next);
+          }
         }
         found.finish(parts[block]);
       });
@@ -101,7 +114,7 @@ void for_labelled(std::span<const Index> labels, Index count, unsigned threads, 
 template <int N>
 struct LabelledPieces {
   const SimplexView<N>& contour;
-  std::span<const Index> labels;
+  Labels labels;
   std::span<const PointOf<N>> references;
 };
 
@@ -110,26 +123,41 @@ template <int N>
 class AddPieces {
  public:
   AddPieces(const LabelledPieces<N>& pieces, std::size_t from, std::size_t to) : pieces_(pieces), from_(from) {
-    if constexpr (N == 4)
+    if constexpr (kHasTerms)
       if (pieces.contour.periods().empty())
-        find_piece_terms(pieces.contour, pieces.references, pieces.labels, from, std::span(terms_).first(to - from));
+        find_piece_terms(pieces.contour, pieces.references, pieces.labels.of, from, std::span(terms_).first(to - from));
   }
-  void operator()(PieceSums<N>& sum, Index s) const {
+  /// Adds the simplices first … end - 1, which have one label.
+  void operator()(PieceSums<N>& sum, std::size_t first, std::size_t end) const {
+    const PointOf<N>& reference = pieces_.references[pieces_.labels[first]];
     const std::span<const Period<N>> periods = pieces_.contour.periods();
-    if constexpr (N == 4)
-      if (periods.empty()) return sum.add(terms_[s - from_]);
-    std::array<PointOf<N>, N> corners = pieces_.contour.corners(s);
-    if (!periods.empty()) {
-      move_near(periods, pieces_.references[pieces_.labels[s]], corners[0]);
-      for (int j = 1; j < N; ++j) move_near(periods, corners[0], corners[j]);
+    if (periods.empty()) {
+      if constexpr (kHasTerms)
+        return sum.add_all(end - first, [&](std::size_t i) { return terms_[first + i - from_]; });
+      return pieces_.contour.with_points([&](const auto* points) {
+        const std::array<Index, N>* const simplices = pieces_.contour.simplices().data() + first;
+        sum.add_all(end - first, [&](std::size_t i) {
+          std::array<PointOf<N>, N> corners;
+          for (int j = 0; j < N; ++j)
+            for (int a = 0; a < N; ++a) corners[j][a] = static_cast<double>(points[simplices[i][j]][a]);
+          return piece_terms_of<N>(corners, reference, normal_vector_of<N>(corners));
+        });
+      });
     }
-    sum.add(corners);
+    for (std::size_t s = first; s < end; ++s) {
+      std::array<PointOf<N>, N> corners = pieces_.contour.corners(s);
+      move_near(periods, reference, corners[0]);
+      for (int j = 1; j < N; ++j) move_near(periods, corners[0], corners[j]);
+      sum.add(corners);
+    }
   }
 
  private:
+  static constexpr bool kHasTerms = N == 4;
+
   const LabelledPieces<N>& pieces_;
   std::size_t from_;
-  std::array<PieceTerms<N>, N == 4 ? kFewItems : 0> terms_;  ///< not set if the contour is wrapped
+  std::array<PieceTerms<N>, kHasTerms ? kFewItems : 0> terms_;  ///< not set if the contour is wrapped
 };
 
 }  // namespace
@@ -163,10 +191,10 @@ template <int N>
 std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std::span<const Index> vertex_labels,
                                              std::span<const Index> simplex_labels, Index count, unsigned threads,
                                              const Progress& progress) {
+  const Labels labels{simplex_labels, contour.simplices().size()};
   // by label, a corner of its first simplex
   std::vector<PointOf<N>> reference;
-  for (const Index s : first_items(simplex_labels, count))
-    reference.push_back(contour.point(contour.simplices()[s][0]));
+  for (const Index s : first_items(labels, count)) reference.push_back(contour.point(contour.simplices()[s][0]));
   const auto reference_of = [&](Index label) { return reference[label]; };
   // sums over simplices
   const std::span<const Period<N>> periods = contour.periods();
@@ -175,21 +203,25 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
   const PointOf<N>* const direction = across ? &*across : nullptr;
   std::vector<PieceSums<N>> sums;
   for (const PointOf<N>& point : reference) sums.emplace_back(point, direction);
-  const LabelledPieces<N> pieces{contour, simplex_labels, reference};
+  const LabelledPieces<N> pieces{contour, labels, reference};
   for_labelled<PieceSums<N>>(
-      simplex_labels, count, threads, part_of(progress, 0.0, 0.9),
+      labels, count, threads, part_of(progress, 0.0, 0.9),
       [&](Index label) { return PieceSums<N>(reference[label], direction); },
       [&](std::size_t from, std::size_t to) { return AddPieces<N>(pieces, from, to); },
       [&](const PieceSums<N>& sum, Index label) { sums[label].add(sum); });
   // boxes of vertices
   std::vector<Extent<N>> extents(reference.begin(), reference.end());
   for_labelled<Extent<N>>(
-      vertex_labels, count, threads, part_of(progress, 0.9, 1.0), reference_of,
+      Labels{vertex_labels, vertex_labels.size()}, count, threads, part_of(progress, 0.9, 1.0), reference_of,
       [&](std::size_t, std::size_t) {
-        return [&](Extent<N>& extent, Index v) {
-          PointOf<N> point = contour.point(v);
-          move_near(periods, reference[vertex_labels[v]], point);
-          extent.add(point, point, 1);
+        return [&](Extent<N>& extent, std::size_t first, std::size_t end) {
+          Extent<N> found = extent;
+          for (std::size_t v = first; v < end; ++v) {
+            PointOf<N> point = contour.point(static_cast<Index>(v));
+            if (!periods.empty()) move_near(periods, reference[vertex_labels[v]], point);
+            found.add(point, point, 1);
+          }
+          extent = found;
         };
       },
       [&](const Extent<N>& extent, Index label) {

@@ -73,11 +73,23 @@ class PieceSums {
   }
   /// Adds a simplex of a contour that is not wrapped.
   void add(const PieceTerms<N>& terms) noexcept {
-    few_.size += terms.size;
-    for (int a = 0; a < N; ++a) few_.moment[a] += terms.moment[a];
-    few_.content += terms.flux;
+    few_.add(terms);
     ++count_;
     if (++few_.count == kFew) settle();
+  }
+  /// The same for several simplices: terms_of(0), …, terms_of(count - 1).
+  template <class TermsOf>
+  void add_all(std::size_t count, const TermsOf& terms_of) noexcept {
+    std::size_t i = 0;
+    while (i < count && few_.count > 0) add(terms_of(i++));
+    for (; i + kFew <= count; i += kFew) {
+      Few few;  // stays in registers
+      for (std::size_t j = i; j < i + kFew; ++j) few.add(terms_of(j));
+      few_ = few;
+      count_ += kFew;
+      settle();
+    }
+    while (i < count) add(terms_of(i++));
   }
   /// Adds sums with the same reference point.
   void add(const PieceSums& other) noexcept {
@@ -100,7 +112,7 @@ class PieceSums {
   [[nodiscard]] PointOf<N> centroid(const PointOf<N>& lowest, const PointOf<N>& highest) const noexcept {
     PointOf<N> middle;
     for (int a = 0; a < N; ++a)
-      middle[a] = size() > 0 ? reference_[a] + (moment_[a].value() + few_.moment[a]) / size()
+      middle[a] = size() > 0 ? reference_[a] + (moment_[a].value() + few_.moment[a]) / (N * size())
                              : lowest[a] + 0.5 * (highest[a] - lowest[a]);
     return middle;
   }
@@ -112,6 +124,12 @@ class PieceSums {
     double size = 0.0, content = 0.0, directed = 0.0;
     std::array<double, N> moment{};
     int count = 0;
+
+    void add(const PieceTerms<N>& terms) noexcept {
+      size += terms.size;
+      for (int a = 0; a < N; ++a) moment[a] += terms.moment[a];
+      content += terms.flux;
+    }
   };
 
   /// Returns N times the flux of <e, x> e.
@@ -160,7 +178,8 @@ struct PieceMeasures {
 };
 
 /// Measures of the simplices with each label 0 … count - 1. Each label must have a simplex. Simplices and vertices with
-/// other labels are left out; a simplex has the label of its vertices. `vertex_labels`, `simplex_labels`: #V, #S.
+/// other labels are left out; a simplex has the label of its vertices. `vertex_labels`: #V;
+/// `simplex_labels`: #S, or empty for label 0.
 /// O(#S).
 template <int N>
 std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std::span<const Index> vertex_labels,

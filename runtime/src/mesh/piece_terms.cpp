@@ -40,7 +40,7 @@ void find_terms_of(const std::array<Real, 4>* points, const std::array<Index, 4>
   const auto signs = hn::Load(d, kSigns.data());
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const auto& simplex = simplices[i];
-    const Index label = labels[i];
+    const Index label = labels == nullptr ? 0 : labels[i];
     const auto reference = hn::LoadU(d, references[label < references.size() ? label : 0].data());
     const auto p0 = load_point(points[simplex[0]].data()), p1 = load_point(points[simplex[1]].data()),
                p2 = load_point(points[simplex[2]].data()), p3 = load_point(points[simplex[3]].data());
@@ -74,7 +74,7 @@ void find_terms_of(const std::array<Real, 4>* points, const std::array<Index, 4>
     PieceTerms<4>& found = terms[i];
     found.size = size;
     found.flux = hn::GetLane(hn::Shuffle01(sums));
-    hn::StoreU(hn::Mul(hn::Set(d, size), hn::Mul(middle, hn::Set(d, 0.25))), d, found.moment.data());
+    hn::StoreU(hn::Mul(hn::Set(d, size), middle), d, found.moment.data());
   }
 }
 
@@ -87,8 +87,9 @@ void find_terms_of(const std::array<Real, 4>* points, const std::array<Index, 4>
     std::array<PointOf<4>, 4> corners;
     for (int j = 0; j < 4; ++j)
       for (int a = 0; a < 4; ++a) corners[j][a] = static_cast<double>(points[simplices[i][j]][a]);
-    terms[i] = piece_terms_of<4>(corners, references[labels[i] < references.size() ? labels[i] : 0],
-                                 normal_vector_of<4>(corners));
+    const Index label = labels == nullptr ? 0 : labels[i];
+    terms[i] =
+        piece_terms_of<4>(corners, references[label < references.size() ? label : 0], normal_vector_of<4>(corners));
   }
 }
 
@@ -97,7 +98,8 @@ void find_terms_of(const std::array<Real, 4>* points, const std::array<Index, 4>
 void find_terms(const SimplexView<4>& contour, std::span<const PointOf<4>> references, std::span<const Index> labels,
                 std::size_t from, std::span<PieceTerms<4>> terms) {
   contour.with_points([&](const auto* points) {
-    find_terms_of(points, contour.simplices().data() + from, references, labels.data() + from, terms);
+    find_terms_of(points, contour.simplices().data() + from, references,
+                  labels.empty() ? nullptr : labels.data() + from, terms);
   });
 }
 

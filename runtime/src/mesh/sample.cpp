@@ -3,6 +3,7 @@
 // Multilinear interpolation of images at the vertices of contours; see tegl/sample.hpp.
 #include "tegl/sample.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -29,11 +30,42 @@ class CellInterpolation {
     corners_ = std::size_t{1} << std::popcount(axes_);
   }
 
-  /// NaN if missing samples have more than kSlack of the weight.
-  [[nodiscard]] double operator()(const detail::CellPlace<N>& place) const noexcept {
-    Corners values;
-    Corners weights;
+  using Corners = std::array<double, std::size_t{1} << N>;
+
+  /// Reads the samples at the corners of the cell.
+  void read(const detail::CellPlace<N>& place, Corners& values) const noexcept {
     samples_.corner_values(place.base, axes_, values.data());
+  }
+  /// The value at the place. NaN if missing samples have more than kSlack of the weight.
+  [[nodiscard]] double value_at(const detail::CellPlace<N>& place, const Corners& values) const noexcept {
+    double sum = 0.0;
+    if (axes_ == (1u << N) - 1) {
+      sum = sum_of_all(place, values, std::make_index_sequence<std::size_t{1} << N>());
+    } else {
+      const Corners weights = weights_at(place);
+      for (std::size_t i = 0; i < corners_; ++i) sum += weights[i] * values[i];
+    }
+    // Missing samples and infinite ones of weight 0 make NaN, too.
+    return std::isnan(sum) ? of_present(place, values) : sum;
+  }
+
+ private:
+  /// The sum over the corners of a cell along all axes, with the operations of `weights_at`; unrolled.
+  template <std::size_t... C>
+  [[nodiscard]] static double sum_of_all(const detail::CellPlace<N>& place, const Corners& values,
+                                         std::index_sequence<C...>) noexcept {
+    std::array<std::array<double, 2>, N> factors;
+    for (int a = 0; a < N; ++a) factors[a] = {1.0 - place.share[a], place.share[a]};
+    const auto weight = [&factors]<std::size_t... A>(std::size_t corner, std::index_sequence<A...>) {
+      return (... * factors[A][corner >> A & 1u]);
+    };
+    double sum = 0.0;
+    ((sum += weight(C, std::make_index_sequence<N>()) * values[C]), ...);
+    return sum;
+  }
+
+  [[nodiscard]] Corners weights_at(const detail::CellPlace<N>& place) const noexcept {
+    Corners weights;
     weights[0] = 1.0;
     std::size_t count = 1;
     for (int a = 0; a < N; ++a) {
@@ -44,16 +76,12 @@ class CellInterpolation {
       }
       count *= 2;
     }
-    double sum = 0.0;
-    for (std::size_t i = 0; i < corners_; ++i) sum += weights[i] * values[i];
-    // Missing samples and infinite ones of weight 0 make NaN, too.
-    return std::isnan(sum) ? of_present(values, weights) : sum;
+    return weights;
   }
 
- private:
-  using Corners = std::array<double, std::size_t{1} << N>;
-
-  [[nodiscard]] double of_present(const Corners& values, const Corners& weights) const noexcept {
+  [[nodiscard, gnu::noinline]] double of_present(const detail::CellPlace<N>& place,
+                                                 const Corners& values) const noexcept {
+    const Corners weights = weights_at(place);
     double sum = 0.0;
     double present = 0.0;
     for (std::size_t i = 0; i < corners_; ++i) {
@@ -76,11 +104,23 @@ template <int N>
 void interpolate(const detail::CornerValues<N>& samples, const Grid<N>& grid, const detail::SimplexView<N>& contour,
                  const WorkOptions& work, Buffer<double>& values) {
   const detail::GridLocator<N> locator(grid);
-  const CellInterpolation<N> value_at(samples, grid);
-  detail::for_each_item(contour.vertex_count(), work.threads, work.progress, [&](std::size_t v) {
-    const std::array<double, N> point = contour.point(static_cast<Index>(v));
-    detail::CellPlace<N> place;
-    values[v] = locator.find(point, place) ? value_at(place) : std::numeric_limits<double>::quiet_NaN();
+  const CellInterpolation<N> interpolation(samples, grid);
+  // A few vertices at a time, so that the processor waits for the samples of several.
+  constexpr std::size_t kFew = 64;
+  detail::for_each_part(contour.vertex_count(), work.threads, work.progress, [&](std::size_t first, std::size_t end) {
+    std::array<detail::CellPlace<N>, kFew> places;
+    std::array<bool, kFew> are_inside;
+    std::array<typename CellInterpolation<N>::Corners, kFew> corners;
+    for (std::size_t from = first; from < end; from += kFew) {
+      const std::size_t count = std::min(kFew, end - from);
+      for (std::size_t i = 0; i < count; ++i)
+        are_inside[i] = locator.find(contour.point(static_cast<Index>(from + i)), places[i]);
+      for (std::size_t i = 0; i < count; ++i)
+        if (are_inside[i]) interpolation.read(places[i], corners[i]);
+      for (std::size_t i = 0; i < count; ++i)
+        values[from + i] =
+            are_inside[i] ? interpolation.value_at(places[i], corners[i]) : std::numeric_limits<double>::quiet_NaN();
+    }
   });
 }
 

@@ -30,7 +30,6 @@ PointOf<N> normal_vector_by_minors(const std::array<PointOf<N>, N>& corners) noe
 }
 
 template PointOf<2> normal_vector_by_minors<2>(const std::array<PointOf<2>, 2>&) noexcept;
-template PointOf<3> normal_vector_by_minors<3>(const std::array<PointOf<3>, 3>&) noexcept;
 template PointOf<5> normal_vector_by_minors<5>(const std::array<PointOf<5>, 5>&) noexcept;
 
 }  // namespace tegl::detail

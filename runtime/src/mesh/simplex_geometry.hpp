@@ -64,7 +64,6 @@ template <int N>
 PointOf<N> normal_vector_by_minors(const std::array<PointOf<N>, N>& corners) noexcept;
 
 extern template PointOf<2> normal_vector_by_minors<2>(const std::array<PointOf<2>, 2>&) noexcept;
-extern template PointOf<3> normal_vector_by_minors<3>(const std::array<PointOf<3>, 3>&) noexcept;
 extern template PointOf<5> normal_vector_by_minors<5>(const std::array<PointOf<5>, 5>&) noexcept;
 
 /// The vector n with n . w = det(e_1, ..., e_{N-1}, w) / (N-1)! for the edges e_j = corner_j - corner_0. It is
@@ -72,21 +71,26 @@ extern template PointOf<5> normal_vector_by_minors<5>(const std::array<PointOf<5
 /// orientation faces. It is a covector and needs no metric.
 template <int N>
 inline PointOf<N> normal_vector_of(const std::array<PointOf<N>, N>& corners) noexcept {
-  if constexpr (N != 4) {
+  if constexpr (N != 3 && N != 4) {
     return normal_vector_by_minors<N>(corners);
   } else {
-    // Written out, since sums over all tetrahedra of a contour spend most of their time here.
-    std::array<PointOf<4>, 3> e;
-    for (int j = 0; j < 3; ++j)
-      for (int a = 0; a < 4; ++a) e[j][a] = corners[j + 1][a] - corners[0][a];
-    // the determinant of the rows a, b, c of the matrix whose columns are the edges
-    const auto det = [&e](int a, int b, int c) {
-      const double first = e[0][a] * (e[1][b] * e[2][c] - e[2][b] * e[1][c]);
-      const double second = e[1][a] * (e[0][b] * e[2][c] - e[2][b] * e[0][c]);
-      const double third = e[2][a] * (e[0][b] * e[1][c] - e[1][b] * e[0][c]);
-      return first - second + third;
-    };
-    return {-det(1, 2, 3) / 6.0, det(0, 2, 3) / 6.0, -det(0, 1, 3) / 6.0, det(0, 1, 2) / 6.0};
+    // Written out, since sums over all simplices of a contour spend most of their time here.
+    std::array<PointOf<N>, N - 1> e;
+    for (int j = 0; j < N - 1; ++j)
+      for (int a = 0; a < N; ++a) e[j][a] = corners[j + 1][a] - corners[0][a];
+    // the determinants of some rows of the matrix whose columns are the edges
+    if constexpr (N == 3) {
+      const auto det = [&e](int a, int b) { return e[0][a] * e[1][b] - e[0][b] * e[1][a]; };
+      return {det(1, 2) / 2.0, -det(0, 2) / 2.0, det(0, 1) / 2.0};
+    } else {
+      const auto det = [&e](int a, int b, int c) {
+        const double first = e[0][a] * (e[1][b] * e[2][c] - e[2][b] * e[1][c]);
+        const double second = e[1][a] * (e[0][b] * e[2][c] - e[2][b] * e[0][c]);
+        const double third = e[2][a] * (e[0][b] * e[1][c] - e[1][b] * e[0][c]);
+        return first - second + third;
+      };
+      return {-det(1, 2, 3) / 6.0, det(0, 2, 3) / 6.0, -det(0, 1, 3) / 6.0, det(0, 1, 2) / 6.0};
+    }
   }
 }
 

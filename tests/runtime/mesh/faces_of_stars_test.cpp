@@ -16,6 +16,7 @@
 #include "base/radix_sort.hpp"
 #include "fields.hpp"
 #include "mesh/incidence_data.hpp"
+#include "mesh/open_ridges.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "track/link_sides.hpp"
@@ -146,6 +147,14 @@ void expect_faces_as_listed(const SimplexList<N>& rows) {
     if (with_euler) {
       EXPECT_EQ(counts.euler, euler);
     }
+  }
+  for (const unsigned threads : {1u, 3u}) {
+    std::vector<std::array<Index, N - 1>> met;
+    const detail::FaceCounts counts = detail::find_open_ridges<N>(flat<N>(rows), vertices, threads, {},
+                                                                  [&](const auto& ridge) { met.push_back(ridge); });
+    EXPECT_EQ(counts.boundary, boundary);
+    EXPECT_EQ(counts.open, open.size());
+    EXPECT_THAT(met, testing::ElementsAreArray(open));
   }
 }
 
@@ -405,6 +414,34 @@ TEST(LinksOfTetrahedra, AreGoodByDefinition) {
   }
   EXPECT_GT(good, 500u);
   EXPECT_GT(bad, 200u);
+}
+
+/// A closed contour without faults, with a few, and with a simplex that repeats a vertex.
+template <int N>
+void expect_open_ridges_as_listed() {
+  const auto image = test::noise<double, N>(N == 2 ? 24 : 10 - N, 1);
+  const Contour<N, double> contour = extract<double>(image.view(), 0.5, {.close = true});
+  SimplexList<N> rows(contour.simplices.begin(), contour.simplices.end());
+  const auto find = [&] {
+    return detail::find_open_ridges<N>(flat<N>(rows), contour.vertices.size(), 1, {}, [](const auto&) {});
+  };
+  EXPECT_EQ(find().open, 0u);
+  rows.push_back(rows[3]);
+  rows.back()[1] = rows.back()[0];
+  EXPECT_EQ(find().open, 0u);
+  rows.pop_back();
+  std::swap(rows[rows.size() / 2][0], rows[rows.size() / 2][1]);  // reversed
+  rows.push_back(rows[rows.size() / 3]);                          // twice
+  rows.erase(rows.begin() + 1);                                   // missing
+  EXPECT_GT(find().open, find().boundary);
+  expect_faces_as_listed<N>(rows);
+}
+
+TEST(OpenRidges, AreThoseOfTheList) {
+  expect_open_ridges_as_listed<2>();
+  expect_open_ridges_as_listed<3>();
+  expect_open_ridges_as_listed<4>();
+  expect_open_ridges_as_listed<5>();
 }
 
 TEST(RadixSort, IsStableForAnyNumberOfThreads) {
