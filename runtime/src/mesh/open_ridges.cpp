@@ -141,9 +141,11 @@ template <int N>
 Buffer<std::uint8_t> mark_open(std::span<const std::array<Index, N>> simplices, std::size_t vertex_count,
                                unsigned threads, const Progress& progress) {
   const auto points = random_points<N - 2>(vertex_count, threads, part_of(progress, 0.0, 0.1));
+  constexpr std::size_t kMostThreads = 8;  // of which each has an array
+  const auto of_sums = static_cast<unsigned>(std::min(kMostThreads, Workers<int>(threads, [] { return 0; }).count()));
   SumsByVertex sums(vertex_count);
   for_each_block(
-      simplices.size(), kSimplices, threads, part_of(progress, 0.1, 0.9), [&] { return sums.make(); },
+      simplices.size(), kSimplices, of_sums, part_of(progress, 0.1, 0.9), [&] { return sums.make(); },
       [&](std::size_t, std::size_t from, std::size_t to, std::uint64_t* own) {
         for (std::size_t s = from; s < to; ++s) {
           const std::array<std::uint64_t, N> added = derivatives<N>(simplices[s], points.data());
