@@ -80,20 +80,30 @@ class Links {
   BasicDisjointSets<std::size_t> sets_;
 };
 
-/// Sorts corners that are in the order of pieces by key, then by piece.
-void sort_by_key(std::span<Corner> corners) {
-  constexpr std::size_t kFew = 32;
-  if (corners.size() > kFew) {
+/// Sorts corners that are in the order of pieces by key, then by piece. `numbers`: scratch.
+void sort_by_key(std::span<Corner> corners, std::vector<std::uint64_t>& numbers) {
+  if (corners.size() < 2) return;
+  const Index lower = lower_end(corners.front().key);
+  const bool have_one_end =
+      lower == lower_end(corners.back().key) && corners.back().at >> 32 == 0 &&
+      std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) { return lower_end(corner.key) == lower; });
+  if (!have_one_end) {
     std::sort(corners.begin(), corners.end(),
               [](const Corner& a, const Corner& b) { return std::pair(a.key, a.at) < std::pair(b.key, b.at); });
     return;
   }
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    const Corner corner = corners[i];
+  // the upper end and the place in one number
+  constexpr std::size_t kFew = 32;
+  numbers.resize(std::max(numbers.size(), corners.size()));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::uint64_t number = std::uint64_t{upper_end(corners[i].key)} << 32 | corners[i].at;
     std::size_t at = i;
-    for (; at > 0 && corners[at - 1].key > corner.key; --at) corners[at] = corners[at - 1];
-    corners[at] = corner;
+    for (; corners.size() <= kFew && at > 0 && numbers[at - 1] > number; --at) numbers[at] = numbers[at - 1];
+    numbers[at] = number;
   }
+  if (corners.size() > kFew) std::sort(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(corners.size()));
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = {edge_point(lower, static_cast<Index>(numbers[i] >> 32)), numbers[i] & 0xffffffffu};
 }
 
 }  // namespace
@@ -135,11 +145,12 @@ Buffer<Corner> corners_by_point(std::span<const Piece> pieces, unsigned threads)
   for_corners([&](std::size_t& place, const Corner& corner) { corners[place++] = corner; });
   // Places are now the ends of the buckets. Few corners are in a bucket, in the order of pieces.
   const std::vector<std::size_t>& ends = next.back();
-  for_each_block(buckets, kPart, threads, {}, [&](std::size_t, std::size_t from, std::size_t to) {
-    for (std::size_t bucket = from; bucket < to; ++bucket)
-      sort_by_key(std::span<Corner>(corners).subspan(bucket == 0 ? 0 : ends[bucket - 1],
-                                                     ends[bucket] - (bucket == 0 ? 0 : ends[bucket - 1])));
-  });
+  for_each_block(
+      buckets, kPart, threads, {}, [] { return std::vector<std::uint64_t>(); },
+      [&](std::size_t, std::size_t from, std::size_t to, std::vector<std::uint64_t>& numbers) {
+        for (std::size_t bucket = from, first = from == 0 ? 0 : ends[from - 1]; bucket < to; first = ends[bucket++])
+          sort_by_key(std::span<Corner>(corners).subspan(first, ends[bucket] - first), numbers);
+      });
   return corners;
 }
 
