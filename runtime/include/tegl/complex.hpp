@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -165,8 +166,10 @@ requires DimensionBetween<N, 2, 4>
 /// boundary only at the border of the complex and at missing values. It is the contour of an image if the cells are
 /// those of its grid (compact: the same simplices, in 4D if points are numbered along the axes; also 3D barycentric,
 /// with barycentres at the mean of a polygon's points). A cell's orientation is the sign of the best affine map from
-/// its reference corners; cells that are folded or flat may have the wrong one, and then the contour's orientation has
-/// conflicts there.
+/// its reference corners. A flat cell (its volume is at most 1e-9 of that of a box with edges as long) has the
+/// orientation of the others of its shape, if these all have their corners in the same order, as in Delaunay
+/// triangulations. Cells that are folded, and other flat ones, may have the wrong orientation, and then the contour's
+/// orientation has conflicts there.
 ///
 /// Options: all, except as follows. Neighbouring cells of any types agree in their common faces, with every rule.
 /// - triangulation: the diagonals of compact 4D contours in faces between cells depend on the numbers of the points.
@@ -207,5 +210,17 @@ requires DimensionBetween<N, 2, 4>
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] ContourSize count(const Complex<N>& complex, double isovalue, const ExtractOptions& options = {});
+
+/// Interpolates other numbers at the points of a complex to the vertices of its contour, as an attribute: a temperature
+/// surface with the pressure. `numbers`: #P x width, row = point of the complex (of one made by in_time, #T x #P x
+/// width); NaN: missing. The weights are those of the contour's coordinates, so that numbers which are linear in the
+/// coordinates give the same function of the vertices. The result has a row for each vertex of `extract` with the same
+/// isovalue and options; it is NaN where a number is missing at a point that the vertex depends on. Errors: those of
+/// `extract`; InvalidArgument if the size of `numbers` is not a multiple of the number of points. Time: that of
+/// `extract`, for N numbers per point at a time.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Attribute interpolate_points(const Complex<N>& complex, double isovalue, std::span<const double> numbers,
+                                           std::string name, std::string unit = {}, const ExtractOptions& options = {});
 
 }  // namespace tegl

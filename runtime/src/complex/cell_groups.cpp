@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -97,10 +99,15 @@ std::vector<std::array<double, N>> centred_corners(const tables::CellTable& tabl
   return corners;
 }
 
-/// Whether the best affine map from reference corners to points reverses the orientation.
+/// The orientation of a cell.
+enum class CellSign { kept, inverted, unknown };
+
+/// The sign of the best affine map from reference corners to points; `unknown` for a cell that is flat up to the
+/// rounding of its coordinates.
 template <int N>
-bool is_inverted(const std::vector<std::array<double, N>>& reference, const Index* corners,
+CellSign sign_of(const std::vector<std::array<double, N>>& reference, const Index* corners,
                  const std::vector<std::array<double, N>>& points) {
+  constexpr double kFlat = 0x1p-30;  // of the volume of a box with the map's rows or columns as edges
   Eigen::Matrix<double, N, N> map = Eigen::Matrix<double, N, N>::Zero();
   const std::array<double, N>& origin = points[corners[0]];
   for (std::size_t v = 0; v < reference.size(); ++v)
@@ -109,11 +116,18 @@ bool is_inverted(const std::vector<std::array<double, N>>& reference, const Inde
   // very large and very small cells: the determinant's sign without overflow or underflow
   for (int k = 0; k < N; ++k) {
     const double largest = map.col(k).cwiseAbs().maxCoeff();
-    if (largest == 0 || (largest > 0x1p-200 && largest < 0x1p200)) continue;
+    if (largest == 0 || (largest > 0x1p-30 && largest < 0x1p30)) continue;
     const int exponent = std::ilogb(largest);
     for (int i = 0; i < N; ++i) map(i, k) = std::scalbn(map(i, k), -exponent);
   }
-  return map.determinant() < 0;
+  const double volume = map.determinant(), flat = volume * volume / (kFlat * kFlat);
+  double rows = 1, columns = 1;
+  for (int i = 0; i < N; ++i) {
+    rows *= map.row(i).squaredNorm();
+    columns *= map.col(i).squaredNorm();
+  }
+  if (flat <= rows && flat <= columns) return CellSign::unknown;
+  return volume < 0 ? CellSign::inverted : CellSign::kept;
 }
 
 }  // namespace
@@ -207,11 +221,23 @@ CellSigns find_cell_signs(const CellGroups& cells, const std::vector<std::array<
   CellSigns signs;
   for (const CellGroup& group : cells.groups) {
     const auto reference = centred_corners<N>(table_of(group.shape));
-    std::vector<std::uint64_t>& words = signs.emplace_back(block_count(group.size(), 64));
-    for_each_item(words.size(), 0, {}, [&](std::size_t w) {
-      for (std::size_t c = 64 * w; c < group.size() && c < 64 * (w + 1); ++c)
-        words[w] |= std::uint64_t{is_inverted<N>(reference, group.cell(c), points)} << (c & 63u);
+    std::vector<std::uint64_t>& inverted = signs.emplace_back(block_count(group.size(), 64));
+    std::atomic<bool> any_kept = false, any_inverted = false;
+    std::vector<std::uint64_t> unknown(inverted.size());
+    for_each_item(inverted.size(), 0, {}, [&](std::size_t w) {
+      const std::size_t first = 64 * w, count = std::min<std::size_t>(64, group.size() - first);
+      for (std::size_t c = 0; c < count; ++c) {
+        const CellSign sign = sign_of<N>(reference, group.cell(first + c), points);
+        inverted[w] |= std::uint64_t{sign == CellSign::inverted} << c;
+        unknown[w] |= std::uint64_t{sign == CellSign::unknown} << c;
+      }
+      if (inverted[w] != 0) any_inverted.store(true, std::memory_order_relaxed);
+      if (std::popcount(inverted[w] | unknown[w]) != static_cast<int>(count))
+        any_kept.store(true, std::memory_order_relaxed);
     });
+    // Flat cells: corners are in one order in most meshes, and in all that Delaunay triangulations give.
+    if (any_inverted && !any_kept)
+      for (std::size_t w = 0; w < inverted.size(); ++w) inverted[w] |= unknown[w];
   }
   return signs;
 }

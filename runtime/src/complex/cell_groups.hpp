@@ -56,8 +56,9 @@ struct CellRange {
 /// All cells in ranges of a fixed size, the units of parallel work: they do not depend on the number of threads.
 [[nodiscard]] std::vector<CellRange> ranges_of(const CellGroups& cells);
 
-/// Whether each cell is oriented against the reference corners: the sign of the best affine map between the two; false
-/// for flat cells. By group: bit c % 64 of word c / 64.
+/// Whether each cell is oriented against the reference corners: the sign of the best affine map between the two. Cells
+/// that are flat up to rounding have the sign that all others of their shape have; if those differ, or for lack of
+/// others, they are not inverted. By group: bit c % 64 of word c / 64.
 template <int N>
 [[nodiscard]] CellSigns find_cell_signs(const CellGroups& cells, const std::vector<std::array<double, N>>& points);
 
@@ -98,6 +99,9 @@ struct ComplexAccess {
   /// A complex of cells of one type whose corners have the same orientation, also in cells without volume.
   template <int N>
   static Complex<N> oriented(std::vector<std::array<double, N>> points, CellType type, std::span<const Index> corners);
+  /// The complex with other points, which may be any numbers, and the same orientations of the cells.
+  template <int N>
+  static Complex<N> at_places(const Complex<N>& complex, std::vector<std::array<double, N>> places);
   /// A complex of cells that need no check.
   template <int N>
   static Complex<N> layered(std::vector<std::array<double, N>> points, CellGroups cells);

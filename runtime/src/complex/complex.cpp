@@ -74,6 +74,16 @@ Complex<N> ComplexAccess::oriented(std::vector<std::array<double, N>> points, Ce
   complex.signs_ = std::make_shared<const CellSigns>(std::move(signs));
   return complex;
 }
+
+template <int N>
+Complex<N> ComplexAccess::at_places(const Complex<N>& complex, std::vector<std::array<double, N>> places) {
+  Complex<N> moved = complex;
+  moved.points_ = std::move(places);
+  moved.largest_coordinate_ = 0;
+  moved.is_layered_ = false;
+  return moved;
+}
+
 template Complex<2> ComplexAccess::oriented<2>(std::vector<std::array<double, 2>>, CellType, std::span<const Index>);
 template Complex<3> ComplexAccess::oriented<3>(std::vector<std::array<double, 3>>, CellType, std::span<const Index>);
 template Complex<4> ComplexAccess::oriented<4>(std::vector<std::array<double, 4>>, CellType, std::span<const Index>);
@@ -142,6 +152,41 @@ void Complex<N>::find_border(const WorkOptions& work) {
 template <int N>
 requires DimensionBetween<N, 2, 4> std::size_t Complex<N>::edge_count()
 const noexcept { return edges_ == nullptr ? 0 : edges_->ends.size(); }
+
+// Coordinates of vertices are linear in those of the points, with weights that depend on the values only. So the
+// numbers take the place of the coordinates, N at a time.
+template <int N>
+requires DimensionBetween<N, 2, 4> Attribute interpolate_points(const Complex<N>& complex, double isovalue,
+                                                                std::span<const double> numbers, std::string name,
+                                                                std::string unit, const ExtractOptions& options) {
+  const std::size_t points = complex.points().size();
+  const std::size_t width = points == 0 ? 1 : numbers.size() / points;
+  if (width == 0 || numbers.size() != width * points)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} numbers; expected one or several for each of the {} points", numbers.size(), points));
+  ExtractOptions of_numbers = options;
+  of_numbers.normals = Normals::none;
+  Attribute attribute{std::move(name), std::move(unit), static_cast<int>(width), {}};
+  for (std::size_t first = 0; first < width; first += N) {
+    const std::size_t count = std::min<std::size_t>(N, width - first);
+    std::vector<std::array<double, N>> places(points);
+    for (std::size_t p = 0; p < points; ++p) std::copy_n(numbers.data() + p * width + first, count, places[p].data());
+    const Contour<N, double> contour =
+        extract<double>(detail::ComplexAccess::at_places<N>(complex, std::move(places)), isovalue, of_numbers);
+    attribute.values.resize(contour.vertices.size() * width);
+    for (std::size_t v = 0; v < contour.vertices.size(); ++v)
+      std::copy_n(contour.vertices[v].data(), count, attribute.values.data() + v * width + first);
+  }
+  return attribute;
+}
+
+#define TEGL_INSTANTIATE_COMPLEXES(N)                                                                       \
+  template Attribute interpolate_points<N>(const Complex<N>&, double, std::span<const double>, std::string, \
+                                           std::string, const ExtractOptions&);
+TEGL_INSTANTIATE_COMPLEXES(2)
+TEGL_INSTANTIATE_COMPLEXES(3)
+TEGL_INSTANTIATE_COMPLEXES(4)
+#undef TEGL_INSTANTIATE_COMPLEXES
 
 template class Complex<2>;
 template class Complex<3>;

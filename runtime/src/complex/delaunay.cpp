@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include "complex/cell_groups.hpp"
 #include "tegl/error.hpp"
@@ -47,6 +48,11 @@ template <int N>
   for (std::size_t i = 1; i < order.size(); ++i)
     if (points[order[i]] == points[order[i - 1]])
       refuse(fmt::format("points {} and {} are equal; expected different points", order[i - 1], order[i]));
+}
+
+[[noreturn]] [[maybe_unused]] void refuse_flat(std::size_t points, int dim) {
+  const char* const space = dim == 2 ? "line" : dim == 3 ? "plane" : "hyperplane";
+  refuse(fmt::format("{} points that lie in a {}; expected points in {} dimensions", points, space, dim));
 }
 
 #ifdef TEGL_HAS_QHULL
@@ -123,6 +129,22 @@ std::vector<double> lifted(std::span<const std::array<double, N>> points) {
   return coordinates;
 }
 
+/// The one cell of N + 1 points, which are too few for a hull one dimension higher.
+template <int N>
+std::vector<Index> only_simplex(std::span<const std::array<double, N>> points) {
+  constexpr double kFlat = 1e-14;
+  const std::vector<double> coordinates = lifted<N>(points);
+  Eigen::Matrix<double, N, N> edges;
+  for (int i = 0; i < N; ++i)
+    for (int a = 0; a < N; ++a) edges(i, a) = coordinates[(i + 1) * (N + 1) + a] - coordinates[a];
+  const Eigen::FullPivLU<Eigen::Matrix<double, N, N>> parts(edges);
+  const auto pivots = parts.matrixLU().diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > kFlat * pivots.maxCoeff())) refuse_flat(points.size(), N);
+  std::vector<Index> corners(N + 1);
+  std::iota(corners.begin(), corners.end(), Index{0});
+  return corners;
+}
+
 /// The corners of the simplices of the lower hull, all with the same orientation: that of the hull.
 template <int N>
 std::vector<Index> lower_simplices(qhT& state) {
@@ -196,15 +218,11 @@ template <int N>
 requires DimensionBetween<N, 2, 4> std::vector<Index> delaunay_corners(std::span<const std::array<double, N>> points) {
 #ifdef TEGL_HAS_QHULL
   check_points<N>(points);
+  if (points.size() == N + 1) return only_simplex<N>(points);
   std::vector<double> coordinates = lifted<N>(points);
   Qhull qhull;
   const int exit = qhull.run(N + 1, coordinates, "qhull Qt Q12");
-  if (exit == qh_ERRsingular)
-    refuse(fmt::format("{} points that lie in a {}; expected points in {} dimensions", points.size(),
-                       N == 2   ? "line"
-                       : N == 3 ? "plane"
-                                : "hyperplane",
-                       N));
+  if (exit == qh_ERRsingular) refuse_flat(points.size(), N);
   if (exit != 0)
     throw Error(ErrorCode::UnsupportedData, fmt::format("Qhull: {}; expected other points", qhull.message()));
   std::vector<Index> corners = lower_simplices<N>(qhull.state());

@@ -346,6 +346,66 @@ TEST(ComplexOptions, NormalsOfASphereConverge) {
   EXPECT_LT(errors[1], 0.6 * errors[0]);
 }
 
+/// Interpolates linear functions of the points, which vertices then have as well: exactly those of their coordinates.
+template <int N>
+void expect_interpolated(const Complex<N>& complex, const ExtractOptions& options) {
+  constexpr std::size_t kWidth = N + 1;
+  const auto numbers_at = [](const auto& x) {
+    std::array<double, kWidth> numbers{};
+    for (std::size_t i = 0; i < kWidth; ++i)
+      for (std::size_t a = 0; a < N; ++a) numbers[i] += x[a] * static_cast<double>((i + 2 * a) % 5);
+    return numbers;
+  };
+  std::vector<double> numbers;
+  for (const auto& point : complex.points())
+    for (const double x : numbers_at(point)) numbers.push_back(x);
+  const auto contour = extract<double>(complex, 0.4, options);
+  const Attribute found = interpolate_points(complex, 0.4, numbers, "p", "Pa", options);
+  EXPECT_EQ(found.unit, "Pa");
+  ASSERT_EQ(found.values.size(), kWidth * contour.vertices.size());
+  ASSERT_GT(contour.vertices.size(), 50u);
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v)
+    for (std::size_t i = 0; i < kWidth; ++i)
+      ASSERT_NEAR(found.values[v * kWidth + i], numbers_at(contour.vertices[v])[i], 1e-12);
+}
+
+TEST(ComplexOptions, NumbersAtPointsAreInterpolatedAsCoordinates) {
+  for (const MeshData<3>& mesh : all_meshes(6, 0.2))
+    for (const Ambiguity rule : kRules) {
+      ExtractOptions options;
+      options.ambiguity = rule;
+      options.close = rule == Ambiguity::mean;
+      options.epsilon = rule == Ambiguity::high ? 0.1 : 0.0;
+      options.normals = Normals::differences;
+      expect_interpolated(complex_of(mesh, open_noise(mesh, 4)), options);
+    }
+  const MeshData<2> flat = cube_mesh(grid_points<2>({12, 12}, 0.2));
+  expect_interpolated(complex_of(flat, open_noise(flat, 5)), {});
+  const MeshData<3> mesh = mixed_mesh(grid_points<3>({5, 5, 5}, 0.2), 7);
+  std::vector<double> values = open_noise(mesh, 6);
+  const std::vector<double> later = open_noise(mesh, 7);
+  values.insert(values.end(), later.begin(), later.end());
+  const Complex<4> moving = in_time<3>(mesh.complex(), std::array{0.5, 2.0}, values);
+  expect_interpolated(moving, {});
+}
+
+TEST(ComplexOptions, MissingNumbersAtPointsAreMissingAtTheirVertices) {
+  const MeshData<3> mesh = kuhn_mesh(grid_points<3>({7, 7, 7}, 0.2));
+  const Complex<3> complex = complex_of(mesh, open_noise(mesh, 8));
+  std::vector<double> numbers(mesh.points.size(), 1.0);
+  numbers[171] = std::numeric_limits<double>::quiet_NaN();
+  std::size_t missing = 0;
+  for (const double x : interpolate_points(complex, 0.5, numbers, "p").values) {
+    missing += std::isnan(x) ? 1 : 0;
+    EXPECT_TRUE(std::isnan(x) || x == 1.0);
+  }
+  EXPECT_GT(missing, 0u);
+  EXPECT_LT(missing, 15u);  // edges of one point
+  numbers.pop_back();
+  expect_error(ErrorCode::InvalidArgument, "342 numbers; expected one or several for each of the 343 points",
+               [&] { (void)interpolate_points(complex, 0.5, numbers, "p"); });
+}
+
 TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {
   const MeshData<3> mesh = cube_mesh(grid_points<3>({3, 3, 3}));
   const Complex<3> complex = complex_of(mesh, open_noise(mesh, 1));

@@ -46,6 +46,22 @@ Points<N> grid(std::size_t samples) {
   return points;
 }
 
+template <int N>
+constexpr CellType kSimplex = N == 2   ? CellType::triangle
+                              : N == 3 ? CellType::tetrahedron
+                                       : CellType::simplex4;
+
+template <int N>
+void expect_closed_contour(const Complex<N>& complex) {
+  const auto contour = extract<double>(complex, 0.5);
+  EXPECT_GT(contour.simplices.size(), 20u);
+  const MeshReport report = check(contour);
+  EXPECT_EQ(report.boundary_simplices, 0u);
+  EXPECT_EQ(report.nonmanifold_simplices, 0u);
+  EXPECT_EQ(report.bad_links, 0u);
+  EXPECT_EQ(report.orientation_conflicts, 0u);
+}
+
 /// Sets noise that is low near the border, and expects a closed manifold.
 template <int N>
 void expect_closed_noise(const Points<N>& points, const std::string& name) {
@@ -60,13 +76,12 @@ void expect_closed_noise(const Points<N>& points, const std::string& name) {
     values.push_back(most < 0.75 ? std::uniform_real_distribution<double>()(random) : 0.0);
   }
   complex.set_values(values);
-  const auto contour = extract<double>(complex, 0.5);
-  EXPECT_GT(contour.simplices.size(), 20u);
-  const MeshReport report = check(contour);
-  EXPECT_EQ(report.boundary_simplices, 0u);
-  EXPECT_EQ(report.nonmanifold_simplices, 0u);
-  EXPECT_EQ(report.bad_links, 0u);
-  EXPECT_EQ(report.orientation_conflicts, 0u);
+  expect_closed_contour(complex);
+  if (name != "grid") return;
+  // the same cells by the constructor, which computes the orientation of each from rounded coordinates
+  Complex<N> again(points, kSimplex<N>, delaunay_corners<N>(points));
+  again.set_values(values);
+  expect_closed_contour(again);
 }
 
 TEST(Delaunay, NoiseOnRandomPointsHasAClosedOrientedManifold) {
@@ -78,7 +93,43 @@ TEST(Delaunay, NoiseOnRandomPointsHasAClosedOrientedManifold) {
 TEST(Delaunay, GridsWhosePointsAreOnCommonSpheresAreTriangulated) {
   expect_closed_noise<2>(grid<2>(21), "grid");
   expect_closed_noise<3>(grid<3>(11), "grid");
+  expect_closed_noise<4>(grid<4>(6), "grid");
   expect_closed_noise<4>(grid<4>(7), "grid");
+}
+
+TEST(Delaunay, TheFlatCellsOfAGridKeepTheirOrientationOverTime) {
+  if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
+  const Points<3> points = grid<3>(8);
+  const Complex<3> complex(points, CellType::tetrahedron, delaunay_corners<3>(points));
+  std::mt19937 random(9);
+  std::vector<double> values;
+  for (int k = 0; k < 4; ++k)
+    for (const auto& p : points)
+      values.push_back(std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) < 0.9
+                           ? std::uniform_real_distribution<double>()(random)
+                           : 0.0);
+  const MeshReport report = check(extract<double>(in_time<3>(complex, std::array{0.0, 0.3, 0.7, 1.1}, values), 0.5));
+  EXPECT_EQ(report.orientation_conflicts, 0u);
+}
+
+TEST(Delaunay, TheSmallestNumberOfPointsIsOneCell) {
+  if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
+  EXPECT_EQ(delaunay<2>(Points<2>{{0, 0}, {1, 0}, {0, 1}}).cell_count(), 1u);
+  EXPECT_EQ(delaunay<3>(Points<3>{{5, 0, 0}, {0, 7, 0}, {0, 0, 9}, {1e-3, 0, 0}}).cell_count(), 1u);
+  EXPECT_EQ(delaunay<4>(Points<4>{{}, {1}, {0, 1}, {0, 0, 1}, {0, 0, 0, -1}}).cell_count(), 1u);
+  EXPECT_EQ(delaunay<2>(Points<2>{{0, 0}, {1, 0}, {0, 1}, {1, 1}}).cell_count(), 2u);
+  expect_error(ErrorCode::InvalidArgument, "3 points that lie in a line; expected points in 2 dimensions", [] {
+    (void)delaunay<2>(Points<2>{{0.1, 0.1}, {0.2, 0.2}, {0.3, 0.3}});
+  });
+  expect_error(ErrorCode::InvalidArgument, "4 points that lie in a line", [] {
+    (void)delaunay<2>(Points<2>{{0.1, 0.1}, {0.2, 0.2}, {0.3, 0.3}, {0.7, 0.7}});
+  });
+  expect_error(ErrorCode::InvalidArgument, "4 points that lie in a plane", [] {
+    (void)delaunay<3>(Points<3>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {4, 5, 1}});
+  });
+  expect_error(ErrorCode::InvalidArgument, "5 points that lie in a hyperplane", [] {
+    (void)delaunay<4>(Points<4>{{1, 1}, {2, 3}, {0, 1}, {0, 0, 1}, {0, 0, 3}});
+  });
 }
 
 TEST(Delaunay, TheContentOfABallIsRight) {
