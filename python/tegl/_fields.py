@@ -10,6 +10,16 @@ import numpy as np
 from . import _arguments, _kinds, _tegl
 from ._arguments import Progress
 
+#: By lattice: its number of axes, and the step between layers, in steps along the other axes, that makes it regular.
+LATTICES = {"triangular": (2, 3**0.5 / 2), "fcc": (3, 2**0.5 / 2), "bcc": (3, 0.5), "d4": (4, 0.5),
+            "fcc_in_time": (4, 2**0.5 / 2)}
+
+
+def lattice_spacing(lattice: str, ndim: int) -> list[float]:
+    """The steps of a regular lattice along the library's axes."""
+    across = ndim - (2 if lattice == "fcc_in_time" else 1)
+    return [LATTICES[lattice][1] if axis == across else 1.0 for axis in range(ndim)]
+
 
 @_arguments.documents("make_field", "make_expression")
 def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = None,
@@ -28,7 +38,8 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = No
     field
         A name of `tegl.fields()`, or an expression.
     shape, ndim
-        The number of samples along each axis, or one number for all of `ndim` (default: 3) axes.
+        The number of samples along each axis, or one number for all of `ndim` axes (default: the lattice's number, else
+        3); on a lattice, the layers are then as many as the limits need.
     limits
         Coordinates of the first and the last sample along each axis.
     parameters, seed
@@ -40,8 +51,9 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = No
         the regular lattice's, and the last coordinate along their axis differs.
     """
     axis_count = None if ndim is None else _arguments.as_whole("ndim", ndim, 2)
-    if isinstance(shape, (int, np.integer)):
-        sizes = [shape] * (3 if axis_count is None else axis_count)
+    is_one = isinstance(shape, (int, np.integer))
+    if is_one:
+        sizes = [shape] * (axis_count or LATTICES.get(lattice or "", (3, 1.0))[0])
     else:
         sizes = list(shape)
         if axis_count not in (None, len(sizes)):
@@ -57,10 +69,12 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = No
         _arguments.as_bool("expression", expression)
     axes = [(size, first, (last - first) / (size - 1)) for size in sizes[::-1]]
     if lattice is not None:
-        steps = {"triangular": 3**0.5 / 2, "fcc": 2**0.5 / 2, "bcc": 0.5, "d4": 0.5, "fcc_in_time": 2**0.5 / 2}
         across = len(axes) - (2 if lattice == "fcc_in_time" else 1)
-        if lattice in steps:
-            axes[across] = (axes[across][0], first, axes[0][2] * steps[lattice])
+        if lattice in LATTICES:
+            step = axes[0][2] * LATTICES[lattice][1]
+            # one number: as many layers as the limits need
+            count = int((last - first) / step + 1e-9) + 1 if is_one else axes[across][0]
+            axes[across] = (count, first, step)
     given = [(_arguments.as_text("a parameter", name), _arguments.as_number(f"parameters[{name!r}]", value))
              for name, value in (parameters or {}).items()]
     if is_expression and given:

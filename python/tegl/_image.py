@@ -15,6 +15,7 @@ import numpy as np
 from . import _arguments, _kinds, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
+from ._fields import LATTICES, lattice_spacing
 
 
 @_arguments.documents("extract", "ExtractOptions", "Ambiguity", "extract_placed", "extract_cells")
@@ -83,8 +84,8 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     lattice
         Samples on a staggered lattice: the odd layers of the last library axis (of C-ordered arrays, the first axis) are
         shifted by half a step along the other axes. "triangular" (2D), "fcc" or "bcc" (3D), "d4" (4D), or "fcc_in_time"
-        (4D: fcc in the last three axes, over time). `spacing` along the layers is 0.866, 0.707 or 0.5 of the others if the
-        lattice is to be regular. See docs/other-tilings.md.
+        (4D: fcc in the last three axes, over time). For arrays without `spacing`, `coords` and `affine`, the step between
+        layers is 0.866, 0.707 or 0.5, with which the lattice is regular. See docs/other-tilings.md.
     division
         How cells are divided into simplices: "kuhn" or "symmetric", in 2D and 3D also "alternating", or "hybrid", which
         divides ambiguous cells only. See docs/other-tilings.md.
@@ -115,6 +116,10 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
                                          threads=threads)
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+    if lattice in LATTICES and spacing is None and coords is None and affine is None and isinstance(array, np.ndarray):
+        spacing = prepared.turned(lattice_spacing(lattice, prepared.ndim))
+        prepared = _arguments.prepare(array, spacing=spacing, origin=origin, mask=mask, axis_names=axis_names,
+                                      axis_units=axis_units, time_axis=time_axis)
     if curved is None and getattr(array, "curved", None):
         curved = array.curved
     is_double = _arguments.is_double(dtype, prepared)

@@ -64,6 +64,15 @@ def test_fields():
     lattice = tegl.sample("torus", (57, 30, 30), lattice="bcc")
     contour = tegl.contour(lattice, 0.0, lattice="bcc", spacing=(1 / 29, 2 / 29, 2 / 29), origin=-1)
     assert contour.check().euler == 0
+    # one number: as many layers as the limits need; and the regular step
+    assert tegl.sample("ball", 8, lattice="triangular").shape == (9, 8)
+    for lattice, ndim in (("fcc", 3), ("bcc", 3), ("d4", 4), ("triangular", 2), ("fcc_in_time", 4)):
+        ball = tegl.sample("ball", 10, lattice=lattice)
+        assert ball.ndim == ndim
+        contour = tegl.contour(ball, 0.0, lattice=lattice)
+        assert contour.check().boundary_simplices == 0
+        low, high = contour.vertices.min(0), contour.vertices.max(0)
+        np.testing.assert_allclose(high - low, 0.8 * 9, atol=0.5)
 
 
 def test_expressions():
