@@ -99,10 +99,10 @@ requires DimensionBetween<N, 2, 5>
 ///
 /// The contour is an oriented manifold whatever the values. It has a boundary only at the image border and at missing
 /// values. If tiles next to missing values share only an edge or a square of the grid, the vertices there are doubled
-/// at the same position, so the contour is a manifold there too. Vertices of a 4D contour between two layers of the
-/// last axis are kept off the layers by the smallest step of Real, so `slice` at a layer's coordinate gives that
-/// layer's contour even if samples equal the isovalue. An image with an axis of one sample has no tiles and an empty
-/// contour.
+/// at the same position, so the contour is a manifold there too. Vertices of a 4D or 5D contour between two layers of
+/// the last axis (in 5D of the last two) are kept off the layers by the smallest step of Real, so `slice` at a layer's
+/// coordinate gives that layer's contour even if samples equal the isovalue. An image with an axis of one sample has no
+/// tiles and an empty contour.
 ///
 /// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for 5D images
 /// with missing values. Time: one pass over the samples, plus the output. Working memory up to 4D: 1/16 of the size of

@@ -41,14 +41,14 @@ namespace tegl {
 /// Across the last axis, at a sample's coordinate t = k, the cut is the contour of layer k of the image, bit by bit:
 /// the same vertices and the same oriented simplices, compared by the bits of their coordinates. Numbers, and the
 /// vertex that a simplex begins with, may differ. This holds for contours that `extract` makes with any options, also
-/// at the first and the last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the
+/// at the first and the last layer, and from N = 4 on also if samples equal the isovalue. (Not for N = 3: parts of the
 /// surface may lie flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps
 /// them out of the layer.) Conditions: the normal points in the axis's positive direction, Real has numbers between the
 /// coordinates of the layers, and a user's estimator returns the same for a face of the image and for this face of the
 /// layer. If samples are missing, the contour has only the part of the layer that belongs to tiles, and it may be
-/// triangulated differently. For N = 5, it holds if no sample equals the isovalue, and for compact contours without
-/// `close` whose ambiguities are resolved from the data; others have the layer's topology, but other simplices, as 5D
-/// cells fill their 4D faces in their own way.
+/// triangulated differently. For N = 5, it holds for compact contours without `close` whose ambiguities are resolved
+/// from the data; others have the layer's topology, but other simplices, as 5D cells fill their 4D faces in their own
+/// way.
 ///
 /// Across other axes, at a sample's coordinate, the cut is the contour of that layer if no sample equals the
 /// isovalue. If samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the

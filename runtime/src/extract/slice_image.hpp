@@ -51,6 +51,14 @@ Image<T, N> with_axis_last(const Image<T, N>& image, int axis) {
   return Image<T, N>(image.data(), std::move(grid), strides);
 }
 
+/// The options for an image whose axis `axis` has been moved to the end.
+template <int N>
+ExtractOptions with_axis_last(const ExtractOptions& options, int axis) {
+  ExtractOptions moved = options;
+  if (options.ambiguity == Ambiguity::custom) moved.estimator = moved_estimator<N>(options.estimator, axis);
+  return moved;
+}
+
 /// The cut across an axis, from the layers that it needs.
 template <class Real, Value T, int N>
 Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, const Hyperplane<N>& hyperplane,
@@ -61,11 +69,9 @@ Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, 
   const bool is_last = axis == N - 1;
   // The extraction keeps points between layers off the layers along the last axis only.
   const bool at_layer = is_at_layer<N, Real>(image.grid(), axis, at, layers);
-  if (!is_last && at_layer) {
-    ExtractOptions moved = options;
-    if (options.ambiguity == Ambiguity::custom) moved.estimator = moved_estimator<N>(options.estimator, axis);
-    return slice_layers<Real>(with_axis_last(image, axis), isovalue, Hyperplane<N>::across(N - 1, at), N - 1, moved);
-  }
+  if (!is_last && at_layer)
+    return slice_layers<Real>(with_axis_last(image, axis), isovalue, Hyperplane<N>::across(N - 1, at), N - 1,
+                              with_axis_last<N>(options, axis));
   if (!is_last) layers = with_neighbours(layers, image.size(axis), options);
   const Image<T, N> slab = image.part(axis, layers.first, layers.end - layers.first);
   // Along the last axis a source can begin inside the image and reads the layers before and behind.
@@ -79,13 +85,17 @@ Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, 
 }
 
 /// The cut of a 5D image across an axis. What is extracted in a slab is in the hyperplane, or beside it, what it is in
-/// the whole contour, caps included.
+/// the whole contour, caps included. At a layer across another axis than the last, the axes are exchanged: points
+/// between layers are kept off the layers along the last axis only.
 template <class Real, Value T, int N>
 Extraction<N - 1, Real> slice_slabs(const Image<T, N>& image, double isovalue, const Hyperplane<N>& hyperplane,
                                     int axis, const ExtractOptions& options) {
   constexpr double kMost = std::numeric_limits<double>::max();
   const double at = std::clamp(hyperplane.offset / hyperplane.normal[axis], -kMost, kMost);
   const LayerRange slabs = layers_around<N, Real>(image.grid(), axis, at);
+  if (axis != N - 1 && is_at_layer<N, Real>(image.grid(), axis, at, slabs))
+    return slice_slabs<Real>(with_axis_last(image, axis), isovalue, Hyperplane<N>::across(N - 1, at), N - 1,
+                             with_axis_last<N>(options, axis));
   const LayerRange layers = with_neighbours(slabs, image.size(axis), options);
   const auto part =
       extract_with_stats<Real>(image.part(axis, layers.first, layers.end - layers.first), isovalue, options);

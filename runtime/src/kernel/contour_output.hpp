@@ -132,7 +132,7 @@ struct ExtractPlan {
   std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;
   const TileSelection* selection = nullptr;  ///< rows or tiles to process; null: all
   PartOfImage part{};                        ///< for estimators: the image that the grid is a part of
-  /// N = 3: whether vertices between layers of the last axis are kept off the layers, as always in 4D.
+  /// N = 3: whether vertices between layers of the last axis are kept off the layers, as always from 4D on.
   bool keeps_off_layers = false;
   bool keeps_tiles = true;  ///< false: lists of active tiles are computed twice, however much memory there is
 };

@@ -27,8 +27,8 @@ class Placement {
   using Index = std::array<std::size_t, N>;
   using Vertex = std::array<Real, N>;
 
-  /// `keeps_off_layers`: see inside_slab; N = 3 or 4.
-  explicit Placement(const Grid<N>& grid, bool keeps_off_layers = N == 4)
+  /// `keeps_off_layers`: see inside_slab; N >= 3.
+  explicit Placement(const Grid<N>& grid, bool keeps_off_layers = N >= 4)
       : linear_(grid.linear), offset_(grid.offset), mapped_(grid.has_world_map()) {
     // The arithmetic along a row uses 32-bit sample indices.
     is_uniform_ = grid.axes[0].is_uniform() && grid.axes[0].size() < std::numeric_limits<std::int32_t>::max();
@@ -40,7 +40,7 @@ class Placement {
       coordinates_[a].resize(grid.axes[a].size());
       for (std::size_t i = 0; i < coordinates_[a].size(); ++i) coordinates_[a][i] = grid.axes[a][i];
     }
-    if (keeps_off_layers) find_insides();
+    for (int a = N == 5 ? N - 2 : N - 1; keeps_off_layers && a < N; ++a) find_insides(a);
   }
 
   /// Null if no normals were requested.
@@ -80,6 +80,17 @@ class Placement {
                                                                   : inside_slab(world(point), base[N - 1]);
   }
 
+  /// Keeps a point between layers k and k + 1 off both layers by the smallest difference that its type represents. Used
+  /// from 4D on, and in 3D for slices at a layer directly from the image. If samples (almost) equal the isovalue,
+  /// points between layers would coincide with a layer, and `slice` could not distinguish them from the layer's own
+  /// points. In 5D also for layers of the axis before the last one, so that slices have the points of 4D contours.
+  [[nodiscard]] Vertex inside_slab(Vertex vertex, std::size_t k, int axis = N - 1) const noexcept {
+    if constexpr (N >= 3)
+      if (const auto& insides = insides_[static_cast<std::size_t>(axis)]; !insides.empty())
+        vertex[axis] = clamped(vertex[axis], insides[k][0], insides[k][1]);
+    return vertex;
+  }
+
   /// As in_cell along all axes, for several points in one cell, whose corners are looked up once.
   class Cell {
    public:
@@ -111,7 +122,7 @@ class Placement {
     edges.linear = mapped_ ? linear_[0].data() : nullptr;
     edges.offset = offset_.data();
     edges.inside.fill(std::numeric_limits<Real>::quiet_NaN());
-    if (edges.axis == N - 1 && !insides_.empty()) edges.inside = insides_[k];
+    if (edges.axis == N - 1 && !insides_[N - 1].empty()) edges.inside = insides_[N - 1][k];
     write_points<N, Real>(edges);
   }
 
@@ -127,32 +138,23 @@ class Placement {
     return x > most ? most : x;
   }
 
-  /// Keeps a point between layers k and k + 1 off both layers by the smallest difference that its type represents. Used
-  /// in 4D, and in 3D for slices at a layer directly from the image. If samples (almost) equal the isovalue, points
-  /// between layers would coincide with a layer, and `slice` could not distinguish them from the layer's own points.
-  Vertex inside_slab(Vertex vertex, std::size_t k) const noexcept {
-    if constexpr (N == 3 || N == 4)
-      if (!insides_.empty()) vertex[N - 1] = clamped(vertex[N - 1], insides_[k][0], insides_[k][1]);
-    return vertex;
-  }
-
-  /// Determines the range of the last coordinate for each slab. Only for grids whose last axis is not mixed with others
-  /// by the world map; slabs too thin for it keep their full range.
-  void find_insides() {
-    for (int a = 0; a < N - 1; ++a)
-      if (linear_[N - 1][a] != 0) return;
-    const auto layer = [this](std::size_t k) {
+  /// Determines the range of the coordinate along an axis for each slab. Only for grids whose axis is not mixed with
+  /// others by the world map; slabs too thin for it keep their full range.
+  void find_insides(int axis) {
+    for (int a = 0; a < N; ++a)
+      if (a != axis && linear_[axis][a] != 0) return;
+    const auto layer = [&](std::size_t k) {
       std::array<double, N> point{};
-      point[N - 1] = coordinates_[N - 1][k];
-      return world(point)[N - 1];
+      point[axis] = coordinates_[axis][k];
+      return world(point)[axis];
     };
-    for (std::size_t k = 0; k + 1 < coordinates_[N - 1].size(); ++k) {
+    for (std::size_t k = 0; k + 1 < coordinates_[axis].size(); ++k) {
       const auto [low, high] = std::minmax({layer(k), layer(k + 1)});
       const Real least = (high - low) * (std::numeric_limits<Real>::epsilon() / 2);
       std::array<Real, 2> inside{std::max(std::nextafter(low, high), low + least),
                                  std::min(std::nextafter(high, low), high - least)};
       if (inside[0] > inside[1]) inside = {low, high};
-      insides_.push_back(inside);
+      insides_[axis].push_back(inside);
     }
   }
 
@@ -170,7 +172,7 @@ class Placement {
   bool is_uniform_;  ///< coordinates on axis 0 are equidistant
   double origin_ = 0.0, step_ = 0.0;
   bool mapped_;
-  std::vector<std::array<Real, 2>> insides_;  ///< by slab; empty: no restriction
+  std::array<std::vector<std::array<Real, 2>>, N> insides_;  ///< by axis and slab; empty: no restriction
   std::optional<NormalWriter<N, Real>> normals_;
 };
 

@@ -382,7 +382,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
                    for (std::size_t v = vertices.first; v < std::size_t{vertices.first} + vertices.count; ++v) {
                      const auto place = in_grid(kind, places(v));
                      const auto at = static_cast<Index>(ids[v] - static_cast<Index>(part_first_));
-                     room_.vertices[at] = point(kind, base, place);
+                     room_.vertices[at] = point(kind, base, face, place);
                      if (options_.normals != Normals::none)
                        room_.normals[at] =
                            placement_.normals()->template in_cell<CellFrame<N, (1u << N) - 1>>(base, place);
@@ -467,11 +467,17 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     for (int j = 0; j + 1 < N; ++j) result[kind.axis(j)] = place[j];
     return result;
   }
-  Vertex point(CellKind<N> kind, const typename RowShape<N>::Index& base, const TilePoint<N>& place) const noexcept {
+  /// Position of a point in a face of a cell. Faces between layers keep their points off both.
+  Vertex point(CellKind<N> kind, const typename RowShape<N>::Index& base, std::size_t face,
+               const TilePoint<N>& place) const noexcept {
     std::array<double, N> point;
     for (int a = 0; a < N; ++a)
       point[a] = a == kind.across() ? placement_.sample(a, base[a]) : placement_.between(a, base[a], place[a]);
-    return placement_.world(point);
+    Vertex vertex = placement_.world(point);
+    const unsigned axes = kind.spread(cube_.cells()[face].axes);
+    for (int a = N - 2; a < N; ++a)
+      if ((axes >> a & 1u) != 0) vertex = placement_.inside_slab(vertex, base[a], a);
+    return vertex;
   }
 
   void write_simplices(const TileSlab& from, std::size_t c, const std::vector<Index>& ids) noexcept {

@@ -118,6 +118,43 @@ TEST(SliceFive, AtALayerIsTheContourOfTheLayer) {
   }
 }
 
+TEST(SliceFive, AtALayerHasTheTopologyOfTheLayerWithTies) {
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle})
+    for (const bool close : {false, true}) {
+      const ExtractOptions options{.ambiguity = ambiguity, .close = close};
+      for (std::uint64_t seed = 0; seed < 2; ++seed) {
+        const auto image = test::coarse_noise<float, 5>(Grid<5>::unit({3, 3, 4, 3, 3}), seed, 3);
+        const Contour<5, float> contour = extract(image.view(), 1.0, options);
+        for (const int axis : {4, 1}) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            const MeshReport expected = check(extract(test::layer_across(image.view(), axis, k), 1.0, options));
+            const auto at = Hyperplane<5>::across(axis, static_cast<double>(k));
+            std::vector<MeshReport> cuts{check(slice_image(image.view(), 1.0, at, options))};
+            if (axis == 4) cuts.push_back(check(slice(contour, at)));
+            for (const MeshReport& cut : cuts) {
+              EXPECT_EQ(cut.components, expected.components) << "axis " << axis << ", layer " << k;
+              EXPECT_EQ(cut.euler, expected.euler) << "axis " << axis << ", layer " << k;
+              EXPECT_TRUE(test::is_oriented_manifold(cut));
+            }
+          }
+        }
+      }
+    }
+}
+
+TEST(SliceFive, AtALayerIsTheContourOfTheLayerWithTies) {
+  const auto image = test::coarse_noise<float, 5>(Grid<5>::unit({4, 4, 4, 3, 4}), 8, 3);
+  const ExtractOptions options{.ambiguity = Ambiguity::mean};
+  const Contour<5, float> contour = extract(image.view(), 1.0, options);
+  for (const int axis : {4, 0})
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto layer = extract(test::layer_across(image.view(), axis, k), 1.0, options);
+      const auto at = Hyperplane<5>::across(axis, static_cast<double>(k));
+      EXPECT_TRUE(same_surface(slice_image(image.view(), 1.0, at, options), layer)) << axis << ' ' << k;
+      if (axis == 4) EXPECT_TRUE(same_surface(slice(contour, at), layer)) << k;
+    }
+}
+
 TEST(SliceFive, OfAnImageIsTheCutOfItsContour) {
   const auto image = test::noise<float, 5>(std::array<std::size_t, 5>{3, 4, 3, 3, 4}, 11);
   for (const bool close : {false, true}) {
