@@ -294,8 +294,12 @@ py::dict to_dict(const MergeReport<N>& report) {
   put(result, "turned_simplices", report.counts.turned_simplices);
   put(result, "euler_before", report.counts.euler_before);
   put(result, "euler_after", report.counts.euler_after);
+  put(result, "components_before", report.counts.components_before);
+  put(result, "components_after", report.counts.components_after);
   put(result, "vanished_components", report.counts.vanished_components);
   put(result, "vanished", report.vanished);
+  put(result, "shrunk_places", report.counts.shrunk_places);
+  put(result, "shrunk", report.shrunk);
   put(result, "pinched_vertices", report.counts.pinched_vertices);
   put(result, "vertices", report.vertices);
   put(result, "pinched_faces", report.counts.pinched_faces);

@@ -196,8 +196,12 @@ class MergeReport:
     turned_simplices: int  #: whose normal turned by more than 90 degrees
     euler_before: int
     euler_after: int
+    components_before: int
+    components_after: int  #: more than before if merging cut the contour, fewer if it joined components
     vanished_components: int  #: components without size, of which nothing is left
     vanished: np.ndarray  #: where they were, a row each
+    shrunk_places: int  #: places where tubes or loops shrank to points, which changes the topology
+    shrunk: np.ndarray  #: these places, a row each
     pinched_vertices: int  #: vertices whose link is neither a sphere nor a ball
     vertices: list[int]  #: these vertices, ascending
     pinched_faces: int  #: vertices (2D), edges (3D) or triangles (4D) in more than two simplices

@@ -463,6 +463,13 @@ def test_merged_vertices_and_their_report():
     assert len(merged.vertices) == report.vertices_before - report.merged_vertices
     assert merged.measure().content == pytest.approx(contour.measure().content)
     assert_same(tegl.merge_vertices(contour, 0.0, threads=1)[0], merged)
+    bridge = np.zeros((7, 7, 12))
+    bridge[2:5, 2:5, 2:5] = bridge[2:5, 2:5, 7:10] = 2
+    bridge[3, 3, 5:7] = 1
+    cut, report = tegl.contour(bridge, 1).merge_vertices()
+    assert (report.components_before, report.components_after, report.pinched_vertices) == (1, 2, 0)
+    assert report.shrunk_places == 2 and report.shrunk.tolist() == [[3, 3, 5], [3, 3, 6]]
+    assert cut.check().components == 2
     single = np.zeros((4, 5, 6))
     single[1, 2, 3] = 1
     nothing, report = tegl.contour(single, 1).merge_vertices(most_listed=5)

@@ -14,7 +14,7 @@ struct MergeSummary {
   MergeCounts counts = {};
   int simplex_dim = 0;
   double tolerance = 0;
-  std::vector<std::vector<double>> vanished = {}, vertices = {};
+  std::vector<std::vector<double>> vanished = {}, shrunk = {}, vertices = {};
   std::vector<std::vector<std::vector<double>>> faces = {};  ///< by face, the places of its vertices
 };
 
@@ -26,6 +26,7 @@ MergeSummary summary_of(const Merging<N, Real>& merging, double tolerance) {
   };
   MergeSummary summary{.counts = report.counts, .simplex_dim = N - 1, .tolerance = tolerance};
   for (const auto& at : report.vanished) summary.vanished.emplace_back(at.begin(), at.end());
+  for (const auto& at : report.shrunk) summary.shrunk.emplace_back(at.begin(), at.end());
   for (const Index v : report.vertices) summary.vertices.push_back(place(v));
   for (const auto& face : report.faces) {
     auto& places = summary.faces.emplace_back();

@@ -67,8 +67,12 @@ Json merge_json(const MergeSummary& summary) {
   json["turned_simplices"] = counts.turned_simplices;
   json["euler_before"] = counts.euler_before;
   json["euler_after"] = counts.euler_after;
+  json["components_before"] = counts.components_before;
+  json["components_after"] = counts.components_after;
   json["vanished_components"] = counts.vanished_components;
   json["vanished_at"] = summary.vanished;
+  json["shrunk_places"] = counts.shrunk_places;
+  json["shrunk_at"] = summary.shrunk;
   json["pinched_vertices"] = counts.pinched_vertices;
   json["pinched_at"] = summary.vertices;
   json["pinched_faces"] = counts.pinched_faces;
@@ -92,6 +96,10 @@ std::string merge_text(const MergeSummary& summary) {
   if (counts.vanished_components > 0)
     text += report_line("vanished",
                         counted(counts.vanished_components, "component without size", "components without size"));
+  if (counts.components_after + counts.vanished_components != counts.components_before || counts.shrunk_places > 0)
+    text += report_line("components", fmt::format("{} before, {} after; tubes and loops shrank in {}",
+                                                  grouped(counts.components_before), grouped(counts.components_after),
+                                                  counted(counts.shrunk_places, "place", "places")));
   if (counts.turned_simplices > 0)
     text += report_line("turned", fmt::format("{}; a smaller --merge-within turns fewer",
                                               counted_simplices(dim, counts.turned_simplices)));

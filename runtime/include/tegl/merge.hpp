@@ -19,7 +19,7 @@ namespace tegl {
 /// Options of `merge_vertices`.
 struct MergeOptions {
   /// Vertices at most this far apart are merged, in the units of the coordinates (Euclidean); 0: only vertices with
-  /// equal coordinates, and in 4D those that `extract` keeps off a layer of the last axis by the smallest step of Real.
+  /// equal coordinates, and from 4D on those that `extract` keeps off a layer of the last axis by the smallest step of Real.
   /// Finite, 0 or more. Much less than the length of an edge: otherwise simplices may turn over.
   double tolerance = 0.0;
   std::size_t most_listed = 1000;  ///< maximum size of each list in the report; the counts are complete
@@ -40,8 +40,14 @@ struct MergeCounts {
   std::uint64_t turned_simplices = 0;  ///< simplices whose normal turned by more than 90 degrees; 0 if tolerance is 0
   std::int64_t euler_before = 0;       ///< Euler characteristic of the contour
   std::int64_t euler_after = 0;        ///< Euler characteristic of the result
+  std::uint64_t components_before = 0;  ///< components of the contour
+  std::uint64_t components_after = 0;   ///< components of the result: more if merging cut one, fewer if it joined some
   /// Components all of whose simplices were dropped: a single sample that equals the isovalue has one.
   std::uint64_t vanished_components = 0;
+  /// Places where merging changed the topology, except by vanished components: vertices of the contour that stay and
+  /// to which a ring or a sphere of edges shrank, or that span a face that dropped simplices shrank to and that no
+  /// other simplex has. A thin tube shrinks so, and is cut, with no pinch.
+  std::uint64_t shrunk_places = 0;
   /// Vertices whose link is neither a sphere nor a ball, among those that are merged or beside merged ones.
   std::uint64_t pinched_vertices = 0;
   /// (N-2)-faces in more than two simplices, at these vertices: vertices in 2D, edges in 3D, triangles in 4D.
@@ -55,6 +61,7 @@ requires DimensionBetween<N, 2, 5>
 struct MergeReport {
   MergeCounts counts = {};                           ///< complete counts
   std::vector<std::array<double, N>> vanished = {};  ///< places of the vanished components
+  std::vector<std::array<double, N>> shrunk = {};    ///< the places where merging changed the topology
   std::vector<Index> vertices = {};                  ///< the pinched vertices, ascending
   std::vector<std::array<Index, N - 1>> faces = {};  ///< the pinched faces, in ascending order of vertices
 };

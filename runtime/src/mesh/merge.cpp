@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@
 #include "mesh/faces_of_stars.hpp"
 #include "mesh/flat_division.hpp"
 #include "mesh/link_checker.hpp"
+#include "mesh/shrunk_places.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
 #include "mesh/vertex_stars.hpp"
@@ -78,12 +80,13 @@ class Merger {
     return {options_.work.threads, progress(first, last)};
   }
 
-  /// The tolerance; in 4D at least the step by which `extract` keeps vertices off the layers of the last axis.
+  /// The tolerance; from 4D on at least the step by which `extract` keeps vertices off layers (in 5D of two axes).
   [[nodiscard]] double least_tolerance() const {
-    if (N != 4 || options_.tolerance > 0.0) return options_.tolerance;
+    if (N < 4 || options_.tolerance > 0.0) return options_.tolerance;
     double largest = 0.0;
     for (const auto& vertex : contour_.vertices)
-      largest = std::max(largest, std::abs(static_cast<double>(vertex[N - 1])));
+      for (int a = N == 5 ? N - 2 : N - 1; a < N; ++a)
+        largest = std::max(largest, std::abs(static_cast<double>(vertex[a])));
     return 4.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * largest;
   }
 
@@ -102,6 +105,7 @@ class Merger {
       if (has_turned(contour_.simplices[s], simplex)) ++report.counts.turned_simplices;
       parts_.push_back({simplex, static_cast<Index>(s)});
     }
+    shrunk_ = detail::ShrunkPlaces<N>(contour_.simplices, kept_).find();
     if constexpr (N == 2) return;  // segments of zero length repeat a vertex
     detail::FlatDivision<N, Real> division(parts_, contour_.vertices);
     division.run();
@@ -127,9 +131,10 @@ class Merger {
     return product < 0.0;
   }
 
-  /// Lists the components of which nothing is left.
+  /// Lists the components of which nothing is left, and the places in others that shrank.
   void list_vanished() {
     const ComponentLabels labels = label_components(contour_, work(0.5, 0.55));
+    result_.report.counts.components_before = labels.count;
     std::vector<std::uint8_t> is_left(labels.count, 0), is_listed(labels.count, 0);
     for (const Part& part : parts_) is_left[labels.simplices[part.origin]] = 1;
     for (std::size_t v = 0; v < contour_.vertices.size(); ++v) {
@@ -137,10 +142,21 @@ class Merger {
       if (label == kNoComponent || is_left[label] != 0 || is_listed[label] != 0) continue;
       is_listed[label] = 1;
       ++result_.report.counts.vanished_components;
-      if (result_.report.vanished.size() >= options_.most_listed) continue;
-      auto& place = result_.report.vanished.emplace_back();
-      for (int a = 0; a < N; ++a) place[a] = static_cast<double>(contour_.vertices[v][a]);
+      list_place(v, result_.report.vanished);
     }
+    std::optional<Index> last;
+    for (const Index v : shrunk_) {
+      if (is_left[labels.vertices[v]] == 0 || last == kept_[v]) continue;
+      last = kept_[v];
+      ++result_.report.counts.shrunk_places;
+      list_place(kept_[v], result_.report.shrunk);
+    }
+  }
+  /// Appends the place of a vertex, unless the list is full.
+  void list_place(std::size_t v, std::vector<std::array<double, N>>& places) const {
+    if (places.size() >= options_.most_listed) return;
+    auto& place = places.emplace_back();
+    for (int a = 0; a < N; ++a) place[a] = static_cast<double>(contour_.vertices[v][a]);
   }
 
   /// Copies what stays to the result. Returns by vertex whether its link may have changed.
@@ -190,7 +206,8 @@ class Merger {
     const std::span<const Index> rows = simplex_rows(result_.contour);
     const std::size_t count = result_.contour.vertices.size();
     const detail::Stars stars = detail::make_stars<N>(rows, count, options_.work.threads, progress(0.65, 0.7));
-    report.counts.euler_after = euler_of<N>(rows, stars, work(0.7, 0.8));
+    report.counts.euler_after = euler_of<N>(rows, stars, work(0.7, 0.77));
+    report.counts.components_after = label_components(result_.contour, work(0.77, 0.8)).count;
     const detail::SimplexComplex<N - 1> complex{rows, count};
     std::vector<Index> bad;
     std::mutex mutex;
@@ -238,7 +255,8 @@ class Merger {
 
   const Contour<N, Real>& contour_;
   const MergeOptions& options_;
-  Buffer<Index> kept_;  ///< by vertex: the vertex that replaces it
+  Buffer<Index> kept_;         ///< by vertex: the vertex that replaces it
+  std::vector<Index> shrunk_;  ///< vertices at places that shrank, by replacement
   std::vector<Part> parts_;
   Progress copying_;
   Merging<N, Real> result_;

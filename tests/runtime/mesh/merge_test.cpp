@@ -67,9 +67,11 @@ std::map<std::array<Index, N - 1>, std::pair<int, int>> incidences(const Contour
 template <int N, class Real>
 std::vector<Index> kept_by_definition(const Contour<N, Real>& contour, double tolerance) {
   std::vector<Index> kept, stay;
-  if (N == 4 && tolerance == 0.0)  // the steps off the layers of the last axis
+  if (N >= 4 && tolerance == 0.0)  // the steps off the layers of the last axis, in 5D of the last two
     for (const auto& vertex : contour.vertices)
-      tolerance = std::max(tolerance, 4.0 * double{std::numeric_limits<Real>::epsilon()} * std::abs(double{vertex[3]}));
+      for (int a = N == 5 ? 3 : N - 1; a < N; ++a)
+        tolerance =
+            std::max(tolerance, 4.0 * double{std::numeric_limits<Real>::epsilon()} * std::abs(double{vertex[a]}));
   for (Index v = 0; v < contour.vertices.size(); ++v) {
     Index best = v;
     double least = tolerance * tolerance;
@@ -126,6 +128,14 @@ Merging<N, Real> expect_merged(Contour<N, Real> contour, double tolerance) {
   EXPECT_EQ(report.counts.euler_before, euler_by_definition(contour));
   EXPECT_EQ(report.counts.euler_after, euler_by_definition(merging.contour));
   const MeshReport checked = check(merging.contour);
+  EXPECT_EQ(report.counts.components_before, check(contour).components);
+  EXPECT_EQ(report.counts.components_after, checked.components);
+  EXPECT_EQ(report.shrunk.size(), report.counts.shrunk_places);
+  // the topology changes only in the places of the report
+  if (report.counts.shrunk_places + report.counts.vanished_components + report.counts.pinched_vertices == 0) {
+    EXPECT_EQ(report.counts.euler_after, report.counts.euler_before);
+    EXPECT_EQ(report.counts.components_after, report.counts.components_before);
+  }
   EXPECT_EQ(report.counts.pinched_vertices, checked.bad_links);
   EXPECT_EQ(report.vertices.size(), checked.bad_links);
   EXPECT_EQ(report.counts.pinched_faces, checked.nonmanifold_simplices);
@@ -186,6 +196,51 @@ TEST(Merge, BallsThatTouchInASampleArePinchedThere) {
   expect_pinch_of_balls<2>();
   expect_pinch_of_balls<3>();
   expect_pinch_of_balls<4>();
+}
+
+/// Two boxes above the isovalue, joined by a row of samples that equal it.
+template <int N>
+OwnedImage<float, N> boxes_with_bridge(std::size_t bridge) {
+  std::array<std::size_t, N> sizes;
+  sizes.fill(5);
+  sizes[0] = 8 + bridge;
+  OwnedImage<float, N> image{Grid<N>::unit(sizes), std::vector<float>(sample_count(Grid<N>::unit(sizes)))};
+  for_each_sample<N>(image.grid, [&](std::size_t i, const std::array<std::size_t, N>& index) {
+    const bool inside = std::all_of(index.begin(), index.end(), [&](const std::size_t& x) {
+      return x >= 1 && x + 2 <= sizes[static_cast<std::size_t>(&x - index.data())];
+    });
+    const bool within = index[0] >= 4 && index[0] < 4 + bridge;
+    const bool on_axis = std::all_of(index.begin() + 1, index.end(), [](std::size_t x) { return x == 2; });
+    image.values[i] = !inside ? 0.0F : !within ? 2.0F : on_axis ? 1.0F : 0.0F;
+  });
+  return image;
+}
+
+template <int N>
+void expect_cut_bridge() {
+  // The tube around a bridge of two samples shrinks to a segment: the contour is cut without a pinch.
+  const auto image = boxes_with_bridge<N>(2);
+  const auto [merged, report] = expect_merged(extract<double>(image.view(), 1.0), 0.0);
+  EXPECT_EQ(report.counts.components_before, 1u);
+  EXPECT_EQ(report.counts.components_after, 2u);
+  EXPECT_EQ(report.counts.pinched_vertices, 0u);
+  std::array<double, N> first;
+  first.fill(2.0);
+  auto second = first;
+  first[0] = 4.0, second[0] = 5.0;
+  auto places = report.shrunk;
+  std::sort(places.begin(), places.end());
+  ASSERT_EQ(places.size(), 2u);
+  for (int a = 0; a < N; ++a) {
+    EXPECT_NEAR(places[0][a], first[a], 1e-9);
+    EXPECT_NEAR(places[1][a], second[a], 1e-9);
+  }
+}
+
+TEST(Merge, PlacesOfTubesThatShrinkAreListed) {
+  expect_cut_bridge<3>();
+  expect_cut_bridge<4>();
+  expect_cut_bridge<5>();
 }
 
 /// -|z - 3| at the isovalue 0: two sheets in the layer 3.
