@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The public function `extract_placed_with_stats`.
+#include "extract/uncertainty.hpp"
 #include "image/row_source.hpp"
-#include "kernel/contour_output.hpp"
 #include "position/place.hpp"
 
 namespace tegl {
@@ -26,7 +26,9 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_placed_with_stats
       bits |= detail::Word{layer[edges.rows[i] + edges.at[i] * image.strides()[0]] >= threshold.value} << i;
     return threshold.never ? detail::Word{0} : bits;
   };
-  return detail::extract_placed_from<N, Real>(source, starts_high, image.grid(), positions, options);
+  return detail::add_uncertainty<N, Real>(image, options, {}, [&](const detail::ExtractPlan& plan) {
+    return detail::extract_placed_from<N, Real>(source, starts_high, image.grid(), positions, options, plan);
+  });
 }
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                              \

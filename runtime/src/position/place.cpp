@@ -39,15 +39,15 @@ namespace {
 
 template <int N, class Real, class Source = PlacedSource<N>, class Rule>
 Extraction<N, Real> extract_on_edges(SampleSource<N>& samples, const Grid<N>& grid, const Rule& rule,
-                                     const ExtractOptions& options) {
+                                     const ExtractOptions& options, const ExtractPlan& plan) {
   const LayerRows<N> rows(grid, samples.strides());
   Source placed(samples, rows, grid.axes[N - 1], rule, options.epsilon);
-  return extract_in_memory<N, Real>(placed, grid, options);
+  return extract_in_memory<N, Real>(placed, grid, options, plan);
 }
 
 template <int N, class Real>
 Extraction<N, Real> extract_relaxed(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
-                                    const ExtractOptions& options) {
+                                    const ExtractOptions& options, const ExtractPlan& plan) {
   constexpr double kShare = 0.8;  // of the relaxation in the time
   RelaxationOptions relaxation;
   relaxation.margin = std::max(positions.margin, options.epsilon);
@@ -56,39 +56,41 @@ Extraction<N, Real> extract_relaxed(SampleSource<N>& samples, const Grid<N>& gri
   const RelaxedPositions<N> relaxed(samples, grid, options, relaxation);
   ExtractOptions rest = options;
   rest.work.progress = part_of(options.work.progress, kShare, 1.0);
-  return extract_on_edges<N, Real>(samples, grid, relaxed, rest);
+  return extract_on_edges<N, Real>(samples, grid, relaxed, rest, plan);
 }
 
 }  // namespace
 
 template <int N, class Real>
 Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, StartsHigh starts_high, const Grid<N>& grid,
-                                        const PositionOptions& positions, const ExtractOptions& options) {
+                                        const PositionOptions& positions, const ExtractOptions& options,
+                                        const ExtractPlan& plan) {
   switch (positions.rule) {
     case Positions::filtered:
       return extract_on_edges<N, Real>(
-          samples, grid, FilteredPositions<N>(samples, starts_high, grid, positions.filtered, options.epsilon),
-          options);
+          samples, grid, FilteredPositions<N>(samples, starts_high, grid, positions.filtered, options.epsilon), options,
+          plan);
     case Positions::custom: {
       const CustomPositions<N> rule(samples, positions);
-      Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options);
+      Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options, plan);
       rule.rethrow();
       return result;
     }
     case Positions::gravitation:
       return extract_on_edges<N, Real, GravitationSource<N>>(
-          samples, grid, Gravitation<N>(samples, grid, options.work.threads), options);
+          samples, grid, Gravitation<N>(samples, grid, options.work.threads), options, plan);
     case Positions::relaxed:
-      return extract_relaxed<N, Real>(samples, grid, positions, options);
+      return extract_relaxed<N, Real>(samples, grid, positions, options, plan);
     case Positions::linear:
       break;
   }
-  return extract_in_memory<N, Real>(samples, grid, options);
+  return extract_in_memory<N, Real>(samples, grid, options, plan);
 }
 
-#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                           \
-  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, StartsHigh, const Grid<N>&, \
-                                                            const PositionOptions&, const ExtractOptions&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                            \
+  template Extraction<N, Real> extract_placed_from<N, Real>(SampleSource<N>&, StartsHigh, const Grid<N>&,  \
+                                                            const PositionOptions&, const ExtractOptions&, \
+                                                            const ExtractPlan&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -3,6 +3,7 @@
 // Extraction with positions by a rule, for any type of samples.
 #pragma once
 
+#include "kernel/contour_output.hpp"
 #include "position/placed_source.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/positions.hpp"
@@ -16,6 +17,7 @@ void check_positions(const PositionOptions& positions, std::size_t samples, int 
 /// samples.
 template <int N, class Real>
 Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, StartsHigh starts_high, const Grid<N>& grid,
-                                        const PositionOptions& positions, const ExtractOptions& options);
+                                        const PositionOptions& positions, const ExtractOptions& options,
+                                        const ExtractPlan& plan = {});
 
 }  // namespace tegl::detail

@@ -171,6 +171,11 @@ TEST(Positions, EverySampleStaysOnItsSideIn3d) {
     expect_all_rules<3, std::int16_t>(6, seed + 3);
   }
 }
+TEST(Positions, EverySampleStaysOnItsSideWhateverTheIntegers) {
+  expect_all_rules<3, std::int8_t>(5, 0);
+  expect_all_rules<3, std::uint16_t>(5, 1);
+  expect_all_rules<3, std::int32_t>(5, 2);
+}
 TEST(Positions, EverySampleStaysOnItsSideIn4d) {
   expect_all_rules<4, float>(5, 0);
   expect_all_rules<4, std::uint8_t>(4, 1);
@@ -223,6 +228,28 @@ TEST(Positions, DoNotDependOnThreadsOrStrides) {
       EXPECT_TRUE(same_bytes(of_turned.vertices, one.vertices)) << static_cast<int>(rule);
       EXPECT_TRUE(same_bytes(of_turned.normals, one.normals));
     }
+}
+
+template <int N>
+void expect_uncertainty() {
+  const auto image = random_image<float, N>(8, 1);
+  const auto values = other_values<N>(image.grid, 1);
+  const ExtractOptions options{.normals = Normals::context};
+  const auto linear = extract<double>(image.view(), 40, options);
+  ASSERT_EQ(linear.vertex_attributes.size(), 1u);
+  for (const Positions rule : kRules) {
+    const auto contour = extract_placed<double>(image.view(), 40, by(rule, values), options);
+    ASSERT_EQ(contour.vertex_attributes.size(), 1u) << static_cast<int>(rule);
+    const Attribute& attribute = contour.vertex_attributes[0];
+    EXPECT_EQ(attribute.name, "normal_uncertainty");
+    ASSERT_EQ(attribute.values.size(), contour.vertices.size());
+    for (const double value : attribute.values) EXPECT_TRUE(value >= 0 && value <= 1) << value;
+    if (rule == Positions::linear) EXPECT_TRUE(same_bytes(attribute.values, linear.vertex_attributes[0].values));
+  }
+}
+TEST(Positions, NormalsByContextHaveTheirUncertainty) {
+  expect_uncertainty<2>();
+  expect_uncertainty<3>();
 }
 
 TEST(Positions, FilteredByTheImageItselfAreLinear) {
