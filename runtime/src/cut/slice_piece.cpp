@@ -82,26 +82,28 @@ class Links {
 
 /// Sorts corners that are in the order of pieces by key, then by piece. `numbers`: scratch.
 void sort_by_key(std::span<Corner> corners, std::vector<std::uint64_t>& numbers) {
-  if (corners.size() < 2) return;
+  constexpr std::size_t kFew = 32;
+  if (corners.size() <= kFew) {
+    for (std::size_t i = 1; i < corners.size(); ++i) {
+      const Corner corner = corners[i];
+      std::size_t at = i;
+      for (; at > 0 && corners[at - 1].key > corner.key; --at) corners[at] = corners[at - 1];
+      corners[at] = corner;
+    }
+    return;
+  }
   const Index lower = lower_end(corners.front().key);
   const bool have_one_end =
-      lower == lower_end(corners.back().key) && corners.back().at >> 32 == 0 &&
+      corners.back().at >> 32 == 0 &&
       std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) { return lower_end(corner.key) == lower; });
   if (!have_one_end) {
     std::sort(corners.begin(), corners.end(),
               [](const Corner& a, const Corner& b) { return std::pair(a.key, a.at) < std::pair(b.key, b.at); });
     return;
   }
-  // the upper end and the place in one number
-  constexpr std::size_t kFew = 32;
-  numbers.resize(std::max(numbers.size(), corners.size()));
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const std::uint64_t number = std::uint64_t{upper_end(corners[i].key)} << 32 | corners[i].at;
-    std::size_t at = i;
-    for (; corners.size() <= kFew && at > 0 && numbers[at - 1] > number; --at) numbers[at] = numbers[at - 1];
-    numbers[at] = number;
-  }
-  if (corners.size() > kFew) std::sort(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(corners.size()));
+  numbers.clear();  // the upper end and the place in one number
+  for (const Corner& corner : corners) numbers.push_back(std::uint64_t{upper_end(corner.key)} << 32 | corner.at);
+  std::sort(numbers.begin(), numbers.end());
   for (std::size_t i = 0; i < corners.size(); ++i)
     corners[i] = {edge_point(lower, static_cast<Index>(numbers[i] >> 32)), numbers[i] & 0xffffffffu};
 }
