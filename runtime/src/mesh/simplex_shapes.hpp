@@ -165,33 +165,46 @@ Projected<N> project_onto_hull(const PointN<N>& p, const std::array<PointN<N>, N
   return result;
 }
 
-/// Distance of a point from the convex hull of `count` points (count <= N). If it is not below `most`, the result is
-/// any number that is at least `most`.
+/// The vector to a point from the nearest point of the convex hull of `count` points (count <= N). If it is not shorter
+/// than `most`, the result is any vector that is not shorter.
 ///
 /// If the projection onto the affine hull has negative barycentric coordinates, the nearest point lies on a face
 /// opposite to a corner with such a coordinate: these faces are tested recursively, down to points. A flat simplex is
 /// the union of its faces.
 template <int N>
-double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count,
+PointN<N> way_from_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count,
                            double most = std::numeric_limits<double>::infinity()) {
-  if (count == 1) return norm(minus(p, corners[0]));
+  if (count == 1) return minus(p, corners[0]);
   const Projected<N> projected = project_onto_hull<N>(p, corners, count);
-  // the hull's distance is a lower bound
-  const double away = projected.flat ? 0.0 : norm(projected.rest);
-  if (!(away < most)) return away;
+  // the distance from the affine hull is a lower bound
+  if (!projected.flat && !(norm(projected.rest) < most)) return projected.rest;
   const auto is_outside = [&](int i) { return projected.flat || !(projected.weights[i] >= 0.0); };
   bool any_outside = false;
   for (int i = 0; i < count; ++i) any_outside = any_outside || is_outside(i);
-  if (!any_outside) return away;
-  double best = std::numeric_limits<double>::infinity();
+  if (!any_outside) return projected.rest;
+  PointN<N> nearest;
+  nearest.fill(std::numeric_limits<double>::infinity());
+  double least = std::numeric_limits<double>::infinity();
   for (int omitted = 0; omitted < count; ++omitted) {
     if (!is_outside(omitted)) continue;
     std::array<PointN<N>, N> face;
     for (int i = 0, k = 0; i < count; ++i)
       if (i != omitted) face[k++] = corners[i];
-    best = std::min(best, distance_to_simplex<N>(p, face, count - 1, std::min(best, most)));
+    const PointN<N> way = way_from_simplex<N>(p, face, count - 1, std::min(least, most));
+    const double length = norm(way);
+    if (!(length < least)) continue;
+    least = length;
+    nearest = way;
   }
-  return best;
+  return nearest;
+}
+
+/// Distance of a point from the convex hull of `count` points (count <= N). If it is not below `most`, the result is
+/// any number that is at least `most`.
+template <int N>
+double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count,
+                           double most = std::numeric_limits<double>::infinity()) {
+  return norm(way_from_simplex<N>(p, corners, count, most));
 }
 
 }  // namespace tegl::detail

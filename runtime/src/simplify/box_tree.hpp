@@ -11,8 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "base/radix_sort.hpp"
 #include "mesh/simplex_shapes.hpp"
+#include "simplify/curve_order.hpp"
+#include "simplify/simplex_corners.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
@@ -53,15 +54,16 @@ struct Box {
   }
 };
 
-/// Bounding volume hierarchy of simplices with N corners each. The simplices must outlive it.
+/// Bounding volume hierarchy of simplices with N corners each. What `SimplexCorners` refers to must outlive it.
 template <int N>
 class BoxTree {
  public:
-  explicit BoxTree(std::span<const CornersN<N>> simplices) : simplices_(simplices), order_(simplices.size()) {
+  explicit BoxTree(const SimplexCorners<N>& simplices) : simplices_(simplices) {
     boxes_.resize(simplices.size());
     for (std::size_t s = 0; s < simplices.size(); ++s)
-      for (const PointN<N>& corner : simplices[s]) boxes_[s].add(corner);
-    sort_along_curve();
+      for (const PointN<N>& corner : simplices_[s]) boxes_[s].add(corner);
+    order_ =
+        order_along_curve<N>(boxes_.size(), [&](std::size_t s) { return between(boxes_[s].low, boxes_[s].high, 0.5); });
     std::vector<Box<N>> in_order;  // in the order of the leaves
     in_order.reserve(boxes_.size());
     for (const Index s : order_) in_order.push_back(boxes_[s]);
@@ -82,16 +84,20 @@ class BoxTree {
   };
   /// The nearest simplex; the distance is infinite if there is none.
   [[nodiscard]] Nearest nearest(const PointN<N>& p) const {
-    Nearest best;
+    Found best;
     if (!nodes_.empty()) find_nearest(0, p, best);
-    return best;
+    return best.nearest;
   }
   /// The nearest simplex, found faster if `guess` is near. Among equally near simplices the result may depend on the
   /// guess.
-  [[nodiscard]] Nearest nearest(const PointN<N>& p, Index guess) const {
-    Nearest best = {distance_to_simplex<N>(p, simplices_[guess], N), guess};
+  [[nodiscard]] Nearest nearest(const PointN<N>& p, Index guess) const { return within_factor(p, guess, 1.0); }
+  /// A simplex at no more than `factor` times the distance of the nearest one.
+  [[nodiscard]] Nearest within_factor(const PointN<N>& p, Index guess, double factor) const {
+    Found best;
+    best.factor = factor;
+    try_simplex(guess, p, best);
     find_nearest(0, p, best);
-    return best;
+    return best.nearest;
   }
 
  private:
@@ -100,6 +106,13 @@ class BoxTree {
     Box<N> box;
     Index first = 0, end = 0;  ///< simplices of a leaf in order_; 0, 0 for inner nodes
     Index right = 0;           ///< right child; the left child is the next node
+  };
+
+  /// The nearest simplex so far, and the vector from its nearest point to the point searched for.
+  struct Found {
+    Nearest nearest;
+    PointN<N> way{};
+    double factor = 1.0;  ///< simplices that are not nearer by this factor are not searched
   };
 
   Index build(Index first, Index end) {
@@ -120,32 +133,6 @@ class BoxTree {
     return number;
   }
 
-  /// Orders the simplices by the middles of their boxes, along the curve that interleaves the bits of the coordinates.
-  void sort_along_curve() {
-    constexpr unsigned kBits = std::min(16, 64 / N);
-    constexpr double kMostCells = (1u << kBits) - 1;
-    Box<N> all;
-    for (const Box<N>& box : boxes_) all.add(box);
-    struct Keyed {
-      std::uint64_t key;
-      Index simplex;
-    };
-    std::vector<Keyed> keyed(boxes_.size());
-    for (Index s = 0; s < boxes_.size(); ++s) {
-      std::array<std::uint64_t, N> cell{};
-      for (int a = 0; a < N; ++a) {
-        const double share = (0.5 * (boxes_[s].low[a] + boxes_[s].high[a]) - all.low[a]) / (all.high[a] - all.low[a]);
-        if (share > 0.0) cell[a] = static_cast<std::uint64_t>(std::min(1.0, share) * kMostCells);
-      }
-      std::uint64_t key = 0;
-      for (unsigned bit = kBits; bit-- > 0;)
-        for (int a = 0; a < N; ++a) key = key << 1 | (cell[a] >> bit & 1u);
-      keyed[s] = {key, s};
-    }
-    sort_by_bits(keyed, kBits * N, [](const Keyed& one) { return one.key; });
-    for (std::size_t i = 0; i < keyed.size(); ++i) order_[i] = keyed[i].simplex;
-  }
-
   template <class Visit>
   void visit_node(Index number, const Box<N>& box, double reach, const Visit& visit) const {
     const Node& node = nodes_[number];
@@ -157,23 +144,40 @@ class BoxTree {
     visit_node(node.right, box, reach, visit);
   }
 
-  void find_nearest(Index number, const PointN<N>& p, Nearest& best) const {
+  void find_nearest(Index number, const PointN<N>& p, Found& best) const {
+    const auto is_nearer = [&](double square) {
+      return best.factor * best.factor * square < best.nearest.distance * best.nearest.distance;
+    };
     const Node& node = nodes_[number];
-    for (Index i = node.first; i < node.end; ++i) {
-      const Index s = order_[i];
-      if (boxes_[i].square_distance(p) >= best.distance * best.distance) continue;
-      const double distance = distance_to_simplex<N>(p, simplices_[s], N, best.distance);
-      if (distance < best.distance) best = {distance, s};
-    }
+    for (Index i = node.first; i < node.end; ++i)
+      if (is_nearer(boxes_[i].square_distance(p))) try_simplex(order_[i], p, best);
     if (node.end != 0) return;
     std::array<std::pair<double, Index>, 2> next = {{{nodes_[number + 1].box.square_distance(p), number + 1},
                                                      {nodes_[node.right].box.square_distance(p), node.right}}};
     if (next[1].first < next[0].first) std::swap(next[0], next[1]);
     for (const auto& [square, child] : next)
-      if (square < best.distance * best.distance) find_nearest(child, p, best);
+      if (is_nearer(square)) find_nearest(child, p, best);
   }
 
-  std::span<const CornersN<N>> simplices_;
+  void try_simplex(Index s, const PointN<N>& p, Found& best) const {
+    const CornersN<N> corners = simplices_[s];
+    if (is_beyond(corners, p, best)) return;
+    const PointN<N> way = way_from_simplex<N>(p, corners, N, best.nearest.distance);
+    const double distance = norm(way);
+    if (distance < best.nearest.distance) best = {{distance, s}, way, best.factor};
+  }
+
+  /// Whether all corners are beyond the hyperplane at right angles to the way, through the nearest point so far (up to
+  /// rounding): then the simplex is not nearer. That decides most simplices around the nearest point.
+  static bool is_beyond(const CornersN<N>& corners, const PointN<N>& p, const Found& best) {
+    if (!(best.nearest.distance < std::numeric_limits<double>::infinity())) return false;
+    constexpr double kRounding = 1e-12;
+    const double least = (1.0 - kRounding) * dot(best.way, best.way);
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](const PointN<N>& corner) { return dot(best.way, minus(p, corner)) >= least; });
+  }
+
+  SimplexCorners<N> simplices_;
   std::vector<Index> order_;
   std::vector<Box<N>> boxes_;  ///< in the order of order_, after the build
   std::vector<Node> nodes_;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/prism_cover.hpp"
 #include "simplify/prism_walk.hpp"
+#include "simplify/scaled_simplices.hpp"
 #include "simplify/simplex_walk.hpp"
 #include "simplify/vertex_distances.hpp"
 
@@ -58,8 +60,10 @@ constexpr double kBeyond = 1e-9;
 constexpr double kFlat = 1e-2;
 /// Simplices with edges up to this multiple of the bound that is enough are bounded by distances of corners first, in
 /// at most so many parts.
-constexpr double kCoarse = 6.0;
-constexpr std::size_t kFewParts = 48;
+template <int N>
+constexpr double kCoarse = N == 4 ? 12.0 : 6.0;
+template <int N>
+constexpr std::size_t kFewParts = N == 4 ? 128 : 48;
 /// Maximum number of parts of a simplex. Refinement of the largest bounds: kMostRefined simplices, one more per
 /// kRefinedShare simplices, and their maximum number of parts.
 constexpr std::size_t kMostParts = 24;
@@ -68,7 +72,7 @@ constexpr std::size_t kRefinedShare = 4000;
 constexpr std::size_t kRefinedParts = 400;
 /// Maximum number of simplices that are sampled for a first estimate of the distances; edges longer than this multiple
 /// of their mean longest edge are sampled at their middles.
-constexpr std::size_t kMostSamples = std::size_t{1} << 18;
+constexpr std::size_t kMostSamples = std::size_t{1} << 16;
 constexpr double kLong = 1.25;
 constexpr std::size_t kGrain = 256;
 
@@ -79,45 +83,57 @@ void raise(double& value, double candidate) {
   }
 }
 
-/// The scaled simplices of a contour.
-template <int N>
-struct ScaledSimplices {
-  std::span<const std::array<Index, N>> simplices;
-  std::vector<PointN<N>> points;
-  std::vector<CornersN<N>> corners;
-
-  template <class Real>
-  ScaledSimplices(const Contour<N, Real>& contour, const std::array<double, N>& scale) : simplices(contour.simplices) {
-    points.reserve(contour.vertices.size());
-    for (const auto& vertex : contour.vertices) {
-      PointN<N> point;
-      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]) * scale[a];
-      points.push_back(point);
-    }
-    corners.reserve(contour.simplices.size());
-    for (const auto& simplex : contour.simplices) {
-      CornersN<N>& at = corners.emplace_back();
-      for (int i = 0; i < N; ++i) at[i] = points[simplex[i]];
-    }
-  }
-};
-
 /// Boundary of the chain of a contour's simplices. By simplex, bit i: the orientations at the face opposite to corner i
 /// do not cancel.
 template <int N>
 class BoundaryFaces {
  public:
-  BoundaryFaces(const ScaledSimplices<N>& contour, unsigned threads, const Progress& progress)
-      : rows_(contour.simplices.begin(), contour.simplices.end()), faces_(rows_.size(), 0) {
-    find(contour.points.size(), threads, part_of(progress, 0.0, 0.5));
+  BoundaryFaces(const ScaledSimplices<N>& contour, const FacetNeighbours<N>& neighbours, unsigned threads,
+                const Progress& progress)
+      : faces_(contour.simplices.size(), 0) {
+    find_unjoined(contour.simplices, neighbours);
     // Vertices at equal places are identified: files may store each simplex with its own vertices.
-    if (!ridges_.empty() && unite(contour.points)) find(contour.points.size(), threads, part_of(progress, 0.5, 1.0));
+    if (!ridges_.empty() && unite(contour)) find(contour.points.size(), threads, progress);
     rows_ = {};
   }
   [[nodiscard]] unsigned of(Index simplex) const { return faces_[simplex]; }
 
  private:
   using Ridge = typename FacesOfStars<N>::Ridge;
+
+  /// Two simplices that are joined at a face cancel there, so only the others are compared.
+  void find_unjoined(std::span<const std::array<Index, N>> simplices, const FacetNeighbours<N>& neighbours) {
+    struct Side {
+      Ridge ridge;
+      Index simplex;
+      std::uint8_t corner;
+      bool is_even;
+    };
+    std::vector<Side> sides;
+    for (Index s = 0; s < simplices.size(); ++s)
+      for (int corner = 0; corner < N; ++corner) {
+        if (neighbours.across(s, corner) != FacetNeighbours<N>::kNone) continue;
+        if (repeats_a_vertex(simplices[s])) break;
+        Side side{{}, s, static_cast<std::uint8_t>(corner), false};
+        side.is_even = FacetNeighbours<N>::facet_of(simplices[s], corner, side.ridge);
+        sides.push_back(side);
+      }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+      return std::tie(a.ridge, a.simplex, a.corner) < std::tie(b.ridge, b.simplex, b.corner);
+    });
+    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
+      std::ptrdiff_t sum = 0;
+      for (; j < sides.size() && sides[j].ridge == sides[i].ridge; ++j) sum += sides[j].is_even ? 1 : -1;
+      if (sum == 0) continue;
+      ridges_.push_back(sides[i].ridge);
+      for (std::size_t k = i; k < j; ++k) faces_[sides[k].simplex] |= static_cast<std::uint8_t>(1u << sides[k].corner);
+    }
+  }
+
+  static bool repeats_a_vertex(std::array<Index, N> simplex) {
+    std::sort(simplex.begin(), simplex.end());
+    return std::adjacent_find(simplex.begin(), simplex.end()) != simplex.end();
+  }
 
   void find(std::size_t vertices, unsigned threads, const Progress& progress) {
     const std::span<const Index> rows(rows_.empty() ? nullptr : rows_[0].data(), rows_.size() * N);
@@ -142,7 +158,8 @@ class BoundaryFaces {
   }
 
   /// Identifies vertices of open faces at equal places. Returns false if there are none.
-  bool unite(const std::vector<PointN<N>>& points) {
+  bool unite(const ScaledSimplices<N>& contour) {
+    const std::vector<PointN<N>>& points = contour.points;
     std::vector<Index> open;
     for (const Ridge& ridge : ridges_) open.insert(open.end(), ridge.begin(), ridge.end());
     const auto before = [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; };
@@ -156,10 +173,11 @@ class BoundaryFaces {
       first[open[i]] = first[open[i - 1]];
       any = true;
     }
-    if (any)
-      for (auto& row : rows_)
-        for (Index& v : row) v = first[v];
-    return any;
+    if (!any) return false;
+    rows_.assign(contour.simplices.begin(), contour.simplices.end());
+    for (auto& row : rows_)
+      for (Index& v : row) v = first[v];
+    return true;
   }
 
   std::vector<std::array<Index, N>> rows_;
@@ -187,7 +205,9 @@ class SimplexDeviation {
   static constexpr int D = N - 1;
 
   explicit SimplexDeviation(const DeviationInput<N>& measure)
-      : m_(measure), walk_(measure.to.corners, measure.neighbours), few_(measure.to.corners, measure.neighbours) {}
+      : m_(measure),
+        walk_(measure.to.corners, measure.neighbours),
+        few_(measure.to.corners, measure.neighbours, &measure.tree) {}
 
   /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
@@ -242,10 +262,10 @@ class SimplexDeviation {
   double bound_by_corners(Index s) {
     const double rim = kRim * edge_;  // more than rounding errors
     const double limit = m_.enough - rim;
-    if (!(edge_ <= kCoarse * limit && nearest_ <= limit)) return kInfinity;
-    std::array<NearPoint, N> near;
-    for (int i = 0; i < N; ++i) near[i] = m_.near[m_.from.simplices[s][i]];
-    const double result = few_.bound(m_.from.corners[s], near, limit, kFewParts) + rim;
+    if (!(edge_ <= kCoarse<N> * limit && nearest_ <= limit)) return kInfinity;
+    typename SimplexWalk<N>::Part whole{m_.from.corners[s], {}, m_.from.simplices[s]};
+    for (int i = 0; i < N; ++i) whole.near[i] = m_.near[whole.vertices[i]];
+    const double result = few_.bound(whole, limit, kFewParts<N>) + rim;
     if (result < kInfinity)
       for (const NearPoint& match : few_.matches()) raise(m_.of_to[match.simplex], match.distance + rim);
     return result;
@@ -273,7 +293,7 @@ class SimplexDeviation {
   }
 
   void load_frame(Index s) {
-    const CornersN<N>& corners = m_.from.corners[s];
+    const CornersN<N> corners = m_.from.corners[s];
     PointN<N> normal = normal_of<N>(corners);
     double length = norm(normal);
     if (!(shape_of_simplex<N>(corners, length) > kFlat)) {
@@ -364,8 +384,9 @@ class SimplexDeviation {
       NearSimplex near;
       near.simplex = t;
       Box<N> of_near;
+      const CornersN<N> corners = m_.to.corners[t];
       for (int i = 0; i < N; ++i) {
-        near.at[i] = frame_.to_frame(m_.to.corners[t][i]);
+        near.at[i] = frame_.to_frame(corners[i]);
         of_near.add(near.at[i]);
       }
       near.low = of_near.low[D];
@@ -582,7 +603,7 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
       if (found.distance > farthest) farthest = std::max(farthest, tree.nearest(p, found.simplex).distance);
     };
     for (std::size_t k = first; k < end; ++k) {
-      const CornersN<N>& corners = from.corners[k * step];
+      const CornersN<N> corners = from.corners[k * step];
       const auto start = [&](int i) { return near[from.simplices[k * step][i]].simplex; };
       sample(middle_of<N>(corners), start(0));
       for (int i = 0; i < N; ++i)
@@ -598,8 +619,8 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
 template <int N>
 void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, double enough, unsigned threads,
                  const Progress& progress, Deviation& result) {
-  const BoundaryFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
-  const FacetNeighbours<N> neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.05, 0.1));
+  const FacetNeighbours<N> neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.0, 0.05));
+  const BoundaryFaces<N> open(to, neighbours, threads, part_of(progress, 0.05, 0.1));
   const BoxTree<N> tree(to.corners);
   // distances of vertices: exactly where they are needed
   const SimplexWalk<N> walk(to.corners, neighbours);
@@ -649,6 +670,8 @@ requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& f
   }
   const ScaledSimplices<N> scaled_from(from, options.scale), scaled_to(to, options.scale);
   measure_all(scaled_from, scaled_to, options.enough, options.work.threads, options.work.progress, result);
+  result.of_from = scaled_from.in_order_of_contour(result.of_from);
+  result.of_to = scaled_to.in_order_of_contour(result.of_to);
   return result;
 }
 

@@ -42,6 +42,20 @@ class FacetNeighbours {
   /// simplices, or between simplices of opposite orientations.
   [[nodiscard]] Index across(Index simplex, int corner) const { return across_[simplex][corner]; }
 
+  using Facet = std::array<Index, N - 1>;
+  /// The vertices of the facet opposite to a corner, ascending. Returns whether the simplex induces that order.
+  static bool facet_of(const std::array<Index, N>& row, int corner, Facet& facet) {
+    for (int i = 0, k = 0; i < N; ++i)
+      if (i != corner) facet[k++] = row[i];
+    bool is_even = corner % 2 == 0;
+    for (int i = 1; i < N - 1; ++i)  // insertion sort, to count the exchanges
+      for (int j = i; j > 0 && facet[j] < facet[j - 1]; --j) {
+        std::swap(facet[j], facet[j - 1]);
+        is_even = !is_even;
+      }
+    return is_even;
+  }
+
  private:
   /// A facet with v as its smallest vertex, seen from one of its simplices.
   struct Side {
@@ -69,18 +83,10 @@ class FacetNeighbours {
 
   static void add_side(Index v, const std::array<Index, N>& row, Index s, int corner, std::vector<Side>& sides) {
     if (row[corner] == v) return;
-    std::array<Index, N - 1> facet;
-    for (int i = 0, k = 0; i < N; ++i) {
-      if (i == corner) continue;
-      if (row[i] < v) return;
-      facet[k++] = row[i];
-    }
-    bool is_even = corner % 2 == 0;
-    for (int i = 1; i < N - 1; ++i)  // insertion sort, to count the exchanges
-      for (int j = i; j > 0 && facet[j] < facet[j - 1]; --j) {
-        std::swap(facet[j], facet[j - 1]);
-        is_even = !is_even;
-      }
+    for (int i = 0; i < N; ++i)
+      if (i != corner && row[i] < v) return;
+    Facet facet;
+    const bool is_even = facet_of(row, corner, facet);
     std::uint64_t others = 0;
     for (int i = 1; i < N - 1; ++i) others = others << 32 | facet[i];
     sides.push_back({others, s, static_cast<std::uint8_t>(corner), is_even});

@@ -22,6 +22,7 @@
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/prism_cover.hpp"
+#include "simplify/simplex_corners.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
@@ -57,7 +58,7 @@ bool is_beside(const CornersN<N>& simplex, int corner, const CornersN<N>& part) 
 template <int N>
 class PrismWalk {
  public:
-  PrismWalk(std::span<const CornersN<N>> to, const FacetNeighbours<N>& neighbours) : to_(to), neighbours_(neighbours) {}
+  PrismWalk(const SimplexCorners<N>& to, const FacetNeighbours<N>& neighbours) : to_(to), neighbours_(neighbours) {}
 
   /// Bounds the distance of all points of `part` from the contour, if simplices connected with `starts` cover it within
   /// `limit`; else returns infinity. Only heights above `rough` are determined exactly. `part`: in the frame; `edge`:
@@ -161,7 +162,7 @@ class PrismWalk {
     return true;
   }
 
-  std::span<const CornersN<N>> to_;
+  SimplexCorners<N> to_;
   const FacetNeighbours<N>& neighbours_;
   std::vector<Index> table_ = std::vector<Index>(kTable, FacetNeighbours<N>::kNone);
   std::vector<std::uint32_t> slots_;  ///< used entries of table_

@@ -13,13 +13,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "mesh/simplex_shapes.hpp"
+#include "simplify/box_tree.hpp"
 #include "simplify/facet_neighbours.hpp"
+#include "simplify/simplex_corners.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
@@ -28,23 +32,36 @@ namespace tegl::detail {
 template <int N>
 class PlacedSimplex {
  public:
+  static constexpr int D = N - 1;
+
   explicit PlacedSimplex(const CornersN<N>& corners) : corners_(corners) {
-    // Gram-Schmidt: `basis_` is orthonormal, `upper_` has the coordinates of the edges in it
-    for (int i = 1; i < N; ++i) {
-      PointN<N> edge = minus(corners[i], corners[0]);
-      const double square = dot(edge, edge);
-      for (int j = 1; j < i; ++j) {
-        upper_[j][i] = dot(edge, basis_[j]);
-        for (int a = 0; a < N; ++a) edge[a] -= upper_[j][i] * basis_[j][a];
-      }
-      const double rest = dot(edge, edge);
-      if (!(rest > kFlat * square)) {
-        flat_ = true;
-        return;
-      }
-      inverse_[i] = 1.0 / std::sqrt(rest);
-      for (int a = 0; a < N; ++a) basis_[i][a] = edge[a] * inverse_[i];
+    // the inverse of the matrix of scalar products of the edges, by its cofactors
+    for (int i = 0; i < D; ++i) edges_[i] = minus(corners[i + 1], corners[0]);
+    std::array<std::array<double, D>, D> product;
+    double cube = 1.0;
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j <= i; ++j) product[i][j] = product[j][i] = dot(edges_[i], edges_[j]);
+      cube *= product[i][i];
     }
+    double content = 0.0;
+    if constexpr (D == 1) {
+      inverse_[0][0] = 1.0;
+      content = product[0][0];
+    } else if constexpr (D == 2) {
+      inverse_ = {{{product[1][1], -product[1][0]}, {-product[1][0], product[0][0]}}};
+      content = product[0][0] * product[1][1] - product[1][0] * product[1][0];
+    } else {
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j <= i; ++j) {
+          const int a = (i + 1) % D, b = (i + 2) % D, c = (j + 1) % D, d = (j + 2) % D;
+          inverse_[i][j] = inverse_[j][i] = product[a][c] * product[b][d] - product[a][d] * product[b][c];
+        }
+      for (int j = 0; j < D; ++j) content += product[0][j] * inverse_[0][j];
+    }
+    flat_ = !(content > kFlat * cube);
+    const double factor = 1.0 / content;
+    for (auto& row : inverse_)
+      for (double& x : row) x *= factor;
   }
 
   struct Place {
@@ -52,7 +69,8 @@ class PlacedSimplex {
     bool inside;                      ///< whether the projection onto the hyperplane is inside
     std::array<double, N> weights{};  ///< barycentric coordinates of the projection
   };
-  /// The point of the simplex below p; else one near it, with the negative barycentric coordinates of p set to 0.
+  /// The point of the simplex below p; else one near it, with the negative barycentric coordinates of p set to 0. The
+  /// distance is that of a point of the simplex, whatever the rounding errors of the weights.
   [[nodiscard]] Place place(const PointN<N>& p) const {
     Place result{};
     if (flat_) {
@@ -61,52 +79,37 @@ class PlacedSimplex {
       return result;
     }
     PointN<N> rest = minus(p, corners_[0]);
-    std::array<double, N> at{};
-    for (int i = 1; i < N; ++i) {
-      at[i] = dot(rest, basis_[i]);
-      for (int a = 0; a < N; ++a) rest[a] -= at[i] * basis_[i][a];
-    }
+    std::array<double, D> along;
+    for (int i = 0; i < D; ++i) along[i] = dot(rest, edges_[i]);
     auto& weights = result.weights;
     weights[0] = 1.0;
+    for (int i = 0; i < D; ++i) {
+      weights[i + 1] = dot(inverse_[i], along);
+      weights[0] -= weights[i + 1];
+    }
     double positive = 0.0;
-    for (int i = N - 1; i > 0; --i) {
-      double sum = at[i];
-      for (int j = i + 1; j < N; ++j) sum -= upper_[i][j] * weights[j];
-      weights[i] = sum * inverse_[i];
-      weights[0] -= weights[i];
-      positive += std::max(0.0, weights[i]);
+    result.inside = true;
+    for (const double weight : weights) {
+      positive += std::max(0.0, weight);
+      result.inside = result.inside && weight >= 0.0;
     }
-    result.inside = std::all_of(weights.begin(), weights.end(), [](double w) { return w >= 0.0; });
-    if (result.inside) {
-      result.distance = norm(rest);
-      return result;
+    const double factor = result.inside ? 1.0 : 1.0 / positive;
+    for (int i = 0; i < D; ++i) {
+      const double share = std::max(0.0, weights[i + 1]) * factor;
+      for (int a = 0; a < N; ++a) rest[a] -= share * edges_[i][a];
     }
-    positive += std::max(0.0, weights[0]);
-    PointN<N> way = p;
-    for (int i = 0; i < N; ++i) {
-      const double share = std::max(0.0, weights[i]) / positive;
-      for (int a = 0; a < N; ++a) way[a] -= share * corners_[i][a];
-    }
-    result.distance = norm(way);
+    result.distance = norm(rest);
     return result;
   }
 
-  /// An upper bound of the distance; if it is above `limit`, the distance itself is above `limit`.
-  [[nodiscard]] double distance(const PointN<N>& p, double limit) const {
-    const Place found = place(p);
-    if (found.inside || found.distance <= limit) return found.distance;
-    return distance_to_simplex<N>(p, corners_, N);
-  }
-
  private:
-  /// Square of the relative height of simplices that count as flat. Directions of others have errors of about 1e-12.
+  /// Square of the relative content of simplices that count as flat. Weights of others have errors of about 1e-8.
   static constexpr double kFlat = 1e-8;
 
   const CornersN<N>& corners_;
-  std::array<PointN<N>, N> basis_{};
-  std::array<std::array<double, N>, N> upper_{};
-  std::array<double, N> inverse_{};
-  bool flat_ = false;
+  std::array<PointN<N>, D> edges_;  ///< from corner 0
+  std::array<std::array<double, D>, D> inverse_;
+  bool flat_;
 };
 
 /// A point of a contour: its distance from another point, and its simplex.
@@ -119,18 +122,21 @@ struct NearPoint {
 template <int N>
 class SimplexWalk {
  public:
-  SimplexWalk(std::span<const CornersN<N>> to, const FacetNeighbours<N>& neighbours)
-      : to_(to), neighbours_(neighbours) {}
+  /// `tree`: searched where a walk of `bound` ends too far away; null: not searched.
+  SimplexWalk(const SimplexCorners<N>& to, const FacetNeighbours<N>& neighbours, const BoxTree<N>* tree = nullptr)
+      : to_(to), neighbours_(neighbours), tree_(tree) {}
 
   /// A point of the contour near p: the nearest one that a walk from the simplex `start` finds. Each step crosses the
   /// facet beyond which p lies farthest.
-  [[nodiscard]] NearPoint approach(const PointN<N>& p, Index start) const {
+  /// `enough`: a distance at which the walk may end.
+  [[nodiscard]] NearPoint approach(const PointN<N>& p, Index start, double enough = 0.0) const {
     NearPoint best;
     Index at = start, before = FacetNeighbours<N>::kNone;
     for (int step = 0; step < kMostSteps; ++step) {
-      auto place = PlacedSimplex<N>(to_[at]).place(p);
+      const CornersN<N> corners = to_[at];
+      auto place = PlacedSimplex<N>(corners).place(p);
       if (place.distance < best.distance) best = {place.distance, at};
-      if (place.inside) break;
+      if (place.inside || place.distance <= enough) break;
       Index next = FacetNeighbours<N>::kNone;
       for (int tried = 0; tried < N - 1 && (next == FacetNeighbours<N>::kNone || next == before); ++tried) {
         const auto least = std::min_element(place.weights.begin(), place.weights.end());
@@ -144,23 +150,53 @@ class SimplexWalk {
     return best;
   }
 
+  /// A simplex, and points of the contour near its corners. `vertices`: the numbers of the corners in a contour that
+  /// all calls with numbers have in common; kNone for others.
+  struct Part {
+    CornersN<N> corners;
+    std::array<NearPoint, N> near;
+    std::array<Index, N> vertices;
+  };
+  static constexpr Index kNone = FacetNeighbours<N>::kNone;
+
   /// Bounds the distance of all points of `part` from the contour, if at most `most` parts of it are each within
-  /// `limit` of one simplex; else returns infinity. `near`: points of the contour near the corners.
-  double bound(const CornersN<N>& part, const std::array<NearPoint, N>& near, double limit, std::size_t most) {
-    parts_.assign(1, {part, near});
+  /// `limit` of one simplex or of several near its corners; else returns infinity.
+  double bound(const Part& part, double limit, std::size_t most) {
+    parts_.assign(1, part);
     matches_.clear();
     double result = 0.0;
+    const auto take = [&](const NearPoint& match) {
+      matches_.push_back(match);
+      result = std::max(result, match.distance);
+    };
     for (std::size_t made = 1; !parts_.empty();) {
-      const Part next = parts_.back();
-      parts_.pop_back();
-      Index around = next.near[0].simplex;
-      const NearPoint match = match_of(next, limit, around);
-      if (match.distance <= limit) {
-        matches_.push_back(match);
-        result = std::max(result, match.distance);
+      Part& next = parts_.back();
+      const Balls balls(next.corners);
+      if (const double bound = farthest_of(next) + balls.radius; bound <= limit) {
+        for (const NearPoint& corner : next.near) take({bound, corner.simplex});
+        parts_.pop_back();
         continue;
       }
-      if (++made > most || !bisect(next, around, limit)) return kFailed;
+      if (const NearPoint match = common_match(next, limit); match.distance <= limit) {
+        take(match);
+        parts_.pop_back();
+        continue;
+      }
+      NearPoint middle = approach_middle(next, balls, limit);
+      if (!(middle.distance <= limit) && tree_ != nullptr) {
+        const auto [distance, simplex] = tree_->nearest(balls.middle, middle.simplex);
+        middle = {distance, simplex};
+      }
+      if (const NearPoint match = match_of(next, balls, middle, limit); match.distance <= limit) {
+        take(match);
+        parts_.pop_back();
+        continue;
+      }
+      if (++made > most || !(middle.distance <= limit)) return kFailed;
+      Part half = next;
+      move_corner(half, balls.first, balls.middle, middle);
+      move_corner(next, balls.second, balls.middle, middle);
+      parts_.push_back(half);
     }
     return result;
   }
@@ -171,18 +207,64 @@ class SimplexWalk {
  private:
   static constexpr double kFailed = std::numeric_limits<double>::infinity();
   static constexpr int kMostSteps = 16;
-  /// Parts with a radius beyond this multiple of the limit are bisected at once.
+  /// Parts with a radius beyond this multiple of the limit are not compared with one simplex.
   static constexpr double kReach = 1.5;
 
-  struct Part {
-    CornersN<N> corners;
-    std::array<NearPoint, N> near;  ///< near the corners
+  static void move_corner(Part& part, int corner, const PointN<N>& to, const NearPoint& near) {
+    part.corners[corner] = to;
+    part.near[corner] = near;
+    part.vertices[corner] = kNone;
+  }
+  static double farthest_of(const Part& part) {
+    double most = 0.0;
+    for (const NearPoint& point : part.near) most = std::max(most, point.distance);
+    return most;
+  }
+
+  /// Balls around a part. Every point of a simplex is within the radius of the smallest ball around it from one of its
+  /// corners, so at most that plus the largest distance of a corner away from the contour. Jung's theorem bounds the
+  /// radius by the longest edge.
+  struct Balls {
+    explicit Balls(const CornersN<N>& part) {
+      std::tie(first, second) = ends_of_longest_edge<N>(part);
+      middle = between(part[first], part[second], 0.5);
+      double largest = 0.0, least = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < N; ++i) {
+        const PointN<N> way = minus(part[i], middle);
+        const double square = dot(way, way);
+        largest = std::max(largest, square);
+        if (square < least) nearest = i;
+        least = std::min(least, square);
+      }
+      const PointN<N> edge = minus(part[first], part[second]);
+      radius_of_middle = std::sqrt(largest);
+      radius = std::sqrt(std::min(largest, dot(edge, edge) * (N - 1) / (2 * N)));
+    }
+    int first = 0, second = 1;  ///< the ends of the longest edge
+    PointN<N> middle;           ///< of the longest edge
+    int nearest = 0;            ///< the corner nearest to it
+    double radius_of_middle;    ///< of the ball around that
+    double radius;              ///< at least that of the smallest ball
   };
 
-  /// A simplex within `limit` of all corners: one that is near several corners, or near the middle; or one whose
-  /// distance from the middle is within `limit` less the radius. The distance is above `limit` if none is found.
-  /// `around`: becomes a simplex near the middle, if that is searched.
-  [[nodiscard]] NearPoint match_of(const Part& part, double limit, Index& around) const {
+  /// A point near the middle of the longest edge. The edges of a contour are in several simplices: their middles are
+  /// kept, and found in a way that depends on the edge only. So results do not depend on what is kept.
+  [[nodiscard]] NearPoint approach_middle(const Part& part, const Balls& balls, double limit) {
+    int first = balls.first, second = balls.second;
+    if (part.vertices[first] == kNone || part.vertices[second] == kNone)
+      return approach(balls.middle, part.near[balls.nearest].simplex, limit - balls.radius_of_middle);
+    if (part.vertices[second] < part.vertices[first]) std::swap(first, second);
+    const std::uint64_t key = std::uint64_t{part.vertices[first]} << 32 | part.vertices[second];
+    if (middles_.empty()) middles_.resize(kKept);
+    Middle& kept = middles_[key * kHash >> (64 - kKeptBits)];
+    if (kept.edge != key)
+      kept = {key, approach(between(part.corners[first], part.corners[second], 0.5), part.near[first].simplex)};
+    return kept.near;
+  }
+
+  /// A simplex that is nearest to several corners, and the distance of the part from it: one above `limit` if there is
+  /// none within the limit.
+  [[nodiscard]] NearPoint common_match(const Part& part, double limit) const {
     NearPoint match;
     int most = 1;
     for (int i = 1; i < N; ++i) {
@@ -192,50 +274,45 @@ class SimplexWalk {
       most = times;
       match.simplex = part.near[i].simplex;
     }
-    if (most > 1) {
-      match.distance = largest_distance(part, match.simplex, limit);
-      if (match.distance <= limit) return match;
-    }
-    const PointN<N> middle = middle_of<N>(part.corners);
-    double radius = 0.0;
-    for (const PointN<N>& corner : part.corners) radius = std::max(radius, norm(minus(corner, middle)));
-    if (radius > kReach * limit) return {kFailed, around};
-    const NearPoint below = approach(middle, around);
-    around = below.simplex;
-    if (below.distance + radius <= limit) return {below.distance + radius, below.simplex};
-    if (most > 1 && match.simplex == below.simplex) return match;
-    return {largest_distance(part, below.simplex, limit), below.simplex};
+    if (most > 1) match.distance = largest_distance(part, match.simplex, limit);
+    return match;
+  }
+
+  /// The simplex near the middle of the longest edge, if the part is within `limit` of it, or else a distance above
+  /// `limit`.
+  [[nodiscard]] NearPoint match_of(const Part& part, const Balls& balls, const NearPoint& middle, double limit) const {
+    const double bound = middle.distance + balls.radius_of_middle;
+    if (bound <= limit) return {bound, middle.simplex};
+    if (balls.radius_of_middle > kReach * limit) return {kFailed, middle.simplex};
+    return {largest_distance(part, middle.simplex, limit), middle.simplex};
   }
 
   /// The largest distance of a corner from the simplex, or one above `limit`.
   [[nodiscard]] double largest_distance(const Part& part, Index simplex, double limit) const {
-    const PlacedSimplex<N> placed(to_[simplex]);
+    const CornersN<N> corners = to_[simplex];
+    const PlacedSimplex<N> placed(corners);
     double largest = 0.0;
     for (int i = 0; i < N && largest <= limit; ++i)
       largest = std::max(
-          largest, part.near[i].simplex == simplex ? part.near[i].distance : placed.distance(part.corners[i], limit));
+          largest, part.near[i].simplex == simplex ? part.near[i].distance : placed.place(part.corners[i]).distance);
     return largest;
   }
 
-  /// Adds both halves to the parts, by a walk from the simplex `around`. Returns false if no point within `limit` of
-  /// the new corner is found.
-  bool bisect(const Part& part, Index around, double limit) {
-    const auto [first, second] = ends_of_longest_edge<N>(part.corners);
-    const PointN<N> middle = between(part.corners[first], part.corners[second], 0.5);
-    const NearPoint near = approach(middle, around);
-    if (!(near.distance <= limit)) return false;
-    for (const int end : {first, second}) {
-      Part& half = parts_.emplace_back(part);
-      half.corners[end] = middle;
-      half.near[end] = near;
-    }
-    return true;
-  }
+  /// The middle of an edge, by the numbers of its ends.
+  struct Middle {
+    std::uint64_t edge = ~std::uint64_t{0};
+    NearPoint near;
+  };
+  static constexpr int kKeptBits = 16;
+  static constexpr std::size_t kKept = std::size_t{1} << kKeptBits;
+  static constexpr std::uint64_t kHash = 0x9E3779B97F4A7C15u;
 
-  std::span<const CornersN<N>> to_;
+  SimplexCorners<N> to_;
   const FacetNeighbours<N>& neighbours_;
+  const BoxTree<N>* tree_;
   std::vector<Part> parts_;
   std::vector<NearPoint> matches_;
+  std::vector<Middle> middles_;  ///< by a hash of the edge: the last one with that hash
 };
 
 }  // namespace tegl::detail

@@ -79,6 +79,7 @@ class VertexDistances {
   static constexpr Index kUnused = kNone - 1;
   static constexpr std::size_t kGrain = 4096;
   static constexpr std::size_t kStep = 2048;
+  static constexpr double kRough = 2.0;
 
   /// By vertex: the neighbour with the largest smaller number. Extraction numbers neighbours one after the other.
   void find_parents(Simplices simplices) {
@@ -99,9 +100,13 @@ class VertexDistances {
     if (parent == kUnused) return {};
     const bool known = parent != kNone && parent >= first && parent < v;
     const NearPoint found = walk_.approach(p, known ? near_[parent].simplex : last);
-    if (known && found.distance <= norm(minus(p, points_[parent]))) return found;
-    exact_[v] = 1;
-    return nearest(v, found.simplex);
+    // A walk that ends much farther away than the one of the parent has probably missed the nearest point.
+    if (known) {
+      const double step = norm(minus(p, points_[parent]));
+      if (found.distance <= std::max(step, near_[parent].distance + 0.5 * step)) return found;
+    }
+    // A rough search finds where to begin instead.
+    return walk_.approach(p, tree_.within_factor(p, found.simplex, kRough).simplex);
   }
 
   [[nodiscard]] NearPoint nearest(std::size_t v, Index guess) const {
