@@ -55,6 +55,10 @@ void CurveLines::fit(bool closed, float weight) {
   prepare(closed ? 2 * count : count);
   for (std::size_t first = 0; first < count;) {
     const Segment segment = segment_from(first, closed ? count : count - first);
+    if (!closed && segment.size == count) {
+      add_straight_curve(weight);
+      break;
+    }
     add(first, segment, weight);
     if (!closed && first + segment.size == count) break;
     first += std::max<std::size_t>(1, segment.size / 3);
@@ -98,10 +102,35 @@ CurveLines::Segment CurveLines::segment_from(std::size_t first, std::size_t most
   return {segment.size(), segment.line()};
 }
 
+void CurveLines::add_straight_curve(float weight) noexcept {
+  StraightSegment segment;
+  for (const GridStep step : steps_) segment.add(step);
+  const StraightSegment::Line line = segment.line();
+  const SeparatingLines lines = segment.separating_lines();
+  const auto is_turned = [&](GridStep step) {
+    return ((static_cast<unsigned>(step) ^ static_cast<unsigned>(steps_.front())) & 1u) != 0;
+  };
+  // From the middle of a step to the mean line across the step, per rest: along the positive axis. p changes, too.
+  const auto turn = std::find_if(steps_.begin(), steps_.end(), is_turned);
+  const float flat = turn == steps_.end() || is_positive(*turn) ? 1 : -1, steep = is_positive(steps_.front()) ? 1 : -1;
+  const std::array<float, 2> factors = {flat / (static_cast<float>(line.b) + lines.slope()),
+                                        steep / (lines.slope() - static_cast<float>(line.a))};
+  std::int32_t rest = 0;  // at the start of a step
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const std::size_t turned = is_turned(steps_[i]) ? 1 : 0;
+    const std::int32_t move = turned != 0 ? -line.b : line.a;
+    const float middle = static_cast<float>(i) + 0.5f;
+    const float precision = weight * segment.squared_length() / (12 * lines.variance(middle));
+    const float place = 0.5f + (0.5f * static_cast<float>(2 * rest + move) - lines.mean(middle)) * factors[turned];
+    fits_[i] = {place * precision, precision};
+    rest += move;
+  }
+}
+
 void CurveLines::add(std::size_t first, const Segment& segment, float weight) noexcept {
   const StraightSegment::Line& line = segment.line;
   Word bits = turns(first);
-  weight *= line.precision();
+  weight *= line.precision;
   // The line's distance from the middle of a step, across the step: along the positive axis, times the weight.
   std::array<std::int32_t, 2> moves = {line.a, -line.b};
   std::array<float, 2> factors = {0.5f * weight / static_cast<float>(line.b), 0.0f};

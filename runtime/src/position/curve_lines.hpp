@@ -37,6 +37,9 @@ class CurveLines {
   };
   [[nodiscard]] Segment segment_from(std::size_t first, std::size_t most) const noexcept;
   void add(std::size_t first, const Segment& segment, float weight) noexcept;
+  /// Fits an open curve that is a single segment: by the mean of all lines that separate its pixels, each point
+  /// weighted by their variance there.
+  void add_straight_curve(float weight) noexcept;
   void prepare(std::size_t count);
   /// For the 64 steps from `first` on: whether their axis is not that of step `first`.
   [[nodiscard]] Word turns(std::size_t first) const noexcept {

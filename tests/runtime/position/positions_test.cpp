@@ -406,6 +406,14 @@ TEST(Relaxed, TiltedLinesAndPlanesOfBinarySamplesAreFlat) {
     }
 }
 
+TEST(Relaxed, PlanesWithASingleStepInOneDirectionAreFlat) {
+  // each has curves of one step, or of runs that differ once; by the lines of their segments alone, 0.09 to 0.16
+  EXPECT_LT(plane_error<3>({-0.9982, 0.0022, 0.0592}, 0.57, 96, Positions::relaxed), 0.02);
+  EXPECT_LT(plane_error<3>({0.1523, 0.0074, 0.9883}, 0.477, 96, Positions::relaxed), 0.02);
+  EXPECT_LT(plane_error<3>({0.9826, -0.0047, 0.1859}, 0.804, 96, Positions::relaxed), 0.02);
+  EXPECT_LT(plane_error<3>({0.0070, -0.7085, 0.7057}, 0.21, 96, Positions::relaxed), 0.06);
+}
+
 TEST(Relaxed, BallsOfBinarySamplesKeepTheirVolume) {
   std::mt19937_64 random(7);
   double mean = 0;
@@ -582,6 +590,13 @@ TEST(StraightSegment, AllPathsOfTenStepsAreRecognised) {
   }
 }
 
+/// Twice the middle of a step, in a direction of the path.
+double dot(const std::array<int, 2>& start, const std::array<int, 2>& move, const std::array<int, 2>& direction) {
+  double sum = 0;
+  for (std::size_t a = 0; a < 2; ++a) sum += (2 * start[a] + move[a]) * direction[a];
+  return sum;
+}
+
 /// The fits of lines to a curve by their definition: each segment found step by step, each distance from coordinates.
 std::vector<detail::LineFit> direct_fits(const std::vector<detail::GridStep>& steps, bool closed) {
   const std::size_t count = steps.size();
@@ -604,23 +619,86 @@ std::vector<detail::LineFit> direct_fits(const std::vector<detail::GridStep>& st
       }
     }
     const auto line = segment.line();
+    const bool whole = !closed && segment.size() == count;
+    const auto lines = segment.separating_lines();
     std::array<double, 2> direction{};
-    for (std::size_t a = 0; a < 2; ++a) direction[a] = line.b * along[a] + line.a * across[a];
+    const double tilt = whole ? lines.slope() : 0;
+    for (std::size_t a = 0; a < 2; ++a) direction[a] = (line.b + tilt) * along[a] + (line.a - tilt) * across[a];
     at = {};
     for (std::size_t i = 0; i < segment.size(); ++i) {
       const auto& move = kMoves[static_cast<std::size_t>(steps[(first + i) % count])];
       const std::size_t free = move[0] != 0 ? 1 : 0, other = 1 - free;
       const double size = static_cast<double>(segment.size());
       const double ahead = 0.5 * (2 * at[other] + move[other] - sum[other] / size);
-      const double offset = 0.5 * sum[free] / size + ahead * direction[free] / direction[other] - at[free];
-      fits[(first + i) % count].sum += static_cast<float>((0.5 + offset) * line.precision());
-      fits[(first + i) % count].weight += line.precision();
+      double offset = 0.5 * sum[free] / size + ahead * direction[free] / direction[other] - at[free];
+      double precision = line.precision;
+      if (whole) {
+        // the mean line from its place at the middle of the step: rest = mean(p), along the direction in which p stays
+        const float middle = static_cast<float>(i) + 0.5f;
+        const bool is_along = move == along;
+        const double rest = line.a * 0.5 * dot(at, move, along) - line.b * 0.5 * dot(at, move, across);
+        const double per_step = is_along ? line.b + tilt : tilt - line.a;
+        const auto& axis = is_along ? across : along;
+        const double sign = axis[free] < 0 ? -1 : 1;
+        offset = sign * (rest - lines.mean(middle)) / per_step;
+        precision = segment.squared_length() / (12 * lines.variance(middle));
+      }
+      fits[(first + i) % count].sum += static_cast<float>((0.5 + offset) * precision);
+      fits[(first + i) % count].weight += static_cast<float>(precision);
       for (std::size_t a = 0; a < 2; ++a) at[a] += move[a];
     }
     if (!closed && first + segment.size() == count) break;
     first += std::max<std::size_t>(1, segment.size() / 3);
   }
   return fits;
+}
+
+TEST(StraightSegment, SeparatingLinesHaveTheMeanAndVarianceOfSampledOnes) {
+  std::mt19937_64 random(4);
+  const auto uniform = [&](double from, double to) {
+    return from + (to - from) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  for (const char* path : {"rrrrurr", "rru", "ruuuuuu", "rurrurru", "rrrurrrrurrr", "rrrrrrrrurrr"}) {
+    detail::StraightSegment segment;
+    for (const char* step = path; *step != 0; ++step)
+      ASSERT_TRUE(segment.add(*step == 'u' ? detail::GridStep::up : detail::GridStep::right));
+    const auto line = segment.line();
+    const auto lines = segment.separating_lines();
+    std::vector<std::array<double, 2>> above, below;  // pixels: p and rest
+    double x = 0, y = 0;
+    for (const char* step = path; *step != 0; ++step) {
+      const bool up = *step == 'u';
+      const auto add = [&](auto& pixels, double px, double py) {
+        pixels.push_back({px + py, line.a * px - line.b * py});
+      };
+      add(above, x + (up ? -0.5 : 0.5), y + 0.5);
+      add(below, x + 0.5, y + (up ? 0.5 : -0.5));
+      (up ? y : x) += 1;
+    }
+    const double end = x + y;
+    std::array<double, 3> sums{}, squares{};
+    double count = 0;
+    for (int i = 0; i < 1000000; ++i) {
+      const double slope = uniform(-line.b, line.a + 1), start = uniform(-line.a - line.b, line.a + line.b);
+      bool separates = true;
+      for (const auto& [p, rest] : above) separates = separates && start + slope * p >= rest;
+      for (const auto& [p, rest] : below) separates = separates && start + slope * p <= rest;
+      if (!separates) continue;
+      ++count;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double value = start + slope * end * 0.5 * static_cast<double>(k);
+        sums[k] += value;
+        squares[k] += value * value;
+      }
+    }
+    ASSERT_GT(count, 300) << path;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double mean = sums[k] / count, variance = squares[k] / count - mean * mean;
+      const auto p = static_cast<float>(end * 0.5 * static_cast<double>(k));
+      EXPECT_NEAR(lines.mean(p), mean, 0.1) << path << ' ' << k;
+      EXPECT_NEAR(lines.variance(p), variance, 0.2 * variance) << path << ' ' << k;
+    }
+  }
 }
 
 TEST(StraightSegment, LinesOfCurvesAreThoseOfTheirSegments) {
