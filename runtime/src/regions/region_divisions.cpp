@@ -18,6 +18,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "regions/cube_frame.hpp"
+#include "tegl/generated/cells.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
@@ -215,10 +216,7 @@ class RegionSearch {
     for (std::uint64_t rest = points & (one(Vertices::kFirstEdge) - 1); rest != 0; rest &= rest - 1) {
       const auto corner = static_cast<std::uint8_t>(std::countr_zero(rest));
       if (const std::uint64_t inwards = points_inwards(boundary, corner, points); inwards != 0) {
-        RegionDivision::Near& near = result_.near.emplace_back(RegionDivision::Near{
-            static_cast<std::uint8_t>(Vertices::kFirstOwn + result_.own.size()), corner, boundary});
-        if (!outwards_)
-          for (Triangle& t : near.seen) std::swap(t[1], t[2]);
+        result_.near.push_back({static_cast<std::uint8_t>(Vertices::kFirstOwn + result_.own.size()), corner, boundary});
         add_own(boundary, inwards);
         return true;
       }
@@ -468,38 +466,133 @@ std::optional<RegionDivision> in_frame(const tables::RegionTable& cube, const Cu
   return division;
 }
 
-/// `boundary`: sorted, and each triangle starts at its smallest vertex.
-RegionDivision divide(tables::CellShape shape, const tables::RegionTable& cube, const Triangles& boundary) {
-  ShapeVolumes volumes(shape);
-  std::map<std::vector<std::uint8_t>, std::uint8_t> centres;
-  for (std::uint8_t v = Vertices::kFirstCentre; v < Vertices::kFirstOwn; ++v)
-    if (auto edges = edges_around(boundary, v); !edges.empty()) {
-      centres[edges] = v;
-      volumes.set_centre(v, std::move(edges));
-    }
-  double volume = 0;
-  for (const Triangle& t : boundary) volume += six_volumes(volumes.generic().places({0, t[0], t[1], t[2]}));
-  const bool outwards = volume > 0;
-  if (shape == tables::CellShape::hexahedron) {
-    unsigned signature = 0;
-    for (const Triangle& t : boundary) signature |= static_cast<unsigned>(set_of(t)) & 0xffu;
-    Triangles faced = boundary;  // as the table has it
-    for (Triangle& t : faced)
-      if (!outwards) t = from_smallest({t[1], t[0], t[2]});
-    std::sort(faced.begin(), faced.end());
-    for (unsigned f = 0; f < CubeFrame::kCount; ++f)
-      if (auto found = in_frame(cube, CubeFrame::of_number(f), volumes.table(), faced, signature, centres)) {
-        if (!outwards)
-          for (Tetrahedron& t : found->tetrahedra) std::swap(t[2], t[3]);
-        return std::move(*found);
+/// A boundary with its barycentres.
+struct Surface {
+  ShapeVolumes volumes;
+  std::map<std::vector<std::uint8_t>, std::uint8_t> centres;  ///< by their edges
+  bool outwards;                                              ///< whether volumes below the triangles are positive
+
+  Surface(tables::CellShape shape, const Triangles& boundary) : volumes(shape) {
+    for (std::uint8_t v = Vertices::kFirstCentre; v < Vertices::kFirstOwn; ++v)
+      if (auto edges = edges_around(boundary, v); !edges.empty()) {
+        centres[edges] = v;
+        volumes.set_centre(v, std::move(edges));
       }
+    double volume = 0;
+    for (const Triangle& t : boundary) volume += six_volumes(volumes.generic().places({0, t[0], t[1], t[2]}));
+    outwards = volume > 0;
   }
+};
+
+/// The division of a hexahedron by the cube's table in one of the first `frames` frames.
+std::optional<RegionDivision> by_table(const tables::RegionTable& cube, const Surface& surface,
+                                       const Triangles& boundary, unsigned frames) {
+  const auto signature = static_cast<unsigned>(set_of(boundary)) & 0xffu;
+  Triangles faced = boundary;  // as the table has it
+  for (Triangle& t : faced)
+    if (!surface.outwards) t = from_smallest({t[1], t[0], t[2]});
+  std::sort(faced.begin(), faced.end());
+  for (unsigned f = 0; f < frames; ++f) {
+    auto found = in_frame(cube, CubeFrame::of_number(f), surface.volumes.table(), faced, signature, surface.centres);
+    if (!found) continue;
+    if (!surface.outwards)
+      for (Tetrahedron& t : found->tetrahedra) std::swap(t[2], t[3]);
+    return found;
+  }
+  return std::nullopt;
+}
+
+/// `boundary`: of one region; sorted, and each triangle starts at its smallest vertex.
+RegionDivision divide(tables::CellShape shape, const tables::RegionTable& cube, const Triangles& boundary) {
+  const Surface surface(shape, boundary);
+  if (shape == tables::CellShape::hexahedron)
+    if (auto found = by_table(cube, surface, boundary, CubeFrame::kCount)) return std::move(*found);
   RegionDivision division;
-  for (const Triangles& region : split(boundary)) {
-    RegionSearch search(volumes, outwards, division);
-    if (!search.run(region)) search.add_cone_from_mean(region);
-  }
+  RegionSearch search(surface.volumes, surface.outwards, division);
+  if (!search.run(boundary)) search.add_cone_from_mean(boundary);
   return division;
+}
+
+/// Where a symmetry of a shape moves each vertex.
+using Symmetry = std::array<std::uint8_t, Vertices::kEnd>;
+
+/// Adds the symmetries that move the first corners as given.
+void add_symmetries(const tables::CellTable& table, std::vector<std::uint8_t>& corners,
+                    std::vector<Symmetry>& symmetries) {
+  const auto has_edge = [&](unsigned p, unsigned q) {
+    for (unsigned e = 0; e < table.edge_count; ++e)
+      if ((one(table.edges[2 * e]) | one(table.edges[2 * e + 1])) == (one(p) | one(q))) return true;
+    return false;
+  };
+  if (corners.size() == table.corner_count) {
+    Symmetry& moved = symmetries.emplace_back();
+    for (std::uint8_t v = 0; v < Vertices::kEnd; ++v) moved[v] = v;
+    std::copy(corners.begin(), corners.end(), moved.begin());
+    for (unsigned e = 0; e < table.edge_count; ++e)
+      moved[Vertices::kFirstEdge + e] = static_cast<std::uint8_t>(
+          Vertices::kFirstEdge + edge_between(table, corners[table.edges[2 * e]], corners[table.edges[2 * e + 1]]));
+    return;
+  }
+  const auto next = static_cast<unsigned>(corners.size());
+  for (std::uint8_t v = 0; v < table.corner_count; ++v) {
+    bool fits = std::find(corners.begin(), corners.end(), v) == corners.end();
+    for (unsigned u = 0; fits && u < next; ++u) fits = has_edge(u, next) == has_edge(corners[u], v);
+    if (!fits) continue;
+    corners.push_back(v);
+    add_symmetries(table, corners, symmetries);
+    corners.pop_back();
+  }
+}
+
+/// The symmetries of a 3D shape: those of its edges, as each is the symmetry of an affine image.
+const std::vector<Symmetry>& symmetries_of(tables::CellShape shape) {
+  static const auto kSymmetries = [] {
+    std::array<std::vector<Symmetry>, tables::kCellShapes> all;
+    for (unsigned s = 0; s < tables::kCellShapes; ++s) {
+      const auto& table = tables::cell_table(static_cast<tables::CellShape>(s), Triangulation::barycentric);
+      std::vector<std::uint8_t> corners;
+      if (table.dim == 3) add_symmetries(table, corners, all[s]);
+    }
+    return all;
+  }();
+  return kSymmetries[static_cast<std::size_t>(shape)];
+}
+
+/// Moves a boundary; barycentres are numbered by the first of their edges, and `symmetry` gets their numbers.
+Triangles moved(const Triangles& boundary, Symmetry& symmetry) {
+  std::array<std::uint8_t, Vertices::kFirstOwn - Vertices::kFirstCentre> first{};
+  first.fill(Vertices::kEnd);
+  for (const Triangle& t : boundary)
+    for (const std::uint8_t v : t)
+      for (const std::uint8_t u : t)
+        if (v >= Vertices::kFirstCentre && u < Vertices::kFirstCentre)
+          first[v - Vertices::kFirstCentre] = std::min(first[v - Vertices::kFirstCentre], symmetry[u]);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    symmetry[Vertices::kFirstCentre + i] = static_cast<std::uint8_t>(
+        Vertices::kFirstCentre + std::count_if(first.begin(), first.end(), [&](auto f) { return f < first[i]; }));
+  Triangles result;
+  for (const Triangle& t : boundary) result.push_back(from_smallest({symmetry[t[0]], symmetry[t[1]], symmetry[t[2]]}));
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// The division of the region that a symmetry maps to the one of `of`.
+RegionDivision moved_back(RegionDivision of, const Symmetry& symmetry) {
+  Symmetry back{};
+  for (std::uint8_t v = 0; v < Vertices::kEnd; ++v) back[symmetry[v]] = v;
+  for (Tetrahedron& t : of.tetrahedra)
+    for (std::uint8_t& v : t) v = back[v];
+  for (std::uint32_t& mask : of.own) {
+    std::uint32_t points = 0;
+    for (; mask != 0; mask &= mask - 1) points |= 1u << back[static_cast<std::size_t>(std::countr_zero(mask))];
+    mask = points;
+  }
+  for (RegionDivision::Near& near : of.near) {
+    near.corner = back[near.corner];
+    for (Triangle& t : near.seen)
+      for (std::uint8_t& v : t) v = back[v];
+  }
+  return of;
 }
 
 }  // namespace
@@ -512,24 +605,69 @@ double RegionDivision::weight(const Near& of, const ShapePlaces& places) const n
     const auto place = places.place(static_cast<unsigned>(std::countr_zero(rest)));
     for (std::size_t a = 0; a < 3; ++a) mean[a] += place[a] / std::popcount(points);
   }
-  // a volume is linear along the way
-  double most = 1.0;
+  // volumes are linear along the way; those at the corner have one sign or are zero
+  std::vector<std::array<double, 2>> volumes;
+  double sum = 0;
   for (const Triangle& t : of.seen) {
     std::array<ShapePlaces::Place, 4> from = {corner, places.place(t[0]), places.place(t[1]), places.place(t[2])};
     const double at_corner = six_volumes(from);
     from[0] = mean;
-    const double at_mean = six_volumes(from);
-    if (at_corner > 0 && at_mean < 0) most = std::min(most, at_corner / (at_corner - at_mean));
+    volumes.push_back({at_corner, six_volumes(from)});
+    sum += at_corner;
   }
+  double most = 1.0;
+  for (const auto& [at_corner, at_mean] : volumes)
+    if (at_corner * sum > 0 && at_mean * sum < 0) most = std::min(most, at_corner / (at_corner - at_mean));
   return 0.5 * most;
+}
+
+const RegionDivision& RegionDivisions::of_region(tables::CellShape shape, const Boundary& boundary) {
+  const auto [at, is_new] = regions_.try_emplace({shape, boundary});
+  if (!is_new) return at->second;
+  Triangles representative;
+  Symmetry least{};
+  for (Symmetry symmetry : symmetries_of(shape)) {
+    Triangles there = moved(boundary, symmetry);
+    if (!representative.empty() && there >= representative) continue;
+    representative = std::move(there);
+    least = symmetry;
+  }
+  const auto [of, is_first] = representatives_.try_emplace({shape, std::move(representative)});
+  if (is_first) of->second = divide(shape, cube_, of->first.second);
+  at->second = moved_back(of->second, least);
+  return at->second;
 }
 
 const RegionDivision& RegionDivisions::of(tables::CellShape shape, std::vector<Triangle> boundary) {
   for (Triangle& t : boundary) t = from_smallest(t);
   std::sort(boundary.begin(), boundary.end());
   const auto [at, is_new] = known_.try_emplace({shape, std::move(boundary)});
-  if (is_new) at->second = divide(shape, cube_, at->first.second);
-  return at->second;
+  if (!is_new) return at->second;
+  const Triangles& all = at->first.second;
+  RegionDivision& division = at->second;
+  if (shape == tables::CellShape::hexahedron)  // in their own frame, a grid's cubes have the division of an image's
+    if (auto found = by_table(cube_, Surface(shape, all), all, 1)) {
+      division = std::move(*found);
+      return division;
+    }
+  for (const Triangles& region : split(all)) {
+    const auto shift = static_cast<std::uint8_t>(division.own.size());
+    const auto shifted = [&](std::uint8_t v) {
+      return v < Vertices::kFirstOwn ? v : static_cast<std::uint8_t>(v + shift);
+    };
+    const RegionDivision& part = of_region(shape, region);
+    for (Tetrahedron t : part.tetrahedra) {
+      for (std::uint8_t& v : t) v = shifted(v);
+      division.tetrahedra.push_back(t);
+    }
+    division.own.insert(division.own.end(), part.own.begin(), part.own.end());
+    for (RegionDivision::Near near : part.near) {
+      near.own = shifted(near.own);
+      division.near.push_back(std::move(near));
+    }
+    division.is_proved = division.is_proved && part.is_proved;
+  }
+  return division;
 }
 
 }  // namespace tegl::detail

@@ -47,8 +47,15 @@ class RegionDivisions {
   [[nodiscard]] const RegionDivision& of(tables::CellShape shape, std::vector<RegionDivision::Triangle> boundary);
 
  private:
+  using Boundary = std::vector<RegionDivision::Triangle>;
+  using Divisions = std::map<std::pair<tables::CellShape, Boundary>, RegionDivision>;
+
+  [[nodiscard]] const RegionDivision& of_region(tables::CellShape shape, const Boundary& boundary);
+
   const tables::RegionTable& cube_;
-  std::map<std::pair<tables::CellShape, std::vector<RegionDivision::Triangle>>, RegionDivision> known_;
+  Divisions known_;            ///< of shapes
+  Divisions regions_;          ///< of single regions
+  Divisions representatives_;  ///< of single regions, one of those that a symmetry of the shape maps to each other
 };
 
 }  // namespace tegl::detail

@@ -38,19 +38,37 @@ ShapePlaces::Place ShapePlaces::place(unsigned vertex) const noexcept {
   return place;
 }
 
-ShapeVolumes::ShapeVolumes(tables::CellShape shape)
-    : table_(tables::cell_table(shape, Triangulation::barycentric)), generic_(table_) {
-  const unsigned corners = table_.corner_count;
+ShapeVolumes::CornerSigns ShapeVolumes::corner_signs_of(const tables::CellTable& table) {
+  CornerSigns signs{};
+  const unsigned corners = table.corner_count;
   for (unsigned i = 0; i < corners * corners * corners * corners; ++i) {
     const std::array<unsigned, 4> v = {i / (corners * corners * corners), i / (corners * corners) % corners,
                                        i / corners % corners, i % corners};
     std::array<std::array<int, 3>, 4> p;
     for (std::size_t k = 0; k < 4; ++k)
-      for (std::size_t a = 0; a < 3; ++a) p[k][a] = table_.corners[3 * v[k] + a];
+      for (std::size_t a = 0; a < 3; ++a) p[k][a] = table.corners[3 * v[k] + a];
     const int volume = six_volumes(p);
-    corner_signs_[((v[0] * 8 + v[1]) * 8 + v[2]) * 8 + v[3]] =
-        static_cast<std::int8_t>(volume > 0 ? 1 : (volume < 0 ? -1 : 0));
+    signs[((v[0] * 8 + v[1]) * 8 + v[2]) * 8 + v[3]] = static_cast<std::int8_t>(volume > 0 ? 1 : (volume < 0 ? -1 : 0));
   }
+  return signs;
+}
+
+const ShapeVolumes::CornerSigns& ShapeVolumes::corner_signs_of(tables::CellShape shape) {
+  static const auto kSigns = [] {
+    std::array<CornerSigns, tables::kCellShapes> all{};
+    for (unsigned s = 0; s < tables::kCellShapes; ++s) {
+      const auto& table = tables::cell_table(static_cast<tables::CellShape>(s), Triangulation::barycentric);
+      if (table.dim == 3) all[s] = corner_signs_of(table);
+    }
+    return all;
+  }();
+  return kSigns[static_cast<std::size_t>(shape)];
+}
+
+ShapeVolumes::ShapeVolumes(tables::CellShape shape)
+    : table_(tables::cell_table(shape, Triangulation::barycentric)),
+      generic_(table_),
+      corner_signs_(corner_signs_of(shape)) {
   for (std::uint8_t v = 0; v < RegionVertices::kFirstCentre; ++v) {
     points_[v] = {v};
     ends_[v] = {v, v};

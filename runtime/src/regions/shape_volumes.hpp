@@ -82,6 +82,9 @@ class ShapeVolumes {
   [[nodiscard]] const ShapePlaces& generic() const noexcept { return generic_; }
 
  private:
+  using CornerSigns = std::array<std::int8_t, 4096>;
+  static CornerSigns corner_signs_of(const tables::CellTable& table);
+  static const CornerSigns& corner_signs_of(tables::CellShape shape);
   [[nodiscard]] int corner_sign(const Tetrahedron& corners) const noexcept {
     return corner_signs_[((corners[0] * 8u + corners[1]) * 8u + corners[2]) * 8u + corners[3]];
   }
@@ -89,7 +92,7 @@ class ShapeVolumes {
 
   const tables::CellTable& table_;
   ShapePlaces generic_;
-  std::array<std::int8_t, 4096> corner_signs_{};
+  const CornerSigns& corner_signs_;
   std::array<std::vector<std::uint8_t>, RegionVertices::kFirstOwn> points_;  ///< corners and edges, by vertex
   std::array<std::array<std::uint8_t, 2>, RegionVertices::kFirstCentre> ends_{};
 };
