@@ -402,8 +402,9 @@ class Contour:
         merged, report = _tegl.merge_vertices(self._core, _arguments.as_number("tolerance", tolerance),
                                               _arguments.as_whole("most_listed", most_listed, 0),
                                               _arguments.threads_of(threads), progress)
-        places = np.array(report["vanished"], dtype=np.float64).reshape(-1, self.ndim)
-        report["vanished"] = places[:, ::-1] if self._is_reversed else places
+        for name in ("vanished", "shrunk"):
+            places = np.array(report[name], dtype=np.float64).reshape(-1, self.ndim)
+            report[name] = places[:, ::-1] if self._is_reversed else places
         return Contour._of(merged, self._is_reversed, self._extent), MergeReport(**report)
 
     def elements(self, *, by_cell: bool = False, threads: int = 0, progress: Progress | None = None) -> Elements:
