@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +67,10 @@ class FilterCommand final : public Command {
     require_inputs();
     require_image_output(output_, files());
     ProgressBar bar(streams.err, wants_progress());
+    warn_ = [&](const std::string& text) {
+      bar.clear();
+      streams.err.write(fmt::format("tegl: {}\n", text));
+    };
     ImageResult result;
     result.heading = fmt::format("{} of {}", title(), inputs().text());
     result.what = kind_;
@@ -266,15 +271,16 @@ class FilterCommand final : public Command {
       square += extent * extent;
       flowing += ones[a] == 0 ? 0 : 1;
     }
-    remark_on_time(flow, square / 4, flowing);
+    warn_of_time(flow, square / 4, flowing);
     return flow;
   }
 
-  /// A remark if a ball as large as the image vanishes in the time of the flow.
-  void remark_on_time(const CurvatureFlow& flow, double square_of_radius, int flowing) {
+  /// Warns, before the flow begins, if a ball as large as the image vanishes in its time.
+  void warn_of_time(const CurvatureFlow& flow, double square_of_radius, int flowing) const {
     if (flowing < 2 || 2.0 * (flowing - 1) * flow.time < square_of_radius) return;
-    remark(fmt::format("--curvature {}: all closed contours vanish in this time, as a ball around the image does in {}",
-                       value_, number(square_of_radius / (2.0 * (flowing - 1)))));
+    warn_(fmt::format(
+        "--curvature {}: all closed contours vanish in this time, as a ball around the image does in {}; {}", value_,
+        number(square_of_radius / (2.0 * (flowing - 1))), counted(step_count(flow), "step", "steps")));
   }
 
   [[nodiscard]] Filter kernel(std::size_t axes) const {
@@ -343,6 +349,7 @@ class FilterCommand final : public Command {
   std::array<std::string, kKinds.size()> values_;
   std::string kind_, value_, time_sigma_, value_sigma_, output_;
   std::string borders_ = "extended";
+  std::function<void(const std::string& text)> warn_;  ///< prints at once
   CLI::Option* time_option_ = nullptr;
   CLI::Option* value_option_ = nullptr;
   unsigned threads_ = 0;

@@ -233,7 +233,8 @@ FilterOfLayers<Real>::FilterOfLayers(std::vector<std::size_t> sizes, const Filte
     : load_(std::move(load)) {
   for (const Filter& step : steps_of(filter)) steps_.push_back(make_layer_filter<Real>(sizes, step, options));
   // Each step would read its first layers after its last ones, and compute most layers many times.
-  if (steps_.size() > 1 && steps_.front()->shape().borders.back() == FilterBorder::cyclic)
+  const FilterShape& shape = steps_.front()->shape();
+  if (steps_.size() > 1 && shape.borders.back() == FilterBorder::cyclic && shape.radii.back() > 0)
     throw Error(ErrorCode::UnsupportedData,
                 "a flow by layers with a cyclic border along the last axis; expected another border there, or an image "
                 "in memory");

@@ -475,6 +475,21 @@ TEST(CurvatureFlow, AxesWithoutALengthDoNotTakePart) {
   }
 }
 
+TEST(CurvatureFlow, IsMadeByLayersWithACyclicBorderOfAnAxisThatTakesNoPart) {
+  const auto image = noise<float, 3>({9, 8, 5}, 7);
+  const FilterOptions cyclic{{FilterBorder::cyclic}, false, {}};
+  const CurvatureFlow flow{{1, 1, 0}, 2};
+  const auto whole = filter_image(image.view(), flow, cyclic);
+  FunctionLayers<float, 3> source(image.grid,
+                                  [&](std::size_t k, float* to) { std::copy_n(image.values.data() + 72 * k, 72, to); });
+  const auto layers = filter_layers(source, flow, cyclic);
+  std::vector<float> layer(72);
+  for (std::size_t k = 0; k < 5; ++k) {
+    layers->read(k, layer.data());
+    EXPECT_TRUE(std::equal(layer.begin(), layer.end(), whole.values.data() + 72 * k)) << k;
+  }
+}
+
 TEST(CurvatureFlow, GivesTheSameBytesByLayersAndForAnyNumberOfThreads) {
   auto image = noise_with_missing<float, 3>(Grid<3>::unit({20, 15, 30}), 13, 0.01);
   const CurvatureFlow flow{{1, 1, 1}, 1.5};
