@@ -92,6 +92,8 @@ TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
   for (const char* const one : {"1", ""})
     expect_refused({"contour", volume, "--iso", "128", "-o", path("c.vtkhdf"), "--scale-space", one}, "--scale-space",
                    2);
+  expect_refused({"scale-space", volume, "--sigmas", "0.5:2:3", "--iso", "99999", "-o", path("d.nrrd")}, "99999", 5);
+  EXPECT_FALSE(std::filesystem::exists(path("d.nrrd")));
   for (const std::vector<std::string>& options : {std::vector<std::string>{"--scale-space", "2,1"},
                                                   {"--scale-space", "0.5:2:3", "--stream"},
                                                   {"--scale-space", "0.5:2:3", "--lattice", "fcc"}}) {
@@ -117,6 +119,12 @@ TEST_F(ImageMakers, ScaleSpacesOfFourAxesAreSavedCutAndTracked) {
   EXPECT_EQ(contour.json()["image_dim"], 5);
   EXPECT_EQ(contour.json()["dim"], 4);
   EXPECT_EQ(contour.json()["bad_links"], 0);
+  // netCDF, too
+  ASSERT_EQ(run_tegl({"scale-space", film, "--sigmas", "0.5:2:3", "-o", path("a.nc"), "-q"}).exit, 0);
+  const RunResult of_netcdf =
+      run_tegl({"contour", path("a.nc"), "--iso", "128", "--ambiguity", "mean", "-o", path("n.vtkhdf"), "--json"});
+  ASSERT_EQ(of_netcdf.exit, 0) << of_netcdf.err;
+  EXPECT_EQ(read_mesh(path("n.vtkhdf")).simplices, read_mesh(path("a.vtkhdf")).simplices);
   const Contour<5, double> saved = to_contour<5>(read_mesh(path("a.vtkhdf")));
   const auto direct = extract<double>(scales.view(), 128.0, options);
   EXPECT_TRUE(saved.simplices == direct.simplices);
@@ -203,6 +211,11 @@ TEST_F(ImageMakers, SamplesOfALatticeAreContouredOnIt) {
 }
 
 TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
+  ASSERT_EQ(run_tegl({"sample", "ball", "--dim", "5", "--size", "6", "-o", path("five.nrrd"), "-q"}).exit, 0);
+  const RunResult five = run_tegl({"contour", path("five.nrrd"), "--iso", "0", "-o", path("five.vtkhdf"), "--json"});
+  ASSERT_EQ(five.exit, 0) << five.err;
+  EXPECT_EQ(five.json()["dim"], 4);
+  EXPECT_EQ(five.json()["boundary_simplices"], 0);
   const RunResult run = run_tegl({"sample", "ball", "--size", "5,4,3", "--range", "0:2", "-o", path("a.nc"), "--json"});
   ASSERT_EQ(run.exit, 0) << run.err;
   EXPECT_EQ(run.json()["input"], nullptr);

@@ -119,24 +119,39 @@ TEST_F(Info, NamesTheVariablesWhereThereAreSeveral) {
   EXPECT_THAT(unknown.err, HasSubstr("SALT"));
 }
 
-TEST_F(Info, ShowsAVariableOf5AxesAndReadsItAtAFixedIndex) {
+TEST_F(Info, ShowsAVariableOf6Axes) {
+  const Samples values =
+      sample({5, 4, 3, 2, 2, 2}, [](const std::vector<double>& at) { return at[0] + 100 * at[4] + 1000 * at[5]; });
+  write_netcdf(path("six.nc"), {"x", "y", "z", "time", "member", "run"},
+               {{0, 1, 2, 3, 4}, {0, 1, 2, 3}, {0, 1, 2}, {0, 1}, {7, 8}, {0, 1}}, {{"v", values}});
+  const RunResult list = run_tegl({"info", path("six.nc")});
+  ASSERT_EQ(list.exit, 0) << list.err;
+  for (const char* part : {"a variable of 6 axes", "5 x 4 x 3 x 2 x 2 x 2 (x, y, z, time, member, run)", "--fix run=0"})
+    EXPECT_THAT(list.out, HasSubstr(part));
+  const RunResult json = run_tegl({"info", path("six.nc"), "--json"});
+  EXPECT_THAT(json.json()["dimensions"]["v"], ElementsAre("x", "y", "z", "time", "member", "run"));
+  const RunResult contour = run_tegl({"contour", path("six.nc"), "--iso", "2", "-o", path("out.vtkhdf")});
+  EXPECT_EQ(contour.exit, 4);
+  for (const char* part : {"5 x 4 x 3 x 2 x 2 x 2", "such as run=0", "--fix"})
+    EXPECT_THAT(contour.err, HasSubstr(part));
+}
+
+TEST_F(Info, ReadsAVariableOf5AxesAsAWholeAndAtAFixedIndex) {
   const Samples values = sample({5, 4, 3, 2, 2}, [](const std::vector<double>& at) { return at[0] + 100 * at[4]; });
   write_netcdf(path("five.nc"), {"x", "y", "z", "time", "member"},
                {{0, 1, 2, 3, 4}, {0, 1, 2, 3}, {0, 1, 2}, {0, 1}, {7, 8}}, {{"v", values}});
-  const RunResult list = run_tegl({"info", path("five.nc")});
-  ASSERT_EQ(list.exit, 0) << list.err;
-  for (const char* part : {"a variable of 5 axes", "5 x 4 x 3 x 2 x 2 (x, y, z, time, member)", "--fix member=0"})
-    EXPECT_THAT(list.out, HasSubstr(part));
-  const RunResult json = run_tegl({"info", path("five.nc"), "--json"});
-  EXPECT_THAT(json.json()["dimensions"]["v"], ElementsAre("x", "y", "z", "time", "member"));
+  const RunResult all = run_tegl({"info", path("five.nc"), "--json"});
+  ASSERT_EQ(all.exit, 0) << all.err;
+  EXPECT_EQ(all.json()["image_dim"], 5);
+  EXPECT_EQ(all.json()["max"], 104);
   const RunResult member = run_tegl({"info", path("five.nc"), "--fix", "member=1", "--json"});
   ASSERT_EQ(member.exit, 0) << member.err;
   EXPECT_EQ(member.json()["image_dim"], 4);
   EXPECT_EQ(member.json()["min"], 100);
   EXPECT_EQ(member.json()["max"], 104);
-  const RunResult contour = run_tegl({"contour", path("five.nc"), "--iso", "2", "-o", path("out.vtkhdf")});
-  EXPECT_EQ(contour.exit, 4);
-  for (const char* part : {"5 x 4 x 3 x 2 x 2", "such as member=0", "--fix"}) EXPECT_THAT(contour.err, HasSubstr(part));
+  const RunResult contour = run_tegl({"contour", path("five.nc"), "--iso", "2.5", "-o", path("out.vtkhdf"), "--json"});
+  ASSERT_EQ(contour.exit, 0) << contour.err;
+  EXPECT_EQ(contour.json()["dim"], 4);
   const std::vector<std::string> fixed = {"contour", path("five.nc"), "--iso", "102.5", "--fix", "member=1", "-o"};
   std::vector<std::string> whole = fixed;
   whole.push_back(path("whole.vtkhdf"));

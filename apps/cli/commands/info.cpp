@@ -31,7 +31,7 @@ constexpr const char* kInfoExamples =
     "of grid edges that the contour crosses: about the number of its vertices.";
 constexpr std::size_t kJsonBins = 256;
 constexpr std::size_t kTextBins = 16;
-constexpr std::size_t kMostAxes = 4;
+constexpr std::size_t kMostAxes = 5;
 
 /// The contents of a report, independent of the image's type and dimension.
 struct Description {

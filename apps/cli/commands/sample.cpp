@@ -55,8 +55,8 @@ class SampleCommand final : public Command {
     app().add_option("FIELD", field_, "name of a field, or an expression")->required();
     app().add_option("-o,--output", output_, std::string("the samples: ") + kImageFiles)->type_name("FILE")->required();
     dim_option_ = app()
-                      .add_option("--dim", dim_, "number of axes, 2 to 4; default: that of --lattice, else 3")
-                      ->check(whole_number(2, 4))
+                      .add_option("--dim", dim_, "number of axes, 2 to 5; default: that of --lattice, else 3")
+                      ->check(whole_number(2, 5))
                       ->type_name("COUNT");
     app()
         .add_option("--size", size_, "number of samples along each axis: one number, or one for each, as in 64,64,20")
@@ -110,6 +110,7 @@ class SampleCommand final : public Command {
     if (dim == 2) write<2>(field, lattice, bar, result);
     if (dim == 3) write<3>(field, lattice, bar, result);
     if (dim == 4) write<4>(field, lattice, bar, result);
+    if (dim == 5) write<5>(field, lattice, bar, result);
     bar.clear();
     result.report(streams.out, json(), quiet());
     return ExitCode::Ok;
@@ -160,7 +161,7 @@ class SampleCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument, fmt::format("--size has {}; expected one, or one for each of {} axes",
                                                           counted(sizes.size(), "number", "numbers"), N));
     Grid<N> grid;
-    constexpr std::array<const char*, 4> kNames = {"x", "y", "z", "t"};
+    constexpr std::array<const char*, 5> kNames = {"x", "y", "z", "t", "u"};
     for (std::size_t a = 0; a < N; ++a) {
       const double size = sizes.size() == 1 ? sizes[0] : sizes[a];
       grid.axes[a] = Axis::uniform(static_cast<std::size_t>(size), first, (last - first) / (size - 1));

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
+#include "base/statistics.hpp"
 #include "commands/image_makers.hpp"
 #include "output/image_result.hpp"
 #include "tegl/extract.hpp"
@@ -34,7 +36,8 @@ constexpr const char* kScaleSpaceExamples =
     "scale,\n"
     "and the most stable scale is reported, where its size changes least with log sigma.";
 
-/// Layers that are measured as they are read: the size of the contour at an isovalue.
+/// Layers that are measured as they are read: the size of the contour at an isovalue. The last one throws EmptyResult
+/// if the isovalue is outside of the values of all.
 template <class Real, int N>
 class MeasuredLayers final : public LayerReader<Real, N> {
  public:
@@ -52,7 +55,14 @@ class MeasuredLayers final : public LayerReader<Real, N> {
     if (!isovalue_) return;
     ExtractOptions options;
     options.work.threads = threads_;
-    sizes_.push_back(measure(extract(Image<Real, N - 1>(to, of_layer_), *isovalue_, options)).size);
+    const Image<Real, N - 1> layer(to, of_layer_);
+    sizes_.push_back(measure(extract(layer, *isovalue_, options)).size);
+    std::size_t samples = 1;
+    for (const Axis& axis : of_layer_.axes) samples *= axis.size();
+    range_.read(std::span<const Real>(to, samples), *isovalue_, *isovalue_);
+    if (k + 1 == grid().axes[N - 1].size() && !range_.has_both_sides(*isovalue_))
+      throw EmptyResult(fmt::format("the isovalue {} lies outside of the values at all scales, which are {} .. {}",
+                                    number(*isovalue_), number(range_.min), number(range_.max)));
   }
   /// Length, area or volume of the contour of each layer.
   [[nodiscard]] const std::vector<double>& sizes() const noexcept { return sizes_; }
@@ -61,6 +71,7 @@ class MeasuredLayers final : public LayerReader<Real, N> {
   LayerReader<Real, N>& layers_;
   std::optional<double> isovalue_;
   unsigned threads_;
+  ValueRange range_ = {};
   Grid<N - 1> of_layer_ = {};
   std::vector<double> sizes_;
 };

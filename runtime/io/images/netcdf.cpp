@@ -40,7 +40,7 @@ std::size_t rank(const std::vector<std::size_t>& sizes) {
   return static_cast<std::size_t>(std::count_if(sizes.begin(), sizes.end(), [](std::size_t size) { return size > 1; }));
 }
 
-bool is_image_rank(std::size_t axes) { return axes >= 2 && axes <= 4; }
+bool is_image_rank(std::size_t axes) { return axes >= 2 && axes <= 5; }
 
 /// Names and sizes of the dimensions longer than 1, fastest first.
 ImageVariable describe(const NcFile& file, const NcVariable& variable) {
@@ -127,12 +127,17 @@ NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const 
          candidates.empty() ? "none: no variable here has 2 or more axes" : listing(candidates));
   }
   if (candidates.size() == 1) return candidates[0];
-  std::vector<NcVariable> fitting;
-  for (const NcVariable& variable : candidates)
-    if (is_image_rank(rank(slab_of(file, variable, options.fixed).count))) fitting.push_back(variable);
+  // one of 2 to 5 axes before one of 5
+  std::vector<NcVariable> usual, fitting;
+  for (const NcVariable& variable : candidates) {
+    const std::size_t axes = rank(slab_of(file, variable, options.fixed).count);
+    if (is_image_rank(axes)) fitting.push_back(variable);
+    if (is_image_rank(axes) && axes < 5) usual.push_back(variable);
+  }
+  if (usual.size() == 1) return usual[0];
   if (fitting.size() == 1) return fitting[0];
   if (candidates.empty())
-    fail(ErrorCode::UnsupportedData, file.path(), "no variable with 2 to 4 axes longer than 1; it has {}",
+    fail(ErrorCode::UnsupportedData, file.path(), "no variable with 2 to 5 axes longer than 1; it has {}",
          all.empty() ? "no variables" : listing(all));
   fail(ErrorCode::VariableNotFound, file.path(), "{} variables, and none chosen; expected one of {}", candidates.size(),
        listing(candidates));
@@ -266,8 +271,9 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcS
     is_time.push_back(read.is_time);
     dimension_of.push_back(d);
   }
-  // move time, or else the slowest axis, to the end
-  const auto found = is_time.back() ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
+  // move time, or else the slowest axis, to the end; the scale of a scale space stays there
+  const bool keeps_last = is_time.back() || axes.back().name == "log2_sigma";
+  const auto found = keeps_last ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
   const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
   const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
   move_last(axes);
@@ -467,12 +473,12 @@ void require_image(const NcFile& file, const NcVariable& variable, const NcSlab&
   if (is_image_rank(axes)) return;
   const bool is_fixed = axes < rank(variable.sizes);
   if (axes < 2)
-    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}{}; expected 2 to 4 axes longer than 1",
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}{}; expected 2 to 5 axes longer than 1",
          variable.name, variable.sizes.empty() ? "a single value" : image_shape(variable),
          is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "");
   const ImageVariable described = describe(file, variable);
   fail(ErrorCode::UnsupportedData, file.path(),
-       "variable '{}' is {} ({}){}; expected 2 to 4 axes longer than 1, or a fixed index of another dimension, such "
+       "variable '{}' is {} ({}){}; expected 2 to 5 axes longer than 1, or a fixed index of another dimension, such "
        "as {}=0",
        variable.name, shape_text(described.sizes), fmt::join(described.axes, ", "),
        is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "", described.axes.back());

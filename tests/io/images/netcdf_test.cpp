@@ -389,7 +389,7 @@ TEST(NetCdf, SeveralVariablesMustBeChosenFrom) {
   EXPECT_EQ((image_as<std::int16_t, 2>(any).values.size()), 6U);
   // A variable that is not a candidate can be selected by name.
   EXPECT_EQ(read_image(dir / "a.nc", {"lat2d", {}}).info.variable, "lat2d");
-  expect_error(ErrorCode::UnsupportedData, {"'profile' is 3; expected 2 to 4 axes"}, [&] {
+  expect_error(ErrorCode::UnsupportedData, {"'profile' is 3; expected 2 to 5 axes"}, [&] {
     read_image(dir / "a.nc", {"profile", {}});
   });
   expect_error(ErrorCode::UnsupportedData, {"'names' holds char values"}, [&] {
@@ -442,17 +442,32 @@ TEST(NetCdf, CoordinatesMustBeStrictlyMonotone) {
   EXPECT_EQ((image_as<float, 2>(read_image(dir / "a.nc").image).grid.axes[0][2]), 380);
 }
 
+TEST(NetCdf, FiveAxesAreReadInTheOrderOfTheFile) {
+  TempDir dir;
+  Grid<5> grid = Grid<5>::unit({2, 3, 4, 2, 3});
+  const std::array<const char*, 5> names = {"x", "y", "z", "t", "log2_sigma"};
+  for (std::size_t a = 0; a < 5; ++a) grid.axes[a].name = names[a];
+  std::vector<float> values(2 * 3 * 4 * 2 * 3);
+  std::iota(values.begin(), values.end(), 0.5F);
+  write_image(Image<float, 5>(values.data(), grid), dir / "a.nc", {});
+  const std::vector<std::filesystem::path> files = {dir / "a.nc"};
+  const auto read = read_series_to_5d(files, {});
+  const auto& image = std::get<OwnedImage<float, 5>>(std::get<ReadSeries5dResult>(read).image);
+  EXPECT_EQ(image.values, values);
+  for (std::size_t a = 0; a < 5; ++a) EXPECT_EQ(image.grid.axes[a].name, names[a]);
+}
+
 TEST(NetCdf, RankAndSizesOutsideOfImagesAreNamed) {
   TempDir dir;
   {
     NcWriter file(dir / "a.nc");
-    std::vector<int> five;
-    for (const char* name : {"a", "b", "c", "d", "e"}) five.push_back(file.dimension(name, 2));
-    file.variable("hyper", NC_BYTE, five);
+    std::vector<int> six;
+    for (const char* name : {"a", "b", "c", "d", "e", "f"}) six.push_back(file.dimension(name, 2));
+    file.variable("hyper", NC_BYTE, six);
   }
-  expect_error(ErrorCode::UnsupportedData, {"'hyper' is 2 x 2 x 2 x 2 x 2 (e, d, c, b, a)", "such as a=0"},
+  expect_error(ErrorCode::UnsupportedData, {"'hyper' is 2 x 2 x 2 x 2 x 2 x 2 (f, e, d, c, b, a)", "such as a=0"},
                [&] { read_image(dir / "a.nc"); });
-  expect_error(ErrorCode::UnsupportedData, {"'hyper'", "expected 2 to 4 axes", "a fixed index"}, [&] {
+  expect_error(ErrorCode::UnsupportedData, {"'hyper'", "expected 2 to 5 axes", "a fixed index"}, [&] {
     read_image(dir / "a.nc", {"hyper", {}});
   });
   {
