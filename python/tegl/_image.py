@@ -12,14 +12,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _kinds, _results, _outside, _tegl
+from . import _arguments, _kinds, _labels, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
 from ._fields import LATTICES, lattice_spacing
 
 
 @_arguments.documents("extract", "ExtractOptions", "Ambiguity", "extract_placed", "extract_cells")
-def contour(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
+def contour(array, level: float | None = None, *, label: float | None = None, spacing=None, origin=None, coords=None, affine=None, mask=None,
             axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
             time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
@@ -29,6 +29,11 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
             positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0,
             samples: _kinds.Samples = "points", curved=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
+
+    level
+        The isovalue. With `positions` "relaxed" it may be left out for an array of exactly two values: their middle.
+    label
+        In place of `level`: the contour around the samples of this value, that of 1 there and 0 elsewhere at 0.5.
 
     array
         A NumPy array of real numbers with any strides, a masked array, an xarray.DataArray (with its coordinates, names
@@ -114,8 +119,16 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
                                          close=close, epsilon=epsilon, normals=normals, gradient=gradient,
                                          threads=threads)
+    if label is not None:
+        if level is not None:
+            raise ValueError(f"level {level!r} with label {label!r}; expected one of the two")
+        array, level = _labels.mask_of(array, label), 0.5
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+    if level is None and positions != "relaxed":
+        raise TypeError("level is missing; expected a number, such as tegl.contour(array, 0.5)")
+    if level is None:
+        level = _labels.middle_of(prepared.image.array)
     if lattice in LATTICES and spacing is None and coords is None and affine is None and isinstance(array, np.ndarray):
         spacing = prepared.turned(lattice_spacing(lattice, prepared.ndim))
         prepared = _arguments.prepare(array, spacing=spacing, origin=origin, mask=mask, axis_names=axis_names,
@@ -375,7 +388,7 @@ class Image:
     def __tegl_image__(self):
         return (self._axes, self.axis_names, self.axis_units, self.affine, self.time_axis, self.value_unit, self.array)
 
-    def contour(self, level: float, **options: typing.Any) -> Contour:
+    def contour(self, level: float | None = None, **options: typing.Any) -> Contour:
         """The contour of this image: see `tegl.contour`."""
         return contour(self, level, **options)
 

@@ -75,6 +75,28 @@ def test_fields():
         np.testing.assert_allclose(high - low, 0.8 * 9, atol=0.5)
 
 
+def test_masks_and_labels():
+    labels = np.zeros((12, 13, 14), np.int16)
+    labels[3:9, 3:9, 3:9] = 7
+    labels[3:9, 3:9, 9:12] = 9
+    seven = tegl.contour(labels, label=7, positions="relaxed")
+    same = tegl.contour((labels == 7).astype(np.uint8), 0.5, positions="relaxed")
+    np.testing.assert_array_equal(seven.vertices, same.vertices)
+    np.testing.assert_array_equal(tegl.contour(labels == 7, positions="relaxed").vertices, same.vertices)
+    np.testing.assert_array_equal(tegl.contour(60 * (labels == 7), positions="relaxed").vertices, same.vertices)
+    assert tegl.contour(labels, label=9).measure().content == pytest.approx(
+        tegl.contour((labels == 9).astype(float), 0.5).measure().content)
+    missing = labels.astype(float)
+    missing[3, 5, 5] = np.nan
+    assert not tegl.contour(missing, label=7).check().is_closed  # a missing sample is neither inside nor outside
+    for wrong, message in ((dict(label=8), "label is 8"), (dict(level=1, label=7), "expected one of the two"),
+                           (dict(positions="relaxed"), "not exactly two values")):
+        with pytest.raises(ValueError, match=message):
+            tegl.contour(labels, **wrong)
+    with pytest.raises(TypeError, match="level is missing"):
+        tegl.contour(labels)
+
+
 def test_expressions():
     try:
         found = tegl.sample("0.8 - r", 20)

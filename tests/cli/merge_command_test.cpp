@@ -108,6 +108,20 @@ TEST_F(MergeCommand, CellsHaveTheirExactVolume) {
                                 "-o", path("b.ply"), "--json"});
   EXPECT_EQ(smooth.exit, 0) << smooth.err;
   EXPECT_NE(smooth.json()["simplices"], result.json()["simplices"]);
+  // slices: within the first cell, at the faces beyond the first sample, and outside of all cells
+  for (const char* at : {"3.2", "2.5", "-0.4"}) {
+    const RunResult slice = run({"slice", balls_, "--iso", "1", "--samples-are", "cells", "--at",
+                                 std::string("z=") + at, "--allow-empty", "-o", path("s.vtkhdf"), "--json"});
+    ASSERT_EQ(slice.exit, 0) << slice.err;
+    EXPECT_EQ(slice.json()["boundary_simplices"], 0);
+    double in_layer = 0;
+    for (std::size_t i = 3 * 91; i < 4 * 91; ++i) in_layer += image.values[i] >= 1 ? 1 : 0;
+    if (std::string(at) != "3.2") continue;
+    const RunResult area = run({"measure", path("s.vtkhdf"), "--json"});
+    EXPECT_NEAR(area.json()["content"].get<double>(), in_layer, 1e-9 * in_layer);
+  }
+  expect_refused({"slice", balls_, "--iso", "1", "--samples-are", "cells", "--at", "z=-0.6", "-o", path("s.ply")},
+                 "-0.5");
   expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--stream", "-o", path("a.vtkhdf")},
                  "--samples-are cells with --stream");
   expect_refused({"contour", balls_, "--iso", "1", "--samples-are", "cells", "--lattice", "fcc", "-o", path("a.ply")},

@@ -63,6 +63,32 @@ TEST_F(PositionsCommand, MaskGetsTheSurfaceOfItsShape) {
   ASSERT_EQ(run({"--positions", "relaxed", "--last-axis-weight", "0", "-o", output}).exit, 0);
 }
 
+TEST_F(PositionsCommand, MasksNeedNoIsovalueAndLabelsAreMasks) {
+  ASSERT_EQ(run({"--positions", "relaxed", "-o", path("a.ply")}).exit, 0);
+  const RunResult middle = run_tegl({"contour", mask_, "--positions", "relaxed", "-o", path("b.ply"), "--json"});
+  ASSERT_EQ(middle.exit, 0) << middle.err;
+  EXPECT_THAT(middle.err, HasSubstr("the isovalue is 0.5, the middle of the image's two values, 0 and 1"));
+  EXPECT_EQ(middle.json()["isovalue"], 0.5);
+  EXPECT_EQ(read_mesh(path("b.ply")).coordinates, read_mesh(path("a.ply")).coordinates);
+  const auto labels = [](const std::vector<double>& x) {
+    return std::hypot(x[0] - 11.6, x[1] - 10.4, x[2] - 11) < 8.3 ? 7.0 : x[0] < 4 ? 9.0 : 0.0;
+  };
+  const std::string image = write("labels.nii", nifti_bytes(sample({24, 22, 23}, labels), {1, 1, 1}));
+  const RunResult seven =
+      run_tegl({"contour", image, "--label", "7", "--positions", "relaxed", "-o", path("c.ply"), "--json"});
+  ASSERT_EQ(seven.exit, 0) << seven.err;
+  EXPECT_EQ(read_mesh(path("c.ply")).coordinates, read_mesh(path("a.ply")).coordinates);
+  const RunResult many = run_tegl({"contour", image, "--positions", "relaxed", "-o", path("d.ply")});
+  EXPECT_EQ(many.exit, 2);
+  EXPECT_THAT(many.err, HasSubstr("more than two values, such as"));
+  EXPECT_EQ(run_tegl({"contour", image, "--label", "8", "-o", path("d.ply")}).exit, 5);
+  EXPECT_EQ(run_tegl({"contour", image, "--label", "7", "--iso", "1", "-o", path("d.ply")}).exit, 2);
+  EXPECT_EQ(run_tegl({"contour", image, "--label", "x", "-o", path("d.ply")}).exit, 2);
+  EXPECT_EQ(run_tegl({"contour", image, "--label", "7", "--stream", "-o", path("d.vtkhdf")}).exit, 2);
+  EXPECT_EQ(run_tegl({"contour", image, "-o", path("d.ply")}).exit, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("d.ply")));
+}
+
 TEST_F(PositionsCommand, WrongOptionsAreRefused) {
   const std::string output = path("none.vtkhdf");
   expect_refused({"--positions", "smooth", "-o", output}, "--positions");

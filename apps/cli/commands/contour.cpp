@@ -105,7 +105,7 @@ class ContourCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     // validate options and files
-    const std::vector<SpelledNumber> isovalues = options_.isovalues();
+    const std::vector<SpelledNumber> isovalues = positions_.isovalues(options_);
     if (!index_.empty() && facets_)
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
     const std::vector<double> point = picked_point();
@@ -122,7 +122,6 @@ class ContourCommand final : public Command {
     if (are_cell_meshes(files(), images())) refuse_options_of_images(file(), options_, images(), given_for_images());
     if (facets_) return run_facets(streams, isovalues, outputs, options);
     require_files(outputs);
-
     // extract and write
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results = planned_results(isovalues, outputs, point);
@@ -333,6 +332,7 @@ class ContourCommand final : public Command {
     Stopwatch watch;
     auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused,
                           takes_stored_integers(options));
+    remark(positions_.apply(any, results));
     if (!sigmas_.empty()) make_scale_space(any, bar.stage("scale space"));
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       return contour_5d(*in_5d, options, watch, bar, results);
@@ -380,7 +380,7 @@ class ContourCommand final : public Command {
   [[nodiscard]] std::vector<std::string> given_for_images() const {
     std::vector<std::string> given;
     for (const char* const name : {"--facets", "--stream", "--index", "--pick", "--positions", "--positions-image",
-                                   "--last-axis-weight", "--scale-space"})
+                                   "--last-axis-weight", "--label", "--scale-space"})
       if (app().count(name) > 0) given.emplace_back(name);
     return given;
   }
@@ -428,8 +428,8 @@ class ContourCommand final : public Command {
   /// Whether the samples may be stored integers: for contours that depend on the samples' sides and, along edges, on
   /// their differences only. Other rules compare sums, and files beside the image have its values.
   [[nodiscard]] bool takes_stored_integers(const ExtractOptions& options) const {
-    return index_.empty() && sigmas_.empty() && positions_.are_linear() && options_.tiling().is_plain() &&
-           !options_.polygon_triangulation() &&
+    return index_.empty() && sigmas_.empty() && positions_.are_linear() && !positions_.has_label() &&
+           options_.tiling().is_plain() && !options_.polygon_triangulation() &&
            (options.ambiguity == Ambiguity::low || options.ambiguity == Ambiguity::high);
   }
 
@@ -438,6 +438,7 @@ class ContourCommand final : public Command {
     options.work.progress = bar.stage("contour");
     if (!tiling_.curved.empty()) return make_curved(image, options, bar, result);
     if (tiling_.of_cells) result.wording.no_size = "cells touch; --merge drops most of them";
+    if (placed_.rule == Positions::filtered) result.wording.no_size = PositionArguments::kNoSize;
     if (result.picked) return pick(image, options, bar, result);
     const auto finished = [&](auto extraction) {
       result.stats = extraction.stats;

@@ -221,6 +221,7 @@ class SliceCommand final : public Command {
         ->allow_extra_args(false)
         ->type_name("AXIS=FACTOR");
     options_.add_to(app(), false);
+    options_.add_samples_are_to(app());
     attributes_.add_to(app());
     compress_.add_to(app());
     app()
@@ -311,7 +312,7 @@ class SliceCommand final : public Command {
   }
 
   std::vector<ContourResult> cut_image(const std::vector<Cut>& cuts, ProgressBar& bar) {
-    if (planes_.empty())
+    if (planes_.empty() && options_.samples_are_points())
       if (std::optional<std::vector<ContourResult>> results = cut_layers(cuts, bar)) return std::move(*results);
     turn_to_all_files();  // as listed, whatever order they were opened in
     return cut_whole_image(cuts, bar);
@@ -417,12 +418,14 @@ class SliceCommand final : public Command {
   std::vector<ContourResult> cut_read_image(Input& input, std::vector<Cut> cuts, ProgressBar& bar, Stopwatch& watch) {
     const double isovalue = options_.isovalue();
     require_cuts(image_dim(input.image), "image");
-    Tiling tiling;
+    Tiling tiling = options_.tiling();
     CutSpace space = space_of(input.image);
     if constexpr (std::is_same_v<Input, ReadImageResult>) {
       std::optional<std::uint64_t> folded_cells;
       remark(take_grid(input, file(), options_, tiling, folded_cells));
-      space = space_of(input.image, tiling.curved);
+      space = tiling.of_cells ? space_of_cells(input.image, tiling.cell_faces) : space_of(input.image, tiling.curved);
+    } else {
+      options_.require_to_5d();
     }
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);

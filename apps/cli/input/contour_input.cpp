@@ -82,6 +82,19 @@ CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved) 
   return space;
 }
 
+CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces) {
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    Grid<N> grid = owned.grid;
+    for (std::size_t a = 0; a < N; ++a) {
+      const bool is_given = a < faces.size() && !faces[a].empty();
+      grid.axes[a] = Axis::rectilinear(is_given ? faces[a] : cell_faces(owned.grid.axes[a]));
+      grid.axes[a].name = owned.grid.axes[a].name;
+    }
+    return space_of(grid);
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
   Mesh mesh = read_mesh(file, options);
   const auto is_finite = [](double x) { return std::isfinite(x); };

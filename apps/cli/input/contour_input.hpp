@@ -52,6 +52,8 @@ std::string take_grid(ReadImageResult& input, const std::string& file, const Ext
                       std::optional<std::uint64_t>& folded_cells);
 /// The space of an image with the ranges of its curved coordinates.
 CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved);
+/// As space_of, to the outer faces of cells. `faces`: those of the file.
+CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces);
 
 /// Reads a saved contour with finite coordinates. Throws EmptyResult if it has no simplices, unless `allow_empty`.
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty);
@@ -125,9 +127,9 @@ class ContourInputCommand : public Command {
   [[nodiscard]] bool allows_empty() const { return options_.allows_empty(); }
 
   /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`, on a curved grid only if allowed;
-  /// images of 5 axes are not kept but errors. Throws InvalidArgument if --iso is missing for an image, or if options of
-  /// images are given with a saved contour; EmptyResult if the isovalue is outside of the data or the saved contour is
-  /// empty, unless --allow-empty is given; and errors of the readers.
+  /// images of 5 axes are not kept but errors. Throws InvalidArgument if --iso is missing for an image, or if options
+  /// of images are given with a saved contour; EmptyResult if the isovalue is outside of the data or the saved contour
+  /// is empty, unless --allow-empty is given; and errors of the readers.
   [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false,
                                           CurvedGrids curved = CurvedGrids::allowed);
 

@@ -86,6 +86,10 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
                                     "divide cells into simplices: kuhn or symmetric, in 2D and 3D also alternating, or "
                                     "hybrid (ambiguous cells only)")
                          ->check(CLI::IsMember({"kuhn", "alternating", "symmetric", "hybrid"})));
+  add_samples_are_to(app);
+}
+
+void ExtractionOptions::add_samples_are_to(CLI::App& app) {
   options_.push_back(
       app.add_option("--samples-are", samples_,
                      "cells: the contour runs along the faces between high and low cells and encloses "

@@ -50,6 +50,8 @@ class ExtractionOptions {
 
   /// Adds --periodic, --lattice, --division and --samples-are to a command.
   void add_tiling_to(CLI::App& app);
+  /// Adds --samples-are only.
+  void add_samples_are_to(CLI::App& app);
   /// The values of these options. Throws InvalidArgument if two are given.
   [[nodiscard]] Tiling tiling() const;
   /// Throws InvalidArgument with one of them. `with`: another option or a command. With --samples-are file it depends
@@ -63,6 +65,8 @@ class ExtractionOptions {
   void require_to_5d() const;
   /// Whether the file decides if its samples are cells.
   [[nodiscard]] bool samples_are_as_in_file() const { return samples_ == "file"; }
+  /// Whether samples are points, whatever the file.
+  [[nodiscard]] bool samples_are_points() const { return samples_ == "points"; }
 
   /// The names of the options that were given.
   [[nodiscard]] std::vector<std::string> given() const;

@@ -6,6 +6,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "input/attributes.hpp"
 #include "output/output.hpp"
@@ -24,6 +31,72 @@ std::vector<std::size_t> sizes_of(const AnyImage& image) {
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
+/// Calls f with the image of any type.
+template <class F>
+void visit_image(AnyImage& image, const F& f) {
+  std::visit([&](auto& typed) { std::visit(f, typed); }, image);
+}
+template <class F>
+void visit_image(AnyImage5d& image, const F& f) {
+  std::visit(f, image);
+}
+template <class F>
+void visit_image(const AnyImage& image, const F& f) {
+  std::visit([&](const auto& typed) { std::visit(f, typed); }, image);
+}
+template <class F>
+void visit_image(const AnyImage5d& image, const F& f) {
+  std::visit(f, image);
+}
+
+/// Replaces an image by the mask of a label. Missing samples stay missing.
+template <class AnyDimension>
+void take_label(AnyDimension& image, double label) {
+  AnyDimension mask;
+  visit_image(image, [&]<Value T, int N>(OwnedImage<T, N>& from) {
+    using Mask = std::conditional_t<std::is_floating_point_v<T>, float, std::uint8_t>;
+    constexpr bool kOnlyReals = std::is_same_v<AnyDimension, AnyImage5d>;
+    using To = std::conditional_t<kOnlyReals, float, Mask>;
+    OwnedImage<To, N> to{std::move(from.grid), detail::ValueVector<To>(from.values.size())};
+    bool any = false;
+    for (std::size_t i = 0; i < to.values.size(); ++i) {
+      const auto value = static_cast<double>(from.values[i]);
+      any = any || value == label;
+      to.values[i] = static_cast<To>(value == label ? 1 : 0);
+      if constexpr (std::is_floating_point_v<To>)
+        if (std::isnan(value)) to.values[i] = std::numeric_limits<To>::quiet_NaN();
+    }
+    if (!any) throw EmptyResult(fmt::format("--label {}: no sample has this value", number(label)));
+    if constexpr (kOnlyReals)
+      mask = std::move(to);
+    else
+      mask = AnyImageN<N>(std::move(to));
+  });
+  image = std::move(mask);
+}
+
+/// The two values of an image. Throws InvalidArgument if it has more or fewer.
+template <class AnyDimension>
+std::pair<double, double> two_values_of(const AnyDimension& image) {
+  std::vector<double> found;
+  visit_image(image, [&](const auto& owned) {
+    for (const auto value : owned.values) {
+      const auto wide = static_cast<double>(value);
+      if (std::isnan(wide) || std::find(found.begin(), found.end(), wide) != found.end()) continue;
+      found.push_back(wide);
+      if (found.size() > 2) break;
+    }
+  });
+  if (found.size() != 2)
+    throw Error(ErrorCode::InvalidArgument,
+                found.size() > 2
+                    ? fmt::format("--iso is missing, and the image has more than two values, such as {}, {} and {}; "
+                                  "expected --iso, or --label for the samples of one value",
+                                  number(found[0]), number(found[1]), number(found[2]))
+                    : "--iso is missing, and the image has less than two values; expected --iso");
+  return std::minmax({found[0], found[1]});
+}
+
 }  // namespace
 
 void PositionArguments::add_to(CLI::App& app) {
@@ -33,6 +106,11 @@ void PositionArguments::add_to(CLI::App& app) {
                  "side of each sample; gravitation: moved towards neighbouring samples, for masks")
       ->check(CLI::IsMember({"linear", "filtered", "gravitation", "relaxed"}))
       ->capture_default_str();
+  app.add_option("--label", label_,
+                 "the contour of a label image around the samples of this value: of 1 there and 0 elsewhere, at 1/2; "
+                 "in place of --iso")
+      ->type_name("NUMBER");
+  app.get_option("--iso")->required(false);  // see isovalues
   app.add_option(
          "--positions-image", file_,
          "for --positions filtered: the second image, FILE or FILE:VARIABLE (netCDF), with as many samples along "
@@ -46,7 +124,33 @@ void PositionArguments::add_to(CLI::App& app) {
       ->capture_default_str();
 }
 
+std::vector<SpelledNumber> PositionArguments::isovalues(const ExtractionOptions& options) const {
+  const std::vector<std::string> given = options.given();
+  const bool has_isovalue = std::find(given.begin(), given.end(), "--iso") != given.end();
+  if (has_label() && has_isovalue)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--label {} with --iso; expected one of the two", label_));
+  if (has_label()) return {{0.5, "0.5"}};
+  if (!has_isovalue && rule_ == "relaxed") return {{std::numeric_limits<double>::quiet_NaN(), "middle"}};
+  return options.isovalues();
+}
+
+std::string PositionArguments::apply(std::variant<ReadImageResult, ReadImage5dResult>& input,
+                                     std::vector<ContourResult>& results) const {
+  if (has_label()) {
+    const double label = parse_finite("--label", label_);
+    std::visit([&](auto& read) { take_label(read.image, label); }, input);
+    return "";
+  }
+  if (!std::isnan(*results.front().isovalue)) return "";
+  const auto [low, high] = std::visit([](const auto& read) { return two_values_of(read.image); }, input);
+  for (ContourResult& result : results) result.isovalue = low + (high - low) / 2;
+  return fmt::format("no --iso: the isovalue is {}, the middle of the image's two values, {} and {}",
+                     number(*results.front().isovalue), number(low), number(high));
+}
+
 void PositionArguments::refuse(const std::string& with) const {
+  if (has_label() && (with == "--stream" || with == "--index" || with == "--facets"))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--label {} with {}; expected one of the two", label_, with));
   if (!are_linear())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--positions {} with {}; expected one of the two", rule_, with));

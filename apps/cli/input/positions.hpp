@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The options --positions, --positions-image and --last-axis-weight: where vertices lie on their edges.
+// The options --positions, --positions-image and --last-axis-weight: where vertices lie on their edges; and --label:
+// the mask that is contoured.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 
 #include "base/progress.hpp"
 #include "input/commands.hpp"
+#include "input/cuts.hpp"
 #include "input/extraction.hpp"
 #include "tegl/cells.hpp"
 #include "tegl/positions.hpp"
@@ -20,8 +22,21 @@ class PositionArguments {
   /// Adds the options to a command. This object must outlive the parse.
   void add_to(CLI::App& app);
 
+  [[nodiscard]] bool has_label() const { return !label_.empty(); }
+  /// The isovalues of --iso; 1/2 with --label; NaN by default with --positions relaxed: see `apply`. Throws
+  /// InvalidArgument without --iso otherwise, and for --iso with --label.
+  [[nodiscard]] std::vector<SpelledNumber> isovalues(const ExtractionOptions& options) const;
+  /// With --label, replaces the image by 1 for samples that have this value and 0 for others; missing ones stay
+  /// missing. Sets isovalues of NaN to the middle of the image's two values, and returns a remark of this. Throws
+  /// EmptyResult if no sample has the label, InvalidArgument if the image has not exactly two values.
+  std::string apply(std::variant<ReadImageResult, ReadImage5dResult>& input, std::vector<ContourResult>& results) const;
+
   [[nodiscard]] bool are_linear() const { return rule_ == "linear"; }
-  /// Throws InvalidArgument unless positions are linear. `with`: another option.
+  /// Why simplices by --positions filtered have zero size, for reports.
+  static constexpr const char* kNoSize =
+      "samples of the image, or of --positions-image where they are clamped, equal the isovalue; --epsilon avoids them";
+  /// Throws InvalidArgument unless positions are linear, and for --label with an option that needs the image of FILE.
+  /// `with`: another option.
   void refuse(const std::string& with) const;
   /// Throws InvalidArgument for an option that the rule does not have or that it misses, FileNotFound for a missing
   /// image.
@@ -38,6 +53,7 @@ class PositionArguments {
   std::string rule_ = "linear";
   std::string file_;
   std::string weight_ = "1";
+  std::string label_;
 };
 
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
