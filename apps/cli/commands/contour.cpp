@@ -50,8 +50,7 @@ constexpr const char* kContourExamples =
     "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
     "  tegl contour cavity.pvd --var p --iso 0 -o p.vtkhdf               (a mesh over time)\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
-    "A file of 2 to 5 dimensions gives segments, triangles, tetrahedra or 4-simplices. Cut the last two with 'tegl "
-    "slice'.";
+    "A file of 2 to 5 dimensions gives segments, triangles, tetrahedra or 4-simplices: 'tegl slice' cuts the last two.";
 
 class ContourCommand final : public Command {
  public:
