@@ -41,8 +41,9 @@ constexpr const char* kSliceExamples =
     "  tegl slice ocean.vtkhdf --at x=329.5 -o meridian.vtkhdf       (a surface in y, z and t)\n"
     "  tegl slice ocean.vtkhdf --at t=7.3 --attribute ocean.nc -o july.ply\n"
     "  tegl slice ocean.vtkhdf --plane 1,0,0,5=200 --scale t=10 -o moving.vtkhdf   (where x + 5 t = 200)\n"
-    "An axis has the name in the file or x, y, z, t; numbers are in its unit and need not be whole. A cut across an\n"
-    "axis has the other axes as its coordinates; other cuts have orthonormal ones, which --json reports as 'frame'.\n"
+    "An axis has the name in the file or x, y, z, t, u; numbers are in its unit and need not be whole. A cut across\n"
+    "an axis has the other axes as its coordinates; other cuts have orthonormal ones, which --json reports as\n"
+    "'frame'.\n"
     "For an image, only the layers next to each cut are contoured (with --plane, all of them). A saved contour is cut\n"
     "directly, all cuts of one direction in one pass.";
 

@@ -283,7 +283,7 @@ StoredImage open_member(const fs::path& path, const ZipMember& member) {
 
 bool is_image(const StoredImage& image) {
   const auto longer = std::ranges::count_if(image.grid.axes, [](const Axis& axis) { return axis.size() > 1; });
-  return longer >= 2 && image.grid.axes.size() <= 4;
+  return longer >= 2 && image.grid.axes.size() <= 5;
 }
 
 /// An array of an archive.
@@ -338,7 +338,7 @@ StoredImage open_npz(const fs::path& path, std::string_view variable) {
       if (array_name(member) == variable) return chosen(open_member(path, member), variable);
   if (arrays.empty())
     fail(variable.empty() ? ErrorCode::UnsupportedData : ErrorCode::VariableNotFound, path,
-         "{}no array with 2 to 4 axes longer than 1 among {} members",
+         "{}no array with 2 to 5 axes longer than 1 among {} members",
          variable.empty() ? std::string() : fmt::format("no array '{}'; ", variable), members.size());
   if (!variable.empty())
     fail(ErrorCode::VariableNotFound, path, "no array '{}'; expected one of {}", variable, names_of(arrays));
