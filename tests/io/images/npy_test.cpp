@@ -3,9 +3,11 @@
 // NumPy's files: types, orders and versions of .npy; members of .npz; malformed headers and archives.
 #include "images/npy_files.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "io_support.hpp"
+#include "tegl/io/series.hpp"
 
 namespace tegl::test {
 namespace {
@@ -135,6 +137,17 @@ TEST(Npy, HalvesBecomeFloatsExactly) {
   const std::vector<float> expected = {1.0f, -2.0f, 65504.0f, 0x1p-14f, 0x1p-24f, 1.0f + 0x1p-10f, INFINITY};
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(image.values[i], expected[i]) << i;
   EXPECT_TRUE(std::isnan(image.values[7]));
+}
+
+TEST(Npy, ArchivesHoldImagesOfFiveAxes) {
+  TempDir dir;
+  write_file(dir / "a.npz", zip({{"a.npy", npy("<i2", "2, 2, 3, 1, 2", bytes_of(kValues)), true}}));
+  const std::array<std::filesystem::path, 1> files = {dir / "a.npz"};
+  const auto read = std::get<ReadSeries5dResult>(read_series_to_5d(files));
+  const auto& image = std::get<OwnedImage<float, 5>>(read.image);
+  EXPECT_EQ(image.values, std::vector<float>(kValues.begin(), kValues.end()));
+  EXPECT_EQ(image.grid.axes[2].size(), 3U);
+  EXPECT_EQ(image.grid.axes[4].size(), 2U);
 }
 
 TEST(Npy, LayersAreTheImage) {
