@@ -49,7 +49,9 @@ struct Component {
   /// Euclidean length (N = 2), area (3), 3-volume (4) or 4-volume (5), in the units of the coordinates.
   double size = 0.0;
   /// The enclosed area (N = 2), volume (3), 4-volume (4) …: positive if the component's inside is high, negative for a
-  /// cavity; none if the component is open. Contents of components sum to the content of the contour.
+  /// cavity; none if the component is open. A component of a wrapped contour encloses it if it does not wind round a
+  /// period, so that it is closed when unrolled; one that winds, only if it does not separate the two ends of an axis
+  /// that is not periodic. Contents of components sum to the content of the contour, if all have one.
   std::optional<double> content = {};
   std::array<double, N> centroid{};      ///< of its points, uniformly weighted; for size 0 the middle of the box
   std::array<double, N> lowest{};        ///< minimum corner of the bounding box

@@ -23,7 +23,9 @@ struct Measures {
   /// Euclidean length (N = 2), area (3), 3-volume (4) or 4-volume (5); meaningful if all axes have one unit.
   double size = 0.0;
   /// The enclosed area (N = 2), volume (3) or N-volume, in the product of the axes' units; none if the contour is open.
-  /// Positive if high samples are inside.
+  /// Positive if high samples are inside. A wrapped contour encloses it if no component winds round a period, so that
+  /// all are closed when unrolled; or, if components wind, if it does not separate the two ends of an axis that is not
+  /// periodic. Otherwise there is none.
   std::optional<double> content = {};
   std::array<double, N> centroid{};      ///< of the contour's points; 0 for an empty contour
   std::array<double, N> lowest{};        ///< minimum corner of the bounding box
@@ -69,11 +71,12 @@ struct CutMeasures {
 /// simplex's normal vector. The content follows from it and the distance of the cut's plane from the origin, which is
 /// linear in t. If the curve jumps because parts are flat at one time, the result is the limit from below; at the
 /// contour's first time, the limit from above. This is the cut that `slice` makes, except if missing values leave no
-/// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0.
+/// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0. The cuts of a
+/// wrapped contour are made and measured one by one, in O(#S) each; a content is as in Measures.
 ///
-/// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range); Cancelled. O(#S
-/// + h) time, and that of `measure` for open faces, for h pairs of a simplex and its cut; memory as `measure`, plus up
-/// to 32 MiB, or 32 bytes for each value. Thread-safe.
+/// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range, a wrapped contour
+/// whose last axis is periodic); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h pairs of a
+/// simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each value. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,

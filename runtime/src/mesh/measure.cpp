@@ -17,6 +17,7 @@
 #include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/open_ridges.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl {
 namespace {
@@ -185,6 +186,23 @@ std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& cont
   return result;
 }
 
+/// Makes the cuts of a wrapped contour, which are wrapped, too: whether one encloses a content depends on where it
+/// winds round.
+template <int N, class Real>
+std::vector<CutMeasures> measure_wrapped_cuts(const Contour<N, Real>& contour, std::span<const double> at,
+                                              const WorkOptions& work) {
+  std::vector<CutMeasures> result;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double first = static_cast<double>(i) / static_cast<double>(at.size());
+    const double last = static_cast<double>(i + 1) / static_cast<double>(at.size());
+    const auto cut = slice(contour, Hyperplane<N>::across(N - 1, at[i]),
+                           {work.threads, detail::part_of(work.progress, first, last)});
+    const Measures<N - 1> measures = measure(cut, {work.threads, {}});
+    result.push_back({at[i], measures.size, measures.content});
+  }
+  return result;
+}
+
 }  // namespace
 
 template <int N, Coordinate Real>
@@ -207,12 +225,13 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
                                                                          std::span<const double> at,
                                                                          const WorkOptions& work) {
-  detail::require_unwrapped(contour, "measure_cuts");
   detail::require_vertices(contour);
   detail::require_finite(contour);
   for (const double t : at)
     if (!std::isfinite(t))
       throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
+  if constexpr (N <= 4)
+    if (!contour.periods.empty()) return measure_wrapped_cuts(contour, at, work);
   return measure_cuts_of_view(detail::SimplexView<N>(contour), contour.direction, at, work);
 }
 

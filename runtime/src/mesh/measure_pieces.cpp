@@ -9,6 +9,7 @@
 
 #include "base/workers.hpp"
 #include "mesh/closed_stars.hpp"
+#include "mesh/lifts.hpp"
 
 namespace tegl::detail {
 
@@ -116,6 +117,7 @@ struct LabelledPieces {
   const SimplexView<N>& contour;
   Labels labels;
   std::span<const PointOf<N>> references;
+  const Lifts<N>& lifts;  ///< of a wrapped contour
 };
 
 /// Adds a few simplices to their sums.
@@ -146,7 +148,10 @@ class AddPieces {
     }
     for (std::size_t s = first; s < end; ++s) {
       std::array<PointOf<N>, N> corners = pieces_.contour.corners(s);
-      move_near(periods, reference, corners[0]);
+      if (pieces_.lifts.winds[pieces_.labels[s]])
+        move_near(periods, reference, corners[0]);
+      else
+        corners[0] = pieces_.lifts.point(pieces_.contour, pieces_.contour.simplices()[s][0]);
       for (int j = 1; j < N; ++j) move_near(periods, corners[0], corners[j]);
       sum.add(corners);
     }
@@ -200,13 +205,15 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
   const std::span<const Period<N>> periods = contour.periods();
   std::optional<PointOf<N>> across;
   if (!periods.empty()) across = across_periods(periods);
-  const PointOf<N>* const direction = across ? &*across : nullptr;
+  const Lifts<N> lifts = find_lifts<N>(contour, simplex_labels, reference);
+  const auto empty_sum = [&](Index label) {
+    return PieceSums<N>(reference[label], across && lifts.winds[label] ? &*across : nullptr);
+  };
   std::vector<PieceSums<N>> sums;
-  for (const PointOf<N>& point : reference) sums.emplace_back(point, direction);
-  const LabelledPieces<N> pieces{contour, labels, reference};
+  for (Index label = 0; label < count; ++label) sums.push_back(empty_sum(label));
+  const LabelledPieces<N> pieces{contour, labels, reference, lifts};
   for_labelled<PieceSums<N>>(
-      labels, count, threads, part_of(progress, 0.0, 0.9),
-      [&](Index label) { return PieceSums<N>(reference[label], direction); },
+      labels, count, threads, part_of(progress, 0.0, 0.9), empty_sum,
       [&](std::size_t from, std::size_t to) { return AddPieces<N>(pieces, from, to); },
       [&](const PieceSums<N>& sum, Index label) { sums[label].add(sum); });
   // boxes of vertices
@@ -217,8 +224,10 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
         return [&](Extent<N>& extent, std::size_t first, std::size_t end) {
           Extent<N> found = extent;
           for (std::size_t v = first; v < end; ++v) {
-            PointOf<N> point = contour.point(static_cast<Index>(v));
-            if (!periods.empty()) move_near(periods, reference[vertex_labels[v]], point);
+            const auto vertex = static_cast<Index>(v);
+            const bool is_lifted = !periods.empty() && !lifts.winds[vertex_labels[v]];
+            PointOf<N> point = is_lifted ? lifts.point(contour, vertex) : contour.point(vertex);
+            if (!periods.empty() && !is_lifted) move_near(periods, reference[vertex_labels[v]], point);
             found.add(point, point, 1);
           }
           extent = found;
@@ -237,7 +246,7 @@ std::vector<PieceMeasures<N>> measure_pieces(const SimplexView<N>& contour, std:
                      sums[label].centroid(lowest, highest),
                      lowest,
                      highest,
-                     periods.empty() || (across && std::abs(sums[label].directed()) <= 1e-6 * sums[label].size())};
+                     !lifts.winds[label] || (across && std::abs(sums[label].directed()) <= 1e-6 * sums[label].size())};
   }
   return result;
 }

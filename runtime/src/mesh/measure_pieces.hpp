@@ -56,12 +56,13 @@ inline Groups group_by(std::span<const Index> labels, Index count, const Progres
 
 /// Sums over simplices. Coordinates are relative to a reference point near them, so that the terms are small.
 ///
-/// A wrapped contour has no inside of its own cell: the flux of the position vector depends on where the cell is cut.
-/// The flux of the field <e, x> e does not, for a unit vector e across all periods. Its divergence is 1, too.
+/// A wrapped contour that winds round a period has no inside of its own cell: the flux of the position vector depends
+/// on where the cell is cut. The flux of the field <e, x> e does not, for a unit vector e across all periods. Its
+/// divergence is 1, too.
 template <int N>
 class PieceSums {
  public:
-  /// `across`: e of a wrapped contour (`across_periods`); null for others.
+  /// `across`: e of a contour that winds (`across_periods`); null for others.
   explicit PieceSums(const PointOf<N>& reference, const PointOf<N>* across = nullptr)
       : reference_(reference), across_(across) {}
 
@@ -174,7 +175,7 @@ struct PieceMeasures {
   PointOf<N> centroid{};
   PointOf<N> lowest{};
   PointOf<N> highest{};
-  bool bounds = true;  ///< false: the simplices are of a wrapped contour and enclose nothing
+  bool bounds = true;  ///< false: the simplices wind round periods and enclose nothing
 };
 
 /// Measures of the simplices with each label 0 … count - 1. Each label must have a simplex. Simplices and vertices with

@@ -408,6 +408,53 @@ TEST(Periodic, ASurfaceAroundThePeriodEnclosesWhatIsAcross) {
   EXPECT_FALSE(measure(layer).content);
 }
 
+/// A ball of a radius around a point of the torus.
+double ball_on_torus(const std::array<double, 3>& x, const std::array<double, 3>& middle, double radius) {
+  double square = 0.0;
+  for (int a = 0; a < 3; ++a) square += std::pow(std::remainder(x[a] - middle[a], 1.0), 2);
+  return radius - std::sqrt(square);
+}
+
+TEST(Periodic, WithAllAxesPeriodicWhatDoesNotWindRoundEnclosesAContent) {
+  constexpr double kRadius = 0.42;  // more than half a period across
+  const auto content = [](double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; };
+  for (const std::array<double, 3>& middle : {std::array{0.5, 0.5, 0.5}, std::array{0.0, 0.97, 0.3}}) {
+    const auto image = torus_image<3>({48, 48, 48}, [&](const auto& x) { return ball_on_torus(x, middle, kRadius); });
+    const auto contour = wrapped<double>(image, all_periodic<3>(), 0.0);
+    const Measures<3> found = measure(contour);
+    ASSERT_TRUE(found.content);
+    EXPECT_NEAR(*found.content, content(kRadius), 3e-3);
+    const auto parts = components(contour, label_components(contour));
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_NEAR(*parts[0].content, *found.content, 1e-12);
+    for (int a = 0; a < 3; ++a) {
+      EXPECT_NEAR(parts[0].highest[a] - parts[0].lowest[a], 2 * kRadius, 1e-2);
+      EXPECT_NEAR(std::remainder(parts[0].centroid[a] - middle[a], 1.0), 0.0, 1e-6);
+    }
+  }
+}
+
+TEST(Periodic, OnlyTheComponentsThatWindRoundAllPeriodsHaveNoContent) {
+  // a ball across the seam and a tube along x
+  const auto image = torus_image<3>({40, 40, 40}, [](const auto& x) {
+    return std::max(ball_on_torus(x, {0.0, 0.0, 0.0}, 0.2), 0.15 - std::hypot(x[1] - 0.5, x[2] - 0.5));
+  });
+  const auto contour = wrapped<double>(image, all_periodic<3>(), 0.0);
+  EXPECT_FALSE(measure(contour).content);
+  const auto parts = components(contour, label_components(contour));
+  ASSERT_EQ(parts.size(), 2u);
+  for (const Component<3>& part : parts) {
+    EXPECT_EQ(part.content.has_value(), part.euler == 2);
+    if (part.content) EXPECT_NEAR(*part.content, 4.0 / 3.0 * std::numbers::pi * 0.008, 1e-3);
+  }
+  // two balls, one of them a cavity of the other
+  const auto shell = torus_image<3>({40, 40, 40}, [](const auto& x) {
+    return std::min(ball_on_torus(x, {0.0, 0.1, 0.9}, 0.4), -ball_on_torus(x, {0.0, 0.1, 0.9}, 0.2));
+  });
+  EXPECT_NEAR(measure(wrapped<double>(shell, all_periodic<3>(), 0.0)).content.value(),
+              4.0 / 3.0 * std::numbers::pi * (0.064 - 0.008), 3e-3);
+}
+
 TEST(Periodic, AffineMapsAndDescendingAxesKeepTheTopology) {
   auto image = torus_image<3>({14, 15, 13}, gyroid);
   image.grid.linear = {{{0.0, 0.5, 0.5}, {0.5, 0.0, 0.5}, {0.5, 0.5, 0.0}}};
