@@ -13,6 +13,7 @@
 #include "sample_files.hpp"
 #include "tegl/check.hpp"
 #include "tegl/io.hpp"
+#include "tegl/measure.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {
@@ -91,11 +92,6 @@ TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
   expect_refused({"--periodic", "x", "--facets", "-o", output}, "--periodic x with --facets");
   expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");
   expect_refused({"--unroll", "-o", output}, "--unroll without --periodic");
-  const std::string saved = path("ball.vtkhdf");
-  (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x", "-o", saved});
-  const RunResult run = run_tegl({"simplify", saved, "--ratio", "0.5", "-o", path("few.vtkhdf")});
-  EXPECT_NE(run.exit, 0);
-  EXPECT_THAT(run.err, HasSubstr("a wrapped contour"));
 }
 
 TEST_F(PeriodicCommand, SlicesOfASavedContourAreWrappedToo) {
@@ -105,9 +101,67 @@ TEST_F(PeriodicCommand, SlicesOfASavedContourAreWrappedToo) {
   const Mesh circle = read_mesh(path("circle.vtkhdf"));
   EXPECT_EQ(circle.periods.size(), 5u);
   EXPECT_EQ(check(to_contour<2>(circle)).boundary_simplices, 0u);
-  const RunResult run = run_tegl({"slice", saved, "--at", "x=1", "-o", path("none.ply")});
+  // across the period: both ends of the unrolled contour
+  (void)run_json({"slice", saved, "--at", "x=1", "-o", path("across.vtkhdf")});
+  const Mesh across = read_mesh(path("across.vtkhdf"));
+  EXPECT_TRUE(across.periods.empty());
+  EXPECT_NEAR(*measure(to_contour<2>(across)).content, std::numbers::pi * 24, 1.5);
+}
+
+TEST_F(PeriodicCommand, CommandsForPlainContoursUnrollWrappedOnes) {
+  const std::string saved = path("ball.vtkhdf"), fewer = path("few.vtkhdf");
+  (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x", "-o", saved});
+  const RunResult run = run_tegl({"simplify", saved, "--ratio", "0.5", "-o", fewer});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the contour is unrolled"));
+  EXPECT_EQ(check(to_contour<3>(read_mesh(fewer))).components, 2u);
+  const nlohmann::json direct =
+      run_json({"simplify", file_, "--iso", "0", "--periodic", "x", "--ratio", "0.5", "-o", fewer});
+  EXPECT_EQ(direct["vertices"], read_mesh(fewer).coordinates.size() / 3);
+  // cuts of a contour that does not wind round, with what they enclose
+  const nlohmann::json cuts = run_json({"measure", saved, "--at", "z=9.5,12"});
+  EXPECT_NEAR(cuts["cuts"][0]["content"].get<double>(), std::numbers::pi * 25, 2);
+  EXPECT_NEAR(cuts["cuts"][1]["content"].get<double>(), std::numbers::pi * (25 - 6.25), 2);
+  EXPECT_EQ(run_json({"measure", file_, "--iso", "0", "--periodic", "x", "--at", "z=9.5,12"})["cuts"], cuts["cuts"]);
+  // and across a period
+  EXPECT_NEAR(
+      run_json({"measure", file_, "--iso", "0", "--periodic", "z", "--at", "z=9.5"})["cuts"][0]["size"].get<double>(),
+      10 * std::numbers::pi, 1.0);
+  // a component that does not wind round encloses a volume
+  const nlohmann::json all = run_json({"measure", file_, "--iso", "0", "--periodic", "all"});
+  EXPECT_NEAR(all["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 125, 15);
+}
+
+TEST_F(PeriodicCommand, ImagesAreInterpolatedAcrossTheSeam) {
+  // values y + z, and a second image with half the samples along x
+  const auto sum = [](const std::vector<double>& x) { return x[1] + x[2]; };
+  const std::string fine = write("fine.nii", nifti_bytes(sample({30, 20, 20}, sum), {1, 1, 1}));
+  const std::string coarse = write("coarse.nii", nifti_bytes(sample({15, 20, 20}, sum), {2, 1, 1}));
+  for (const char* const name : {"wrapped.vtkhdf", "unrolled.ply"}) {
+    (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x", "--attribute", fine, "--attribute", coarse, "-o",
+                    path(name)});
+    const Mesh mesh = read_mesh(path(name));
+    ASSERT_GE(mesh.vertex_attributes.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t v = 0; v < mesh.coordinates.size() / 3; ++v)
+        ASSERT_NEAR(mesh.vertex_attributes[i].values[v], mesh.coordinates[3 * v + 1] + mesh.coordinates[3 * v + 2],
+                    1e-4);
+  }
+}
+
+TEST_F(PeriodicCommand, SlicesOfAnImageKnowItsTiling) {
+  const std::string direct = path("direct.vtkhdf"), saved = path("ball.vtkhdf"), cut = path("cut.vtkhdf");
+  (void)run_json({"slice", file_, "--iso", "0", "--periodic", "x", "--at", "z=9.5", "-o", direct});
+  (void)run_json({"contour", file_, "--iso", "0", "--periodic", "x", "-o", saved});
+  (void)run_json({"slice", saved, "--at", "z=9.5", "-o", cut});
+  EXPECT_EQ(read_mesh(direct).coordinates, read_mesh(cut).coordinates);
+  EXPECT_EQ(read_mesh(direct).periods, read_mesh(cut).periods);
+  const nlohmann::json divided =
+      run_json({"slice", file_, "--iso", "0", "--division", "kuhn", "--at", "z=9.5", "-o", cut});
+  EXPECT_EQ(divided["tiles"], 6 * 29 * 19 * 19);
+  const RunResult run = run_tegl({"slice", saved, "--periodic", "x", "--at", "z=1", "-o", cut});
   EXPECT_NE(run.exit, 0);
-  EXPECT_THAT(run.err, HasSubstr("across one of its periods"));
+  EXPECT_THAT(run.err, HasSubstr("saved contour, which does not take --periodic"));
 }
 
 TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
@@ -170,6 +224,100 @@ TEST_F(PeriodicCommand, MeshesAreClosedAndHaveNormalsFromTheGradient) {
   const RunResult run = run_tegl({"contour", file, "--iso", "0.25", "--normals", "sobel", "-o", saved});
   EXPECT_NE(run.exit, 0);
   EXPECT_THAT(run.err, HasSubstr("--normals sobel with"));
+}
+
+/// A mesh of two tetrahedra with the arrays f and g = 10 f + z.
+std::string tetrahedra(const std::string& f, const std::string& g, const std::string& last = "0 0 1") {
+  return R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2"><PointData>
+<DataArray type="Float64" Name="f" format="ascii">)" +
+         f + R"(</DataArray><DataArray type="Float64" Name="g" format="ascii">)" + g +
+         R"(</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 -1 )" +
+         last + R"(</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 4 0 2 1 3</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4 8</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
+}
+
+class MeshAttribute : public ProgramTest {
+ protected:
+  /// Expects g = 10 f + z at the vertices of a contour of f.
+  static void expect_g(const std::string& file, double f) {
+    const Mesh mesh = read_mesh(file);
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    const Attribute& g = mesh.vertex_attributes[0];
+    EXPECT_EQ(g.name, "g");
+    ASSERT_GT(g.values.size(), 2u);
+    for (std::size_t v = 0; v < g.values.size(); ++v)
+      EXPECT_NEAR(g.values[v], 10 * f + mesh.coordinates[v * static_cast<std::size_t>(mesh.space_dim) + 2], 1e-6);
+  }
+  void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
+    arguments.insert(arguments.begin(), {"contour", first_, "--var", "f", "--iso", "0.5", "-o", path("none.vtkhdf")});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+  std::string first_ = "";
+};
+
+TEST_F(MeshAttribute, ArraysOfAMeshAreInterpolatedAtItsContour) {
+  first_ = write("first.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1"));
+  const std::string second = write("second.vtu", tetrahedra("2 1 1 1 1", "20 10 10 9 11"));
+  const std::string out = path("out.vtkhdf");
+  const auto run = [](const std::vector<std::string>& arguments) {
+    const RunResult done = run_tegl(arguments);
+    EXPECT_EQ(done.exit, 0) << done.err;
+  };
+  run({"contour", first_, "--var", "f", "--iso", "0.25", "--attribute", first_ + ":g", "-o", out});
+  expect_g(out, 0.25);
+  run({"contour", first_, "--var", "f", "--iso", "0.25", "--close", "--precision", "float", "--attribute",
+       first_ + ":g", "-o", out});
+  // over time, and slices of it
+  run({"contour", first_, second, "--var", "f", "--iso", "1.25", "--attribute", first_ + ":g", "-o", out});
+  expect_g(out, 1.25);
+  run({"slice", first_, second, "--var", "f", "--iso", "1.25", "--at", "t=0.75", "--attribute", first_ + ":g", "-o",
+       out});
+  expect_g(out, 1.25);
+  run({"elements", first_, "--var", "f", "--iso", "0.25", "--attribute", first_ + ":g", "-o", path("elements.dat")});
+  expect_refused({"--attribute", first_ + ":h"}, "has no array 'h'");
+  expect_refused({"--attribute", first_ + ":g", "--attribute", first_ + ":g"}, "already has an attribute 'g'");
+  const std::string other = write("other.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1", "0 0 2"));
+  expect_refused({"--attribute", other + ":g"}, "the mesh has other points than");
+}
+
+TEST_F(MeshAttribute, TheErrorOfAnUnknownFormatNamesMeshesAndTables) {
+  const std::string file = write("what.foo", "abc");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", file}, {"contour", file, "--iso", "1", "-o", path("none.ply")}}) {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr("meshes (.vtu, .vts, .pvd) and tables of points (.csv)"));
+  }
+}
+
+TEST_F(MeshAttribute, ColumnsOfATableAreInterpolatedToo) {
+  std::string table = "x,y,f,g\n";
+  for (int i = 0; i < 49; ++i) {
+    const int x = i % 7, y = i / 7;
+    table += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(x + 2 * y) + "," +
+             std::to_string(3 * x) + "\n";
+  }
+  const std::string file = write("points.csv", table), out = path("line.vtkhdf");
+  const RunResult run =
+      run_tegl({"contour", file, "--var", "f", "--iso", "7.5", "--attribute", file + ":g", "-o", out});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const Mesh mesh = read_mesh(out);
+  const auto line = to_contour<2>(mesh);
+  ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+  for (std::size_t v = 0; v < line.vertices.size(); ++v)
+    EXPECT_NEAR(mesh.vertex_attributes[0].values[v], 3 * line.vertices[v][0], 1e-5);
+  // as few points as possible, and points without area
+  const std::string few = write("few.csv", "x,y,v\n0,0,1\n1,0,0\n0,1,0\n");
+  EXPECT_EQ(run_tegl({"contour", few, "--iso", "0.5", "-o", path("few.ply")}).exit, 0);
+  const RunResult flat =
+      run_tegl({"contour", write("flat.csv", "x,y,v\n0,0,1\n1,1,0\n2,2,0\n"), "--iso", "0.5", "-o", path("f.ply")});
+  EXPECT_NE(flat.exit, 0);
+  EXPECT_THAT(flat.err, HasSubstr("3 points that lie in a line; expected points in 2 dimensions"));
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "input/extraction.hpp"
 #include "input/merging.hpp"
 #include "input/mesh_input.hpp"
+#include "input/point_arrays.hpp"
 #include "input/positions.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
@@ -192,7 +193,8 @@ class ContourCommand final : public Command {
     if (app().count("--pick") > 0) options_.refuse_tiling("--pick");
     if (one_file_) options_.refuse_tiling("--one-file");
     if (options_.polygon_triangulation()) options_.refuse_tiling("a triangulation of polygons");
-    if (attributes_.wanted()) options_.refuse_tiling("--attribute");
+    if (const Tiling tiling = options_.tiling(); attributes_.wanted() && (tiling.lattice || tiling.of_cells))
+      options_.refuse_tiling("--attribute");
   }
 
   /// Whether no option is given that needs straight axes.
@@ -395,6 +397,7 @@ class ContourCommand final : public Command {
       result.image_dim = input.space_dim();
       require_mesh_contour(input.mesh, *result.isovalue, options_.allows_empty());
     }
+    const auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (ContourResult& result : results) {
@@ -402,6 +405,7 @@ class ContourCommand final : public Command {
       result.mesh = extract_mesh_and_use<Mesh>(
           input, *result.isovalue, options, options_.single_precision(), [&](auto extraction) {
             result.stats = extraction.stats;
+            add_point_arrays(extraction.contour, input, *result.isovalue, options, arrays);
             return with_additions(std::move(extraction.contour), options.work.threads, bar, result);
           });
       result.seconds.add(*result.stats);
@@ -510,16 +514,10 @@ class ContourCommand final : public Command {
 
   /// The numbers of --pick; empty without the option.
   [[nodiscard]] std::vector<double> picked_point() const {
-    std::vector<double> point;
-    if (app().count("--pick") == 0) return point;
+    if (app().count("--pick") == 0) return {};
     if (is_streamed() || !index_.empty() || facets_)
       throw Error(ErrorCode::InvalidArgument, "--pick with --index, --facets or --stream; expected it without them");
-    for (std::size_t at = 0; at <= pick_.size();) {
-      const std::size_t comma = std::min(pick_.find(',', at), pick_.size());
-      point.push_back(parse_finite("--pick", std::string_view(pick_).substr(at, comma - at)));
-      at = comma + 1;
-    }
-    return point;
+    return parse_list("--pick", pick_);
   }
 
   /// The point of --pick.
@@ -567,7 +565,8 @@ class ContourCommand final : public Command {
     }
     options_.add_shape_normals(contour);
     if (tiling_.curved.empty())
-      attributes_.sample_to(contour, image_options(), threads, bar, {{}, nullptr, images().index_grid()});
+      attributes_.sample_to(contour, image_options(), threads, bar,
+                            {{}, nullptr, images().index_grid(), are_cell_meshes(files(), images())});
     return to_mesh(unrolled_for(std::move(contour), output_, unroll_));
   }
 

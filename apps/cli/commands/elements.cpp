@@ -74,6 +74,7 @@ class ElementsCommand final : public ContourInputCommand {
         ->check(CLI::IsMember({"simplex", "cell"}))
         ->capture_default_str();
     attributes_.add_to(app());
+    interpolate_arrays_of(&attributes_);
     app()
         .add_option("--order", order_,
                     "order of the axes in the file: time-first (the last axis becomes the first) or as-is")
@@ -145,7 +146,8 @@ class ElementsCommand final : public ContourInputCommand {
     // attributes
     Stopwatch watch;
     if constexpr (N <= 4)
-      attributes_.sample_to(contour, image_options(), threads(), bar);
+      attributes_.sample_to(contour, image_options(), threads(), bar,
+                            {{}, nullptr, false, are_cell_meshes(files(), images())});
     else if (attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument, "--attribute with a 5D contour; expected one in 2 to 4 dimensions");
     report.attribute_seconds = watch.lap();

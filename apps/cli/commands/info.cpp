@@ -336,7 +336,7 @@ class InfoCommand final : public Command {
       : Command(
             program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
             "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, .pvd) "
-            "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd) or an index (.tindex)",
+            "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd), a table of points (.csv) or an index (.tindex)",
             Files::image) {
     add_image_options();
     app().footer(kInfoExamples);

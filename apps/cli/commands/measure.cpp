@@ -128,7 +128,12 @@ class MeasureCommand final : public ContourInputCommand {
       // cuts
       const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
                                              contour.vertices.size() * N);
-      found.cuts = measure_cuts(contour, meet_vertices(at, vertices, N, N - 1), {threads(), bar.stage("cuts")});
+      const std::vector<double> places = meet_vertices(at, vertices, N, N - 1);
+      const WorkOptions work{threads(), bar.stage("cuts")};
+      if constexpr (N <= 4)
+        if (crosses_period(contour, Hyperplane<N>::across(N - 1, 0.0)))
+          found.cuts = measure_cuts(unroll(contour).contour, places, work);
+      if (found.cuts.empty()) found.cuts = measure_cuts(contour, places, work);
       for (std::size_t i = 0; i < at.size(); ++i) found.cuts[i].at = at[i];
     }
     return found;
@@ -199,7 +204,7 @@ class MeasureCommand final : public ContourInputCommand {
       text += report_line("encloses", fmt::format("not defined: it is open (border of {})",
                                                   counted_simplices(dim - 1, found.boundary)));
     else if (found.open == 0)
-      text += report_line("encloses", "not defined: it continues across the seam of periodic axes");
+      text += report_line("encloses", "not defined: it winds round periodic axes");
     else
       text += report_line("encloses", fmt::format("not defined: its orientations do not agree at {}",
                                                   counted_simplices(dim - 1, found.open)));

@@ -17,6 +17,7 @@
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
 #include "input/cuts.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/slice.hpp"
@@ -122,6 +123,7 @@ class ProjectCommand final : public ContourInputCommand {
     app().add_flag("--no-check", no_check_, "skip the check of the result");
     compress_.add_to(app());
     attributes_.add_to(app());
+    interpolate_arrays_of(&attributes_);
     app().footer(kProjectExamples);
   }
 
@@ -138,6 +140,7 @@ class ProjectCommand final : public ContourInputCommand {
     // read and project
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
+    remark(unroll_input(input));
     auto* const contour = std::get_if<Contour<4, double>>(&input.contour);
     if (contour == nullptr)
       throw Error(ErrorCode::UnsupportedData,
@@ -146,7 +149,8 @@ class ProjectCommand final : public ContourInputCommand {
     result.output = output_;
     result.compression = compress_.compression();
     result.wording = wording();
-    attributes_.sample_to(*contour, image_options(), threads(), bar);
+    attributes_.sample_to(*contour, image_options(), threads(), bar,
+                          {{}, nullptr, false, are_cell_meshes(files(), images())});
     Stopwatch watch;
     result.mesh = projected(*contour, projection, bar);
     result.seconds.slice = watch.lap();

@@ -96,6 +96,7 @@ class SimplifyCommand final : public ContourInputCommand {
     // read and simplify
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);
+    remark(unroll_input(input));
     require_output_holds(output_, input.space_dim() - 1);
     SimplifyStats stats;
     ContourResult result = input.to_result();

@@ -25,6 +25,7 @@
 #include "input/extraction.hpp"
 #include "input/layer_image.hpp"
 #include "input/mesh_input.hpp"
+#include "input/point_arrays.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 
@@ -89,6 +90,7 @@ template <int N, class Real>
 void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
                     std::vector<ContourResult>& results, ProgressBar& bar) {
   stretch(contour, factors);
+  std::optional<Contour<N, Real>> unrolled;  // for cuts across a period
   for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
     const Cut& like = *results[first].cut;
     std::vector<Hyperplane<N>> hyperplanes;
@@ -97,7 +99,10 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
          ++end)
       hyperplanes.push_back(hyperplane_of<N>(*results[end].cut, factors));
     Stopwatch watch;
-    auto cuts = slice_stack(contour, hyperplanes, {own.threads(), bar.stage("slice")});
+    const bool is_across = crosses_period(contour, hyperplanes.front());
+    if constexpr (N <= 4)
+      if (is_across && !unrolled) unrolled = unroll(contour).contour;
+    auto cuts = slice_stack(is_across ? *unrolled : contour, hyperplanes, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       ContourResult& result = results[first + i];
       result.image_dim = N;
@@ -177,11 +182,11 @@ void append_points(const ContourResult& result, const std::vector<double>& facto
 /// Adds the values of other images at the vertices of the cuts.
 template <int N>
 void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& reading,
-                    const std::vector<double>& factors, unsigned threads, bool by_index,
+                    const std::vector<double>& factors, unsigned threads, bool by_index, bool of_mesh,
                     std::vector<ContourResult>& results, ProgressBar& bar) {
   Contour<N, double> points;  // the points of all cuts, so that each image is read once
   for (const ContourResult& result : results) append_points<N>(result, factors, points);
-  attributes.sample_to(points, reading, threads, bar, {{}, nullptr, by_index});
+  attributes.sample_to(points, reading, threads, bar, {{}, nullptr, by_index, of_mesh});
   for (const Attribute& all : points.vertex_attributes) {
     std::size_t first = 0;
     for (ContourResult& result : results) {
@@ -222,7 +227,7 @@ class SliceCommand final : public Command {
         ->allow_extra_args(false)
         ->type_name("AXIS=FACTOR");
     options_.add_to(app(), false);
-    options_.add_samples_are_to(app());
+    options_.add_tiling_to(app());
     attributes_.add_to(app());
     compress_.add_to(app());
     app()
@@ -262,12 +267,13 @@ class SliceCommand final : public Command {
                                                                                   : cut_image(std::move(cuts), bar);
     if (attributes_.wanted() && results[0].image_dim == 5)
       throw Error(ErrorCode::InvalidArgument, "--attribute with a cut of a 5D contour; expected a 3D or 4D contour");
+    const bool of_mesh = are_cell_meshes(files(), images());
     if (attributes_.wanted() && results[0].image_dim == 4)
-      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), results,
-                        bar);
+      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), of_mesh,
+                        results, bar);
     else if (attributes_.wanted())
-      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), results,
-                        bar);
+      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), of_mesh,
+                        results, bar);
     // check and write
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
@@ -313,7 +319,7 @@ class SliceCommand final : public Command {
   }
 
   std::vector<ContourResult> cut_image(const std::vector<Cut>& cuts, ProgressBar& bar) {
-    if (planes_.empty() && options_.samples_are_points())
+    if (planes_.empty() && options_.samples_are_points() && options_.tiling().is_plain())
       if (std::optional<std::vector<ContourResult>> results = cut_layers(cuts, bar)) return std::move(*results);
     turn_to_all_files();  // as listed, whatever order they were opened in
     return cut_whole_image(cuts, bar);
@@ -524,7 +530,9 @@ class SliceCommand final : public Command {
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
     require_mesh_contour(input.mesh, isovalue, options_.allows_empty());
-    keep_times_of_cuts(input, results);
+    auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);
+    for (PointArray& array : arrays) keep_times_of_cuts(array.mesh, results);
+    keep_times_of_cuts(input.mesh, results);
     make_complex(input);
     const double read_seconds = watch.lap();
     for (ContourResult& result : results) {
@@ -536,23 +544,26 @@ class SliceCommand final : public Command {
     options.work.progress = bar.stage("contour");
     cut_extraction(
         [&](const auto& use) {
-          extract_mesh_and_use<Nothing>(input, isovalue, options, options_.single_precision(), use);
+          extract_mesh_and_use<Nothing>(input, isovalue, options, options_.single_precision(), [&](auto extraction) {
+            add_point_arrays(extraction.contour, input, isovalue, options, arrays);
+            return use(std::move(extraction));
+          });
         },
         results, bar);
     return results;
   }
 
   /// Drops the times of a mesh that no cut needs, if all cuts are across the time.
-  static void keep_times_of_cuts(MeshInput& input, const std::vector<ContourResult>& results) {
-    if (!input.is_moving()) return;
+  static void keep_times_of_cuts(CellMesh& mesh, const std::vector<ContourResult>& results) {
+    if (mesh.times.size() < 2) return;
     double first = std::numeric_limits<double>::infinity(), last = -first;
     for (const ContourResult& result : results) {
       if (result.cut->is_outside) continue;
-      if (!result.cut->across || *result.cut->across != input.mesh.dim) return;
+      if (!result.cut->across || *result.cut->across != mesh.dim) return;
       first = std::min(first, result.cut->value);
       last = std::max(last, result.cut->value);
     }
-    if (first <= last) keep_times(input.mesh, first, last);
+    if (first <= last) keep_times(mesh, first, last);
   }
 
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {

@@ -13,7 +13,9 @@
 
 #include "input/curved_images.hpp"
 #include "input/extraction.hpp"
+#include "input/repeated_image.hpp"
 #include "output/output.hpp"
+#include "tegl/io/cell_meshes.hpp"
 #include "tegl/sample.hpp"
 
 namespace tegl::cli {
@@ -59,12 +61,15 @@ FileAndVariable parse_file_and_variable(const std::string& text) {
   std::error_code ignored;
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos || colon == 0 || fs::exists(text, ignored)) return {text, {}};
+  for (std::size_t at = colon; at != std::string::npos && at > 0; at = text.rfind(':', at - 1))
+    if (fs::exists(text.substr(0, at), ignored)) return {text.substr(0, at), text.substr(at + 1)};
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
 void AttributeOptions::add_to(CLI::App& app) {
   app.add_option("--attribute", texts_,
-                 "values of another image at the vertices: FILE, or FILE:VARIABLE (netCDF); may be given again")
+                 "values of another image, or of another array of the mesh, at the vertices: FILE, or FILE:VARIABLE; "
+                 "may be given again")
       ->allow_extra_args(false)
       ->type_name("FILE[:VAR]");
 }
@@ -73,6 +78,14 @@ std::vector<std::string> AttributeOptions::files() const {
   std::vector<std::string> files;
   for (const std::string& text : texts_) files.push_back(parse_file_and_variable(text).file);
   return files;
+}
+
+std::vector<FileAndVariable> AttributeOptions::meshes(bool allow_outside_paths) const {
+  std::vector<FileAndVariable> result;
+  for (const std::string& text : texts_)
+    if (FileAndVariable from = parse_file_and_variable(text); is_cell_mesh_file(from.file, allow_outside_paths))
+      result.push_back(std::move(from));
+  return result;
 }
 
 void AttributeOptions::require_inputs() const {
@@ -84,6 +97,7 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
                                  ProgressBar& bar, const std::type_identity_t<CurvedContour<N, Real>>& curved) const {
   for (const std::string& text : texts_) {
     const FileAndVariable from = parse_file_and_variable(text);
+    if (curved.of_mesh && is_cell_mesh_file(from.file, reading.allow_outside_paths)) continue;
     const Progress progress = bar.stage("attribute");
     reading.variable = from.variable;
     reading.work.progress = [&](double fraction) { return progress(0.7 * fraction); };
@@ -102,9 +116,11 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
     if (is_curved) require_same_grid(from.file, input.info.curved, curved.axes);
     const auto sampling = [&](double fraction) { return progress(0.7 + 0.3 * fraction); };
     const auto sample_owned = [&](const auto& owned) {
-      const auto view = is_curved ? on_indices(owned, input.info.curved) : owned.view();
-      contour.vertex_attributes.push_back(sample(view, is_curved ? *curved.in_indices : contour, name,
-                                                 input.info.value_unit, {.threads = threads, .progress = sampling}));
+      const WorkOptions work{threads, sampling};
+      const std::string& unit = input.info.value_unit;
+      contour.vertex_attributes.push_back(
+          is_curved ? sample(on_indices(owned, input.info.curved), *curved.in_indices, name, unit, work)
+                    : sample_across_periods(owned, contour, name, unit, work));
     };
     std::visit(sample_owned, std::get<AnyImageN<N>>(input.image));
   }

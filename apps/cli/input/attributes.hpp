@@ -17,7 +17,7 @@
 namespace tegl::cli {
 
 /// A file and one of its variables (may be empty), parsed from "FILE:VARIABLE". If a file with the whole text as its
-/// name exists, the colon is part of the name.
+/// name exists, the colon is part of the name. A variable may have a colon, too, as in "FILE:velocity:0".
 struct FileAndVariable {
   std::string file;
   std::string variable;
@@ -33,6 +33,7 @@ struct CurvedContour {
   std::span<const CurvedAxis> axes = {};         ///< none: the contour is not on a curved grid
   const Contour<N, Real>* in_indices = nullptr;  ///< the same vertices on index_grid
   bool by_index = false;                         ///< curved grids have their indices as coordinates (--index-grid)
+  bool of_mesh = false;                          ///< of a mesh of cells: files that are meshes are left out
 };
 
 class AttributeOptions {
@@ -44,6 +45,9 @@ class AttributeOptions {
 
   /// The files to read.
   [[nodiscard]] std::vector<std::string> files() const;
+
+  /// The files that are meshes of cells, with their variables. `allow_outside_paths`: in .pvd files.
+  [[nodiscard]] std::vector<FileAndVariable> meshes(bool allow_outside_paths) const;
 
   /// Throws FileNotFound if a file is missing, before the long work.
   void require_inputs() const;

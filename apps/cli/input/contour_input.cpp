@@ -15,6 +15,7 @@
 #include "base/empty_result.hpp"
 #include "base/numbers.hpp"
 #include "input/mesh_input.hpp"
+#include "input/point_arrays.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -148,6 +149,16 @@ std::string ContourInput::axis_unit(int axis) const {
   return std::visit([&](const auto& any) { return any.axis_units.at(static_cast<std::size_t>(axis)); }, contour);
 }
 
+std::string unroll_input(ContourInput& input) {
+  return std::visit(
+      [&]<int N>(Contour<N, double>& contour) -> std::string {
+        if (contour.periods.empty()) return "";
+        if constexpr (N <= 4) contour = unroll(contour).contour;
+        return "the contour is unrolled: it ends at both ends of its periodic axes";
+      },
+      input.contour);
+}
+
 ContourResult ContourInput::to_result() const {
   ContourResult result;
   result.input = file;
@@ -238,14 +249,18 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
   result.last_axis = space_of(input).axes.back();
   result.last_axis_of = "mesh";
   if (input.is_moving()) result.ends = {input.mesh.times.front(), input.mesh.times.back()};
+  std::vector<PointArray> arrays;
+  if (attributes_of_meshes_ != nullptr)
+    arrays = read_point_arrays(*attributes_of_meshes_, input.mesh, files(), images(), bar);
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");
-  result.contour = extract_mesh_and_use<AnyContour>(input, *result.isovalue, options, options_.single_precision(),
-                                                    [&](auto extraction) {
-                                                      result.stats = extraction.stats;
-                                                      options_.add_shape_normals(extraction.contour);
-                                                      return AnyContour(widened(std::move(extraction.contour)));
-                                                    });
+  result.contour = extract_mesh_and_use<AnyContour>(
+      input, *result.isovalue, options, options_.single_precision(), [&](auto extraction) {
+        result.stats = extraction.stats;
+        add_point_arrays(extraction.contour, input, *result.isovalue, options, arrays);
+        options_.add_shape_normals(extraction.contour);
+        return AnyContour(widened(std::move(extraction.contour)));
+      });
   result.seconds.add(*result.stats);
   return result;
 }

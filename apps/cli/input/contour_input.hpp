@@ -87,6 +87,9 @@ struct ContourInput {
   [[nodiscard]] ContourResult to_result() const;
 };
 
+/// Unrolls a wrapped contour, for operations that do not know periods. Returns a remark on it, or an empty text.
+std::string unroll_input(ContourInput& input);
+
 /// Sets the keys "input", "variable", "image_dim" and "isovalue".
 void add_input_keys(Json& json, const ContourInput& input);
 
@@ -109,6 +112,8 @@ Mesh mesh_of(Contour<N, Real>&& contour, const ContourInput& input) {
   mesh.single_precision = input.single_precision;
   return mesh;
 }
+
+class AttributeOptions;
 
 /// A command whose FILE is an image (with --iso and other options of extraction, and --var) or a saved contour (which
 /// allows only --threads of these).
@@ -133,6 +138,9 @@ class ContourInputCommand : public Command {
   [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false,
                                           CurvedGrids curved = CurvedGrids::allowed);
 
+  /// Sets the options whose arrays at the points of a mesh read_contour adds to its contour; null: none.
+  void interpolate_arrays_of(const AttributeOptions* attributes) { attributes_of_meshes_ = attributes; }
+
  private:
   /// Contours an image of 5 axes.
   void contour_5d(const ReadImage5dResult& input, ExtractOptions options, ProgressBar& bar, Stopwatch& watch,
@@ -141,6 +149,7 @@ class ContourInputCommand : public Command {
   [[nodiscard]] ContourInput read_mesh_contour(ProgressBar& bar);
 
   ExtractionOptions options_;
+  const AttributeOptions* attributes_of_meshes_ = nullptr;
 };
 
 /// World coordinates of the first and the last sample on the last axis; none if the world map mixes it with other axes.

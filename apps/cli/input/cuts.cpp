@@ -171,9 +171,14 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   return cuts;
 }
 
+std::vector<double> parse_list(const std::string& option, std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ',')) numbers.push_back(parse_finite(option, part));
+  return numbers;
+}
+
 std::vector<double> parse_normal(const std::string& option, std::string_view text) {
-  std::vector<double> normal;
-  for (const std::string_view part : split(text, ',')) normal.push_back(parse_finite(option, part));
+  std::vector<double> normal = parse_list(option, text);
   if (std::all_of(normal.begin(), normal.end(), [](double x) { return x == 0.0; }))
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} is '{}'; expected numbers that are not all 0", option, text));

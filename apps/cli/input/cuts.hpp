@@ -32,6 +32,9 @@ struct SpelledNumber {
 std::vector<SpelledNumber> parse_spelled_numbers(const std::string& option, std::string_view text);
 std::vector<double> parse_numbers(const std::string& option, std::string_view text);
 
+/// The numbers of a list with commas. Throws InvalidArgument, with the option's name, unless all are finite.
+std::vector<double> parse_list(const std::string& option, std::string_view text);
+
 /// Parses a normal or direction, "1,0,0,0.5". Throws InvalidArgument, with the option, unless it is a non-zero list of
 /// numbers.
 std::vector<double> parse_normal(const std::string& option, std::string_view text);

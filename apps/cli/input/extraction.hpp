@@ -4,6 +4,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <variant>
@@ -23,6 +25,7 @@
 #include "tegl/lattice.hpp"
 #include "tegl/periodic.hpp"
 #include "tegl/polygons.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl::cli {
 
@@ -165,6 +168,19 @@ Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& outpu
   } else {
     return contour;  // 5D contours have no periods
   }
+}
+
+/// Whether a hyperplane crosses a period of a wrapped contour, which must be unrolled before it is cut there.
+template <int N, class Real>
+bool crosses_period(const Contour<N, Real>& contour, const Hyperplane<N>& cut) {
+  return std::any_of(contour.periods.begin(), contour.periods.end(), [&](const Period<N>& period) {
+    double along = 0, size = 0;
+    for (int a = 0; a < N; ++a) {
+      along += period.vector[a] * cut.normal[a];
+      size += std::abs(period.vector[a] * cut.normal[a]);
+    }
+    return std::abs(along) > 1e-9 * size;
+  });
 }
 
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or

@@ -80,6 +80,8 @@ auto with_hint(const std::string& variable, const std::vector<std::string>& file
 
 std::string with_option_names(std::string message) {
   if (message.find("a fixed index of another dimension") != std::string::npos) message += " (--fix DIMENSION=INDEX)";
+  if (message.find("unknown image format") != std::string::npos)
+    message += "; commands with --iso, and info, also take meshes (.vtu, .vts, .pvd) and tables of points (.csv)";
   return message;
 }
 
@@ -291,7 +293,11 @@ std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string
   ReadImageOptions options;
   options.allow_outside_paths = allow_outside_paths_;
   options.separate_process = separate_process();
-  return list_image_variables(files.front(), options);
+  try {
+    return list_image_variables(files.front(), options);
+  } catch (const Error& error) {
+    throw Error(error.code(), with_option_names(error.what()));
+  }
 }
 
 }  // namespace tegl::cli
