@@ -145,9 +145,20 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
   });
 }
 
+using CurvedAxes = std::vector<std::tuple<int, unsigned, py::array_t<double, py::array::c_style | py::array::forcecast>,
+                                          std::string, std::string>>;
+
+std::vector<CurvedAxis> curved_axes(const CurvedAxes& given) {
+  std::vector<CurvedAxis> curved;
+  for (const auto& [axis, along, values, name, unit] : given)
+    curved.push_back({axis, along, std::vector<double>(values.data(), values.data() + values.size()), name, unit});
+  return curved;
+}
+
 template <class Real>
 AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& positions,
-                             const std::optional<CellFaces>& cells, double level, const ExtractOptions& options) {
+                             const std::optional<CellFaces>& cells, std::span<const CurvedAxis> curved, double level,
+                             const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if (cells) {
       if constexpr (N <= 4)
@@ -155,17 +166,26 @@ AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& posit
       else
         throw_dimension("an image of cells", N, "2 to 4 dimensions");
     }
+    if (!curved.empty()) {
+      if constexpr (N <= 4) {
+        const Image<T, N> indexed{view.data(), index_grid<N>(view.grid(), curved), view.strides()};
+        auto contour = extract_placed<Real>(indexed, level, positions, options);
+        return {on_curved_grid<Real>(std::move(contour), view.grid(), curved, {options.work.threads, {}}), level};
+      } else {
+        throw_dimension("curved grids", N, "2 to 4 dimensions");
+      }
+    }
     return {extract_placed<Real>(view, level, positions, options), level};
   });
 }
 
 /// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `cells`: samples are
-/// cells, with these faces.
+/// cells, with these faces. `curved`: of a curved grid, or empty.
 std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule,
                                                const py::array_t<float, py::array::c_style>& values, double margin,
                                                double last_axis_weight, const std::optional<CellFaces>& cells,
-                                               double level, bool is_double, const py::dict& arguments,
-                                               const py::object& progress) {
+                                               const CurvedAxes& curved, double level, bool is_double,
+                                               const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
@@ -178,10 +198,11 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
   positions.filtered = std::span<const float>(values.data(), static_cast<std::size_t>(values.size()));
   positions.margin = margin;
   positions.last_axis_weight = last_axis_weight;
+  const std::vector<CurvedAxis> axes = curved_axes(curved);
   return call.run([&] {
-    auto result =
-        std::make_unique<AnyContour>(is_double ? placed_contour_of<double>(image, positions, cells, level, options)
-                                               : placed_contour_of<float>(image, positions, cells, level, options));
+    auto result = std::make_unique<AnyContour>(
+        is_double ? placed_contour_of<double>(image, positions, cells, axes, level, options)
+                  : placed_contour_of<float>(image, positions, cells, axes, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -227,9 +248,6 @@ std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const st
   });
 }
 
-using CurvedAxes = std::vector<std::tuple<int, unsigned, py::array_t<double, py::array::c_style | py::array::forcecast>,
-                                          std::string, std::string>>;
-
 template <class Real>
 AnyContour curved_contour_of(const AnyImage& image, std::span<const CurvedAxis> curved, double level,
                              const ExtractOptions& options) {
@@ -239,13 +257,6 @@ AnyContour curved_contour_of(const AnyImage& image, std::span<const CurvedAxis> 
     else
       throw_dimension("curved grids", N, "2 to 4 dimensions");
   });
-}
-
-std::vector<CurvedAxis> curved_axes(const CurvedAxes& given) {
-  std::vector<CurvedAxis> curved;
-  for (const auto& [axis, along, values, name, unit] : given)
-    curved.push_back({axis, along, std::vector<double>(values.data(), values.data() + values.size()), name, unit});
-  return curved;
 }
 
 /// Number of cells in which a curved grid is folded, and the index of the first, by axis of the library.
@@ -301,6 +312,14 @@ std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std
   });
 }
 
+/// The divisions by their names.
+std::vector<std::pair<const char*, Division>> divisions() {
+  return {{"kuhn", Division::kuhn},
+          {"alternating", Division::alternating},
+          {"symmetric", Division::symmetric},
+          {"hybrid", Division::hybrid}};
+}
+
 template <class Real>
 AnyContour divided_contour_of(const AnyImage& image, Division division, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
@@ -317,11 +336,7 @@ std::unique_ptr<AnyContour> extract_divided_any(const AnyImage& image, const std
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
-  const auto division = named<Division>("division", name,
-                                        {{"kuhn", Division::kuhn},
-                                         {"alternating", Division::alternating},
-                                         {"symmetric", Division::symmetric},
-                                         {"hybrid", Division::hybrid}});
+  const auto division = named<Division>("division", name, divisions());
   return call.run([&] {
     auto result = std::make_unique<AnyContour>(is_double ? divided_contour_of<double>(image, division, level, options)
                                                          : divided_contour_of<float>(image, division, level, options));
@@ -346,16 +361,23 @@ std::pair<std::unique_ptr<AnyContour>, py::array> unroll_any(const AnyContour& c
   return {std::move(result), py::array_t<Index>(static_cast<py::ssize_t>(originals.size()), originals.data())};
 }
 
-/// `axes`: the periodic axes, with their periods; none: a plain image.
+/// `axes`: the periodic axes, with their periods; `lattice`, `division`: names. All are empty for a plain image.
 std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const std::vector<int>& axes,
-                                                  const std::vector<double>& periods, double level,
-                                                  const py::dict& arguments, const py::object& progress) {
+                                                  const std::vector<double>& periods, const std::string& lattice,
+                                                  const std::string& division, double level, const py::dict& arguments,
+                                                  const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> ContourSize {
-    if (axes.empty()) return count(view, level, options);
-    if constexpr (N <= 4) return count_periodic(view, periods_of(view.grid(), axes, periods), level, options);
-    throw_dimension("periodic axes", N, "2 to 4 dimensions");
+    if (axes.empty() && lattice.empty() && division.empty()) return count(view, level, options);
+    if constexpr (N <= 4) {
+      if (!lattice.empty())
+        return count(lattice_complex(view, named<Lattice>("lattice", lattice, lattices())), level, options);
+      if (!division.empty())
+        return count(divided_complex(view, named<Division>("division", division, divisions()), level), level, options);
+      return count_periodic(view, periods_of(view.grid(), axes, periods), level, options);
+    }
+    throw_dimension("periodic axes, lattices and divisions", N, "2 to 4 dimensions");
   };
   const ContourSize size = call.run([&] { return visit_image(image, of_view); });
   return {size.vertices, size.simplices};
@@ -408,15 +430,15 @@ void bind_extract(py::module_& m) {
         py::arg("options"), py::arg("progress"), doc::extract_curved);
   m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), doc::find_folds);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("margin"),
-        py::arg("last_axis_weight"), py::arg("cells"), py::arg("level"), py::arg("double"), py::arg("options"),
-        py::arg("progress"), doc::extract_placed);
+        py::arg("last_axis_weight"), py::arg("cells"), py::arg("curved"), py::arg("level"), py::arg("double"),
+        py::arg("options"), py::arg("progress"), doc::extract_placed);
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::divided_complex);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
-  m.def("count", &count_any, py::arg("image"), py::arg("axes"), py::arg("periods"), py::arg("level"),
-        py::arg("options"), py::arg("progress"), doc::count);
+  m.def("count", &count_any, py::arg("image"), py::arg("axes"), py::arg("periods"), py::arg("lattice"),
+        py::arg("division"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::slice_image);
 }

@@ -80,20 +80,26 @@ MeshArguments arguments_of(const Types& types, const Corners& corners, const Dou
   return mesh;
 }
 
+/// Arrays at the points of a mesh, by name.
+using PointArrays = std::vector<std::pair<std::string, Doubles>>;
+
 /// What a contour is made of, beside the mesh.
 struct ContourArguments {
   double level;
   bool is_double;
   ExtractOptions options;
   std::string normals;
+  std::vector<std::pair<std::string, std::span<const double>>> attributes;
 };
 
 /// `index`: null for a single contour.
 std::unique_ptr<AnyContour> contour_of(const AnyComplex& any, const CellIndex* index,
                                        const std::vector<std::string>& axis_names, const ContourArguments& wanted) {
-  const auto named = [&](auto contour) {
+  const auto named = [&](const auto& complex, auto contour) {
     for (std::size_t a = 0; a < std::min(axis_names.size(), contour.axis_names.size()); ++a)
       contour.axis_names[a] = axis_names[a];
+    for (const auto& [name, numbers] : wanted.attributes)
+      contour.vertex_attributes.push_back(interpolate_points(complex, wanted.level, numbers, name, "", wanted.options));
     auto result = std::make_unique<AnyContour>();
     *result = {std::move(contour), wanted.level};
     add_shape_normals(*result, wanted.normals, wanted.options);
@@ -101,28 +107,45 @@ std::unique_ptr<AnyContour> contour_of(const AnyComplex& any, const CellIndex* i
   };
   return std::visit(
       [&](const auto& complex) {
-        const auto& [level, is_double, options, normals] = wanted;
+        const auto& [level, is_double, options, normals, attributes] = wanted;
         if (index != nullptr)
-          return is_double ? named(extract<double>(complex, *index, level, options))
-                           : named(extract<float>(complex, *index, level, options));
-        return is_double ? named(extract<double>(complex, level, options))
-                         : named(extract<float>(complex, level, options));
+          return is_double ? named(complex, extract<double>(complex, *index, level, options))
+                           : named(complex, extract<float>(complex, *index, level, options));
+        return is_double ? named(complex, extract<double>(complex, level, options))
+                         : named(complex, extract<float>(complex, level, options));
       },
       any);
 }
 
-ContourArguments wanted_of(double level, bool is_double, const py::dict& arguments, Call& call) {
-  return {level, is_double, extract_options(arguments, call), arguments["normals"].cast<std::string>()};
+ContourArguments wanted_of(double level, bool is_double, const py::dict& arguments, const PointArrays& attributes,
+                           Call& call) {
+  ContourArguments wanted{
+      level, is_double, extract_options(arguments, call), arguments["normals"].cast<std::string>(), {}};
+  for (const auto& [name, array] : attributes) wanted.attributes.emplace_back(name, span_of<double>(array));
+  return wanted;
 }
 
 std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& types, const Corners& corners,
                                          const Doubles& values, const Doubles& times,
                                          const std::vector<std::string>& axis_names, double level, bool is_double,
-                                         const py::dict& arguments, const py::object& progress) {
+                                         const py::dict& arguments, const PointArrays& attributes,
+                                         const py::object& progress) {
   Call call(progress);
-  const ContourArguments wanted = wanted_of(level, is_double, arguments, call);
+  const ContourArguments wanted = wanted_of(level, is_double, arguments, attributes, call);
   const MeshArguments mesh = arguments_of(types, corners, values, times, axis_names);
   return call.run([&] { return contour_of(complex_of(points, mesh), nullptr, axis_names, wanted); });
+}
+
+std::pair<std::uint64_t, std::uint64_t> count_mesh(const Doubles& points, const Types& types, const Corners& corners,
+                                                   const Doubles& values, const Doubles& times, double level,
+                                                   const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const MeshArguments mesh = arguments_of(types, corners, values, times, {});
+  const ContourSize size = call.run([&] {
+    return std::visit([&](const auto& complex) { return count(complex, level, options); }, complex_of(points, mesh));
+  });
+  return {size.vertices, size.simplices};
 }
 
 /// A mesh with its edges and an interval tree of its cells.
@@ -152,9 +175,10 @@ std::unique_ptr<MeshIndex> make_index(const Doubles& points, const Types& types,
 }
 
 std::unique_ptr<AnyContour> contour_of_mesh_index(const MeshIndex& mesh, double level, bool is_double,
-                                                  const py::dict& arguments, const py::object& progress) {
+                                                  const py::dict& arguments, const PointArrays& attributes,
+                                                  const py::object& progress) {
   Call call(progress);
-  const ContourArguments wanted = wanted_of(level, is_double, arguments, call);
+  const ContourArguments wanted = wanted_of(level, is_double, arguments, attributes, call);
   return call.run([&] { return contour_of(mesh.complex, &mesh.index, mesh.axis_names, wanted); });
 }
 
@@ -180,12 +204,14 @@ void bind_mesh(py::module_& m) {
   m.def("delaunay", &delaunay_cells, py::arg("points"), doc::delaunay);
   m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
         py::arg("times"), py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"),
-        py::arg("progress"), doc::extract);
+        py::arg("attributes"), py::arg("progress"), doc::extract);
+  m.def("count_mesh", &count_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
+        py::arg("times"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   py::class_<MeshIndex>(m, "MeshIndex", doc::CellIndex)
       .def(py::init(&make_index), py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
            py::arg("times"), py::arg("axis_names"), py::arg("threads"), py::arg("progress"))
       .def("contour", &contour_of_mesh_index, py::arg("level"), py::arg("double"), py::arg("options"),
-           py::arg("progress"), doc::extract)
+           py::arg("attributes"), py::arg("progress"), doc::extract)
       .def_property_readonly(
           "cells",
           [](const MeshIndex& mesh) {

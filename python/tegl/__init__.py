@@ -22,7 +22,7 @@ from ._filter import filter, most_stable_scale, scale_space
 from ._image import ContourSize, Image, contour, count, read, slice
 from ._incidence import Incidence
 from ._index import Index, PickReport
-from ._mesh import Mesh, MeshIndex, contour_mesh, contour_points, read_mesh
+from ._mesh import Mesh, MeshIndex, contour_mesh, contour_points, count_mesh, read_mesh
 from ._results import (Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MergeReport, MeshReport,
                        SimplifyStats)
 from ._skimage import marching_cubes
@@ -33,7 +33,7 @@ __all__ = [
     "Cancelled", "Component", "Components", "Contour", "ContourSize", "CutMeasures", "Elements", "ElementSum", "Image",
     "Incidence", "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
     "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__",
-    "check", "components", "contour", "contour_mesh", "contour_points", "count", "elements", "fields", "filter",
+    "check", "components", "contour", "contour_mesh", "contour_points", "count", "count_mesh", "elements", "fields", "filter",
     "intersections", "load", "marching_cubes", "measure", "merge_vertices", "most_stable_scale", "read", "read_mesh",
     "sample", "scale_space", "simplify", "slice", "track",
 ]

@@ -150,6 +150,9 @@ class Prepared:
 def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     """0 ... ndim - 1 of an axis given by name or number (negative ones count from the end)."""
     if isinstance(axis, str):
+        if axis not in names and not any(names):
+            raise ValueError(f"no axis is named '{axis}': the axes have no names; expected a number from {-ndim} to "
+                             f"{ndim - 1}, or axis_names")
         if axis not in names:
             raise ValueError(f"no axis is named '{axis}'; expected one of {', '.join(repr(n) for n in names)}")
         if list(names).count(axis) > 1:

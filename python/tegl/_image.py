@@ -156,6 +156,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                                            None if positions == "linear" and not of_cells else positions),
                                           ("curved", curved))
                  if value is not None]
+        if given == ["positions", "curved"]:  # the only pair that goes together
+            given = ["curved"]
         if len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         if division is not None:
@@ -163,8 +165,10 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                                          options, progress)
         elif positions != "linear" or of_cells:
             faces = _cell_faces(array, prepared, (spacing, origin, coords)) if of_cells else None
-            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, faces, level, is_double,
+            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, faces, of_samples, level, is_double,
                                         options, progress)
+            if curved is not None:
+                _warn_of_folds(prepared, of_samples)
         elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
                                          progress)
@@ -194,10 +198,11 @@ class ContourSize(typing.NamedTuple):
 def count(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
           axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None, time_axis: int | None = None,
           triangulation: _kinds.Triangulation = "compact", ambiguity: _kinds.Ambiguity = "low", close: bool = False,
-          threads: int = 0, progress: Progress | None = None, periodic=None) -> ContourSize:
+          threads: int = 0, progress: Progress | None = None, periodic=None, lattice: _kinds.Lattice | None = None,
+          division: _kinds.Division | None = None) -> ContourSize:
     """The size of the contour that `contour` makes with the same arguments, without making it: (vertices, simplices).
 
-    Arguments are those of `tegl.contour`. A level outside of the values gives (0, 0).
+    Arguments are those of `tegl.contour`. A level outside of the values gives (0, 0). Of meshes: `tegl.count_mesh`.
     """
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction="descent",
                                          close=close, epsilon=0.0, normals=False, gradient="differences",
@@ -207,8 +212,14 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
     level = _arguments.as_number("level", level)
     options = prepared.library_options(options)
     with prepared.terms():
+        given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
+                 if value is not None]
+        if len(given) > 1:
+            raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
-        return ContourSize(*_tegl.count(prepared.image, axes, periods, level, options, progress))
+        named = [_arguments.as_text(name, "" if value is None else value)
+                 for name, value in (("lattice", lattice), ("division", division))]
+        return ContourSize(*_tegl.count(prepared.image, axes, periods, *named, level, options, progress))
 
 
 @typing.overload

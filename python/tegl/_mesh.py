@@ -13,6 +13,7 @@ import numpy as np
 from . import _arguments, _kinds, _tegl
 from ._arguments import Progress
 from ._contour import Contour
+from ._image import ContourSize
 
 #: name -> (VTK's number, corners): names of meshio and names of VTK. The order of corners is VTK's.
 _TYPES = {
@@ -29,13 +30,14 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
                  triangulation: _kinds.Triangulation = "compact", ambiguity: _kinds.Ambiguity = "low",
                  direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
                  normals: bool | typing.Literal["gradient", "geometric", "flat"] = False, dtype=np.float32,
-                 allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
+                 allow_empty: bool = False, attributes=None, threads: int = 0,
+                 progress: Progress | None = None) -> Contour:
     """The contour {value = level} of a mesh with a value at each point. It separates values >= level from the others.
 
     ::
 
         tegl.contour_mesh(points, {"tetra": tetrahedra}, values, 0.5)
-        tegl.contour_mesh(meshio.read("part.vtu"), values="temperature", level=300.0)
+        tegl.contour_mesh(meshio.read("part.vtu"), values="temperature", level=300.0, attributes=["pressure"])
 
     points
         #P x N coordinates, N = 2, 3 or 4; with `times`, points that move: #T x #P x N. Or a mesh: an object with `points`,
@@ -52,6 +54,9 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     times
         Ascending times of the rows of `values`, for N = 2 and 3: the result is the contour in space and time, with the time
         as the last coordinate; `slice`, `track` and `measure` cut it at any time.
+    attributes
+        Other arrays at the points, which are interpolated to the vertices as the coordinates are: a dict of names and
+        arrays #P or #P x k (with `times` #T x #P or #T x #P x k); for a mesh also names in its `point_data`.
     triangulation, ambiguity, direction, close, epsilon, normals, dtype, allow_empty, threads, progress
         As for `tegl.contour`. `close` makes caps at the border of the mesh. Normals: True or "gradient", "geometric" or
         "flat". In 4D, `close` with rules that read the values needs triangulation="barycentric";
@@ -63,13 +68,29 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     options = _options_of(triangulation=triangulation, ambiguity=ambiguity, direction=direction, close=close,
                           epsilon=epsilon, normals=normals, threads=threads)
     arguments = _arguments_of(points, cells, values, times)
+    others = _attributes_of(attributes, points, arguments[3].shape)
     if level is None:
         raise TypeError("level are missing; expected points, cells, values and level, or a mesh and level")
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
-    core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, progress)
+    core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, others, progress)
     if not allow_empty and not len(core.simplices):
         _require_level(arguments[3], level)
     return Contour._of(core, False)
+
+
+def count_mesh(points, cells=None, values=None, level: float | None = None, *, times=None,
+               triangulation: _kinds.Triangulation = "compact", ambiguity: _kinds.Ambiguity = "low", close: bool = False,
+               threads: int = 0, progress: Progress | None = None) -> ContourSize:
+    """The size of the contour that `contour_mesh` makes with the same arguments, without making it: (vertices, simplices).
+
+    A level outside of the values gives (0, 0).
+    """
+    options = _options_of(triangulation=triangulation, ambiguity=ambiguity, direction="descent", close=close, epsilon=0.0,
+                          threads=threads)
+    arguments = _arguments_of(points, cells, values, times)[:-1]
+    if level is None:
+        raise TypeError("level are missing; expected points, cells, values and level, or a mesh and level")
+    return ContourSize(*_tegl.count_mesh(*arguments, _arguments.as_number("level", level), options, progress))
 
 
 class MeshIndex:
@@ -88,6 +109,7 @@ class MeshIndex:
         """Arguments as in `tegl.contour_mesh`."""
         arguments = _arguments_of(points, cells, values, times)
         all_values = arguments[3].ravel()
+        self._shape = arguments[3].shape
         self._range = np.array([end(all_values, initial=np.nan) for end in (np.fmin.reduce, np.fmax.reduce)])
         self._core = _tegl.MeshIndex(*arguments, _arguments.threads_of(threads), progress)
 
@@ -99,15 +121,42 @@ class MeshIndex:
     def __repr__(self) -> str:
         return f"<tegl.MeshIndex of {self._core.cells} cells: {self.memory} bytes>"
 
-    def contour(self, level: float, *, dtype=np.float32, allow_empty: bool = False, progress: Progress | None = None,
-                **options: typing.Any) -> Contour:
-        """What `tegl.contour_mesh` of the mesh gives, byte by byte. Options as there: triangulation, normals, ..."""
+    def contour(self, level: float, *, dtype=np.float32, allow_empty: bool = False, attributes=None,
+                progress: Progress | None = None, **options: typing.Any) -> Contour:
+        """What `tegl.contour_mesh` of the mesh gives, byte by byte. Options as there: triangulation, normals, ...
+
+        `attributes` is a dict of names and arrays.
+        """
         chosen = _options_of(**options)
         level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
-        core = self._core.contour(level, _is_double(dtype), chosen, progress)
+        others = _attributes_of(attributes, None, self._shape)
+        core = self._core.contour(level, _is_double(dtype), chosen, others, progress)
         if not allow_empty and not len(core.simplices):
             _require_level(self._range, level)
         return Contour._of(core, False)
+
+
+def _attributes_of(attributes, mesh, shape: tuple[int, ...]) -> list[tuple[str, np.ndarray]]:
+    """Names and arrays at the points, whose values have this shape; `mesh` may have arrays by name."""
+    if attributes is None:
+        return []
+    if not isinstance(attributes, Mapping):
+        data = getattr(mesh, "point_data", None)
+        if isinstance(attributes, str) or data is None:
+            raise TypeError(f"attributes are {attributes!r}; expected a dict of names and arrays, or a list of names in the "
+                            "point_data of a mesh")
+        for name in attributes:
+            if name not in data:
+                raise ValueError(f"attributes has {name!r}; expected names among {', '.join(map(repr, data)) or 'none'}")
+        attributes = {name: data[name] for name in attributes}
+    result = []
+    for name, given in attributes.items():
+        array = _with_missing(given)
+        if array.shape[:len(shape)] != shape or array.ndim > len(shape) + 1 or not array.size:
+            raise ValueError(f"attributes[{name!r}] has the shape {array.shape}; expected {shape}, or with a last axis of "
+                             "several numbers for each point")
+        result.append((_arguments.as_text("name of an attribute", name), array))
+    return result
 
 
 def _options_of(normals=False, **options) -> dict:
@@ -129,6 +178,8 @@ def _arguments_of(points, cells, values, times) -> tuple[np.ndarray, np.ndarray,
         if isinstance(points, Mesh) and times is None and len(points.times):
             times = points.times
         axis_names = list(points.axis_names) if isinstance(points, Mesh) else []
+        if isinstance(points, Mesh) and values is None:
+            values = points.variable
         points, cells, values = _parts_of(points, values)
     for name, given in (("cells", cells), ("values", values)):
         if given is None:
@@ -157,6 +208,8 @@ class Mesh:
     times: np.ndarray  #: #T times; empty for a mesh at one time
     variable: str  #: the name of the values
     axis_names: tuple[str, ...]  #: of the coordinates
+    #: other arrays by name, with the shape of `values`
+    others: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
 
     def __repr__(self) -> str:
         """One line: sizes, times, values."""
@@ -166,17 +219,22 @@ class Mesh:
 
     @property
     def point_data(self) -> dict[str, np.ndarray]:
-        """The values by their name."""
-        return {self.variable: self.values}
+        """The values and the other arrays by their names."""
+        return {self.variable: self.values, **self.others}
 
     def contour(self, level: float, **options: typing.Any) -> Contour:
         """The contour of this mesh: see `tegl.contour_mesh`."""
         return contour_mesh(self, level=level, **options)
 
+    def count(self, level: float, **options: typing.Any) -> ContourSize:
+        """The size of the contour, without making it: see `tegl.count_mesh`."""
+        return count_mesh(self, level=level, **options)
+
 
 @_arguments.documents("read_cell_mesh")
-def read_mesh(path: str | os.PathLike | Sequence[str | os.PathLike], variable: str = "", *, times=None,
-              cells_to_points: bool = False, allow_outside_paths: bool = False, progress: Progress | None = None) -> Mesh:
+def read_mesh(path: str | os.PathLike | Sequence[str | os.PathLike], variable: str = "", *, others: Sequence[str] = (),
+              times=None, cells_to_points: bool = False, allow_outside_paths: bool = False,
+              progress: Progress | None = None) -> Mesh:
     """Reads a mesh with values at its points: VTK's XML files (.vtu, .vts, .pvd), or a table of scattered points (.csv).
 
     ::
@@ -190,6 +248,8 @@ def read_mesh(path: str | os.PathLike | Sequence[str | os.PathLike], variable: s
     variable
         The array of values, or the column; "NAME:0" is a component of vectors, "NAME:magnitude" their length. Needed if
         there are several.
+    others
+        More arrays or columns, read into `Mesh.others`: `mesh.contour(20.0, attributes=["pressure"])`.
     times
         For a list: the time of each file. Default: the times in the files, else 0, 1, 2 ...
     cells_to_points
@@ -201,13 +261,16 @@ def read_mesh(path: str | os.PathLike | Sequence[str | os.PathLike], variable: s
     paths = [os.fspath(one) for one in (path if isinstance(path, (list, tuple)) else [path])]
     if times is not None and not several:
         raise ValueError("times with one file; expected a list of files")
-    found = _tegl.read_cell_mesh(paths, _arguments.as_text("variable", variable),
-                                 _arguments.as_bool("cells_to_points", cells_to_points),
-                                 [] if times is None else _arguments.as_numbers("times", times),
-                                 _arguments.as_bool("allow_outside_paths", allow_outside_paths), progress)
+    if isinstance(others, str):
+        raise TypeError(f"others is {others!r}; expected a list of names")
+    cells_to_points = _arguments.as_bool("cells_to_points", cells_to_points)
+    numbers = [] if times is None else _arguments.as_numbers("times", times)
+    allow_outside_paths = _arguments.as_bool("allow_outside_paths", allow_outside_paths)
+    found, *more = [_tegl.read_cell_mesh(paths, _arguments.as_text("variable", name), cells_to_points, numbers,
+                                         allow_outside_paths, progress) for name in (variable, *others)]
     return Mesh(points=found["points"], cells=_blocks_of(found["types"], found["corners"]), values=found["values"],
                 times=found["times"] if len(found["times"]) > 1 else found["times"][:0], variable=found["variable"],
-                axis_names=tuple(found["axis_names"]))
+                axis_names=tuple(found["axis_names"]), others={one["variable"]: one["values"] for one in more})
 
 
 def _blocks_of(types: np.ndarray, corners: np.ndarray) -> list[tuple[str, np.ndarray]]:
@@ -254,7 +317,8 @@ def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
 def contour_points(points, values, level: float, *, triangulation: _kinds.Triangulation = "compact",
                    direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
                    normals: bool | typing.Literal["gradient", "geometric", "flat"] = False, dtype=np.float32,
-                   allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
+                   allow_empty: bool = False, attributes=None, threads: int = 0,
+                   progress: Progress | None = None) -> Contour:
     """The contour {value = level} of scattered points in 2D to 4D, with linear interpolation in their Delaunay cells.
 
     points
@@ -271,7 +335,7 @@ def contour_points(points, values, level: float, *, triangulation: _kinds.Triang
     name = {2: "triangle", 3: "tetra", 4: "simplex4"}[places.shape[1]]
     return contour_mesh(places, {name: _tegl.delaunay(places)}, values, level, triangulation=triangulation,
                         direction=direction, close=close, epsilon=epsilon, normals=normals, dtype=dtype,
-                        allow_empty=allow_empty, threads=threads, progress=progress)
+                        allow_empty=allow_empty, attributes=attributes, threads=threads, progress=progress)
 
 
 def _mask_of(array) -> np.ndarray | None:

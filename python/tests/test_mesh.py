@@ -421,3 +421,76 @@ def test_samples_are_cells_if_the_file_says_so(tmp_path):
         image = tegl.read(tmp_path / "cells.vtr", time_axis=time_axis)
         assert list(image.cell_faces[-time_axis]) == [0, 4, 5, 7]
         assert image.contour(1, samples="file").measure().content == pytest.approx(4 * 3, rel=1e-12)
+
+
+def test_cospherical_points_in_4d_have_an_oriented_contour():
+    for n in (6, 7):
+        points = np.stack(np.meshgrid(*[np.linspace(-1, 1, n)] * 4, indexing="ij"), -1).reshape(-1, 4)
+        contour = tegl.contour_points(points, 0.7 - np.linalg.norm(points, axis=1), 0.0, dtype=np.float64)
+        report = contour.check()
+        assert report.orientation_conflicts == 0 and report.is_closed
+    smallest = tegl.contour_points([[0, 0], [1, 0], [0, 1]], [1, 0, 0], 0.5)
+    assert len(smallest.simplices) == 1
+    with pytest.raises(ValueError, match="3 points that lie in a line"):
+        tegl.contour_points([[0, 0], [1, 1], [2, 2]], [1, 0, 0], 0.5)
+
+
+def test_attributes_are_interpolated_as_the_coordinates():
+    points, cells = tetrahedra(9)
+    values, linear = ball(points), points @ [1.0, 2.0, 3.0]
+    attributes = {"a": linear, "xyz": points}
+    mesh = tegl.contour_mesh(points, cells, values, 0.0, attributes=attributes, dtype=np.float64)
+    assert np.allclose(mesh.vertex_attributes["a"], mesh.vertices @ [1.0, 2.0, 3.0])
+    assert np.allclose(mesh.vertex_attributes["xyz"], mesh.vertices)
+    index = tegl.MeshIndex(points, cells, values)
+    assert np.array_equal(index.contour(0.0, attributes=attributes, dtype=np.float64).vertex_attributes["a"], mesh.vertex_attributes["a"])
+    moving = tegl.contour_mesh(points, cells, [values, values + 0.1], 0.05, times=[0, 2], dtype=np.float64,
+                               attributes={"t": np.repeat([[0.0], [2.0]], len(points), axis=1)})
+    assert np.allclose(moving.vertex_attributes["t"], moving.vertices[:, 3])
+    scattered = tegl.contour_points(points, values, 0.0, attributes={"a": linear}, dtype=np.float64)
+    assert np.allclose(scattered.vertex_attributes["a"], scattered.vertices @ [1.0, 2.0, 3.0])
+    with pytest.raises(ValueError, match=r"attributes\['a'\] has the shape \(3,\); expected \(729,\)"):
+        tegl.contour_mesh(points, cells, values, 0.0, attributes={"a": [1, 2, 3]})
+    with pytest.raises(TypeError, match="expected a dict of names and arrays"):
+        tegl.contour_mesh(points, cells, values, 0.0, attributes=["a"])
+
+
+def test_attributes_of_a_file_are_read_by_name(tmp_path):
+    table = tmp_path / "points.csv"
+    table.write_text("x,y,f,g\n" + "".join(f"{x},{y},{x + 2 * y},{3 * x}\n" for x in range(5) for y in range(5)))
+    mesh = tegl.read_mesh(table, "f", others=["g"])
+    line = mesh.contour(5.5, attributes=["g"], dtype=np.float64)
+    assert np.allclose(line.vertex_attributes["g"], 3 * line.vertices[:, 0])
+    assert mesh.count(5.5) == (len(line.vertices), len(line.simplices))
+    with pytest.raises(ValueError, match="attributes has 'h'; expected names among 'f', 'g'"):
+        mesh.contour(5.5, attributes=["h"])
+
+
+def test_count_has_the_size_of_contours_of_meshes_lattices_and_divisions():
+    points, cells = tetrahedra(9)
+    for options in ({}, {"close": True}):
+        contour = tegl.contour_mesh(points, cells, ball(points), -0.2, **options)
+        assert tegl.count_mesh(points, cells, ball(points), -0.2, **options) == (len(contour.vertices),
+                                                                                 len(contour.simplices))
+    values = np.random.default_rng(3).random((9, 10, 11))
+    for options in ({"lattice": "fcc"}, {"lattice": "bcc"}, {"division": "kuhn"}, {"division": "symmetric"}):
+        contour = tegl.contour(values, 0.5, **options)
+        assert tegl.count(values, 0.5, **options) == (len(contour.vertices), len(contour.simplices))
+    with pytest.raises(ValueError, match="lattice with division; expected one of the two"):
+        tegl.count(values, 0.5, lattice="fcc", division="kuhn")
+
+
+def test_curved_grids_take_positions():
+    i, j, k = np.meshgrid(*[np.arange(16.0)] * 3, indexing="ij")
+    mask = ((i - 7.5)**2 + (j - 7.5)**2 + (k - 7.5)**2 < 30).astype(np.uint8)
+    lon = 2 * k + 0.05 * j
+    curved = tegl.contour(mask, 0.5, curved={2: lon}, positions="relaxed", dtype=np.float64)
+    plain = tegl.contour(mask, 0.5, positions="relaxed", dtype=np.float64)
+    assert np.array_equal(curved.simplices, plain.simplices)
+    expected = plain.vertices * [1, 1, 2] + plain.vertices[:, [1]] * [0, 0, 0.05]
+    assert np.allclose(curved.vertices, expected, atol=1e-9)
+
+
+def test_axes_without_names_are_given_by_number():
+    with pytest.raises(ValueError, match="the axes have no names; expected a number from -3 to 2, or axis_names"):
+        tegl.contour(np.zeros((4, 4, 4)), 0.5, periodic="lon")
