@@ -151,7 +151,9 @@ TEST(SliceFive, AtALayerIsTheContourOfTheLayerWithTies) {
       const auto layer = extract(test::layer_across(image.view(), axis, k), 1.0, options);
       const auto at = Hyperplane<5>::across(axis, static_cast<double>(k));
       EXPECT_TRUE(same_surface(slice_image(image.view(), 1.0, at, options), layer)) << axis << ' ' << k;
-      if (axis == 4) EXPECT_TRUE(same_surface(slice(contour, at), layer)) << k;
+      if (axis == 4) {
+        EXPECT_TRUE(same_surface(slice(contour, at), layer)) << k;
+      }
     }
 }
 

@@ -445,7 +445,9 @@ TEST(Periodic, OnlyTheComponentsThatWindRoundAllPeriodsHaveNoContent) {
   ASSERT_EQ(parts.size(), 2u);
   for (const Component<3>& part : parts) {
     EXPECT_EQ(part.content.has_value(), part.euler == 2);
-    if (part.content) EXPECT_NEAR(*part.content, 4.0 / 3.0 * std::numbers::pi * 0.008, 1e-3);
+    if (part.content) {
+      EXPECT_NEAR(*part.content, 4.0 / 3.0 * std::numbers::pi * 0.008, 1e-3);
+    }
   }
   // two balls, one of them a cavity of the other
   const auto shell = torus_image<3>({40, 40, 40}, [](const auto& x) {
