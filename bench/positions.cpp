@@ -16,6 +16,7 @@
 #include "memory.hpp"
 #include "run_program.hpp"
 #include "support/fields.hpp"
+#include "tegl/filter.hpp"
 #include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 #include "timing.hpp"
@@ -167,10 +168,23 @@ void measure_balls(bool quick) {
   }
 }
 
+/// `filtered` is by a Gaussian of one sample, with vertices kept off the samples; `custom` is 0.3 of the way from the
+/// first sample.
 template <int N>
 void count_intersections(const char* field, const OwnedImage<std::uint8_t, N>& image) {
-  for (const auto& [rule, name] : kOfMasks) {
-    const auto contour = extract_placed<double>(image.view(), 0.5, by(rule), {.close = true});
+  const SeparableConvolution gaussian{std::vector<AxisWeights>(N, gaussian_weights(1.0))};
+  const auto smooth = filter_image(image.view(), gaussian);
+  PositionOptions custom = by(Positions::custom);
+  custom.custom = [](double, double, double) { return 0.3; };
+  const std::vector<std::pair<PositionOptions, const char*>> rules = {
+      {by(Positions::linear), "linear"},
+      {by(Positions::relaxed), "relaxed"},
+      {by(Positions::filtered, {smooth.values.data(), smooth.values.size()}), "filtered"},
+      {custom, "custom"},
+      {by(Positions::gravitation), "gravitation"}};
+  for (const auto& [positions, name] : rules) {
+    const double epsilon = positions.rule == Positions::filtered ? 0.01 : 0.0;
+    const auto contour = extract_placed<double>(image.view(), 0.5, positions, {.close = true, .epsilon = epsilon});
     const Intersections<N> found = find_intersections(contour);
     std::printf("%d,%s,%s,%zu,%llu,%llu,%llu\n", N, field, name, contour.simplices.size(),
                 static_cast<unsigned long long>(found.flat), static_cast<unsigned long long>(found.pair_count),

@@ -151,11 +151,15 @@ void drop_trailing_axes(RawGrid& grid, ImageInfo& info) {
   }
 }
 
-void fail_axes(const RawGrid& grid, const std::filesystem::path& path) {
+void fail_axes(const RawGrid& grid, const ImageInfo& info, const std::filesystem::path& path) {
   std::vector<std::size_t> sizes;
   for (const Axis& axis : grid.axes) sizes.push_back(axis.size());
-  fail(ErrorCode::UnsupportedData, path, "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample ({})",
-       sizes.size(), shape_text(sizes), kMoreAxes);
+  std::string hint;  // the axes of netCDF have names; the fourth may be fixed
+  if (info.format == "netCDF" && sizes.size() > 4)
+    hint = fmt::format(", or a fixed index of another dimension, such as {}=0", grid.axes[3].name);
+  fail(ErrorCode::UnsupportedData, path,
+       "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample ({}){}", sizes.size(), shape_text(sizes),
+       kMoreAxes, hint);
 }
 
 AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
@@ -167,7 +171,7 @@ AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
     case 4:
       return with_dimension<4>(std::move(image));
     default:
-      fail_axes(image.grid, path);
+      fail_axes(image.grid, image.info, path);
   }
 }
 

@@ -72,7 +72,7 @@ Grid<N> fixed_grid(const RawGrid& grid) {
 }
 
 /// Throws UnsupportedData about an image that does not have 2, 3 or 4 axes.
-[[noreturn]] void fail_axes(const RawGrid& grid, const std::filesystem::path& path);
+[[noreturn]] void fail_axes(const RawGrid& grid, const ImageInfo& info, const std::filesystem::path& path);
 
 /// Converts to 2, 3 or 4 dimensions; UnsupportedData for any other. uint32, int64 and uint64 become int32 if all values
 /// fit, else double.

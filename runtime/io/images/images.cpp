@@ -221,7 +221,7 @@ ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options
   };
   const bool separate = options.separate_process && needs_separate_process(path);
   RawImage image = (separate ? read_separately(path, options.work.progress, read) : read(options.work.progress)).image;
-  ImageInfo info = std::move(image.info);
+  ImageInfo info = image.info;  // errors about the axes name the format
   AnyImage result = to_any_image(std::move(image), path);
   tick(options.work.progress, 1.0, path);
   return {std::move(result), std::move(info)};

@@ -152,7 +152,7 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
     case 4:
       return {with_dimension<4>(std::move(source), path), std::move(info)};
     default:
-      fail_axes(source.grid, path);
+      fail_axes(source.grid, source.info, path);
   }
 }
 

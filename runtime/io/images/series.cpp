@@ -119,7 +119,7 @@ ImageOfFiles read_raw(std::span<const fs::path> files, const SeriesOptions& opti
 }
 
 ReadSeriesResult series_of(ImageOfFiles&& read, std::span<const fs::path> files, const SeriesOptions& options) {
-  ImageInfo info = std::move(read.image.info);
+  ImageInfo info = read.image.info;  // errors about the axes name the format
   AnyImage result = to_any_image(std::move(read.image), files[0]);
   tick(options.work.progress, 1.0, files[0]);
   return {{std::move(result), std::move(info)}, std::move(read.files)};
