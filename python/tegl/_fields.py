@@ -51,8 +51,7 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = No
         the regular lattice's, and the last coordinate along their axis differs.
     """
     axis_count = None if ndim is None else _arguments.as_whole("ndim", ndim, 2)
-    is_one = isinstance(shape, (int, np.integer))
-    if is_one:
+    if isinstance(shape, (int, np.integer)):
         sizes = [shape] * (axis_count or LATTICES.get(lattice or "", (3, 1.0))[0])
     else:
         sizes = list(shape)
@@ -73,7 +72,7 @@ def sample(field: str, shape: int | Sequence[int] = 64, *, ndim: int | None = No
         if lattice in LATTICES:
             step = axes[0][2] * LATTICES[lattice][1]
             # one number: as many layers as the limits need
-            count = int((last - first) / step + 1e-9) + 1 if is_one else axes[across][0]
+            count = int((last - first) / step + 1e-9) + 1 if isinstance(shape, (int, np.integer)) else axes[across][0]
             axes[across] = (count, first, step)
     given = [(_arguments.as_text("a parameter", name), _arguments.as_number(f"parameters[{name!r}]", value))
              for name, value in (parameters or {}).items()]

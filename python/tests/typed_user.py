@@ -101,7 +101,7 @@ def either(at: Union[float, List[float]]) -> None:
 
 
 # What is wrong is found: an ignored error that is none is an error itself.
-tegl.contour(volume)  # type: ignore[call-arg]
+tegl.contour()  # type: ignore[call-arg]
 tegl.contour(volume, 0.5, spacings=3)  # type: ignore[call-arg]
 tegl.contour(volume, 0.5, normals="yes")  # type: ignore[arg-type]
 tegl.contour(volume, 0.5, ambiguity="most")  # type: ignore[arg-type]
