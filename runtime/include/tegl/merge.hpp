@@ -19,8 +19,8 @@ namespace tegl {
 /// Options of `merge_vertices`.
 struct MergeOptions {
   /// Vertices at most this far apart are merged, in the units of the coordinates (Euclidean); 0: only vertices with
-  /// equal coordinates, and from 4D on those that `extract` keeps off a layer of the last axis by the smallest step of Real.
-  /// Finite, 0 or more. Much less than the length of an edge: otherwise simplices may turn over.
+  /// equal coordinates, and from 4D on those that `extract` keeps off a layer of the last axis by the smallest step of
+  /// Real. Finite, 0 or more. Much less than the length of an edge: otherwise simplices may turn over.
   double tolerance = 0.0;
   std::size_t most_listed = 1000;  ///< maximum size of each list in the report; the counts are complete
   WorkOptions work = {};           ///< threads, progress
@@ -37,9 +37,9 @@ struct MergeCounts {
   std::uint64_t flat_simplices = 0;
   std::uint64_t kept_flat_simplices = 0;  ///< other simplices of zero content; they stay, since they fill a gap
   std::uint64_t divided_simplices = 0;    ///< simplices that were divided beside dropped ones
-  std::uint64_t turned_simplices = 0;  ///< simplices whose normal turned by more than 90 degrees; 0 if tolerance is 0
-  std::int64_t euler_before = 0;       ///< Euler characteristic of the contour
-  std::int64_t euler_after = 0;        ///< Euler characteristic of the result
+  std::uint64_t turned_simplices = 0;   ///< simplices whose normal turned by more than 90 degrees; 0 if tolerance is 0
+  std::int64_t euler_before = 0;        ///< Euler characteristic of the contour
+  std::int64_t euler_after = 0;         ///< Euler characteristic of the result
   std::uint64_t components_before = 0;  ///< components of the contour
   std::uint64_t components_after = 0;   ///< components of the result: more if merging cut one, fewer if it joined some
   /// Components all of whose simplices were dropped: a single sample that equals the isovalue has one.
