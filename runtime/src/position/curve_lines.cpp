@@ -22,6 +22,7 @@ class ShortSegments {
              segment.add((bits >> segment.size() & 1u) != 0 ? GridStep::up : GridStep::right))
         lines_[place(bits, segment.size())] = segment.line();
       sizes_[bits] = static_cast<std::uint8_t>(segment.size());
+      if (segment.size() == kSteps) whole_[bits / 2] = segment;
     }
   }
   /// The number of steps of the longest segment with these turns; kSteps: as many or more.
@@ -29,6 +30,13 @@ class ShortSegments {
   /// The line of the segment of `size` steps.
   [[nodiscard]] const StraightSegment::Line& line(Word turns, std::size_t size) const noexcept {
     return lines_[place(turns, size)];
+  }
+  /// The segment of kSteps steps, to be continued. `steps`: those of the curve.
+  [[nodiscard]] StraightSegment whole(Word turns, const GridStep* steps) const noexcept {
+    turns &= sizes_.size() - 1;
+    StraightSegment segment = whole_[turns / 2];
+    segment.set_directions(steps[0], steps[turns == 0 ? 0 : std::countr_zero(turns)]);
+    return segment;
   }
 
  private:
@@ -39,6 +47,7 @@ class ShortSegments {
 
   std::array<std::uint8_t, std::size_t{1} << kSteps> sizes_{};
   std::array<StraightSegment::Line, std::size_t{1} << (kSteps + 1)> lines_{};
+  std::array<StraightSegment, std::size_t{1} << (kSteps - 1)> whole_{};  // without the first bit, which is 0
 };
 
 const ShortSegments& short_segments() {
@@ -96,7 +105,7 @@ CurveLines::Segment CurveLines::segment_from(std::size_t first, std::size_t most
   const Word bits = turns(first);
   const std::size_t size = std::min(table.size(bits), most);
   if (size < ShortSegments::kSteps || most == size) return {size, table.line(bits, size)};
-  StraightSegment segment;
+  StraightSegment segment = table.whole(bits, steps_.data() + first);
   while (segment.size() < most && segment.add(steps_[first + segment.size()])) {
   }
   return {segment.size(), segment.line()};

@@ -73,6 +73,7 @@ class PlaneCurves {
     do {
       const std::size_t at = curves[of_axis] + p;
       fits_of_.push_back(at);
+      __builtin_prefetch(fits_ + 2 * at, 1);
       // The curve crosses the edge along the other axis.
       lines_.push_back(static_cast<GridStep>(2 - 2 * to + 1 - of_axis));
       const auto link = net_.link(at, to);
@@ -121,8 +122,14 @@ template <int N>
 [[gnu::always_inline]] inline float above_chord(const ContourNet<N>& net, const float* places, std::size_t p, int c,
                                                 float& weight) noexcept {
   using Side = typename ContourNet<N>::Side;
-  // by side, as factors, because branches would be hard to predict
-  constexpr std::array<float, 3> kAcross = {1.0f, 0.0f, 0.0f}, kUpper = {0.0f, 0.0f, 1.0f};
+  // Position along the edge and distance across it: at + by * (place of the neighbour). By side, because branches would
+  // be hard to predict.
+  struct Linear {
+    float at, by;
+    [[nodiscard]] float operator()(float place) const noexcept { return at + by * place; }
+  };
+  constexpr std::array<Linear, 3> kAlong = {{{0, 1}, {0, 0}, {1, 0}}};
+  constexpr std::array<Linear, 3> kBefore = {{{1, 0}, {1, -1}, {1, -1}}}, kAfter = {{{1, 0}, {0, 1}, {0, 1}}};
   const auto before = net.link(static_cast<std::uint32_t>(p), c, 0),
              after = net.link(static_cast<std::uint32_t>(p), c, 1);
   if (before.side() == Side::none || after.side() == Side::none) {
@@ -131,10 +138,8 @@ template <int N>
   }
   const auto side_0 = static_cast<std::size_t>(before.side()), side_1 = static_cast<std::size_t>(after.side());
   const float other_0 = places[before.point()], other_1 = places[after.point()];
-  // position along the edge, and distance across it
-  const float u_0 = kAcross[side_0] * other_0 + kUpper[side_0], u_1 = kAcross[side_1] * other_1 + kUpper[side_1];
-  const float v_0 = kAcross[side_0] + (1.0f - kAcross[side_0]) * (1.0f - other_0);
-  const float v_1 = kAcross[side_1] + (1.0f - kAcross[side_1]) * other_1;
+  const float u_0 = kAlong[side_0](other_0), v_0 = kBefore[side_0](other_0);
+  const float u_1 = kAlong[side_1](other_1), v_1 = kAfter[side_1](other_1);
   return places[p] - (u_0 * v_1 + u_1 * v_0) / (v_0 + v_1);
 }
 

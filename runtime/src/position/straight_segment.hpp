@@ -119,6 +119,13 @@ class StraightSegment {
     return true;
   }
 
+  /// Takes the segment into another frame: its first two directions become these. `second` is `first` if the segment
+  /// has only one.
+  void set_directions(GridStep first, GridStep second) noexcept {
+    first_ = static_cast<unsigned>(first);
+    turn_ = (static_cast<unsigned>(second) - first_) & 3u;
+  }
+
   [[nodiscard]] std::size_t size() const noexcept { return count_; }
   /// The direction and the place of a segment. In the frame of its first two directions, the direction is (b, a). With
   /// rest(x, y) = a x - b y, the line consists of the points with 2 rest = doubled_mean: it passes through the mean of
