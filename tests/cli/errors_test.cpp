@@ -215,7 +215,7 @@ TEST_F(Errors, AReportThatCannotBeWrittenExitsWith6) {
 TEST_F(Errors, ASavedContourIsNoImage) {
   const std::string saved = path("saved.vtkhdf");
   ASSERT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", saved}).exit, 0);
-  expect_failure(4, {"info", saved}, {saved, "mesh", "expected an image"});
+  expect_failure(4, {"index", saved}, {saved, "mesh", "expected an image"});
   expect_contour_failure(4, saved, "0", path("out.ply"), {saved, "mesh", "expected an image"});
 }
 

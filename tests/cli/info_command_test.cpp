@@ -72,6 +72,45 @@ TEST_F(Info, ShowsTheWorldMatrixInColumnsWhateverItsEntries) {
   EXPECT_EQ(run_tegl({"info", file, "--json"}).json()["world"]["linear"][2][0], 4.12774e-18) << "exact for programs";
 }
 
+TEST_F(Info, DescribesSavedContours) {
+  const std::string image = write("balls.nii", nifti_bytes(merging_balls(9, 4), {2, 2, 3, 1.5f}));
+  const RunResult made =
+      run_tegl({"contour", image, "--iso", "0", "--attribute", image, "-o", path("c.vtkhdf"), "--json"});
+  ASSERT_EQ(made.exit, 0) << made.err;
+  const RunResult run = run_tegl({"info", path("c.vtkhdf"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const nlohmann::json info = run.json();
+  EXPECT_EQ(info["format"], "VTKHDF");
+  EXPECT_EQ(info["type"], "contour");
+  EXPECT_EQ(info["image_dim"], 4);
+  EXPECT_EQ(info["isovalue"], 0);
+  EXPECT_EQ(info["vertices"], made.json()["vertices"]);
+  EXPECT_EQ(info["simplices"], made.json()["simplices"]);
+  ASSERT_EQ(info["axes"].size(), 4u);
+  EXPECT_EQ(info["axes"][3]["name"], "t");
+  EXPECT_EQ(info["axes"][3]["unit"], "s");
+  EXPECT_GE(info["axes"][3]["min"], 0);
+  EXPECT_LE(info["axes"][3]["max"], 4.5);
+  EXPECT_LT(info["axes"][3]["min"], info["axes"][3]["max"]);
+  ASSERT_EQ(info["attributes"].size(), 1u);
+  EXPECT_EQ(info["attributes"][0]["name"], "balls");
+  EXPECT_EQ(info["attributes"][0]["on"], "vertices");
+  EXPECT_NEAR(info["attributes"][0]["max"].get<double>(), 0, 1e-5);
+  const RunResult text = run_tegl({"info", path("c.vtkhdf")});
+  for (const char* part : {"a contour in 4D, VTKHDF", "isovalue", "tetrahedra", " s\n", "Attributes", "of vertices"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+  // lines in a plane, in a format that has three coordinates
+  const std::string flat = write("flat.nrrd", nrrd_bytes(ball({7, 6}, 2)));
+  ASSERT_EQ(run_tegl({"contour", flat, "--iso", "0", "-o", path("flat.glb")}).exit, 0);
+  const nlohmann::json lines = run_tegl({"info", path("flat.glb"), "--json"}).json();
+  EXPECT_EQ(lines["format"], "glTF");
+  EXPECT_EQ(lines["image_dim"], 2);
+  EXPECT_EQ(lines["axes"].size(), 2u);
+  const RunResult refused = run_tegl({"info", path("flat.glb"), "--var", "T"});
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_THAT(refused.err, HasSubstr("is a saved contour, which does not take --var"));
+}
+
 TEST_F(Info, ReadsMetaImage) {
   const std::string file = write("ball.mha", metaimage_bytes(ball({7, 6}, 2)));
   const RunResult run = run_tegl({"info", file, "--json"});

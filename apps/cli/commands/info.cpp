@@ -9,9 +9,11 @@
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
 #include "base/statistics.hpp"
+#include "commands/contour_info.hpp"
 #include "commands/index.hpp"
 #include "commands/mesh_info.hpp"
 #include "input/commands.hpp"
+#include "input/contour_input.hpp"
 #include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
@@ -336,7 +338,9 @@ class InfoCommand final : public Command {
       : Command(
             program, "info", "Describe a file: axes, values, histogram, suggested isovalues",
             "the image: NIfTI, NRRD, MetaImage, NumPy (.npy, .npz), netCDF (.nc, also gzipped), VTK (.vti, .vtr, .pvd) "
-            "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd), a table of points (.csv) or an index (.tindex)",
+            "or DICOM (a folder); or a mesh (.vtu, .vts, .pvd), a table of points (.csv), a saved contour (.vtkhdf, "
+            ".ply "
+            "...) or an index (.tindex)",
             Files::image) {
     add_image_options();
     app().footer(kInfoExamples);
@@ -352,6 +356,7 @@ class InfoCommand final : public Command {
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }
+    if (find_mesh_file_format(file()) != nullptr) return describe_contour(streams);
     if (are_cell_meshes(files(), images())) return describe_mesh(streams);
     // several variables: a list to choose from
     if (images().variable().empty() && !images().has_fixed()) {
@@ -387,6 +392,15 @@ class InfoCommand final : public Command {
   }
 
  private:
+  ExitCode describe_contour(const Streams& streams) {
+    refuse_image_options(files(), {}, images(), "it without options for images");
+    ProgressBar bar(streams.err, wants_progress());
+    const Mesh mesh = read_finite_mesh(file(), mesh_options(bar.stage("read")));
+    bar.clear();
+    streams.out.write(json() ? dump(contour_json(mesh, inputs())) : contour_text(streams.out, mesh, file()));
+    return ExitCode::Ok;
+  }
+
   ExitCode describe_mesh(const Streams& streams) {
     if (const auto given = images().given(); !given.empty() || files().size() > 1)
       throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a mesh; expected it without {}", file(),
