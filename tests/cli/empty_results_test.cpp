@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -122,6 +123,20 @@ TEST_F(EmptyResults, OfCutsOutsideOfTheExtentAreErrorsUnlessAllowed) {
     expect_outside({"slice", saved, "--at", at, "-o", path("cut.ply")}, "lies outside of the saved contour");
     expect_empty_mesh("cut.ply", 2);
   }
+  // a list with one cut outside: no file is written, not even for the cuts before it
+  for (const std::string& at : {std::string("t=1,2,99"), std::string("t=98,99"), std::string("t=1:99:3")}) {
+    const RunResult of_image = run_tegl({"slice", balls_, "--iso", "0", "--at", at, "-o", path("list_{n}.ply")});
+    EXPECT_EQ(of_image.exit, 5) << of_image.err;
+    EXPECT_THAT(of_image.err, HasSubstr("lies outside of the image; expected 0 <= t <= 3"));
+    const RunResult of_saved = run_tegl({"slice", saved, "--at", at, "-o", path("list_{n}.ply")});
+    EXPECT_EQ(of_saved.exit, 5) << of_saved.err;
+    EXPECT_THAT(of_saved.err, HasSubstr("lies outside of the saved contour"));
+    for (const char* const name : {"list_1.ply", "list_2.ply", "list_3.ply"})
+      EXPECT_FALSE(std::filesystem::exists(path(name))) << at;
+  }
+  expect_outside({"slice", balls_, "--iso", "0", "--at", "t=1,2,99", "-o", path("list_{n}.ply")}, "the cut at t = 99");
+  EXPECT_FALSE(read_mesh(path("list_1.ply")).simplices.empty());
+  expect_empty_mesh("list_3.ply", 2);
   expect_outside({"slice", balls_, "--iso", "0", "--plane", "1,0,0,1=99", "-o", path("cut.ply")},
                  "the cut at x + t = 99 lies outside of the image; expected 0 <= x + t <= 14");
   expect_outside({"slice", saved, "--plane", "1,0,0,1=99", "-o", path("cut.ply")}, "lies outside of the saved contour");
