@@ -426,6 +426,15 @@ TEST_F(Contour, OfACurvedGridTakesPositionsAttributesAndPointsToPick) {
   const std::string other = write("straight.nrrd", nrrd_bytes(straight));
   EXPECT_THAT(run_tegl({"contour", other, "--iso", "0", "--attribute", model, "-o", path("x.vtkhdf")}).err,
               HasSubstr("has a curved grid, and the contour has none"));
+  // nor has an image of another place, or with --index-grid of other sizes
+  const std::string far = write("far.nrrd", nrrd_bytes(ball({8, 6, 2}, 2.0)));
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--index-grid"}}) {
+    std::vector<std::string> arguments = {"contour", model, "--iso", "1.5", "--attribute", far, "-o", path("x.vtkhdf")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult unrelated = run_tegl(arguments);
+    EXPECT_EQ(unrelated.exit, 4) << unrelated.err;
+    EXPECT_THAT(unrelated.err, HasSubstr("an image of 8 x 6 x 2 samples; the image that is contoured has 7 x 6 x 2"));
+  }
 }
 
 TEST_F(Contour, OfACurvedGridIsCutAndSimplifiedAsASavedOne) {

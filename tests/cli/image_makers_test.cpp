@@ -216,6 +216,15 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
   ASSERT_EQ(five.exit, 0) << five.err;
   EXPECT_EQ(five.json()["dim"], 4);
   EXPECT_EQ(five.json()["boundary_simplices"], 0);
+  for (const char* const option : {"--facets", "--stream"}) {
+    const RunResult refused = run_tegl({"contour", path("five.nrrd"), "--iso", "0", option, "-o", path("no.vtkhdf")});
+    EXPECT_EQ(refused.exit, 2) << refused.err;
+    EXPECT_EQ(refused.err, std::string("tegl: ") + option + " with an image of 5 axes; expected 2 to 4 axes\n");
+  }
+  const RunResult about = run_tegl({"info", path("five.vtkhdf"), "--json"});
+  ASSERT_EQ(about.exit, 0) << about.err;
+  EXPECT_EQ(about.json()["image_dim"], 5);
+  EXPECT_EQ(about.json()["simplices"], five.json()["simplices"]);
   const RunResult run = run_tegl({"sample", "ball", "--size", "5,4,3", "--range", "0:2", "-o", path("a.nc"), "--json"});
   ASSERT_EQ(run.exit, 0) << run.err;
   EXPECT_EQ(run.json()["input"], nullptr);

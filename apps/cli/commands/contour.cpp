@@ -350,6 +350,7 @@ class ContourCommand final : public Command {
       result.folded_cells = folded_cells;
       result.isovalue_of_samples = require_contour(input, *result.isovalue, options_.allows_empty());
     }
+    attributes_.keep_sizes_of(input.image);
     placed_ = positions_.library_options(input.image, image_options(bar.stage("positions")), position_values_);
     results.front().seconds.read = watch.lap();  // read once for all isovalues
     WrittenFiles written;
@@ -621,7 +622,7 @@ class ContourCommand final : public Command {
     // read
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
-    const ReadImageResult input = read(bar.stage("read"));
+    const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
     refuse_cells_of_file(input.info.samples_are_cells);
     std::vector<FacetsResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -659,7 +660,7 @@ class ContourCommand final : public Command {
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "normals from the gradient"));
     // open, extract and write in one pass
-    OpenLayersResult input = open();
+    OpenLayersResult input = with_option_to_4d("--stream", [&] { return open(); });
     refuse_cells_of_file(input.info.samples_are_cells);
     for (ContourResult& result : results) {
       result.input = inputs();

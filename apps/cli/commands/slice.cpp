@@ -372,6 +372,7 @@ class SliceCommand final : public Command {
                                   const std::vector<Cut>& cuts, std::vector<LayerRange>& needed) {
     constexpr int kLast = N - 1;
     const CutSpace space = space_of(grid);
+    attributes_.keep_sizes_of(grid);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(cuts, space);
     if (std::any_of(grid.axes.begin(), grid.axes.end(), [](const Axis& axis) { return axis.size() < 2; }) ||
@@ -429,6 +430,7 @@ class SliceCommand final : public Command {
     CutSpace space = space_of(input.image);
     if constexpr (std::is_same_v<Input, ReadImageResult>) {
       std::optional<std::uint64_t> folded_cells;
+      attributes_.keep_sizes_of(input.image);
       remark(take_grid(input, file(), options_, tiling, folded_cells));
       space = tiling.of_cells ? space_of_cells(input.image, tiling.cell_faces) : space_of(input.image, tiling.curved);
     } else {

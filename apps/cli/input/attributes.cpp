@@ -4,6 +4,7 @@
 #include "input/attributes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,24 @@ void require_same_grid(const std::string& file, const std::vector<CurvedAxis>& i
                   file, contour.empty() ? "has none" : "another one"));
 }
 
+/// Throws: the image has nothing to do with the contour, whose image has the sizes `own`.
+[[noreturn]] void throw_unrelated(const std::string& file, const AnyImage& image, const std::vector<std::size_t>& own,
+                                  const char* reason) {
+  throw Error(ErrorCode::UnsupportedData,
+              fmt::format("--attribute {}: an image of {} samples; the image that is contoured has {}: {}", file,
+                          fmt::join(sizes_of(image), " x "), fmt::join(own, " x "), reason));
+}
+
 }  // namespace
+
+std::vector<std::size_t> sizes_of(const AnyImage& image) {
+  std::vector<std::size_t> sizes;
+  const auto of_owned = [&](const auto& owned) {
+    for (const Axis& axis : owned.grid.axes) sizes.push_back(axis.size());
+  };
+  std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+  return sizes;
+}
 
 ReadImageResult read_other_image(const std::string& file, const ReadImageOptions& options) {
   try {
@@ -88,6 +106,8 @@ std::vector<FileAndVariable> AttributeOptions::meshes(bool allow_outside_paths) 
   return result;
 }
 
+void AttributeOptions::keep_sizes_of(const AnyImage& image) { sizes_ = sizes_of(image); }
+
 void AttributeOptions::require_inputs() const {
   for (const std::string& file : files()) require_input(file, Folders::allowed);
 }
@@ -112,6 +132,8 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
         throw Error(
             ErrorCode::InvalidArgument,
             fmt::format("--attribute {}: the contour already has an attribute '{}'; expected each once", text, name));
+    if (curved.by_index && !sizes_.empty() && sizes_of(input.image) != sizes_)
+      throw_unrelated(from.file, input.image, sizes_, "expected the same sizes with --index-grid");
     const bool is_curved = !curved.by_index && !input.info.curved.empty();
     if (is_curved) require_same_grid(from.file, input.info.curved, curved.axes);
     const auto sampling = [&](double fraction) { return progress(0.7 + 0.3 * fraction); };
@@ -123,6 +145,11 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
                     : sample_across_periods(owned, contour, name, unit, work));
     };
     std::visit(sample_owned, std::get<AnyImageN<N>>(input.image));
+    const auto& values = contour.vertex_attributes.back().values;
+    if (!curved.axes.empty() && !values.empty() &&
+        std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+      throw_unrelated(from.file, input.image, sizes_,
+                      "it has no value at any vertex of the contour; expected an image that covers the contour");
   }
 }
 

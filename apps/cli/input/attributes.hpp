@@ -27,6 +27,9 @@ FileAndVariable parse_file_and_variable(const std::string& text);
 /// Reads another image than FILE, with the names of this program's options in errors.
 ReadImageResult read_other_image(const std::string& file, const ReadImageOptions& options);
 
+/// Numbers of samples along the axes.
+std::vector<std::size_t> sizes_of(const AnyImage& image);
+
 /// How the contour lies on the curved grid of its image.
 template <int N, class Real>
 struct CurvedContour {
@@ -52,16 +55,26 @@ class AttributeOptions {
   /// Throws FileNotFound if a file is missing, before the long work.
   void require_inputs() const;
 
+  /// Sets the image that is contoured, whose sizes `sample_to` then compares on curved grids and with --index-grid.
+  void keep_sizes_of(const AnyImage& image);
+  template <int N>
+  void keep_sizes_of(const Grid<N>& grid) {
+    sizes_.clear();
+    for (const Axis& axis : grid.axes) sizes_.push_back(axis.size());
+  }
+
   /// Interpolates the images at the vertices, as attributes named after the variables, or after the files without
   /// extensions. `reading`: how the files are read. Images on the contour's own curved grid are interpolated by the
-  /// indices. Throws InvalidArgument if two have the same name, UnsupportedData for an image of another dimension or on
-  /// another curved grid, and errors of the readers.
+  /// indices. Throws InvalidArgument if two have the same name; UnsupportedData for an image of another dimension or on
+  /// another curved grid, of other sizes with --index-grid, or without any value at a contour on a curved grid; and
+  /// errors of the readers.
   template <int N, class Real>
   void sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads, ProgressBar& bar,
                  const std::type_identity_t<CurvedContour<N, Real>>& curved = {}) const;
 
  private:
   std::vector<std::string> texts_;
+  std::vector<std::size_t> sizes_;  ///< of the image that is contoured; empty: unknown
 };
 
 }  // namespace tegl::cli

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -17,6 +18,19 @@ namespace tegl::cli {
 
 /// Replaces names of library options in an error message by those of the program.
 std::string with_option_names(std::string message);
+
+/// Calls `read`; if the image has 5 axes, which it refuses, throws InvalidArgument that names the option.
+template <class Read>
+auto with_option_to_4d(std::string_view option, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::UnsupportedData ||
+        std::string_view(error.what()).find("image of 5 axes") == std::string_view::npos)
+      throw;
+    throw Error(ErrorCode::InvalidArgument, std::string(option) + " with an image of 5 axes; expected 2 to 4 axes");
+  }
+}
 
 /// --var, --series, --times, --time-step, --time-unit, --sort, --fix, --raw and the options of its layout.
 class ImageOptions {

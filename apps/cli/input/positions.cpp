@@ -21,16 +21,6 @@ namespace tegl::cli {
 
 namespace {
 
-/// The sizes of an image.
-std::vector<std::size_t> sizes_of(const AnyImage& image) {
-  const auto of_owned = [](const auto& owned) {
-    std::vector<std::size_t> sizes;
-    for (const Axis& axis : owned.grid.axes) sizes.push_back(axis.size());
-    return sizes;
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
-}
-
 /// Calls f with the image of any type.
 template <class F>
 void visit_image(AnyImage& image, const F& f) {
