@@ -217,9 +217,9 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
         if len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
-        named = [_arguments.as_text(name, "" if value is None else value)
-                 for name, value in (("lattice", lattice), ("division", division))]
-        return ContourSize(*_tegl.count(prepared.image, axes, periods, *named, level, options, progress))
+        points = _arguments.as_text("lattice", "" if lattice is None else lattice)
+        simplices = _arguments.as_text("division", "" if division is None else division)
+        return ContourSize(*_tegl.count(prepared.image, axes, periods, points, simplices, level, options, progress))
 
 
 @typing.overload
