@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The oracle of the tables, by definition: components and Euler characteristics of the high and of the low part of a
-// cube's boundary, from the signs of its corners and the centres of its ambiguous squares. It shares no code with the
-// builders of the tables.
+// The oracle of the tables, by definition: components and Euler characteristics of the high and of the low part of the
+// boundary of a cube or another polytope, from the signs of its corners and the centres of its ambiguous squares. It
+// shares no code with the builders of the tables.
 //
-// Each component of a part within a face of the cube is contractible: a point, an edge or a piece of one, and for a
-// square or cube a region of a ball that disjoint discs cut. So the part has the homotopy type of the order complex of
-// its components in all proper faces, ordered by inclusion (the nerve of a cover by contractible sets whose
+// Each component of a part within a face of the polytope is contractible: a point, an edge or a piece of one, and for a
+// polygon or a 3-face a region of a ball that disjoint discs cut. So the part has the homotopy type of the order
+// complex of its components in all proper faces, ordered by inclusion (the nerve of a cover by contractible sets whose
 // intersections are such sets again).
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace tegl::test {
 
-/// A set of corners of an n-cube, n <= 4: bit v for corner v, which has coordinate v >> a & 1 along axis a.
+/// A set of corners, bit v for corner v. In an n-cube, n <= 4, it has coordinate v >> a & 1 along axis a.
 using Corners = std::uint32_t;
 
 /// Merges sets that have a corner in common.
@@ -38,20 +38,29 @@ inline std::vector<Corners> merged(std::vector<Corners> sets) {
   return result;
 }
 
+/// A face of a polytope.
+struct PolytopeFace {
+  int dim;
+  Corners corners;
+  unsigned base = 0, axes = 0;        ///< of a cube
+  std::vector<std::size_t> facets{};  ///< of one dimension less
+  std::vector<std::size_t> below{};   ///< all proper faces
+};
+
 /// The faces of the n-cube, by dimension; the cube is the last.
 struct CubeFaces {
-  struct Face {
-    unsigned base, axes;
-    std::vector<std::size_t> facets;  ///< of one dimension less
-    std::vector<std::size_t> below;   ///< all proper faces
-  };
+  using Face = PolytopeFace;
   std::vector<Face> faces;
 
   explicit CubeFaces(int n) {
     for (int dim = 0; dim <= n; ++dim)
       for (unsigned axes = 0; axes < 1u << n; ++axes)
         for (unsigned base = 0; base < 1u << n; ++base)
-          if (std::popcount(axes) == dim && (base & axes) == 0) faces.push_back({base, axes, {}, {}});
+          if (std::popcount(axes) == dim && (base & axes) == 0) {
+            Corners corners = 0;
+            for (unsigned v = 0; v < 1u << n; ++v) corners |= Corners{(v & ~axes) == base} << v;
+            faces.push_back({dim, corners, base, axes});
+          }
     for (Face& face : faces)
       for (std::size_t other = 0; other < faces.size(); ++other) {
         const auto [base, axes] = std::pair(faces[other].base, faces[other].axes);
@@ -66,13 +75,22 @@ struct CubeFaces {
   }
 };
 
-/// The part of an n-cube's boundary, n = 1 to 4, that contains the corners `inside`.
+/// The part of the boundary of an n-cube, n = 1 to 4, or of a polytope that contains the corners `inside`.
 class BoundaryPart {
  public:
   /// Whether the centre of the ambiguous square along `axes` from corner `base` is in the part.
   using HasCentre = std::function<bool(unsigned base, unsigned axes)>;
 
-  BoundaryPart(int n, Corners inside, const HasCentre& has_centre) : faces_(CubeFaces::of(n)), in_face_(faces_.size()) {
+  BoundaryPart(int n, Corners inside, const HasCentre& has_centre)
+      : BoundaryPart(CubeFaces::of(n), inside,
+                     [&](const PolytopeFace& square) { return has_centre(square.base, square.axes); }) {}
+
+  /// Whether the centre of an ambiguous polygon is in the part.
+  using HasCentreOf = std::function<bool(const PolytopeFace& polygon)>;
+
+  /// `faces`: by dimension, the polytope itself the last; they must outlive this object.
+  BoundaryPart(const std::vector<PolytopeFace>& faces, Corners inside, const HasCentreOf& has_centre)
+      : faces_(faces), in_face_(faces.size()) {
     for (std::size_t face = 0; face < faces_.size(); ++face) find_in_face(face, inside, has_centre);
     std::vector<Corners> all;
     for (std::size_t face = 0; face + 1 < faces_.size(); ++face)
@@ -93,18 +111,17 @@ class BoundaryPart {
   [[nodiscard]] const std::vector<Corners>& regions_of_cube() const noexcept { return in_face_.back(); }
 
  private:
-  void find_in_face(std::size_t number, Corners inside, const HasCentre& has_centre) {
-    const CubeFaces::Face& face = faces_[number];
+  void find_in_face(std::size_t number, Corners inside, const HasCentreOf& has_centre) {
+    const PolytopeFace& face = faces_[number];
     std::vector<Corners>& components = in_face_[number];
-    if (face.axes == 0 && (inside >> face.base & 1u) != 0) components.push_back(Corners{1} << face.base);
-    if (face.axes == 0) return;
+    if (face.dim == 0 && (inside & face.corners) != 0) components.push_back(face.corners);
+    if (face.dim == 0) return;
     std::vector<Corners> below;
     for (const std::size_t facet : face.facets)
       below.insert(below.end(), in_face_[facet].begin(), in_face_[facet].end());
     components = merged(below);
-    // An edge joins its two corners. A square with two separate corners inside is ambiguous.
-    const bool is_edge = std::popcount(face.axes) == 1, is_square = std::popcount(face.axes) == 2;
-    if (components.size() == 2 && (is_edge || (is_square && has_centre(face.base, face.axes))))
+    // An edge joins its two corners. A quadrilateral with two separate corners inside is ambiguous.
+    if (components.size() == 2 && (face.dim == 1 || (face.dim == 2 && has_centre(face))))
       components = {components[0] | components[1]};
   }
 
@@ -124,7 +141,7 @@ class BoundaryPart {
       }
   }
 
-  const std::vector<CubeFaces::Face>& faces_;
+  const std::vector<PolytopeFace>& faces_;
   std::vector<std::vector<Corners>> in_face_;  ///< components, by face
   std::vector<Corners> components_;
   std::vector<long> eulers_;

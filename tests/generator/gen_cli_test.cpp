@@ -365,6 +365,64 @@ TEST(GenCli, OtherTilesAreCountedAndCertified) {
   }
 }
 
+TEST(GenCli, MeshCellsAreTiles) {
+  struct Expected {
+    const char* tile;
+    int dim, order, orbits, with_inversion, tori;
+    std::uint64_t signatures, pairs;
+  };
+  for (const Expected& expected :
+       {Expected{"wedge", 3, 12, 13, 8, 0, 64, 94}, Expected{"pyramid", 3, 8, 12, 6, 0, 32, 36},
+        Expected{"prism:tetrahedron", 4, 48, 22, 14, 0, 256, 594}, Expected{"cross4", 4, 384, 15, 9, 6, 256, 256}}) {
+    const json count = json::parse(gen({"--tile", expected.tile, "--count", "--json"}).out);
+    EXPECT_EQ(count, (json{{"tile", expected.tile},
+                           {"dim", expected.dim},
+                           {"group", "full"},
+                           {"inversion", false},
+                           {"order", expected.order},
+                           {"orbits", expected.orbits}}));
+    const json inverted = json::parse(gen({"--tile", expected.tile, "--count", "--inversion", "--json"}).out);
+    EXPECT_EQ(inverted.at("orbits"), expected.with_inversion) << expected.tile;
+    const json certified = json::parse(gen({"--tile", expected.tile, "--certify", "--json"}).out);
+    ASSERT_EQ(certified.at("certified").size(), 2u);  // alternatives
+    for (const json& figures : certified.at("certified")) {
+      EXPECT_EQ(figures.at("passed"), expected.signatures) << expected.tile;
+      EXPECT_EQ(figures.at("signatures_with_non_spherical"), expected.tori) << expected.tile;
+    }
+    const json all = json::parse(gen({"--tile", expected.tile, "--certify", "--all", "--json"}).out);
+    EXPECT_EQ(all.at("pairs"), expected.pairs) << expected.tile;
+    EXPECT_GE(all.at("tiles_without_symmetry"), expected.pairs) << expected.tile;
+    const json classes = json::parse(gen({"--tile", expected.tile, "--classes", "--json"}).out);
+    EXPECT_EQ(classes.at("classes").size(), static_cast<std::size_t>(expected.orbits));
+    const json summary = json::parse(gen({"--tile", expected.tile, "--json"}).out);
+    EXPECT_EQ(summary.at("groups").at(0).at("classes"), expected.orbits);
+    EXPECT_EQ(summary.at("tables").size(), expected.dim == 3 ? 2u : 1u);
+  }
+  EXPECT_EQ(gen({"--dim", "4", "--tile", "octahedron", "--count"}).out, gen({"--tile", "cross4", "--count"}).out);
+}
+
+TEST(GenCli, TheTablesOfACellAreWrittenWithTheNumbersOfAllCells) {
+  const Folder folder;
+  const Outcome run = gen({"--tile", "wedge", "--out", folder.file("t"), "--language", "cpp,json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto files = contents(folder.file("t")), built = contents(TEGL_TABLE_DIR);
+  ASSERT_EQ(files.size(), 4u);
+  const json all = json::parse(built.at("cells_manifest.json"));
+  for (const json& table : json::parse(files.at("cell_wedge_manifest.json")).at("tables")) {
+    const json& tables = all.at("tables");
+    EXPECT_NE(std::find(tables.begin(), tables.end(), table), tables.end()) << table;
+    const json file = json::parse(files.at("cell_wedge_" + table.at("triangulation").get<std::string>() + ".json"));
+    EXPECT_EQ(file.at("fnv1a"), table.at("fnv1a"));
+    EXPECT_EQ(file.at("list_of").size(), 64u);
+  }
+  // the arrays of the library's own file
+  const std::string& source = files.at("cell_wedge.cpp");
+  const std::string array = "const char kWedgeCompactSimplices[]";
+  const std::string text =
+      source.substr(source.find(array), 2000).substr(0, source.substr(source.find(array)).find(';'));
+  EXPECT_THAT(built.at("cells.cpp"), HasSubstr(text));
+}
+
 TEST(GenCli, CellsAreCertifiedAndWrittenAsTheBuildHasThem) {
   const Outcome printed = gen({"--cells"});
   ASSERT_EQ(printed.status, 0) << printed.err;
@@ -383,9 +441,16 @@ TEST(GenCli, CellsTakeNoDimension) {
 }
 
 TEST(GenCli, RefusesTilesAndWhatTheyDoNotHave) {
-  expect_refused({"--dim", "3", "--count", "--tile", "prism"}, {"--tile prism", "cube or simplex or octahedron"});
+  expect_refused({"--dim", "3", "--count", "--tile", "prism"},
+                 {"--tile prism", "cube, simplex, octahedron", "wedge", "prism:octahedron", "cross4"});
   expect_refused({"--dim", "5", "--count", "--tile", "simplex"}, {"--dim 5", "2 to 4"});
-  expect_refused({"--dim", "4", "--certify", "--tile", "octahedron"}, {"--dim 4", "expects 3"});
+  expect_refused({"--dim", "2", "--certify", "--tile", "octahedron"}, {"--dim 2", "expects 3 or 4"});
+  expect_refused({"--dim", "4", "--count", "--tile", "wedge"}, {"--dim 4", "--tile wedge expects 3"});
+  expect_refused({"--tile", "simplex"}, {"--tile without --dim", "expected --dim N"});
+  expect_refused({"--tile", "wedge", "--certify", "--table-by-class"}, {"--tile wedge", "--table-by-class"});
+  expect_refused({"--tile", "wedge", "--out", "t", "--language", "glsl"}, {"--tile wedge", "glsl", "cpp or json"});
+  expect_refused({"--tile", "wedge", "--out", "t", "--layout", "flat"}, {"--layout", "--tile wedge"});
+  expect_refused({"--tile", "cross4", "--out", "t", "--triangulation", "compact"}, {"compact", "expects barycentric"});
   expect_refused({"--dim", "3", "--out", "t", "--tile", "simplex", "--language", "json,glsl"}, {"glsl", "cpp or json"});
   expect_refused({"--dim", "3", "--out", "t", "--tile", "simplex", "--layout", "class"}, {"--layout class"});
   expect_refused({"--dim", "3", "--certify", "--tile", "simplex", "--table-by-class"}, {"--table-by-class"});

@@ -2,15 +2,6 @@
 //
 // Every entry of every emitted table against the oracle by definition (definition_oracle.hpp): tiles of two to four
 // dimensions in both triangulations, the resolved cube in all its lists, and regions at the border.
-//
-// The contour of an entry meets the boundary of its tile in closed curves or surfaces. Each of them separates one
-// component of the high part from one of the low part; and these numbers are the same by the oracle and by the entry:
-// - components: curves or surfaces = components of the high part + components of the low part - 1, as the boundary is a
-//   sphere;
-// - Euler characteristic of a component of a part: 2 - its curves in 3D, half of its surfaces' in 4D;
-// - the contour in the tile: as many components as curves or surfaces, each filled by a disc or half of its Euler
-//   characteristic. In a cube with a choice, one component for each component of the part that is cut off, with its
-//   Euler characteristic.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +10,7 @@
 #include <string>
 
 #include "decode.hpp"
-#include "definition_oracle.hpp"
+#include "definition_faults.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::gen {
@@ -28,96 +19,16 @@ namespace {
 using test::boundary_of;
 using test::BoundaryPart;
 using test::Corners;
+using test::corners_of_edge;
+using test::fault_of_boundary;
+using test::fault_of_separate;
+using test::Parts;
 using test::Piece;
 using test::pieces_of;
 using test::VertexSet;
 
-/// The corners of an edge of an n-cube, the one whose coordinate is 0 first (table contract).
-std::array<unsigned, 2> corners_of_edge(int n, unsigned edge) {
-  const unsigned axis = edge >> (n - 1), rest = edge & ((1u << (n - 1)) - 1);
-  const unsigned base = (rest >> axis << (axis + 1)) | (rest & ((1u << axis) - 1));
-  return {base, base | 1u << axis};
-}
-
-/// The two parts of a tile's boundary.
-struct Parts {
-  int n;
-  Corners high_corners;
-  BoundaryPart high, low;
-
-  /// `is_high`: the centres of ambiguous squares.
-  Parts(int dim, Corners signature, const BoundaryPart::HasCentre& is_high)
-      : n(dim),
-        high_corners(signature),
-        high(dim, signature, is_high),
-        low(dim, ~signature & ((Corners{1} << (1u << dim)) - 1),
-            [&](unsigned base, unsigned axes) { return !is_high(base, axes); }) {}
-};
-
 const BoundaryPart::HasCentre kAllLow = [](unsigned, unsigned) { return false; };
 const BoundaryPart::HasCentre kAllHigh = [](unsigned, unsigned) { return true; };
-
-/// What is wrong; empty: nothing.
-std::string fault_of_boundary(const Parts& parts, const std::vector<Piece>& separators) {
-  const unsigned edges = tables::edge_count(static_cast<std::uint32_t>(parts.n));
-  std::vector<long> high(parts.high.components()), low(parts.low.components());
-  std::set<unsigned> met;
-  for (const Piece& separator : separators) {
-    std::optional<std::array<std::size_t, 2>> between;
-    for (const std::uint8_t v : separator.vertices) {
-      if (v >= edges) continue;
-      met.insert(v);
-      auto [inside, outside] = corners_of_edge(parts.n, v);
-      if ((parts.high_corners >> inside & 1u) == 0) std::swap(inside, outside);
-      if ((parts.high_corners >> inside & 1u) == 0 || (parts.high_corners >> outside & 1u) != 0)
-        return "a point on an edge that is not critical";
-      const std::array<std::size_t, 2> here = {parts.high.of_corner(inside), parts.low.of_corner(outside)};
-      if (between && *between != here) return "a separator of several components";
-      between = here;
-    }
-    if (!between) return "a separator without a point on an edge";
-    // In 2D a part is an arc, between two points.
-    const long share = parts.n == 4 ? separator.euler : 1;
-    high[(*between)[0]] += share;
-    low[(*between)[1]] += share;
-  }
-  unsigned critical = 0;
-  for (unsigned e = 0; e < edges; ++e) {
-    const auto [a, b] = corners_of_edge(parts.n, e);
-    critical += (parts.high_corners >> a & 1u) != (parts.high_corners >> b & 1u) ? 1 : 0;
-  }
-  if (met.size() != critical) return "critical edges without a point";
-  const std::size_t expected = parts.n == 2 ? 2 * high.size() : high.size() + low.size() - 1;
-  if (separators.size() != expected) return "another number of separators";
-  for (const auto& [part, sums] : {std::pair(&parts.high, &high), std::pair(&parts.low, &low)})
-    for (std::size_t c = 0; c < sums->size(); ++c) {
-      const long sum = (*sums)[c];
-      const bool agrees = parts.n == 2   ? sum == 2 && part->euler(c) == 1
-                          : parts.n == 3 ? part->euler(c) == 2 - sum
-                                         : 2 * part->euler(c) == sum;
-      if (!agrees) return "a part with another Euler characteristic";
-    }
-  return "";
-}
-
-/// A contour that fills each separator by itself.
-std::string fault_of_separate(const Parts& parts, const std::vector<VertexSet>& simplices) {
-  const auto n = static_cast<unsigned>(parts.n);
-  const std::vector<Piece> separators = pieces_of(boundary_of(simplices, n), n - 1);
-  std::string fault = fault_of_boundary(parts, separators);
-  if (!fault.empty()) return fault;
-  const std::vector<Piece> contour = pieces_of(simplices, n);
-  if (contour.size() != (n == 2 ? separators.size() / 2 : separators.size())) return "another number of components";
-  for (const Piece& piece : contour) {
-    if (n < 4 && piece.euler != 1) return "a component that is no disc";
-    if (n < 4) continue;
-    for (const Piece& separator : separators)
-      if (std::binary_search(piece.vertices.begin(), piece.vertices.end(), separator.vertices[0]) &&
-          2 * piece.euler != separator.euler)
-        return "a component with another Euler characteristic";
-  }
-  return "";
-}
 
 std::vector<VertexSet> simplices_of(const tables::TileTable& table, Corners s) {
   std::vector<VertexSet> result;

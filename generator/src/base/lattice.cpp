@@ -144,12 +144,13 @@ std::vector<std::uint8_t> edge_permutation(const Tile& tile, std::span<const std
 }
 
 const char* tile_kind_name(TileKind kind) noexcept {
-  return kind == TileKind::cube ? "cube" : kind == TileKind::simplex ? "simplex" : "octahedron";
+  constexpr const char* kNames[] = {"cube", "simplex", "octahedron", "other"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 Lattice::Lattice(TileKind kind, int n) {
-  if (n < 1 || n > 4 || (kind == TileKind::octahedron && n != 3))
-    throw std::invalid_argument("face lattice: dimension must be 1 to 4, that of an octahedron 3");
+  if (n < 1 || n > 4 || (kind == TileKind::octahedron && n != 3) || kind == TileKind::other)
+    throw std::invalid_argument("lattice: expected cubes or simplices of dimension 1 to 4, or the octahedron");
   tiles_.reserve(static_cast<std::size_t>(n) + 1);  // faces point at their tiles: no reallocation
   tiles_.push_back(kind == TileKind::cube ? make_cube(0, nullptr) : make_simplex(0, nullptr));
   for (int k = 1; k <= n; ++k) {

@@ -20,9 +20,9 @@ using tile::Signature;
 struct Tile;
 
 /// Shape of a tile. It determines all lower tiles of a lattice: faces of cubes are cubes; faces of simplices and of the
-/// octahedron are simplices.
-enum class TileKind { cube, simplex, octahedron };
-const char* tile_kind_name(TileKind kind) noexcept;  ///< "cube", "simplex", "octahedron"
+/// octahedron are simplices. `other`: any polytope that is given by its faces (cells/cell.hpp); it has no Lattice.
+enum class TileKind { cube, simplex, octahedron, other };
+const char* tile_kind_name(TileKind kind) noexcept;  ///< "cube", "simplex", "octahedron", "other"
 
 /// A face of codimension one, as a tile with its embedding.
 struct SubTile {

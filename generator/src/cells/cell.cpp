@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <stdexcept>
 #include <utility>
 
 namespace tegl::gen {
@@ -69,6 +70,7 @@ Polytope at_origin(Polytope polytope) {
 
 Cell cell_of(std::string name, const Polytope& polytope) {
   Cell cell{std::move(name), {}, tile::FaceLattice(polytope.dim, polytope.faces)};
+  cell.tile.kind = TileKind::other;
   cell.tile.dim = polytope.dim;
   cell.tile.corners = polytope.corners;
   for (const tile::Face& face : cell.lattice.faces()) {  // edges are in ascending order in the lattice
@@ -113,6 +115,12 @@ std::vector<Cell> mesh_cells() {
   std::vector<Cell> cells;
   for (const auto& [name, polytope] : shapes) cells.push_back(cell_of(name, polytope));
   return cells;
+}
+
+Cell mesh_cell(std::string_view name) {
+  for (Cell& cell : mesh_cells())
+    if (cell.name == name) return std::move(cell);
+  throw std::invalid_argument("no mesh cell of this name: " + std::string(name));
 }
 
 bool is_cube(const Cell& cell) { return cell.tile.corner_count() == 1u << cell.tile.dim; }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/lattice.hpp"
@@ -16,12 +17,15 @@ namespace tegl::gen {
 /// A cell of 2, 3 or 4 dimensions, with faces of any shapes.
 struct Cell {
   std::string name;           ///< as in tables::CellShape
-  Tile tile;                  ///< corners, edges (pairs a < b, ascending) and the corners of faces; no tiles of faces
+  Tile tile;                  ///< of kind `other`: corners, edges (pairs a < b, ascending), the corners of faces
   tile::FaceLattice lattice;  ///< all faces
 };
 
 /// All cells in the order of tables::CellShape.
 [[nodiscard]] std::vector<Cell> mesh_cells();
+
+/// The cell with a name as in tables::CellShape. Throws std::invalid_argument if there is none.
+[[nodiscard]] Cell mesh_cell(std::string_view name);
 
 /// Whether the cell is a cube, in the numbering of the table contract except for edges.
 [[nodiscard]] bool is_cube(const Cell& cell);

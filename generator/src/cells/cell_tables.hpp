@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,5 +57,11 @@ struct CellTables {
 
 /// `cells.cpp`, which defines tables::cell_table, and `cells_manifest.json` with counts and digests.
 [[nodiscard]] std::vector<EmittedFile> emit_cells(const std::vector<CellTables>& tables);
+
+/// The tables of one cell: for `cpp` `cell_NAME.cpp`, which defines a tables::CellTable for each, as
+/// `kWedgeCompact`, and `cell_NAME_manifest.json`; for `json` `cell_NAME_TRIANGULATION.json` with the same arrays.
+/// Other languages have no tables of cells. `command`: for the banners.
+[[nodiscard]] std::vector<EmittedFile> emit_cell(const std::vector<CellTables>& tables,
+                                                 std::span<const Language> languages, const std::string& command);
 
 }  // namespace tegl::gen

@@ -14,7 +14,6 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "symmetry/tile_symmetry.hpp"
 #include "tegl/tile/tile_certifier.hpp"
 
 namespace tegl::gen {
@@ -186,9 +185,11 @@ FaceLattice face_lattice(TileKind kind, int n) {
     case TileKind::octahedron:
       return FaceLattice::octahedron(n);
     case TileKind::cube:
+      return FaceLattice::cube(n);
+    case TileKind::other:
       break;
   }
-  return FaceLattice::cube(n);
+  throw Error(ErrorCode::Internal, "the face lattice of a tile of no kind");
 }
 
 std::vector<std::uint32_t> ambiguous_polygons(const FaceLattice& lattice, Signature signature) {
@@ -205,14 +206,16 @@ std::vector<std::uint32_t> ambiguous_polygons(const FaceLattice& lattice, Signat
 }
 
 ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads, const Progress& progress) {
-  constexpr std::uint64_t kUnit = 4096;
   if (n < 2 || n > kMaxEnumeratedDim)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("all resolutions in dimension {}: expected 2 to {}", n, kMaxEnumeratedDim));
-  // classes of signatures
   const Lattice tiles(kind, n);
-  const FaceLattice lattice = face_lattice(kind, n);
-  const TileClasses of_tile = tile_classes(tiles.tile(n));
+  return certify_all_resolutions(face_lattice(kind, n), tile_classes(tiles.tile(n)), threads, progress);
+}
+
+ResolutionFigures certify_all_resolutions(const FaceLattice& lattice, const TileClasses& of_tile, unsigned threads,
+                                          const Progress& progress) {
+  constexpr std::uint64_t kUnit = 4096;
   const Transversal& classes = of_tile.classes;
   // ambiguous polygons and orbits of each class; split resolutions into units
   std::vector<std::vector<std::uint32_t>> ambiguous;
@@ -261,10 +264,17 @@ void for_each_resolution(TileKind kind, int n, const TakeResolution& take) {
   }
 }
 
-ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed, unsigned threads,
+ResolutionFigures certify_all_signatures(const FaceLattice& lattice, Alternative alternative, unsigned threads,
+                                         const Progress& progress) {
+  const auto work = [alternative](Worker& worker, std::uint64_t signature) {
+    worker.count_pair(1, 1, worker.certify(signature, alternative, 1));
+  };
+  return on_threads(lattice, lattice.faces().back().corners + 1, threads, progress, work);
+}
+
+ResolutionFigures certify_sample(const FaceLattice& lattice, std::uint64_t count, std::uint64_t seed, unsigned threads,
                                  const Progress& progress) {
-  const FaceLattice lattice = face_lattice(kind, n);
-  const std::uint64_t unit = n < 5 ? 256 : 1;
+  const std::uint64_t unit = lattice.dim() < 5 ? 256 : 1;
   const auto work = [&](Worker& worker, std::uint64_t number) {
     for (std::uint64_t i = number * unit; i < std::min(count, (number + 1) * unit); ++i) {
       Sequence random(seed, i);
@@ -284,6 +294,11 @@ ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std:
     }
   };
   return on_threads(lattice, (count + unit - 1) / unit, threads, progress, work);
+}
+
+ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed, unsigned threads,
+                                 const Progress& progress) {
+  return certify_sample(face_lattice(kind, n), count, seed, threads, progress);
 }
 
 }  // namespace tegl::gen

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/lattice.hpp"
+#include "symmetry/tile_symmetry.hpp"
 #include "tegl/tile/facets.hpp"
 
 namespace tegl::gen {
@@ -41,11 +42,22 @@ using Progress = std::function<void(double)>;
 /// resolution and fault.
 [[nodiscard]] ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads,
                                                         const Progress& progress = {});
+/// The same for a tile of any shape, with its classes under any group of its symmetries. With `single_signatures` each
+/// pair is built. At most 24 of the lattice's polygons may be ambiguous at once.
+[[nodiscard]] ResolutionFigures certify_all_resolutions(const tile::FaceLattice& lattice, const TileClasses& of_tile,
+                                                        unsigned threads, const Progress& progress = {});
+
+/// Certifies every signature of a tile of any shape, all faces resolved by one alternative. `pairs` counts signatures.
+/// Errors: CertificateFailed, with signature and fault.
+[[nodiscard]] ResolutionFigures certify_all_signatures(const tile::FaceLattice& lattice, tile::Alternative alternative,
+                                                       unsigned threads, const Progress& progress = {});
 
 /// Certifies the tiles number 0 to `count` - 1 of the random sequence of `seed`. A tile is a random signature and a
 /// random choice for every face of dimension 2 or more, the tile included. Half of the signatures are uniform; of the
-/// others some have fewer high or fewer low corners. A tile depends on number and seed only. n = 2 to 6. Errors:
-/// CertificateFailed, with signature, resolution and fault.
+/// others some have fewer high or fewer low corners. A tile depends on number and seed only. Lattices of 2 to 6
+/// dimensions. Errors: CertificateFailed, with signature, resolution and fault.
+[[nodiscard]] ResolutionFigures certify_sample(const tile::FaceLattice& lattice, std::uint64_t count,
+                                               std::uint64_t seed, unsigned threads, const Progress& progress = {});
 [[nodiscard]] ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed,
                                                unsigned threads, const Progress& progress = {});
 

@@ -75,10 +75,21 @@ void set_group(Options& options, std::string_view given) {
 }
 
 void set_tile(Options& options, std::string_view given) {
-  using Pair = std::pair<std::string_view, TileKind>;
-  options.tile = choose("--tile", given,
-                        std::array{Pair{"cube", TileKind::cube}, Pair{"simplex", TileKind::simplex},
-                                   Pair{"octahedron", TileKind::octahedron}});
+  for (const TileKind kind : {TileKind::cube, TileKind::simplex, TileKind::octahedron}) {
+    if (given != tile_kind_name(kind)) continue;
+    options.tile = kind;
+    return;
+  }
+  std::vector<std::string_view> names;
+  for (const CellName& cell : kCellNames) {
+    if (given == cell.given) {
+      options.tile = TileKind::other;
+      options.cell = &cell;
+      return;
+    }
+    names.push_back(cell.given);
+  }
+  refuse(fmt::format("--tile {}: expected cube, simplex, octahedron, {}", given, fmt::join(names, ", ")));
 }
 
 void set_alternative(Options& options, std::string_view given) {
@@ -242,8 +253,8 @@ bool is_folder_of_another(const Given& option, const std::vector<Given>& given) 
          });
 }
 
-/// The only option that is a command, or null if there is none but a dimension, which selects the summary. Refuses
-/// several, and none without a dimension.
+/// The only option that is a command, or null if there is none but a dimension or a tile, which select the summary.
+/// Refuses several, and none without one of these.
 const OptionSpec* command_of(const std::vector<Given>& given) {
   const OptionSpec* command = nullptr;
   for (const Given& option : given) {
@@ -255,9 +266,10 @@ const OptionSpec* command_of(const std::vector<Given>& given) {
     }
     command = option.spec;
   }
-  const bool has_dim =
-      std::any_of(given.begin(), given.end(), [](const Given& option) { return option.spec->name == "--dim"; });
-  if (command == nullptr && !has_dim) {
+  const bool is_summary = std::any_of(given.begin(), given.end(), [](const Given& option) {
+    return option.spec->name == "--dim" || option.spec->name == "--tile";
+  });
+  if (command == nullptr && !is_summary) {
     refuse(fmt::format("no command was given: expected --dim N for a summary, or one of --help, {}",
                        names_of([](const OptionSpec& spec) { return spec.command.has_value(); })));
   }
@@ -307,16 +319,33 @@ void check_dim(const Options& options, std::string_view command) {
   }
 }
 
+/// Sets the dimension of a mesh cell, which its name gives. The octahedron of four dimensions is a mesh cell.
+void set_cell(Options& options, bool has_dim) {
+  if (options.tile == TileKind::octahedron && options.dim == 4) {
+    options.tile = TileKind::other;
+    options.cell = &*std::find_if(kCellNames.begin(), kCellNames.end(),
+                                  [](const CellName& cell) { return cell.given == "cross4"; });
+  }
+  if (options.cell == nullptr) return;
+  if (has_dim && options.dim != options.cell->dim)
+    refuse(fmt::format("--dim {}: --tile {} expects {}", options.dim, options.cell->given, options.cell->dim));
+  options.dim = options.cell->dim;
+}
+
 /// Checks the dimension and the options that a tile other than the cube allows.
 void check_tile(const Options& options) {
   if (options.tile == TileKind::cube) {
     return;
   }
-  const char* const name = tile_kind_name(options.tile);
+  const std::string_view name = tile_text(options);
   const bool octahedron = options.tile == TileKind::octahedron;
   if (octahedron ? options.dim != 3 : options.dim < 2 || options.dim > 4) {
-    refuse(fmt::format("--dim {}: --tile {} expects {}", options.dim, name, octahedron ? "3" : "2 to 4"));
+    refuse(fmt::format("--dim {}: --tile {} expects {}", options.dim, name, octahedron ? "3 or 4" : "2 to 4"));
   }
+  if (options.cell != nullptr && options.layout != LayoutChoice::Auto)
+    refuse(fmt::format("--layout does not go with --tile {}: its table has the layout of the mesh cells", name));
+  if (options.cell != nullptr && options.dim == 4 && options.triangulation == TriangulationChoice::Compact)
+    refuse(fmt::format("--triangulation compact: --tile {} expects barycentric, or all", name));
   if (options.table_by_class || options.layout == LayoutChoice::Class) {
     refuse(fmt::format("--tile {} does not go with {}: expected a cube", name,
                        options.table_by_class ? "--table-by-class" : "--layout class"));
@@ -396,9 +425,10 @@ Options parse(std::span<const std::string_view> arguments) {
   }
   // values that depend on each other
   const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
-  if (!has_dim && options.command != Command::Version && options.command != Command::Cells) {
-    refuse(fmt::format("{} without --dim: expected --dim N", name));
+  if (!has_dim && options.cell == nullptr && options.command != Command::Version && options.command != Command::Cells) {
+    refuse(fmt::format("{} without --dim: expected --dim N", command == nullptr ? "--tile" : name));
   }
+  set_cell(options, has_dim);
   check_dim(options, name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
   check_certify(options, seen);
@@ -421,6 +451,7 @@ std::string help_text() {
 usage: gen --dim N COMMAND [OPTIONS]
        gen --cells [--out DIR]
        gen --dim N [--tile T] [--json]
+       gen --tile CELL [COMMAND] [OPTIONS]
 
 Without a command, gen makes and certifies all tables of dimension N (2 ... 4), writes nothing, and prints a summary:
 classes by group, certified signatures and pairs of neighbours, non-spherical classes, sizes of the tables.
@@ -450,7 +481,12 @@ commands (one of)
 
 options of --count, --classes, --certify, --out, and without a command
   --tile cube|simplex|octahedron    shape of the tile (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
-                                    4, the octahedron has N = 3; their tables are written as C++ and JSON
+                                    4, the octahedron has N = 3; their tables are written as C++ and JSON. With N = 4
+                                    the octahedron is cross4
+  --tile CELL                       a cell of meshes and lattices, whose name gives its dimension: triangle,
+                                    quadrilateral, tetrahedron, wedge, pyramid, hexahedron, simplex4,
+                                    prism:tetrahedron, prism:wedge, prism:pyramid, prism:hexahedron, prism:octahedron
+                                    (prisms over an interval of time) or cross4 (the 16-cell)
 
 options of --count
   --group full|rotations            all symmetries (default) or those of determinant +1
@@ -517,6 +553,8 @@ examples
   gen --dim 2 --symmetries --group rotations         the four rotations of the square
   gen --dim 3 --classes
   gen --dim 3 --tile octahedron --classes
+  gen --tile wedge                                   counts and certifies a mesh cell and prints a summary
+  gen --tile prism:wedge --certify --all             all signatures and resolutions of the wedge over time
   gen --dim 4 --certify
   gen --dim 4 --certify --all
   gen --dim 5 --certify --sample 10000 --seed 7

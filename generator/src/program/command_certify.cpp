@@ -8,9 +8,11 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
+#include "cells/cell.hpp"
 #include "filling/facets.hpp"
 #include "filling/resolutions.hpp"
 #include "program/commands.hpp"
@@ -55,8 +57,8 @@ std::string surface_name(int euler) {
   return fmt::format("genus {}", (2 - euler) / 2);
 }
 
-void print_resolutions(const Options& options, const ResolutionFigures& f, double seconds) {
-  const char* const tile = options.tile == TileKind::cube ? "tile" : tile_kind_name(options.tile);
+void print_resolutions(const Options& options, const ResolutionFigures& f, std::uint64_t single, double seconds) {
+  const std::string_view tile = options.tile == TileKind::cube ? "tile" : tile_text(options);
   if (options.all_resolutions) {
     fmt::print("{}-{}, every resolution of its ambiguous faces of dimension 2\n", options.dim, tile);
     fmt::print("  pairs          {} of a signature and a resolution, in {} classes of signatures\n", f.pairs,
@@ -67,8 +69,10 @@ void print_resolutions(const Options& options, const ResolutionFigures& f, doubl
     fmt::print("{}-{}, a sample: signatures and choices in all faces at random, seed {}\n", options.dim, tile,
                options.seed);
   }
-  fmt::print("  certified      {} tiles in {:.1f} s, each with the contours in its faces; no failure\n", f.tiles,
-             seconds);
+  fmt::print("  certified      {} tiles in {:.1f} s, each with the contours in its faces; no failure\n",
+             f.tiles + single, seconds);
+  if (single > 0)
+    fmt::print("                 {} of them one for each pair, without symmetry: the same figures\n", single);
   fmt::print("  facets         {} filled by a simplex, {} by a cone, {} from the side\n", f.by_filling[0],
              f.by_filling[1], f.by_filling[2]);
   if (options.dim > 3 && options.dim % 2 == 0) {
@@ -91,7 +95,7 @@ void print_resolutions(const Options& options, const ResolutionFigures& f, doubl
                options.dim == 4 ? fmt::format("   {}", surface_name(at->first)) : "");
 }
 
-void print_resolutions_json(const Options& options, const ResolutionFigures& f, double seconds) {
+void print_resolutions_json(const Options& options, const ResolutionFigures& f, std::uint64_t single, double seconds) {
   std::vector<std::string> euler;
   for (const auto& [value, count] : f.euler) euler.push_back(fmt::format("\"{}\": {}", value, count));
   const std::string what =
@@ -100,12 +104,13 @@ void print_resolutions_json(const Options& options, const ResolutionFigures& f, 
           : fmt::format("\"sample\": {}, \"seed\": {}", options.sample, options.seed);
   fmt::print(
       "{{\"tile\": \"{}\", \"dim\": {}, {}, \"pairs\": {}, \"pairs_up_to_symmetry\": {}, \"orbits\": {}, "
-      "\"certified_tiles\": {}, "
+      "\"certified_tiles\": {}, \"tiles_without_symmetry\": {}, "
       "\"non_spherical_pairs\": {}, \"facets\": {{\"simplex\": {}, \"cone\": {}, \"side\": {}}}, \"simplices\": {}, "
       "\"max_simplices\": {}, \"euler\": {{{}}}, \"seconds\": "
       "{:.1f}}}\n",
-      tile_kind_name(options.tile), options.dim, what, f.pairs, f.pairs_by_class, f.orbits, f.tiles, f.non_spherical,
-      f.by_filling[0], f.by_filling[1], f.by_filling[2], f.simplices, f.max_simplices, fmt::join(euler, ", "), seconds);
+      tile_text(options), options.dim, what, f.pairs, f.pairs_by_class, f.orbits, f.tiles + single, single,
+      f.non_spherical, f.by_filling[0], f.by_filling[1], f.by_filling[2], f.simplices, f.max_simplices,
+      fmt::join(euler, ", "), seconds);
 }
 
 /// Writes the percentage done to standard error if that is a terminal.
@@ -129,18 +134,50 @@ class ProgressLine {
   int last_ = -1;
 };
 
+/// Most pairs of a signature and a resolution that are certified one by one, too: all cells but the hexahedron over
+/// time, which is the cube of four dimensions.
+constexpr std::uint64_t kMaxSinglePairs = std::uint64_t{1} << 20;
+
+/// Certifies the pairs of a cell again, without symmetries. Returns the number of tiles, 0 if there are too many pairs.
+/// Throws Error{CountMismatch} if the figures differ.
+std::uint64_t certify_single_pairs(const Options& options, const Cell& cell, const ResolutionFigures& by_symmetry,
+                                   const Progress& progress) {
+  if (by_symmetry.pairs > kMaxSinglePairs) return 0;
+  const ResolutionFigures single =
+      certify_all_resolutions(cell.lattice, single_signatures(cell.tile), options.threads, progress);
+  if (single.pairs != by_symmetry.pairs || single.non_spherical != by_symmetry.non_spherical ||
+      single.euler != by_symmetry.euler)
+    throw Error(ErrorCode::CountMismatch,
+                fmt::format("{} pairs of a signature and a resolution one by one, {} of them non-spherical; {} and {} "
+                            "by symmetry: expected the same, with the same Euler characteristics",
+                            single.pairs, single.non_spherical, by_symmetry.pairs, by_symmetry.non_spherical));
+  return single.tiles;
+}
+
 int certify_resolutions(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   ResolutionFigures figures;
+  std::uint64_t single = 0;
   {
     ProgressLine line;
-    figures =
-        options.all_resolutions
-            ? certify_all_resolutions(options.tile, options.dim, options.threads, line.callback())
-            : certify_sample(options.tile, options.dim, options.sample, options.seed, options.threads, line.callback());
+    const Progress progress = line.callback();
+    if (options.cell == nullptr) {
+      figures = options.all_resolutions ? certify_all_resolutions(options.tile, options.dim, options.threads, progress)
+                                        : certify_sample(options.tile, options.dim, options.sample, options.seed,
+                                                         options.threads, progress);
+    } else {
+      const Cell cell = mesh_cell(options.cell->shape);
+      if (options.all_resolutions) {
+        figures = certify_all_resolutions(cell.lattice, tile_classes(cell.tile), options.threads, progress);
+        single = certify_single_pairs(options, cell, figures, progress);
+      } else {
+        figures = certify_sample(cell.lattice, options.sample, options.seed, options.threads, progress);
+      }
+    }
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  options.json ? print_resolutions_json(options, figures, seconds) : print_resolutions(options, figures, seconds);
+  options.json ? print_resolutions_json(options, figures, single, seconds)
+               : print_resolutions(options, figures, single, seconds);
   return 0;
 }
 
@@ -199,6 +236,7 @@ std::string figures_json(const CertifiedFigures& f) {
 int run_certify(const Options& options) {
   if (options.table_by_class) return certify_by_class(options);
   if (options.all_resolutions || options.sample > 0) return certify_resolutions(options);
+  if (options.cell != nullptr) return run_cell_certify(options);
   const auto figures = certify_all(options.dim, options.tile);
   if (!options.json) {
     for (const CertifiedFigures& f : figures) print_figures(options.tile, options.dim, f);

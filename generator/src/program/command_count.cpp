@@ -4,6 +4,7 @@
 // pairs of partitions, and orbits of all signatures under the closed group.
 #include <fmt/format.h>
 
+#include "cells/cell.hpp"
 #include "program/commands.hpp"
 #include "symmetry/counting.hpp"
 #include "symmetry/tile_symmetry.hpp"
@@ -19,18 +20,16 @@ void print_count(const Options& options, std::size_t order, const std::string& o
   if (options.json) {
     fmt::print(
         "{{\"tile\": \"{}\", \"dim\": {}, \"group\": \"{}\", \"inversion\": {}, \"order\": {}, \"orbits\": {}}}\n",
-        tile_kind_name(options.tile), options.dim, group_name, options.inversion, order, orbits);
+        tile_text(options), options.dim, group_name, options.inversion, order, orbits);
   } else {
-    fmt::print("tile       {}\ndimension  {}\ngroup      {}{}, order {}\norbits     {} ({})\n",
-               tile_kind_name(options.tile), options.dim, group_name, options.inversion ? " with inversion" : "", order,
-               orbits, enumerated ? "by Burnside's lemma and by enumeration" : "by Burnside's lemma");
+    fmt::print("tile       {}\ndimension  {}\ngroup      {}{}, order {}\norbits     {} ({})\n", tile_text(options),
+               options.dim, group_name, options.inversion ? " with inversion" : "", order, orbits,
+               enumerated ? "by Burnside's lemma and by enumeration" : "by Burnside's lemma");
   }
 }
 
 /// Tiles other than cubes: both counts use the permutations of the tile's corners.
-int count_of_tile(const Options& options) {
-  const Lattice lattice(options.tile, options.dim);
-  const Tile& tile = lattice.tile(options.dim);
+int count_of_tile(const Options& options, const Tile& tile) {
   const auto elements = symmetries(tile, options.group, options.inversion);
   require_burnside_count(transversal(tile, elements), elements);
   print_count(options, elements.size(), burnside_orbits(elements).to_decimal(), true);
@@ -40,7 +39,9 @@ int count_of_tile(const Options& options) {
 }  // namespace
 
 int run_count(const Options& options) {
-  if (options.tile != TileKind::cube) return count_of_tile(options);
+  if (options.cell != nullptr) return count_of_tile(options, mesh_cell(options.cell->shape).tile);
+  if (options.tile != TileKind::cube)
+    return count_of_tile(options, Lattice(options.tile, options.dim).tile(options.dim));
   const WideUint orbits = burnside_orbits(options.dim, options.group, options.inversion);
   const bool enumerated = options.dim <= kMaxEnumeratedDim;
   if (enumerated) {

@@ -18,18 +18,6 @@
 
 namespace tegl::gen {
 
-namespace {
-
-/// A group of the tile's symmetries and its classes of signatures.
-struct GroupCount {
-  GroupKind kind;
-  bool inversion;
-  std::size_t order = 0;
-  std::size_t classes = 0;
-};
-
-/// Counts the classes of all four groups by enumeration and by Burnside's lemma. Throws Error{CountMismatch} if the two
-/// differ.
 std::vector<GroupCount> count_classes(const Tile& tile) {
   std::vector<GroupCount> counts{
       {GroupKind::Full, false}, {GroupKind::Rotations, false}, {GroupKind::Full, true}, {GroupKind::Rotations, true}};
@@ -50,6 +38,31 @@ std::vector<GroupCount> count_classes(const Tile& tile) {
   }
   return counts;
 }
+
+void print_group_counts(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts) {
+  fmt::print("{}-{}: {} corners, {} signatures\n\nclasses   order  group\n", options.dim,
+             options.tile == TileKind::cube ? "tile" : tile_text(options), tile.corner_count(),
+             std::uint64_t{1} << tile.corner_count());
+  for (const GroupCount& count : counts)
+    fmt::print("{:>7} {:>7}  {}{}\n", count.classes, count.order,
+               count.kind == GroupKind::Full ? "all symmetries" : "rotations",
+               count.inversion ? ", with the exchange of high and low" : "");
+  fmt::print("The classes are counted by enumeration and by Burnside's lemma.\n");
+  std::fflush(stdout);  // certifying takes a minute of processor time in 4D
+}
+
+std::string group_counts_json(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts) {
+  std::vector<std::string> groups;
+  for (const GroupCount& count : counts)
+    groups.push_back(fmt::format("{{\"group\": \"{}\", \"inversion\": {}, \"order\": {}, \"classes\": {}}}",
+                                 count.kind == GroupKind::Full ? "full" : "rotations", count.inversion, count.order,
+                                 count.classes));
+  return fmt::format("\"tile\": \"{}\", \"dim\": {}, \"corners\": {}, \"signatures\": {}, \"groups\": [\n  {}\n]",
+                     tile_text(options), options.dim, tile.corner_count(), std::uint64_t{1} << tile.corner_count(),
+                     fmt::join(groups, ",\n  "));
+}
+
+namespace {
 
 /// The size of a table's data in memory.
 struct TableSize {
@@ -85,18 +98,6 @@ std::vector<TableSize> sizes(const TableSet& set) {
   return result;
 }
 
-void print_classes(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts) {
-  fmt::print("{}-{}: {} corners, {} signatures\n\nclasses   order  group\n", options.dim,
-             options.tile == TileKind::cube ? "tile" : tile_kind_name(options.tile), tile.corner_count(),
-             std::uint64_t{1} << tile.corner_count());
-  for (const GroupCount& count : counts)
-    fmt::print("{:>7} {:>7}  {}{}\n", count.classes, count.order,
-               count.kind == GroupKind::Full ? "all symmetries" : "rotations",
-               count.inversion ? ", with the exchange of high and low" : "");
-  fmt::print("The classes are counted by enumeration and by Burnside's lemma.\n");
-  std::fflush(stdout);  // certifying takes a minute of processor time in 4D
-}
-
 void print_figures_of(const TableSet& set) {
   fmt::print("\n{:<11} {:<13} {:>9} {:>7} {:>13} {:>9} {:>7} {:>8} {:>9}\n", "alternative", "triangulation",
              "certified", "facets", "non-spherical", "simplices", "at most", "embedded", "pairs");
@@ -130,21 +131,15 @@ void print_sizes(const TableSet& set) {
 
 void print_json(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts, const TableSet& set,
                 double seconds) {
-  std::vector<std::string> groups, figures, tables;
-  for (const GroupCount& count : counts)
-    groups.push_back(fmt::format("{{\"group\": \"{}\", \"inversion\": {}, \"order\": {}, \"classes\": {}}}",
-                                 count.kind == GroupKind::Full ? "full" : "rotations", count.inversion, count.order,
-                                 count.classes));
+  std::vector<std::string> figures, tables;
   for (const CertifiedFigures& f : set.figures) figures.push_back(figures_json(f));
   for (const TableSize& size : sizes(set))
     tables.push_back(
         fmt::format("{{\"name\": \"{}\", \"layout\": \"{}\", \"lists\": {}, \"simplices\": {}, \"bytes\": {}}}",
                     size.name, size.layout, size.lists, size.simplices, size.bytes));
-  fmt::print(
-      "{{\"tile\": \"{}\", \"dim\": {}, \"corners\": {}, \"signatures\": {}, \"groups\": [\n  {}\n], \"certified\": [\n"
-      "  {}\n], \"tables\": [\n  {}\n], \"seconds\": {:.2f}}}\n",
-      tile_kind_name(options.tile), options.dim, tile.corner_count(), std::uint64_t{1} << tile.corner_count(),
-      fmt::join(groups, ",\n  "), fmt::join(figures, ",\n  "), fmt::join(tables, ",\n  "), seconds);
+  fmt::print("{{{}, \"certified\": [\n  {}\n], \"tables\": [\n  {}\n], \"seconds\": {:.2f}}}\n",
+             group_counts_json(options, tile, counts), fmt::join(figures, ",\n  "), fmt::join(tables, ",\n  "),
+             seconds);
 }
 
 }  // namespace
@@ -154,7 +149,7 @@ int run_summary(const Options& options) {
   const Lattice lattice(options.tile, options.dim);
   const Tile& tile = lattice.tile(options.dim);
   const std::vector<GroupCount> counts = count_classes(tile);
-  if (!options.json) print_classes(options, tile, counts);
+  if (!options.json) print_group_counts(options, tile, counts);
   TableRequest request;
   request.tile = options.tile;
   request.dim = options.dim;

@@ -4,9 +4,12 @@
 #include "program/commands.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -15,9 +18,11 @@
 
 #include "base/error.hpp"
 #include "builders/emit_builder.hpp"
+#include "cells/cell.hpp"
 #include "cells/cell_tables.hpp"
 #include "cubes/cube_certificate.hpp"
 #include "filling/facets.hpp"
+#include "filling/resolutions.hpp"
 #include "pictures/cases.hpp"
 #include "program/print_figures.hpp"
 #include "symmetry/tile_symmetry.hpp"
@@ -35,16 +40,22 @@ std::vector<std::string> edge_names(const Tile& tile, const std::vector<std::uin
   return names;
 }
 
+/// A facet by the edges of its points, and the Euler characteristic of its boundary.
+struct FacetReport {
+  std::vector<std::uint8_t> points;
+  int boundary_euler;
+};
+
 struct ClassReport {
   Signature signature;
   std::uint32_t orbit, stabiliser;
-  TileContour contour;
+  std::vector<FacetReport> facets;
   std::vector<std::uint32_t> ambiguous;
 };
 
 std::string json_of(const Tile& tile, const ClassReport& c) {
   std::vector<std::string> facets, euler;
-  for (const LocalFacet& facet : c.contour.facets) {
+  for (const FacetReport& facet : c.facets) {
     facets.push_back(fmt::format("[\"{}\"]", fmt::join(edge_names(tile, facet.points), "\", \"")));
     euler.push_back(fmt::format("{}", facet.boundary_euler));
   }
@@ -54,20 +65,20 @@ std::string json_of(const Tile& tile, const ClassReport& c) {
   return fmt::format(
       "{{\"signature\": {}, \"orbit_length\": {}, \"stabiliser\": {}, \"components\": {}, \"facets\": [{}], "
       "\"boundary_euler\": [{}], \"ambiguous_faces\": {{{}}}}}",
-      c.signature, c.orbit, c.stabiliser, c.contour.facets.size(), fmt::join(facets, ", "), fmt::join(euler, ", "),
+      c.signature, c.orbit, c.stabiliser, c.facets.size(), fmt::join(facets, ", "), fmt::join(euler, ", "),
       fmt::join(ambiguous, ", "));
 }
 
 std::string text_of(const Tile& tile, const ClassReport& c) {
   std::vector<std::string> facets, euler;
-  for (const LocalFacet& facet : c.contour.facets) {
+  for (const FacetReport& facet : c.facets) {
     facets.push_back(fmt::format("({})", fmt::join(edge_names(tile, facet.points), " ")));
     euler.push_back(fmt::format("{}", facet.boundary_euler));
   }
   std::vector<std::string> ambiguous;
   for (std::size_t k = 2; k < c.ambiguous.size(); ++k) ambiguous.push_back(fmt::format("{}", c.ambiguous[k]));
-  return fmt::format("{:>9} {:>6} {:>10} {:>10}  {:<10} {:<10} {}", c.signature, c.orbit, c.stabiliser,
-                     c.contour.facets.size(), euler.empty() ? "-" : fmt::format("{}", fmt::join(euler, " ")),
+  return fmt::format("{:>9} {:>6} {:>10} {:>10}  {:<10} {:<10} {}", c.signature, c.orbit, c.stabiliser, c.facets.size(),
+                     euler.empty() ? "-" : fmt::format("{}", fmt::join(euler, " ")),
                      fmt::format("{}", fmt::join(ambiguous, " ")), fmt::join(facets, " "));
 }
 
@@ -159,28 +170,71 @@ void write_files(const std::filesystem::path& folder, bool keeps_same, std::vect
 
 }  // namespace
 
-int run_classes(const Options& options) {
-  const Lattice lattice(options.tile, options.dim);
+namespace {
+
+using FacetsOf = std::function<std::vector<FacetReport>(Signature)>;
+
+/// Prints the classes of a tile.
+void print_classes(const Options& options, const Tile& tile, const tile::FaceLattice& faces,
+                   const FacetsOf& facets_of) {
   const Alternative alternative = options.alternative;
-  const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
-  const auto [symmetries, classes] = tile_classes(lattice.tile(options.dim));
+  const auto [symmetries, classes] = tile_classes(tile);
   if (options.json)
     fmt::print(
         "{{\"tile\": \"{}\", \"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
-        tile_kind_name(options.tile), options.dim, alternative_name(alternative), symmetries.size());
+        tile_text(options), options.dim, alternative_name(alternative), symmetries.size());
   else
     fmt::print("signature  orbit stabiliser components  Euler      ambiguous  facets\n");
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
     const Signature s = classes.representatives[c];
     const ClassReport report{s, classes.orbit_length[c],
-                             static_cast<std::uint32_t>(symmetries.size() / classes.orbit_length[c]), builder.build(s),
-                             ambiguous_faces(lattice, options.dim, s)};
+                             static_cast<std::uint32_t>(symmetries.size() / classes.orbit_length[c]), facets_of(s),
+                             ambiguous_faces(tile, faces, s)};
     if (options.json)
-      fmt::print("{}\n  {}", c == 0 ? "" : ",", json_of(builder.tile(), report));
+      fmt::print("{}\n  {}", c == 0 ? "" : ",", json_of(tile, report));
     else
-      fmt::print("{}\n", text_of(builder.tile(), report));
+      fmt::print("{}\n", text_of(tile, report));
   }
   if (options.json) fmt::print("\n]}}\n");
+}
+
+void print_classes_of_cell(const Options& options) {
+  const Cell cell = mesh_cell(options.cell->shape);
+  tile::FacetBuilder builder(cell.lattice);
+  print_classes(options, cell.tile, cell.lattice, [&](Signature s) {
+    const tile::TileFacets& built = builder.build(s, {{}, options.alternative}, tile::Geometry::without);
+    std::vector<FacetReport> facets;
+    for (const tile::Facet& facet : built.facets) {
+      std::set<std::uint8_t> points;
+      for (const tile::Simplex& simplex : facet.simplices)
+        for (int i = 0; i < options.dim; ++i) {
+          const tile::Vertex& vertex = built.vertices[simplex[static_cast<std::size_t>(i)]];
+          if (vertex.kind != tile::VertexKind::edge) continue;
+          const Signature ends = cell.lattice.faces()[vertex.face].corners;
+          points.insert(cell.tile.edge_between(static_cast<std::uint32_t>(std::countr_zero(ends)),
+                                               63u - static_cast<std::uint32_t>(std::countl_zero(ends))));
+        }
+      facets.push_back({{points.begin(), points.end()}, facet.boundary_euler});
+    }
+    return facets;
+  });
+}
+
+}  // namespace
+
+int run_classes(const Options& options) {
+  if (options.cell != nullptr) {
+    print_classes_of_cell(options);
+    return 0;
+  }
+  const Lattice lattice(options.tile, options.dim);
+  const ContourBuilder builder(lattice, options.dim, options.alternative, Triangulation::barycentric);
+  print_classes(options, lattice.tile(options.dim), face_lattice(options.tile, options.dim), [&](Signature s) {
+    std::vector<FacetReport> facets;
+    const TileContour contour = builder.build(s);
+    for (const LocalFacet& facet : contour.facets) facets.push_back({facet.points, facet.boundary_euler});
+    return facets;
+  });
   return 0;
 }
 
@@ -208,8 +262,11 @@ int run_builder(const Options& options) {
   return 0;
 }
 
-int run_cells(const Options& options) {
-  const std::vector<CellTables> tables = make_all_cell_tables();
+namespace {
+
+/// Prints the figures of tables of cells and, with a folder, writes their files.
+int print_and_write(const Options& options, const std::vector<CellTables>& tables,
+                    std::vector<EmittedFile> (*emit)(const Options&, const std::vector<CellTables>&)) {
   fmt::print("{:<18} {:<12} {:>10} {:>6} {:>7} {:>9} {:>13} {:>9} {:>7}\n", "cell", "", "signatures", "order",
              "classes", "certified", "non-spherical", "simplices", "at most");
   for (const CellTables& t : tables)
@@ -218,10 +275,33 @@ int run_cells(const Options& options) {
                t.total_simplices, t.max_simplices);
   if (options.out.empty()) return 0;
   std::vector<TimedFile> files;
-  for (EmittedFile& file : emit_cells(tables)) files.push_back({std::move(file), 0.0});
+  for (EmittedFile& file : emit(options, tables)) files.push_back({std::move(file), 0.0});
   write_files(options.out, options.keeps_same, files);
   for (const TimedFile& timed : files) fmt::print("wrote {}: {} bytes\n", timed.file.name, timed.file.text.size());
   return 0;
+}
+
+}  // namespace
+
+int run_cells(const Options& options) {
+  return print_and_write(options, make_all_cell_tables(),
+                         [](const Options&, const std::vector<CellTables>& tables) { return emit_cells(tables); });
+}
+
+int run_cell_out(const Options& options) {
+  std::vector<Triangulation> triangulations{Triangulation::barycentric, Triangulation::compact};
+  if (options.triangulation != TriangulationChoice::All)
+    triangulations = {triangulations[options.triangulation == TriangulationChoice::Compact ? 1 : 0]};
+  if (options.dim == 4) triangulations = {Triangulation::barycentric};
+  const Cell cell = mesh_cell(options.cell->shape);
+  std::vector<CellTables> tables;
+  for (const Triangulation t : triangulations) tables.push_back(make_cell_tables(cell, t));
+  return print_and_write(options, tables, [](const Options& o, const std::vector<CellTables>& made) {
+    std::string command = fmt::format("gen --tile {}", o.cell->given);
+    if (o.triangulation != TriangulationChoice::All)
+      command += fmt::format(" --triangulation {}", triangulation_name(made.front().triangulation));
+    return emit_cell(made, o.languages, command);
+  });
 }
 
 int run_out(const Options& options) {

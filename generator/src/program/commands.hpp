@@ -52,4 +52,16 @@ int run_builder(const Options& options);
 /// manifest into the folder `out`. Errors: CountMismatch, CertificateFailed (nothing is written), WriteFailed.
 int run_cells(const Options& options);
 
+/// No command with a mesh cell as tile: counts the classes of its four groups, makes and certifies its tables, and
+/// prints figures. Uses `cell` and `json`. Errors: CountMismatch, CertificateFailed.
+int run_cell_summary(const Options& options);
+
+/// `--certify` with a mesh cell: certifies every signature of both alternatives one by one, and the tables; their
+/// figures must agree. Uses `cell` and `json`. Errors: CountMismatch, CertificateFailed.
+int run_cell_certify(const Options& options);
+
+/// `--out DIR` with a mesh cell: certifies its tables, then writes them into DIR. Uses `cell`, `triangulation` and
+/// `languages`. Errors: CertificateFailed (nothing is written), WriteFailed.
+int run_cell_out(const Options& options);
+
 }  // namespace tegl::gen

@@ -29,7 +29,7 @@ int dispatch(const Options& options) {
       fmt::print("{}", tegl::gen::version_text());
       return 0;
     case Command::Summary:
-      return tegl::gen::run_summary(options);
+      return options.cell == nullptr ? tegl::gen::run_summary(options) : tegl::gen::run_cell_summary(options);
     case Command::Symmetries:
       return tegl::gen::run_symmetries(options);
     case Command::Count:
@@ -41,7 +41,7 @@ int dispatch(const Options& options) {
     case Command::Certify:
       return tegl::gen::run_certify(options);
     case Command::Out:
-      return tegl::gen::run_out(options);
+      return options.cell == nullptr ? tegl::gen::run_out(options) : tegl::gen::run_cell_out(options);
     case Command::Cases:
       return tegl::gen::run_cases(options);
     case Command::Builder:

@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/lattice.hpp"
 #include "base/tile_contour.hpp"
 #include "builders/builder_request.hpp"
+#include "cells/cell_names.hpp"
 #include "symmetry/symmetry.hpp"
 #include "tables/language.hpp"
 
@@ -47,6 +49,7 @@ struct Options {
   Command command = Command::Help;             ///< the command
   int dim = 0;                                 ///< --dim; 0 for --help and --version
   TileKind tile = TileKind::cube;              ///< --tile; not for --transversal, --symmetries
+  const CellName* cell = nullptr;              ///< --tile, if it is a mesh cell; then `tile` is `other`
   GroupKind group = GroupKind::Full;           ///< --group; with four commands
   bool inversion = false;                      ///< --inversion; --count, --symmetries, table_by_class
   bool table_by_class = false;                 ///< --table-by-class; --certify, dim 2 and 3
@@ -64,5 +67,10 @@ struct Options {
   std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out, --builder
   Leaf leaf = Leaf::table;                                       ///< --leaf; --builder only
 };
+
+/// The tile as on the command line.
+[[nodiscard]] inline std::string_view tile_text(const Options& options) {
+  return options.cell == nullptr ? std::string_view(tile_kind_name(options.tile)) : options.cell->given;
+}
 
 }  // namespace tegl::gen

@@ -5,6 +5,7 @@
 #include "symmetry/tile_symmetry.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -151,6 +152,14 @@ TileClasses tile_classes(const Tile& tile, GroupKind kind) {
     result.symmetries = symmetries(tile, kind, false);
   result.classes = transversal(tile, result.symmetries);
   require_burnside_count(result.classes, result.symmetries);
+  return result;
+}
+
+TileClasses single_signatures(const Tile& tile) {
+  TileClasses result;
+  result.symmetries.emplace_back().corner.resize(tile.corner_count());
+  std::iota(result.symmetries[0].corner.begin(), result.symmetries[0].corner.end(), 0u);
+  result.classes = transversal(tile, result.symmetries);
   return result;
 }
 

@@ -50,4 +50,7 @@ struct TileClasses {
 /// require_burnside_count().
 [[nodiscard]] TileClasses tile_classes(const Tile& tile, GroupKind kind = GroupKind::Full);
 
+/// Every signature as a class of its own: the classes under the identity.
+[[nodiscard]] TileClasses single_signatures(const Tile& tile);
+
 }  // namespace tegl::gen

@@ -1,40 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Emits tables as JSON: the contract's arrays by name. The schema is in docs/tables.md.
-#include <fmt/ranges.h>
-
 #include "tables/emit.hpp"
-#include "tables/emit_text.hpp"
+#include "tables/emit_json_text.hpp"
 
 namespace tegl::gen {
 
 namespace {
-
-/// Writes `"name": [...]` in lines of about 110 columns.
-template <class T>
-void array(std::string& text, const char* name, const std::vector<T>& values) {
-  fmt::format_to(Appender(text), ",\n  \"{}\": [", name);
-  std::size_t line = text.size();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text += ',';
-    if (i == 0 || text.size() - line > 110) {
-      text += "\n    ";
-      line = text.size();
-    }
-    fmt::format_to(Appender(text), "{}", values[i]);
-  }
-  text += ']';
-}
-
-/// Writes `"name": {"columns": [...], "rows": [[...], ...]}`.
-template <class T, class Row>
-void rows(std::string& text, const char* name, const char* columns, const std::vector<T>& values, const Row& row) {
-  fmt::format_to(Appender(text), ",\n  \"{}\": {{\"columns\": [{}], \"rows\": [", name, columns);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    fmt::format_to(Appender(text), "{}{}[{}]", i == 0 ? "" : ",", i % 6 == 0 ? "\n    " : " ",
-                   fmt::join(row(values[i]), ","));
-  text += "]}";
-}
 
 /// The beginning of every file: an open object with the common members.
 std::string opening(const TableSet& set, const char* kind, int dim) {
@@ -77,18 +49,18 @@ EmittedFile json_of_tile(const TableSet& set, const TileTables& table) {
                  "  \"permutation_stride\": {},\n  \"max_simplices\": {},\n  \"max_tile_vertices\": {}",
                  triangulation_name(table.triangulation), layout_name(table.layout), digest(table), table.edges.size(),
                  table.first_tile_vertex, table.permutation_stride, table.max_simplices, table.max_tile_vertices);
-  array(text, "list_of", table.list_of);
-  array(text, "element_of", table.element_of);
-  array(text, "slot_swaps", table.slot_swaps);
-  array(text, "permutations", table.permutations);
-  array(text, "reverses", table.reverses);
-  rows(text, "lists", "\"first_simplex\", \"simplex_count\", \"cone_vertices\", \"side_vertices\", \"first_side\"",
-       table.lists, [](const tables::List& l) {
-         return std::array<std::uint32_t, 5>{l.first_simplex, l.simplex_count, l.cone_vertices, l.side_vertices,
-                                             l.first_side};
-       });
-  array(text, "simplices", table.simplices);
-  array(text, "side_masks", table.side_masks);
+  json_array(text, "list_of", table.list_of);
+  json_array(text, "element_of", table.element_of);
+  json_array(text, "slot_swaps", table.slot_swaps);
+  json_array(text, "permutations", table.permutations);
+  json_array(text, "reverses", table.reverses);
+  json_rows(text, "lists", "\"first_simplex\", \"simplex_count\", \"cone_vertices\", \"side_vertices\", \"first_side\"",
+            table.lists, [](const tables::List& l) {
+              return std::array<std::uint32_t, 5>{l.first_simplex, l.simplex_count, l.cone_vertices, l.side_vertices,
+                                                  l.first_side};
+            });
+  json_array(text, "simplices", table.simplices);
+  json_array(text, "side_masks", table.side_masks);
   text += "\n}\n";
   return {fmt::format("{}_{}.json", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
           std::move(text)};
@@ -101,12 +73,12 @@ EmittedFile region_file(const TableSet& set, const RegionTables& table) {
                  "  \"first_region_vertex\": {},\n  \"max_own_vertices\": {}",
                  triangulation_name(table.triangulation), alternative_name(table.alternative), digest(table),
                  tables::first_region_vertex(static_cast<std::uint32_t>(table.dim)), table.max_own_vertices);
-  rows(text, "lists", "\"first_simplex\", \"simplex_count\", \"own_vertices\", \"first_mask\"", table.lists,
-       [](const tables::RegionList& l) {
-         return std::array<std::uint32_t, 4>{l.first_simplex, l.simplex_count, l.own_vertices, l.first_mask};
-       });
-  array(text, "simplices", table.simplices);
-  array(text, "masks", table.masks);
+  json_rows(text, "lists", "\"first_simplex\", \"simplex_count\", \"own_vertices\", \"first_mask\"", table.lists,
+            [](const tables::RegionList& l) {
+              return std::array<std::uint32_t, 4>{l.first_simplex, l.simplex_count, l.own_vertices, l.first_mask};
+            });
+  json_array(text, "simplices", table.simplices);
+  json_array(text, "masks", table.masks);
   text += "\n}\n";
   return {fmt::format("region{}_{}_{}.json", table.dim, triangulation_name(table.triangulation),
                       alternative_name(table.alternative)),
@@ -119,20 +91,20 @@ EmittedFile json_of_resolved(const TableSet& set, const ResolvedCube& table) {
   for (const auto& square : table.squares) squares.push_back(fmt::format("[{}]", fmt::join(square, ",")));
   fmt::format_to(Appender(text), ",\n  \"certified_entries\": {},\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"",
                  table.entries.size(), fmt::join(squares, ", "), digest(table));
-  array(text, "first_entry", table.first_entry);
-  array(text, "ambiguous_squares", table.ambiguous);
+  json_array(text, "first_entry", table.first_entry);
+  json_array(text, "ambiguous_squares", table.ambiguous);
   std::string columns = "\"components\"";
   for (const char* const centre : {"separate", "low", "high"})
     for (const char* const column : {"first_triangle", "triangle_count", "own_vertices", "first_mask"})
       columns += fmt::format(", \"{}_{}\"", centre, column);
-  rows(text, "entries", columns.c_str(), table.entries, [](const tables::ResolvedEntry& e) {
+  json_rows(text, "entries", columns.c_str(), table.entries, [](const tables::ResolvedEntry& e) {
     std::vector<std::uint32_t> row = {e.components};
     for (const tables::ResolvedList& l : {e.separate, e.low, e.high})
       row.insert(row.end(), {l.first_triangle, l.triangle_count, l.own_vertices, l.first_mask});
     return row;
   });
-  array(text, "triangles", table.triangles);
-  array(text, "masks", table.masks);
+  json_array(text, "triangles", table.triangles);
+  json_array(text, "masks", table.masks);
   text += "\n}\n";
   return {"tile3_resolved.json", std::move(text)};
 }

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -16,6 +14,7 @@
 #include "filling/balanced.hpp"
 #include "filling/facets.hpp"
 #include "filling/regions.hpp"
+#include "filling/resolutions.hpp"
 #include "symmetry/counting.hpp"
 #include "symmetry/tile_symmetry.hpp"
 #include "symmetry/transversal.hpp"
@@ -144,47 +143,30 @@ std::vector<CertifiedFigures> certify_all(int dim, TileKind tile) {
   return figures;
 }
 
-std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature) {
-  const auto is_diagonal = [](const Tile& tile, Signature s) {
-    if (std::popcount(s) != 2) return false;  // the two ends, with the tile's centre between them
+std::vector<std::uint32_t> ambiguous_faces(const Tile& tile, const tile::FaceLattice& faces, Signature signature) {
+  const auto is_diagonal = [&tile](Signature face, Signature ends) {
+    if (std::popcount(ends) != 2) return false;  // the two ends, with the face's centre between them
     for (std::size_t i = 0; i < 4; ++i) {
-      double ends = 0, all = 0;
+      double between = 0, all = 0;
       for (std::uint32_t v = 0; v < tile.corner_count(); ++v) {
-        all += tile.corners[v][i];
-        if (((s >> v) & 1u) != 0) ends += tile.corners[v][i];
+        if ((face >> v & 1u) != 0) all += tile.corners[v][i];
+        if ((ends >> v & 1u) != 0) between += tile.corners[v][i];
       }
-      if (std::abs(ends * tile.corner_count() - 2 * all) > 1e-9) return false;
+      if (std::abs(between * std::popcount(face) - 2 * all) > 1e-9) return false;
     }
     return true;
   };
-  struct Face {
-    std::vector<std::uint8_t> corners;  // in the whole tile's numbering
-    Signature own;                      // in the face's own frame
-  };
-  std::vector<std::uint32_t> result(static_cast<std::size_t>(dim) + 1, 0);
-  std::vector<std::uint8_t> all(lattice.tile(dim).corner_count());
-  std::iota(all.begin(), all.end(), std::uint8_t{0});
-  std::map<Signature, Face> level{{lattice.tile(dim).full(), {all, signature}}};  // by set of corners
-  // faces from dimension dim down to 2, each once
-  for (int k = dim; k >= 2; --k) {
-    const Tile& tile = lattice.tile(k);
-    std::map<Signature, Face> next;
-    for (const auto& [set, face] : level) {
-      if (is_diagonal(tile, face.own) || is_diagonal(tile, ~face.own & tile.full()))
-        ++result[static_cast<std::size_t>(k)];
-      for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
-        Face sub{{}, tile.restrict_to(f, face.own)};
-        Signature corners = 0;
-        for (const std::uint8_t v : tile.faces[f].corner) {
-          sub.corners.push_back(face.corners[v]);
-          corners |= 1u << face.corners[v];
-        }
-        next.emplace(corners, std::move(sub));
-      }
-    }
-    level = std::move(next);
-  }
+  std::vector<std::uint32_t> result(static_cast<std::size_t>(tile.dim) + 1, 0);
+  for (const tile::Face& face : faces.faces())
+    if (face.dim >= 2 &&
+        (is_diagonal(face.corners, signature & face.corners) || is_diagonal(face.corners, ~signature & face.corners)))
+      ++result[static_cast<std::size_t>(face.dim)];
   return result;
+}
+
+std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature) {
+  const Tile& tile = lattice.tile(dim);
+  return ambiguous_faces(tile, face_lattice(tile.kind, dim), signature);
 }
 
 }  // namespace tegl::gen

@@ -66,6 +66,7 @@ std::vector<CertifiedFigures> certify_all(int dim, TileKind tile = TileKind::cub
 
 /// The number of m-ambiguous m-faces of a tile, by m (index 2 to dim). A face is m-ambiguous if its high corners, or
 /// its low corners, are the two ends of one m-diagonal (thesis, definition 7.3.7).
+std::vector<std::uint32_t> ambiguous_faces(const Tile& tile, const tile::FaceLattice& faces, Signature signature);
 std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature);
 
 }  // namespace tegl::gen
