@@ -19,8 +19,8 @@ from ._fields import LATTICES, lattice_spacing
 
 
 @_arguments.documents("extract", "ExtractOptions", "Ambiguity", "extract_placed", "extract_cells")
-def contour(array, level: float | None = None, *, label: float | None = None, spacing=None, origin=None, coords=None, affine=None, mask=None,
-            axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
+def contour(array, level: float | None = None, *, label: float | None = None, spacing=None, origin=None, coords=None,
+            affine=None, mask=None, axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
             time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
@@ -30,16 +30,15 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
             samples: _kinds.Samples = "points", curved=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
-    level
-        The isovalue. With `positions` "relaxed" it may be left out for an array of exactly two values: their middle.
-    label
-        In place of `level`: the contour around the samples of this value, that of 1 there and 0 elsewhere at 0.5.
-
     array
         A NumPy array of real numbers with any strides, a masked array, an xarray.DataArray (with its coordinates, names
         and units), or an image from `tegl.read`. uint8, int8, uint16, int16, int32, float32 and float64 are read in
         place; bool counts as uint8; other types are copied to one of these. NaN is a missing value: there is no
         contour next to it.
+    level
+        The isovalue. With `positions` "relaxed" it may be left out for an array of exactly two values: their middle.
+    label
+        In place of `level`: the contour around the samples of this value, that of 1 there and 0 elsewhere at 0.5.
     spacing, origin
         Distance of the samples along each axis, and coordinate of the first one, in the order of the array's axes; or
         one number for all.

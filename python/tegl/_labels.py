@@ -21,7 +21,8 @@ def mask_of(array, label: float):
     values = array if isinstance(array, np.ma.MaskedArray) else np.asarray(array)
     mask = (values == label).astype(np.uint8)
     if values.dtype.kind == "f" and np.isnan(values).any():
-        mask = np.where(np.isnan(values), np.float32(np.nan), mask.astype(np.float32))
+        mask = np.ma.where(np.isnan(values), np.float32(np.nan), mask.astype(np.float32))
+        mask = mask if isinstance(values, np.ma.MaskedArray) else mask.data
     if not np.any(np.asarray(mask) == 1):
         raise ValueError(f"label is {label:g}; expected a value that a sample has")
     return mask

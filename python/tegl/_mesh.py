@@ -70,7 +70,7 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     arguments = _arguments_of(points, cells, values, times)
     others = _attributes_of(attributes, points, arguments[3].shape)
     if level is None:
-        raise TypeError("level are missing; expected points, cells, values and level, or a mesh and level")
+        raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, others, progress)
     if not allow_empty and not len(core.simplices):
@@ -89,7 +89,7 @@ def count_mesh(points, cells=None, values=None, level: float | None = None, *, t
                           threads=threads)
     arguments = _arguments_of(points, cells, values, times)[:-1]
     if level is None:
-        raise TypeError("level are missing; expected points, cells, values and level, or a mesh and level")
+        raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
     return ContourSize(*_tegl.count_mesh(*arguments, _arguments.as_number("level", level), options, progress))
 
 

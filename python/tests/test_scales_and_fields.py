@@ -89,6 +89,9 @@ def test_masks_and_labels():
     missing = labels.astype(float)
     missing[3, 5, 5] = np.nan
     assert not tegl.contour(missing, label=7).check().is_closed  # a missing sample is neither inside nor outside
+    masked = np.ma.masked_array(labels.astype(float), mask=labels == 9)
+    masked[0, 0, 0] = np.nan
+    assert not tegl.contour(masked, label=7).check().is_closed  # nor is a masked one
     for wrong, message in ((dict(label=8), "label is 8"), (dict(level=1, label=7), "expected one of the two"),
                            (dict(positions="relaxed"), "not exactly two values")):
         with pytest.raises(ValueError, match=message):

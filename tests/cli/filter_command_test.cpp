@@ -67,7 +67,7 @@ TEST_F(FilterCommand, CurvatureFlowIsInUnitsOfTheAxesAndLeavesTheTime) {
   const RunResult all = run_tegl({"filter", volume(), "--curvature", "500", "-o", path("c.nrrd")});
   EXPECT_EQ(all.exit, 0);
   EXPECT_NE(all.err.find("all closed contours vanish in this time"), std::string::npos) << all.err;
-  // the warning comes before the flow: also if that has too many steps
+  // a flow of too many steps is refused
   const RunResult long_flow = run_tegl({"filter", volume(), "--curvature", "5000000", "-o", path("d.nrrd")});
   EXPECT_EQ(long_flow.exit, 2);
   EXPECT_NE(long_flow.err.find("steps; expected at most 100000"), std::string::npos) << long_flow.err;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The commands tegl scale-space and tegl sample: their images, and other commands that take these.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -101,6 +102,23 @@ TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
     arguments.insert(arguments.end(), options.begin(), options.end());
     EXPECT_EQ(run_tegl(arguments).exit, 2);
   }
+}
+
+TEST_F(ImageMakers, PackedImagesOfFiveAxesAreContouredAtTheirValues) {
+  const std::vector<double> places = {0, 1, 2, 3};
+  Samples samples = noise({4, 4, 4, 4, 4}, 5);
+  for (float& value : samples.values) value = std::round(value / 8) * 8;
+  for (const double scale : {8.0, -8.0, 0.0}) {
+    const std::string file = path(fmt::format("{}.nc", scale));
+    write_netcdf(file, {"x", "y", "z", "t", "u"}, {places, places, places, places, places},
+                 {{"noise", samples, "1", scale}});
+    ASSERT_EQ(run_tegl({"contour", file, "--iso", "101", "-o", path(fmt::format("{}.vtkhdf", scale)), "-q"}).exit, 0);
+    EXPECT_EQ(run_tegl({"contour", file, "--iso", "300", "-o", path("none.vtkhdf")}).exit, 5);
+  }
+  const auto values = read_mesh(path("0.vtkhdf"));
+  EXPECT_GT(values.simplices.size(), 1000u);
+  EXPECT_EQ(read_mesh(path("8.vtkhdf")).simplices, values.simplices);
+  EXPECT_EQ(read_mesh(path("-8.vtkhdf")).simplices, values.simplices);
 }
 
 TEST_F(ImageMakers, ScaleSpacesOfFourAxesAreSavedCutAndTracked) {

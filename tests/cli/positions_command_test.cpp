@@ -81,7 +81,12 @@ TEST_F(PositionsCommand, MasksNeedNoIsovalueAndLabelsAreMasks) {
   const RunResult many = run_tegl({"contour", image, "--positions", "relaxed", "-o", path("d.ply")});
   EXPECT_EQ(many.exit, 2);
   EXPECT_THAT(many.err, HasSubstr("more than two values, such as"));
+  EXPECT_EQ(seven.json()["label"], 7);
+  const auto tenths = [&](const std::vector<double>& x) { return labels(x) / 10; };
+  const std::string of_reals = write("reals.nii", nifti_bytes(sample({24, 22, 23}, tenths), {1, 1, 1}));
+  EXPECT_EQ(run_tegl({"contour", of_reals, "--label", "0.7", "-o", path("c.ply")}).exit, 0);
   EXPECT_EQ(run_tegl({"contour", image, "--label", "8", "-o", path("d.ply")}).exit, 5);
+  EXPECT_EQ(run_tegl({"contour", image, "--label", "8", "--allow-empty", "-o", path("e.ply")}).exit, 0);
   EXPECT_EQ(run_tegl({"contour", image, "--label", "7", "--iso", "1", "-o", path("d.ply")}).exit, 2);
   EXPECT_EQ(run_tegl({"contour", image, "--label", "x", "-o", path("d.ply")}).exit, 2);
   EXPECT_EQ(run_tegl({"contour", image, "--label", "7", "--stream", "-o", path("d.vtkhdf")}).exit, 2);

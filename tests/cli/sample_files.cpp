@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <sstream>
@@ -151,15 +152,23 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
   std::vector<int> ids;
   for (const NetcdfVariable& variable : variables) {
     const int rank = static_cast<int>(slow_first.size());
-    require(nc_def_var(file, variable.name.c_str(), NC_FLOAT, rank, slow_first.data(), &ids.emplace_back()));
+    const bool is_packed = variable.scale != 0;
+    require(nc_def_var(file, variable.name.c_str(), is_packed ? NC_SHORT : NC_FLOAT, rank, slow_first.data(),
+                       &ids.emplace_back()));
     const float missing = -999;
-    require(nc_put_att_float(file, ids.back(), "_FillValue", NC_FLOAT, 1, &missing));
+    if (is_packed)
+      require(nc_put_att_double(file, ids.back(), "scale_factor", NC_DOUBLE, 1, &variable.scale));
+    else
+      require(nc_put_att_float(file, ids.back(), "_FillValue", NC_FLOAT, 1, &missing));
     require(nc_put_att_text(file, ids.back(), "units", variable.unit.size(), variable.unit.c_str()));
   }
   require(nc_enddef(file));
   for (std::size_t a = 0; a < names.size(); ++a) require(nc_put_var_double(file, axes[a], coordinates[a].data()));
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    require(nc_put_var_float(file, ids[i], variables[i].samples.values.data()));
+    std::vector<float> stored = variables[i].samples.values;
+    if (const double scale = variables[i].scale; scale != 0)
+      for (float& value : stored) value = static_cast<float>(std::lround(value / scale));
+    require(nc_put_var_float(file, ids[i], stored.data()));
   }
   require(nc_close(file));
 }

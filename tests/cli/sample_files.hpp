@@ -48,6 +48,7 @@ struct NetcdfVariable {
   std::string name;
   Samples samples;
   std::string unit = "degC";
+  double scale = 0;  ///< not 0: stored as int16 with this scale_factor, rounded
 };
 /// An attribute of an axis in a netCDF file.
 struct NetcdfAttribute {

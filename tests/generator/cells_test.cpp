@@ -27,12 +27,12 @@ using tables::CellTable;
 using Named = std::vector<std::uint64_t>;
 
 /// Maps local vertices and masks of a list to the vertices and masks of a signature.
-struct Element {
+struct TableElement {
   const CellTable& table;
   const std::uint8_t* permutation;  ///< or null
   bool reverses;
 
-  Element(const CellTable& of, std::uint32_t signature)
+  TableElement(const CellTable& of, std::uint32_t signature)
       : table(of),
         permutation(of.element_of == nullptr ? nullptr
                                              : of.permutations + of.element_of[signature] * of.permutation_stride),
@@ -50,7 +50,7 @@ struct Element {
 
 /// The simplices of a signature in a table, oriented.
 std::vector<Named> simplices_of(const CellTable& table, std::uint32_t signature) {
-  const Element element(table, signature);
+  const TableElement element(table, signature);
   const tables::CellList& list = table.lists[table.list_of[signature]];
   std::vector<Named> result;
   for (std::uint32_t i = 0; i < list.simplex_count; ++i) {

@@ -271,13 +271,13 @@ class ContourCommand final : public Command {
       result.input = inputs();
       result.variable = input.info.variable;
       result.image_dim = 5;
-      require_contour(input, *result.isovalue, options_.allows_empty());
+      result.isovalue_of_samples = require_contour(input, *result.isovalue, options_.allows_empty());
     }
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (ContourResult& result : results) {
       options.work.progress = bar.stage("contour");
-      result.mesh = extract_and_use<Mesh>(input.image, *result.isovalue, options, options_.single_precision(),
+      result.mesh = extract_and_use<Mesh>(input.image, result.isovalue_of_samples, options, options_.single_precision(),
                                           [&](auto extraction) {
                                             result.stats = extraction.stats;
                                             return to_mesh(std::move(extraction.contour));
@@ -333,7 +333,7 @@ class ContourCommand final : public Command {
     Stopwatch watch;
     auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused,
                           takes_stored_integers(options));
-    remark(positions_.apply(any, results));
+    remark(positions_.apply(any, results, options_.allows_empty()));
     if (!sigmas_.empty()) make_scale_space(any, bar.stage("scale space"));
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       return contour_5d(*in_5d, options, watch, bar, results);

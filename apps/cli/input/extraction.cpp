@@ -323,17 +323,24 @@ void require_both_sides(const Input& input, double isovalue, double of_samples) 
 
 }  // namespace
 
-double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
-  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
-  std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
+/// The isovalue of the samples, which may be stored integers. Requires values on both sides of it, unless
+/// `allow_empty`.
+template <class ReadResult>
+static double checked_isovalue(const ReadResult& input, double isovalue, bool allow_empty) {
   const double of_samples = input.info.scaling ? input.info.scaling->stored_isovalue(isovalue) : isovalue;
   if (!allow_empty) require_both_sides(input, isovalue, of_samples);
   return of_samples;
 }
 
-void require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty) {
+double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
+  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
+  std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
+  return checked_isovalue(input, isovalue, allow_empty);
+}
+
+double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty) {
   std::visit([](const auto& owned) { require_samples(owned.grid.axes); }, input.image);
-  if (!allow_empty) require_both_sides(input, isovalue, isovalue);
+  return checked_isovalue(input, isovalue, allow_empty);
 }
 
 std::string remark_on_missing(double isovalue) {

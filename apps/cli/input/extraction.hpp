@@ -132,9 +132,9 @@ EmptyResult outside_error(double isovalue, const ValueRange& range, const std::s
 
 /// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every
 /// axis, and samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`.
-/// The first function returns the isovalue of the samples, which may be stored integers (ImageInfo::scaling).
+/// Return the isovalue of the samples, which may be stored integers (ImageInfo::scaling).
 double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
-void require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty);
+double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty);
 
 /// The remark that missing samples prevent a contour.
 std::string remark_on_missing(double isovalue);

@@ -112,7 +112,7 @@ void ImageOptions::add_to(CLI::App& app) {
           ->check(CLI::IsMember({"given", "name", "time"})),
       app.add_option("--fix", fixed_,
                      "netCDF: read one index of this dimension, counted from 0, as in member=3; may be given again. "
-                     "Needed for variables of more than 4 axes")
+                     "Needed for variables of more than 5 axes")
           ->allow_extra_args(false)
           ->type_name("DIM=INDEX"),
   };

@@ -41,7 +41,7 @@ void visit_image(const AnyImage5d& image, const F& f) {
 
 /// Replaces an image by the mask of a label. Missing samples stay missing.
 template <class AnyDimension>
-void take_label(AnyDimension& image, double label) {
+void take_label(AnyDimension& image, double label, bool allow_empty) {
   AnyDimension mask;
   visit_image(image, [&]<Value T, int N>(OwnedImage<T, N>& from) {
     using Mask = std::conditional_t<std::is_floating_point_v<T>, float, std::uint8_t>;
@@ -51,12 +51,15 @@ void take_label(AnyDimension& image, double label) {
     bool any = false;
     for (std::size_t i = 0; i < to.values.size(); ++i) {
       const auto value = static_cast<double>(from.values[i]);
-      any = any || value == label;
-      to.values[i] = static_cast<To>(value == label ? 1 : 0);
+      // 0.7 as a float is another number than as a double
+      const bool is_labelled =
+          value == (std::is_same_v<T, float> ? static_cast<double>(static_cast<float>(label)) : label);
+      any = any || is_labelled;
+      to.values[i] = static_cast<To>(is_labelled ? 1 : 0);
       if constexpr (std::is_floating_point_v<To>)
         if (std::isnan(value)) to.values[i] = std::numeric_limits<To>::quiet_NaN();
     }
-    if (!any) throw EmptyResult(fmt::format("--label {}: no sample has this value", number(label)));
+    if (!any && !allow_empty) throw EmptyResult(fmt::format("--label {}: no sample has this value", number(label)));
     if constexpr (kOnlyReals)
       mask = std::move(to);
     else
@@ -125,13 +128,14 @@ std::vector<SpelledNumber> PositionArguments::isovalues(const ExtractionOptions&
 }
 
 std::string PositionArguments::apply(std::variant<ReadImageResult, ReadImage5dResult>& input,
-                                     std::vector<ContourResult>& results) const {
+                                     std::vector<ContourResult>& results, bool allow_empty) const {
   if (has_label()) {
     const double label = parse_finite("--label", label_);
-    std::visit([&](auto& read) { take_label(read.image, label); }, input);
+    std::visit([&](auto& read) { take_label(read.image, label, allow_empty); }, input);
+    for (ContourResult& result : results) result.label = label;
     return "";
   }
-  if (!std::isnan(*results.front().isovalue)) return "";
+  if (!std::isnan(*results.front().isovalue) || std::holds_alternative<ReadImage5dResult>(input)) return "";
   const auto [low, high] = std::visit([](const auto& read) { return two_values_of(read.image); }, input);
   for (ContourResult& result : results) result.isovalue = low + (high - low) / 2;
   return fmt::format("no --iso: the isovalue is {}, the middle of the image's two values, {} and {}",

@@ -28,8 +28,10 @@ class PositionArguments {
   [[nodiscard]] std::vector<SpelledNumber> isovalues(const ExtractionOptions& options) const;
   /// With --label, replaces the image by 1 for samples that have this value and 0 for others; missing ones stay
   /// missing. Sets isovalues of NaN to the middle of the image's two values, and returns a remark of this. Throws
-  /// EmptyResult if no sample has the label, InvalidArgument if the image has not exactly two values.
-  std::string apply(std::variant<ReadImageResult, ReadImage5dResult>& input, std::vector<ContourResult>& results) const;
+  /// EmptyResult if no sample has the label, unless `allow_empty`, InvalidArgument if the image has not exactly two
+  /// values.
+  std::string apply(std::variant<ReadImageResult, ReadImage5dResult>& input, std::vector<ContourResult>& results,
+                    bool allow_empty) const;
 
   [[nodiscard]] bool are_linear() const { return rule_ == "linear"; }
   /// Why simplices by --positions filtered have zero size, for reports.

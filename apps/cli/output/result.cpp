@@ -221,6 +221,7 @@ Json to_json(const ContourResult& result) {
   json["image_dim"] = result.image_dim;
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
   if (!result.isovalues.empty()) json["isovalues"] = result.isovalues;
+  if (result.label) json["label"] = *result.label;
   if (result.folded_cells) json["folded_cells"] = *result.folded_cells;
   // cut and pick
   json["at"] = nullptr;

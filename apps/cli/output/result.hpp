@@ -138,6 +138,7 @@ struct ContourResult {
   std::optional<Cut> cut;
   std::optional<Picked> picked;
   std::optional<ExtractStats> stats;               ///< none for cuts of a saved contour, and for picks
+  std::optional<double> label = {};                ///< whose samples are contoured (--label)
   std::optional<std::uint64_t> folded_cells = {};  ///< of a curved grid
   std::optional<MeshReport> report;                ///< none with --no-check
   std::optional<MergeSummary> merging;             ///< of --merge

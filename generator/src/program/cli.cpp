@@ -473,16 +473,16 @@ commands (one of)
   --cases DIR      writes the catalogue of cases (N = 2 ... 4) into DIR: a Markdown page and its pictures
   --builder        certifies, then prints source code that builds the contour of one tile by recursion over its
                    faces, each ambiguity resolved by its caller (N = 2 ... 5); with --out DIR, writes it into DIR
-  --cells          (without --dim) makes and certifies the tables of mesh cells: simplices, quadrilateral, wedge, pyramid,
-                   hexahedron, and the prisms of 3D cells over time; prints classes and figures; with --out DIR,
-                   writes the tables into DIR
+  --cells          (without --dim) makes and certifies the tables of mesh cells: simplices, quadrilateral, wedge,
+                   pyramid, hexahedron, and the prisms of 3D cells over time; prints classes and figures; with
+                   --out DIR, writes the tables into DIR
   --help, -h       this text
   --version        version of the program and of the tables' layout
 
 options of --count, --classes, --certify, --out, and without a command
-  --tile cube|simplex|octahedron    shape of the tile (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
-                                    4, the octahedron has N = 3; their tables are written as C++ and JSON. With N = 4
-                                    the octahedron is cross4
+  --tile cube|simplex|octahedron    shape of the tile (default cube): simplices have N = 2 (triangle), 3 (tetrahedron)
+                                    and 4, the octahedron has N = 3; their tables are written as C++ and JSON. With
+                                    N = 4 the octahedron is cross4
   --tile CELL                       a cell of meshes and lattices, whose name gives its dimension: triangle,
                                     quadrilateral, tetrahedron, wedge, pyramid, hexahedron, simplex4,
                                     prism:tetrahedron, prism:wedge, prism:pyramid, prism:hexahedron, prism:octahedron

@@ -175,7 +175,7 @@ requires DimensionBetween<N, 2, 4>
 /// - triangulation: the diagonals of compact 4D contours in faces between cells depend on the numbers of the points.
 /// - ambiguity: all but custom. With rules that read the data, hexahedra are resolved as the cubes of an image; in
 ///   wedges and pyramids every polygon is a disc. (The interpolant of a wedge has no tunnels; so in wedges `saddle` is
-///   exact.) Octahedra are not ambiguous. The 3D facets of 4D cells are resolved likewise, by their own values.
+///   exact.) Octahedra are not ambiguous. The 3D facets of 4D cells are resolved in the same way, by their own values.
 ///   Hexahedra over time are resolved as the tesseracts of an image. In other 4D cells spheres of the boundary are
 ///   filled one by one.
 /// - close: not in 4D with rules that read the data if the triangulation is compact, nor with mean and saddle if a cell

@@ -19,12 +19,13 @@ namespace tegl {
 /// surface at time t.
 ///
 /// The result has one dimension less, in the coordinates of `frame_of(hyperplane)`: segments for N = 3, triangles for
-/// N = 4, tetrahedra for N = 5. Across an axis these are the other axes: across x, a 4D contour gives a surface in y, z and t. "Above" is the
-/// side of the hyperplane's normal. The cut faces the same side, low or high, as the contour, in the frame's
-/// coordinates, also if the frame is left-handed. Direction, and names and units of axes that are axes of the frame,
-/// are kept; other names and units are empty. Normals, if the contour has any, are interpolated like the vertices,
-/// lose their component along the hyperplane's normal, and get length 1, or 0 if nothing remains. Vertex attributes are
-/// interpolated like the vertices. A simplex of the cut gets the attributes of the simplex that it lies in.
+/// N = 4, tetrahedra for N = 5. Across an axis these are the other axes: across x, a 4D contour gives a surface in y, z
+/// and t. "Above" is the side of the hyperplane's normal. The cut faces the same side, low or high, as the contour, in
+/// the frame's coordinates, also if the frame is left-handed. Direction, and names and units of axes that are axes of
+/// the frame, are kept; other names and units are empty. Normals, if the contour has any, are interpolated like the
+/// vertices, lose their component along the hyperplane's normal, and get length 1, or 0 if nothing remains. Vertex
+/// attributes are interpolated like the vertices. A simplex of the cut gets the attributes of the simplex that it lies
+/// in.
 ///
 /// Vertices of the cut lie on edges between a vertex below and a vertex above the hyperplane; they are interpolated in
 /// double, from the lower one. A vertex lies on the hyperplane if <normal, x> equals the offset as computed in double;
@@ -56,8 +57,8 @@ namespace tegl {
 /// contour does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer
 /// or lie along samples of the isovalue. `slice_image` reads the image and gives the layer's contour.
 ///
-/// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the contour's
-/// vertex numbers. The order of the result depends only on the order of the contour.
+/// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the
+/// contour's vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
 /// attributes or normals of another number), Cancelled. If the hyperplane is beyond the contour, the cut is empty.
 /// O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. The result does not depend on
@@ -99,10 +100,10 @@ requires DimensionBetween<N, 3, 5>
 ///
 /// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
 /// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
-/// from it; for N = 5 with the exceptions of `slice`. Elsewhere it equals slice(extract<Real>(image, isovalue, options),
-/// hyperplane) bit by bit (normals again up to rounding), up to the numbering; if values are missing at some layers
-/// only, up to the triangulation of the same surface. `options.close` closes the cut at the borders of the other axes, as in the cut of
-/// the closed contour.
+/// from it; for N = 5 with the exceptions of `slice`. Elsewhere it equals slice(extract<Real>(image, isovalue,
+/// options), hyperplane) bit by bit (normals again up to rounding), up to the numbering; if values are missing at some
+/// layers only, up to the triangulation of the same surface. `options.close` closes the cut at the borders of the other
+/// axes, as in the cut of the closed contour.
 ///
 /// An image with one sample along the axis has no tiles, hence an empty cut, at its only valid coordinate. Errors:
 /// as `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if

@@ -127,7 +127,7 @@ NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const 
          candidates.empty() ? "none: no variable here has 2 or more axes" : listing(candidates));
   }
   if (candidates.size() == 1) return candidates[0];
-  // one of 2 to 5 axes before one of 5
+  // one of 2 to 4 axes before one of 5
   std::vector<NcVariable> usual, fitting;
   for (const NcVariable& variable : candidates) {
     const std::size_t axes = rank(slab_of(file, variable, options.fixed).count);

@@ -237,8 +237,8 @@ StoredImage open_array(const Prefix& prefix, StoredSamples&& samples, const fs::
   const std::size_t before = start[6] == 1 ? 10 : 12;
   const auto all = size <= kMostHeader ? prefix(static_cast<std::size_t>(size)) : start;
   if (all.size() < size)
-    fail(ErrorCode::MalformedFile, path, "{}a header of {} bytes; expected at most {}, and no more than the file has", member,
-         size, kMostHeader);
+    fail(ErrorCode::MalformedFile, path, "{}a header of {} bytes; expected at most {}, and no more than the file has",
+         member, size, kMostHeader);
   (samples.encoding == Encoding::raw ? samples.offset : samples.skip) += size;
   const std::string_view text(reinterpret_cast<const char*>(all.data()) + before, all.size() - before);
   return image_of(text, std::move(samples), path, member);

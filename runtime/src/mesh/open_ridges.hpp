@@ -19,7 +19,7 @@ namespace tegl::detail {
 /// the calling thread, in ascending order. A contour without open faces is always found to have none. An open face of
 /// another contour is overlooked with a probability below 1e-16: the search uses random numbers, which are the same in
 /// each call. O(#S + b log b) time for b faces between vertices of open faces; memory of 8 (N - 2) bytes per vertex,
-/// and 8 more per vertex and thread, for at most 8 threads.
+/// and 8 more per vertex and thread; at most 8 threads work at a time.
 template <int N>
 FaceCounts find_open_ridges(std::span<const Index> rows, std::size_t vertex_count, unsigned threads,
                             const Progress& progress, FunctionRef<void(const std::array<Index, N - 1>& ridge)> on_open);

@@ -38,7 +38,7 @@ struct SeriesOptions {
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
-  bool keep_stored = false;                ///< as in ReadImageOptions, for read_series and a single file
+  bool keep_stored = false;                ///< as in ReadImageOptions, for a single file
 };
 
 /// An image read from several files, and the list of files.
@@ -75,8 +75,8 @@ struct ReadSeries5dResult : ReadImage5dResult {
   std::vector<std::filesystem::path> files = {};  ///< as in ReadSeriesResult
 };
 
-/// As read_series, also for images of 5 axes: a NRRD or NumPy file, a raw file, or several files of 4 axes each.
-/// Errors: UnsupportedData for more than 5 axes, and those of read_series.
+/// As read_series, also for images of 5 axes: a NRRD, NumPy or netCDF file, a raw file, or several files of 4 axes
+/// each. Errors: UnsupportedData for more than 5 axes, and those of read_series.
 [[nodiscard]] std::variant<ReadSeriesResult, ReadSeries5dResult> read_series_to_5d(
     std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
