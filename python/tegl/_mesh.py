@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import typing
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -142,7 +142,7 @@ def _attributes_of(attributes, mesh, shape: tuple[int, ...]) -> list[tuple[str, 
         return []
     if not isinstance(attributes, Mapping):
         data = getattr(mesh, "point_data", None)
-        if isinstance(attributes, str) or data is None:
+        if isinstance(attributes, str) or data is None or not isinstance(attributes, Iterable):
             raise TypeError(f"attributes are {attributes!r}; expected a dict of names and arrays, or a list of names in the "
                             "point_data of a mesh")
         for name in attributes:

@@ -7,7 +7,6 @@
 #include <array>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -380,10 +379,10 @@ class ContourCommand final : public Command {
 
   /// Options of this command that need an image.
   [[nodiscard]] std::vector<std::string> given_for_images() const {
-    std::vector<std::string> given;
-    for (const char* const name : {"--facets", "--stream", "--index", "--pick", "--positions", "--positions-image",
-                                   "--last-axis-weight", "--label", "--scale-space"})
-      if (app().count(name) > 0) given.emplace_back(name);
+    std::vector<std::string> given = {
+        "--facets",          "--stream",           "--index", "--pick",       "--positions",
+        "--positions-image", "--last-axis-weight", "--label", "--scale-space"};
+    std::erase_if(given, [&](const std::string& name) { return app().count(name) == 0; });
     return given;
   }
 
@@ -396,6 +395,7 @@ class ContourCommand final : public Command {
       result.input = inputs();
       result.variable = input.mesh.variable;
       result.image_dim = input.space_dim();
+      result.wording.no_size = kNoSizeInMeshes;
       require_mesh_contour(input.mesh, *result.isovalue, options_.allows_empty());
     }
     const auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);

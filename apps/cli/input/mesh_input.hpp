@@ -12,6 +12,10 @@
 
 namespace tegl::cli {
 
+/// Why simplices of contours of meshes have zero size, for reports.
+inline constexpr const char* kNoSizeInMeshes =
+    "samples equal the isovalue, which --epsilon avoids, or cells of the mesh are flat";
+
 /// Whether the files are meshes of cells, by the first one.
 bool are_cell_meshes(const std::vector<std::string>& files, const ImageOptions& images);
 

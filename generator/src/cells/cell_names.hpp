@@ -15,7 +15,7 @@ struct CellName {
   int dim;                 ///< dimension
 };
 
-/// All cells, but for the octahedron, which is a tile kind, too.
+/// All cells except the octahedron, which is a tile kind, too.
 inline constexpr std::array kCellNames{CellName{"triangle", "triangle", 2},
                                        CellName{"quadrilateral", "quadrilateral", 2},
                                        CellName{"tetrahedron", "tetrahedron", 3},

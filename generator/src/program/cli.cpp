@@ -270,7 +270,7 @@ const OptionSpec* command_of(const std::vector<Given>& given) {
     return option.spec->name == "--dim" || option.spec->name == "--tile";
   });
   if (command == nullptr && !is_summary) {
-    refuse(fmt::format("no command was given: expected --dim N for a summary, or one of --help, {}",
+    refuse(fmt::format("no command was given: expected --dim N or --tile CELL for a summary, or one of --help, {}",
                        names_of([](const OptionSpec& spec) { return spec.command.has_value(); })));
   }
   return command;

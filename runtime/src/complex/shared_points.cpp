@@ -57,8 +57,8 @@ CubePoint cube_point(const CellGroup& group, const tables::CellTable& table, con
   return point;
 }
 
-/// The key of a vertex in a hexahedron, whatever cell it is found in: a crossed edge, the ends of the diagonal from the
-/// smallest point, and the mask in the frame of the points' numbers.
+/// The key of a vertex in a hexahedron, the same for all cells that have it: a crossed edge, the ends of the diagonal
+/// from the smallest point, and the mask in the frame of the points' numbers.
 PolygonKey key_of(const CubePoint& point, Index crossing) noexcept {
   const CubeFrame frame = CubeFrame::of_number(CubeFrame::number_of(point.corners.data()));
   Index mask = 0;

@@ -9,10 +9,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 
@@ -37,6 +36,12 @@ std::uint64_t set_of(const Triangles& triangles) noexcept {
   std::uint64_t all = 0;
   for (const Triangle& t : triangles) all |= set_of(t);
   return all;
+}
+
+/// Vertices are numbers below kEnd. No region with nearly as many own ones is known.
+void require_room(const RegionDivision& division) {
+  if (division.own.size() > Vertices::kEnd - Vertices::kFirstOwn)
+    throw std::length_error("division of a region: too many vertices of its own");
 }
 
 /// The same triangle, starting at its smallest vertex.
@@ -181,6 +186,7 @@ class RegionSearch {
   void add_own(const Triangles& boundary, std::uint64_t points) {
     const auto own = static_cast<std::uint8_t>(Vertices::kFirstOwn + result_.own.size());
     result_.own.push_back(static_cast<std::uint32_t>(points));
+    require_room(result_);
     add_cone(boundary, own);
   }
 
@@ -665,6 +671,7 @@ const RegionDivision& RegionDivisions::of(tables::CellShape shape, std::vector<T
       near.own = shifted(near.own);
       division.near.push_back(std::move(near));
     }
+    require_room(division);
     division.is_proved = division.is_proved && part.is_proved;
   }
   return division;
