@@ -100,10 +100,10 @@ requires DimensionBetween<N, 3, 5>
 ///
 /// Across an axis, the result at a sample's coordinate is the contour of that layer, bit by bit (normals across another
 /// axis than the last: up to rounding), also if samples equal the isovalue, where cuts of the whole contour may differ
-/// from it; for N = 5 with the exceptions of `slice`. Elsewhere it equals slice(extract<Real>(image, isovalue,
-/// options), hyperplane) bit by bit (normals again up to rounding), up to the numbering; if values are missing at some
-/// layers only, up to the triangulation of the same surface. `options.close` closes the cut at the borders of the other
-/// axes, as in the cut of the closed contour.
+/// from it; for N = 5 with Ambiguity::custom, Normals::kernel and context with the exceptions of `slice`. Elsewhere it
+/// equals slice(extract<Real>(image, isovalue, options), hyperplane) bit by bit (normals again up to rounding), up to
+/// the numbering; if values are missing at some layers only, up to the triangulation of the same surface.
+/// `options.close` closes the cut at the borders of the other axes, as in the cut of the closed contour.
 ///
 /// An image with one sample along the axis has no tiles, hence an empty cut, at its only valid coordinate. Errors:
 /// as `extract` and `slice`; across an axis also InvalidArgument if the hyperplane is outside of the image, or if

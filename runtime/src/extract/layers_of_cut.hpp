@@ -56,12 +56,16 @@ inline LayerRange with_neighbours(LayerRange layers, std::size_t size, const Ext
   return {layers.first - std::min(layers.first, beside), std::min(size, layers.end + beside)};
 }
 
-/// Whether one of the layers along an axis lies at `at`.
+/// The layer along an axis that lies at `at`; layers.end if none does.
+template <int N, class Real>
+std::size_t layer_at(const Grid<N>& grid, int axis, double at, LayerRange layers) {
+  std::size_t i = layers.first;
+  while (i < layers.end && world_coordinate<N, Real>(grid, axis, i) != rounded_at<Real>(at)) ++i;
+  return i;
+}
 template <int N, class Real>
 bool is_at_layer(const Grid<N>& grid, int axis, double at, LayerRange layers) {
-  for (std::size_t i = layers.first; i < layers.end; ++i)
-    if (world_coordinate<N, Real>(grid, axis, i) == rounded_at<Real>(at)) return true;
-  return false;
+  return layer_at<N, Real>(grid, axis, at, layers) != layers.end;
 }
 
 }  // namespace tegl::detail

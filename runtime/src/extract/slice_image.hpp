@@ -51,6 +51,23 @@ Image<T, N> with_axis_last(const Image<T, N>& image, int axis) {
   return Image<T, N>(image.data(), std::move(grid), strides);
 }
 
+/// Layer k across an axis, as an image of the other axes in their order. The world map must not mix it with them.
+template <Value T, int N>
+Image<T, N - 1> layer_across(const Image<T, N>& image, int axis, std::size_t k) {
+  const Grid<N>& from = image.grid();
+  Grid<N - 1> grid;
+  typename Image<T, N - 1>::Strides strides;
+  const auto old = [&](int a) { return a + (a >= axis); };
+  for (int a = 0; a < N - 1; ++a) {
+    grid.axes[a] = from.axes[old(a)];
+    strides[a] = image.strides()[old(a)];
+    grid.offset[a] = from.offset[old(a)];
+    for (int b = 0; b < N - 1; ++b) grid.linear[a][b] = from.linear[old(a)][old(b)];
+  }
+  return Image<T, N - 1>(image.data() + static_cast<std::ptrdiff_t>(k) * image.strides()[axis], std::move(grid),
+                         strides);
+}
+
 /// The options for an image whose axis `axis` has been moved to the end.
 template <int N>
 ExtractOptions with_axis_last(const ExtractOptions& options, int axis) {
@@ -85,15 +102,21 @@ Extraction<N - 1, Real> slice_layers(const Image<T, N>& image, double isovalue, 
 }
 
 /// The cut of a 5D image across an axis. What is extracted in a slab is in the hyperplane, or beside it, what it is in
-/// the whole contour, caps included. At a layer across another axis than the last, the axes are exchanged: points
-/// between layers are kept off the layers along the last axis only.
+/// the whole contour, caps included. At a layer it is the layer's own contour, which 5D cells fill in another way. With
+/// options that read 5D faces or neighbours across the layer, it is cut there, too, and across another axis than the
+/// last the axes are exchanged: points between layers are kept off the layers along the last axis only.
 template <class Real, Value T, int N>
 Extraction<N - 1, Real> slice_slabs(const Image<T, N>& image, double isovalue, const Hyperplane<N>& hyperplane,
                                     int axis, const ExtractOptions& options) {
   constexpr double kMost = std::numeric_limits<double>::max();
   const double at = std::clamp(hyperplane.offset / hyperplane.normal[axis], -kMost, kMost);
   const LayerRange slabs = layers_around<N, Real>(image.grid(), axis, at);
-  if (axis != N - 1 && is_at_layer<N, Real>(image.grid(), axis, at, slabs))
+  const std::size_t layer = layer_at<N, Real>(image.grid(), axis, at, slabs);
+  const bool reads_across = options.ambiguity == Ambiguity::custom || options.normals == Normals::kernel ||
+                            options.normals == Normals::context;
+  if (layer != slabs.end && !reads_across && image.size(axis) > 1)
+    return extract_with_stats<Real>(layer_across(image, axis, layer), isovalue, options);
+  if (axis != N - 1 && layer != slabs.end)
     return slice_slabs<Real>(with_axis_last(image, axis), isovalue, Hyperplane<N>::across(N - 1, at), N - 1,
                              with_axis_last<N>(options, axis));
   const LayerRange layers = with_neighbours(slabs, image.size(axis), options);

@@ -162,11 +162,38 @@ TEST(SliceFive, OfAnImageIsTheCutOfItsContour) {
   for (const bool close : {false, true}) {
     const ExtractOptions options{.close = close};
     const Contour<5, float> contour = extract(image.view(), 0.5, options);
-    for (const auto& [axis, at] : {std::pair{4, 1.3}, {4, 2.0}, {1, 0.6}, {0, 1.0}}) {
+    for (const auto& [axis, at] : {std::pair{4, 1.3}, {4, 0.2}, {1, 0.6}, {0, 1.5}}) {
       const auto hyperplane = Hyperplane<5>::across(axis, at);
       EXPECT_TRUE(same_surface(slice_image(image.view(), 0.5, hyperplane, options), slice(contour, hyperplane)));
     }
   }
+}
+
+TEST(SliceFive, OfAnImageAtALayerIsTheContourOfTheLayer) {
+  Grid<5> grid = Grid<5>::unit({3, 4, 3, 3, 4});
+  grid.offset = {1, 2, 3, 4, 5};
+  grid.linear[4][4] = -2;
+  grid.linear[0][1] = 0.5;
+  const auto noise = test::noise<float, 5>(std::array<std::size_t, 5>{3, 4, 3, 3, 4}, 11);
+  const Image<float, 5> image(noise.values.data(), grid);
+  Grid<4> of_layer = Grid<4>::unit({3, 4, 3, 3});
+  of_layer.offset = {1, 2, 3, 4};
+  of_layer.linear[0][1] = 0.5;
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::saddle})
+    for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+      for (const bool close : {false, true}) {
+        ExtractOptions options{.triangulation = triangulation, .ambiguity = ambiguity, .close = close};
+        options.normals = close ? Normals::none : Normals::sobel;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const Image<float, 4> layer(noise.values.data() + 108 * k, of_layer);
+          const Contour<4, float> expected = extract(layer, 0.5, options);
+          Hyperplane<5> at = Hyperplane<5>::across(4, 5.0 - 2.0 * static_cast<double>(k));
+          if (k % 2 == 1) at = {{0, 0, 0, 0, -3}, -3 * at.offset};
+          const Contour<4, float> cut = slice_image(image, 0.5, at, options);
+          EXPECT_TRUE(cut.vertices == expected.vertices && cut.simplices == expected.simplices) << k;
+          EXPECT_TRUE(cut.normals == expected.normals);
+        }
+      }
 }
 
 TEST(SliceFive, AllWaysToCutAgree) {
