@@ -4,6 +4,7 @@
 // run as in a shell.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -131,7 +132,88 @@ TEST_F(PeriodicCommand, CommandsForPlainContoursUnrollWrappedOnes) {
   EXPECT_NEAR(all["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 125, 15);
 }
 
+TEST_F(PeriodicCommand, CutsAcrossAPeriodAreOfTheUnrolledContourModuloThePeriod) {
+  const std::string saved = path("ball.vtkhdf");
+  const auto z_last = [&](const std::string& name, double center) {
+    return write(name, nifti_bytes(sample({20, 20, 30},
+                                          [=](const std::vector<double>& x) {
+                                            const double apart = std::abs(x[2] - center);
+                                            return 5.0 -
+                                                   std::hypot(x[0] - 9.5, x[1] - 9.5, std::min(apart, 30 - apart));
+                                          }),
+                                   {1, 1, 1}));
+  };
+  const std::string ball = z_last("last.nii", 0);
+  (void)run_json({"contour", ball, "--iso", "0", "--periodic", "z", "-o", saved});
+  for (const std::vector<std::string>& input :
+       {std::vector<std::string>{saved}, {ball, "--iso", "0", "--periodic", "z"}}) {
+    std::vector<std::string> measured = {"measure"};
+    measured.insert(measured.end(), input.begin(), input.end());
+    const auto cuts = [&](const std::string& option, const std::string& value) {
+      std::vector<std::string> arguments = measured;
+      arguments.insert(arguments.end(), {option, value});
+      return run_json(arguments)["cuts"];
+    };
+    const nlohmann::json at = cuts("--at", "z=-1,1,29,29.5,31,-2.5,27.5,57.5");
+    for (const std::size_t i : {0U, 1U, 2U, 4U})
+      EXPECT_NEAR(at[i]["content"].get<double>(), std::numbers::pi * 24, 1.5) << i;
+    EXPECT_EQ(at[0]["value"], -1);
+    EXPECT_EQ(at[0]["content"], at[2]["content"]);
+    EXPECT_EQ(at[1]["content"], at[4]["content"]);
+    EXPECT_NEAR(at[3]["content"].get<double>(), std::numbers::pi * 24.75, 1.5);
+    EXPECT_EQ(at[5]["content"], at[6]["content"]);
+    EXPECT_EQ(at[7]["content"], at[6]["content"]);
+    // from the start to the end of the period: the ball is at both
+    const nlohmann::json samples = cuts("--samples", "31");
+    for (std::size_t i = 0; i < 31; ++i) {
+      const double z = std::min<double>(static_cast<double>(i), 30 - static_cast<double>(i));
+      EXPECT_NEAR(samples[i]["value"].get<double>(), static_cast<double>(i), 1e-9);
+      EXPECT_NEAR(samples[i]["content"].get<double>(), z < 5 ? std::numbers::pi * (25 - z * z) : 0.0, 2) << i;
+    }
+    std::vector<std::string> arguments = measured;
+    arguments.insert(arguments.end(), {"--at", "z=1"});
+    EXPECT_THAT(run_tegl(arguments).err, HasSubstr("the contour is unrolled"));
+    // slices, also between the last sample and the end of the period
+    for (const char* const place : {"z=29.5", "z=-0.5", "z=59.5"}) {
+      arguments = {"slice"};
+      arguments.insert(arguments.end(), input.begin(), input.end());
+      arguments.insert(arguments.end(), {"--at", place, "-o", path("cut.vtkhdf")});
+      const RunResult run = run_tegl(arguments);
+      EXPECT_EQ(run.exit, 0) << run.err;
+      EXPECT_THAT(run.err, HasSubstr("the contour is unrolled"));
+      EXPECT_NEAR(*measure(to_contour<2>(read_mesh(path("cut.vtkhdf")))).content, std::numbers::pi * 24.75, 1.5);
+    }
+  }
+  // no period is crossed along y, where places are refused as before
+  const RunResult run = run_tegl({"slice", saved, "--at", "y=-1", "-o", path("cut.vtkhdf")});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("lies outside of the saved contour"));
+}
+
 TEST_F(PeriodicCommand, ImagesAreInterpolatedAcrossTheSeam) {
+  // the image itself has the isovalue at each vertex of its contour
+  const std::string itself = path("itself.vtkhdf"), saved = path("saved.vtkhdf");
+  (void)run_json({"contour", file_, "--iso", "0.5", "--periodic", "x", "--attribute", file_, "-o", itself});
+  (void)run_json({"contour", file_, "--iso", "0.5", "--periodic", "x", "-o", saved});
+  const auto expect_isovalues = [&](double rounding) {
+    const Mesh mesh = read_mesh(itself);
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    ASSERT_GT(mesh.vertex_attributes[0].values.size(), 20u);
+    for (const double value : mesh.vertex_attributes[0].values) ASSERT_NEAR(value, 0.5, rounding);
+  };
+  expect_isovalues(1e-4);
+  // slices are interpolated in triangles, and the image in cells
+  for (const char* const place : {"z=9.25", "x=0.25", "x=29.5", "x=-0.5"}) {
+    for (const std::string& output : {itself, path("itself.ply")}) {
+      (void)run_json({"slice", saved, "--at", place, "--scale", "x=2", "--attribute", file_, "-o", output});
+      const std::size_t count = read_mesh(output).vertex_attributes.size();
+      EXPECT_GE(count, 1u);
+    }
+    expect_isovalues(0.1);
+    (void)run_json(
+        {"slice", file_, "--iso", "0.5", "--periodic", "x", "--at", place, "--attribute", file_, "-o", itself});
+    expect_isovalues(0.1);
+  }
   // values y + z, and a second image with half the samples along x
   const auto sum = [](const std::vector<double>& x) { return x[1] + x[2]; };
   const std::string fine = write("fine.nii", nifti_bytes(sample({30, 20, 20}, sum), {1, 1, 1}));
@@ -146,6 +228,24 @@ TEST_F(PeriodicCommand, ImagesAreInterpolatedAcrossTheSeam) {
         ASSERT_NEAR(mesh.vertex_attributes[i].values[v], mesh.coordinates[3 * v + 1] + mesh.coordinates[3 * v + 2],
                     1e-4);
   }
+}
+
+TEST_F(PeriodicCommand, ProjectionsAreInterpolatedAcrossTheSeam) {
+  const std::string moving =
+      write("moving.nii", nifti_bytes(sample({12, 8, 8, 3},
+                                             [](const std::vector<double>& x) {
+                                               return 2.0 + 0.3 * x[3] -
+                                                      std::hypot(std::min(x[0], 12 - x[0]), x[1] - 3.5, x[2] - 3.5);
+                                             }),
+                                      {1, 1, 1, 1}));
+  (void)run_json({"project", moving, "--iso", "0.25", "--periodic", "x", "--as", "cuts", "--attribute", moving, "-o",
+                  path("swept.vtkhdf")});
+  const Mesh mesh = read_mesh(path("swept.vtkhdf"));
+  const auto own = std::find_if(mesh.vertex_attributes.begin(), mesh.vertex_attributes.end(),
+                                [](const Attribute& attribute) { return attribute.name == "moving"; });
+  ASSERT_NE(own, mesh.vertex_attributes.end());
+  ASSERT_GT(own->values.size(), 20u);
+  for (const double value : own->values) ASSERT_NEAR(value, 0.25, 0.2);
 }
 
 TEST_F(PeriodicCommand, SlicesOfAnImageKnowItsTiling) {

@@ -5,7 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/numbers.hpp"
@@ -100,7 +103,7 @@ class MeasureCommand final : public ContourInputCommand {
 
   template <int N>
   Found measured(const Contour<N, double>& contour, const ContourInput& input, const std::vector<Cut>& cuts,
-                 ProgressBar& bar) const {
+                 ProgressBar& bar) {
     // whole contour
     const Measures<N> whole = tegl::measure(contour, {threads(), bar.stage("measure")});
     Found found{whole.size,
@@ -112,37 +115,56 @@ class MeasureCommand final : public ContourInputCommand {
                 whole.open_simplices,
                 {}};
     if constexpr (N >= 3) {
-      // values of --at and --samples
-      std::vector<double> at;
-      const double first = whole.lowest[N - 1];
-      const double last = whole.highest[N - 1];
-      for (const Cut& cut : cuts) {
-        if (!allows_empty()) require_within(cut, first, last, input);
-        at.push_back(cut.value);
-      }
-      for (std::size_t i = 0; i < samples_ && !contour.simplices.empty(); ++i)
-        at.push_back(i + 1 == samples_
-                         ? last
-                         : first + (last - first) * static_cast<double>(i) / static_cast<double>(samples_ - 1));
-      if (at.empty()) return found;
-      // cuts
-      const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
-                                             contour.vertices.size() * N);
-      const std::vector<double> places = meet_vertices(at, vertices, N, N - 1);
-      const WorkOptions work{threads(), bar.stage("cuts")};
+      if (cuts.empty() && (samples_ == 0 || contour.simplices.empty())) return found;
+      CutAxis extent{input.axis_name(N - 1), whole.lowest[N - 1], whole.highest[N - 1]};
+      CutAxis axis = input.last_axis.value_or(extent);
       if constexpr (N <= 4)
-        if (crosses_period(contour, Hyperplane<N>::across(N - 1, 0.0)))
-          found.cuts = measure_cuts(unroll(contour).contour, places, work);
-      if (found.cuts.empty()) found.cuts = measure_cuts(contour, places, work);
-      for (std::size_t i = 0; i < at.size(); ++i) found.cuts[i].at = at[i];
+        if (crosses_period(contour, Hyperplane<N>::across(N - 1, 0.0))) {
+          remark(kUnrolledForCuts);
+          const Contour<N, double> unrolled = unroll(contour).contour;
+          extent.first = std::numeric_limits<double>::infinity();
+          extent.last = -extent.first;
+          for (const auto& x : unrolled.vertices) {
+            extent.first = std::min(extent.first, x[N - 1]);
+            extent.last = std::max(extent.last, x[N - 1]);
+          }
+          axis = unrolled_axis(input.last_axis.value_or(extent), N - 1, contour.periods);
+          found.cuts = measured_cuts(unrolled, input, cuts, axis, extent, bar);
+          return found;
+        }
+      found.cuts = measured_cuts(contour, input, cuts, axis, extent, bar);
     }
     return found;
   }
 
-  /// Throws unless the cut is within the last axis of the image or mesh, or within a saved contour, from `first` to
-  /// `last`, which may come from a file with floats.
-  static void require_within(const Cut& cut, double first, double last, const ContourInput& input) {
-    const CutAxis axis = input.last_axis.value_or(CutAxis{input.axis_name(input.space_dim() - 1), first, last});
+  /// The cuts of --at and --samples. `axis`: the range of --at; `extent`: of the contour, for --samples.
+  template <int N>
+  std::vector<CutMeasures> measured_cuts(const Contour<N, double>& contour, const ContourInput& input,
+                                         const std::vector<Cut>& cuts, const CutAxis& axis, const CutAxis& extent,
+                                         ProgressBar& bar) const {
+    std::vector<double> at;
+    for (const Cut& cut : cuts) {
+      if (!allows_empty()) require_within(cut, axis, input);
+      at.push_back(cut.value);
+    }
+    for (std::size_t i = 0; i < samples_ && !contour.simplices.empty(); ++i)
+      at.push_back(i + 1 == samples_ ? extent.last
+                                     : extent.first + (extent.last - extent.first) * static_cast<double>(i) /
+                                                          static_cast<double>(samples_ - 1));
+    std::vector<double> places = at;
+    for (double& place : places) place = within_period(axis, place);
+    const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
+                                           contour.vertices.size() * N);
+    std::vector<CutMeasures> result =
+        measure_cuts(contour, meet_vertices(std::move(places), vertices, N, N - 1), {threads(), bar.stage("cuts")});
+    for (std::size_t i = 0; i < at.size(); ++i) result[i].at = at[i];
+    return result;
+  }
+
+  /// Throws unless the cut is within the last axis of the image or mesh, or within a saved contour, which may come from
+  /// a file with floats. A periodic axis has every place.
+  static void require_within(const Cut& cut, const CutAxis& axis, const ContourInput& input) {
+    if (axis.period > 0.0) return;
     const auto single = [](double x) { return static_cast<float>(x); };
     if (single(cut.value) >= single(axis.first) && single(cut.value) <= single(axis.last)) return;
     throw outside_error(cut, axis, input.last_axis ? input.last_axis_of : "saved contour");

@@ -140,7 +140,6 @@ class ProjectCommand final : public ContourInputCommand {
     // read and project
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
-    remark(unroll_input(input));
     auto* const contour = std::get_if<Contour<4, double>>(&input.contour);
     if (contour == nullptr)
       throw Error(ErrorCode::UnsupportedData,
@@ -151,6 +150,7 @@ class ProjectCommand final : public ContourInputCommand {
     result.wording = wording();
     attributes_.sample_to(*contour, image_options(), threads(), bar,
                           {{}, nullptr, false, are_cell_meshes(files(), images())});
+    remark(unroll_input(input));  // after the images are sampled, which is across periods
     Stopwatch watch;
     result.mesh = projected(*contour, projection, bar);
     result.seconds.slice = watch.lap();

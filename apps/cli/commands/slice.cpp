@@ -45,8 +45,9 @@ constexpr const char* kSliceExamples =
     "An axis has the name in the file or x, y, z, t, u; numbers are in its unit and need not be whole. A cut across\n"
     "an axis has the other axes as its coordinates; other cuts have orthonormal ones, which --json reports as\n"
     "'frame'.\n"
-    "For an image, only the layers next to each cut are contoured (with --plane, all of them). A saved contour is cut\n"
-    "directly, all cuts of one direction in one pass.";
+    "For an image, only the layers next to each cut are contoured; all of them with --plane, --periodic, --lattice,\n"
+    "--division and --samples-are cells. A saved contour is cut directly, all cuts of one direction in one pass.\n"
+    "Places on a periodic axis are modulo its period.";
 
 void require_cuttable(int dim, std::string_view what) {
   if (dim >= 3 && dim <= 5) return;
@@ -85,10 +86,17 @@ void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
     contour = scale_axes(std::move(contour), by_axis);
 }
 
+/// What cuts of a wrapped contour need to know of it.
+struct Wrapped {
+  std::vector<double> periods = {};  ///< period_numbers, before its axes are scaled
+  bool is_unrolled = false;          ///< for cuts across a period
+};
+
 /// Cuts a contour after its axes are scaled; all cuts of one direction in one pass.
 template <int N, class Real>
-void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
-                    std::vector<ContourResult>& results, ProgressBar& bar) {
+Wrapped cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
+                       std::vector<ContourResult>& results, ProgressBar& bar) {
+  Wrapped wrapped{period_numbers(contour.periods)};
   stretch(contour, factors);
   std::optional<Contour<N, Real>> unrolled;  // for cuts across a period
   for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
@@ -115,6 +123,8 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
     const double seconds = watch.lap() / static_cast<double>(hyperplanes.size());
     for (std::size_t i = first; i < end; ++i) results[i].seconds.slice = seconds;
   }
+  wrapped.is_unrolled = unrolled.has_value();
+  return wrapped;
 }
 
 /// An empty cut, outside of an image, with names and units of its axes.
@@ -179,12 +189,13 @@ void append_points(const ContourResult& result, const std::vector<double>& facto
   }
 }
 
-/// Adds the values of other images at the vertices of the cuts.
+/// Adds the values of other images at the vertices of the cuts. `periods`: Wrapped::periods.
 template <int N>
 void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& reading,
-                    const std::vector<double>& factors, unsigned threads, bool by_index, bool of_mesh,
-                    std::vector<ContourResult>& results, ProgressBar& bar) {
+                    const std::vector<double>& factors, const std::vector<double>& periods, unsigned threads,
+                    bool by_index, bool of_mesh, std::vector<ContourResult>& results, ProgressBar& bar) {
   Contour<N, double> points;  // the points of all cuts, so that each image is read once
+  points.periods = periods_of_numbers<N>(periods);
   for (const ContourResult& result : results) append_points<N>(result, factors, points);
   attributes.sample_to(points, reading, threads, bar, {{}, nullptr, by_index, of_mesh});
   for (const Attribute& all : points.vertex_attributes) {
@@ -269,11 +280,11 @@ class SliceCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument, "--attribute with a cut of a 5D contour; expected a 3D or 4D contour");
     const bool of_mesh = are_cell_meshes(files(), images());
     if (attributes_.wanted() && results[0].image_dim == 4)
-      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), of_mesh,
-                        results, bar);
+      add_attributes<4>(attributes_, image_options(), factors_, wrapped_.periods, options_.threads(),
+                        images().index_grid(), of_mesh, results, bar);
     else if (attributes_.wanted())
-      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), images().index_grid(), of_mesh,
-                        results, bar);
+      add_attributes<3>(attributes_, image_options(), factors_, wrapped_.periods, options_.threads(),
+                        images().index_grid(), of_mesh, results, bar);
     // check and write
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
@@ -282,6 +293,7 @@ class SliceCommand final : public Command {
     }
     write_all(results, bar);
     bar.clear();
+    if (wrapped_.is_unrolled) remark(kUnrolledForCuts);
     for (const ContourResult& result : results) remark(result.lost.remark(result.output));
     // report
     if (json()) {
@@ -432,7 +444,9 @@ class SliceCommand final : public Command {
       std::optional<std::uint64_t> folded_cells;
       attributes_.keep_sizes_of(input.image);
       remark(take_grid(input, file(), options_, tiling, folded_cells));
-      space = tiling.of_cells ? space_of_cells(input.image, tiling.cell_faces) : space_of(input.image, tiling.curved);
+      space = tiling.of_cells           ? space_of_cells(input.image, tiling.cell_faces)
+              : tiling.periodic.empty() ? space_of(input.image, tiling.curved)
+                                        : space_of_periods(input.image, tiling.periodic);
     } else {
       options_.require_to_5d();
     }
@@ -489,7 +503,7 @@ class SliceCommand final : public Command {
   /// Cuts the contour of the whole image.
   template <class AnyDimension>
   void cut_whole(const AnyDimension& image, const Tiling& tiling, std::vector<ContourResult>& results,
-                 ProgressBar& bar) const {
+                 ProgressBar& bar) {
     ExtractOptions options = options_.library_options();
     options.work.progress = bar.stage("contour");
     cut_extraction(
@@ -507,11 +521,11 @@ class SliceCommand final : public Command {
 
   /// Cuts the contour that `extract` passes to its argument.
   template <class Extract>
-  void cut_extraction(const Extract& extract, std::vector<ContourResult>& results, ProgressBar& bar) const {
+  void cut_extraction(const Extract& extract, std::vector<ContourResult>& results, ProgressBar& bar) {
     ExtractStats stats;
     extract([&]<int N, class Real>(Extraction<N, Real>&& extraction) {
       stats = extraction.stats;
-      if constexpr (N >= 3) cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
+      if constexpr (N >= 3) wrapped_ = cut_contour_of(std::move(extraction.contour), factors_, options_, results, bar);
       return Nothing();
     });
     for (ContourResult& result : results) {
@@ -585,11 +599,11 @@ class SliceCommand final : public Command {
       result.isovalue = mesh.isovalue;
     }
     if (mesh.space_dim == 5)
-      cut_contour_of(to_contour<5>(std::move(mesh)), factors_, options_, results, bar);
+      wrapped_ = cut_contour_of(to_contour<5>(std::move(mesh)), factors_, options_, results, bar);
     else if (mesh.space_dim == 4)
-      cut_contour_of(to_contour<4>(std::move(mesh)), factors_, options_, results, bar);
+      wrapped_ = cut_contour_of(to_contour<4>(std::move(mesh)), factors_, options_, results, bar);
     else
-      cut_contour_of(to_contour<3>(std::move(mesh)), factors_, options_, results, bar);
+      wrapped_ = cut_contour_of(to_contour<3>(std::move(mesh)), factors_, options_, results, bar);
     return results;
   }
 
@@ -604,6 +618,7 @@ class SliceCommand final : public Command {
   AttributeOptions attributes_;
   CompressOption compress_;
   std::vector<double> factors_;  ///< from --scale, by axis
+  Wrapped wrapped_;
   std::vector<std::string> at_, planes_, scale_;
   std::string output_;                ///< with placeholders
   std::vector<std::string> outputs_;  ///< output of each cut

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -16,6 +17,7 @@
 #include "base/numbers.hpp"
 #include "input/mesh_input.hpp"
 #include "input/point_arrays.hpp"
+#include "input/repeated_image.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -92,6 +94,29 @@ CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces) {
       grid.axes[a].name = owned.grid.axes[a].name;
     }
     return space_of(grid);
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+CutSpace space_of_periods(const AnyImage& image, const std::vector<std::string>& periodic) {
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    Grid<N> grid = owned.grid;
+    const AxisPeriods<N> periods = periods_of(grid, periodic);
+    std::array<bool, N> is_longer{};
+    for (std::size_t a = 0; a < N; ++a) {
+      Axis& axis = grid.axes[a];
+      // shorter periods are errors of the extraction
+      is_longer[a] = periods[a] > std::abs(axis[axis.size() - 1] - axis[0]);
+      if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
+    }
+    CutSpace space = space_of(grid);
+    // a coordinate is modulo the period if it depends on one axis of the image only
+    for (std::size_t a = 0; a < N; ++a) {
+      bool is_own = is_longer[a];
+      for (std::size_t b = 0; b < N; ++b) is_own = is_own && (b == a || grid.linear[a][b] == 0.0);
+      if (is_own) space.axes[a].period = space.axes[a].last - space.axes[a].first;
+    }
+    return space;
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }

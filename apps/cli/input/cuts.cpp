@@ -10,9 +10,11 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "base/numbers.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::cli {
 
@@ -134,7 +136,7 @@ void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
     const auto is_across = [&](const Cut& cut) { return cut.across && static_cast<std::size_t>(*cut.across) == axis; };
     std::vector<double> values;
     for (const Cut& cut : cuts)
-      if (is_across(cut)) values.push_back(cut.value);
+      if (is_across(cut)) values.push_back(within_period(space.axes[axis], cut.value));
     if (values.empty()) continue;
     const std::vector<double> level = meet_vertices(values, space.vertices, space.axes.size(), axis);
     std::size_t next = 0;
@@ -143,9 +145,48 @@ void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
   }
 }
 
+template <int N>
+void unroll_axes(const std::vector<Period<N>>& periods, CutSpace& space) {
+  for (int a = 0; a < N; ++a) {
+    CutAxis& axis = space.axes[static_cast<std::size_t>(a)];
+    axis = unrolled_axis(std::move(axis), a, periods);
+  }
+}
+
 std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::join(labels_of(space), ", ")); }
 
 }  // namespace
+
+template <int N>
+CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
+  const auto at = static_cast<std::size_t>(a);
+  const Period<N>* own = nullptr;
+  std::size_t crossed = 0;
+  for (const Period<N>& period : periods) {
+    const double along = period.vector[at];
+    if (along == 0.0) continue;
+    // `unroll` moves simplices to the end of the period
+    axis.first += std::min(0.0, along);
+    axis.last += std::max(0.0, along);
+    own = &period;
+    ++crossed;
+  }
+  if (crossed != 1) return axis;
+  for (std::size_t b = 0; b < N; ++b)
+    if (b != at && std::abs(own->dual[b]) > 1e-9 * std::abs(own->dual[at])) return axis;
+  const double start = own->start / own->dual[at];
+  std::tie(axis.first, axis.last) = std::minmax({start, start + own->vector[at]});
+  axis.period = std::abs(own->vector[at]);
+  return axis;
+}
+
+template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<3>>&);
+template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<4>>&);
+
+double within_period(const CutAxis& axis, double place) {
+  if (!(axis.period > 0.0) || (place >= axis.first && place <= axis.last)) return place;
+  return std::clamp(place - std::floor((place - axis.first) / axis.period) * axis.period, axis.first, axis.last);
+}
 
 std::vector<SpelledNumber> parse_spelled_numbers(const std::string& option, std::string_view text) {
   return numbers_of(option, text);
@@ -238,6 +279,8 @@ CutSpace space_of(const Mesh& mesh) {
       axis.last = std::max(axis.last, mesh.coordinates[i]);
     }
   }
+  if (n == 3) unroll_axes(periods_of_numbers<3>(mesh.periods), space);
+  if (n == 4) unroll_axes(periods_of_numbers<4>(mesh.periods), space);
   return space;
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/empty_result.hpp"
 #include "output/result.hpp"
+#include "tegl/contour.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/meshes.hpp"
 
@@ -44,7 +45,16 @@ struct CutAxis {
   std::string name;
   double first = 0;
   double last = 0;
+  double period = 0;  ///< if above 0: places that differ by it are the same, and first to last is one period
 };
+
+/// The axis with the range of the unrolled contour, which is a whole period if the contour's share of a period depends
+/// on this coordinate alone. `axis`: with the range of the wrapped contour. N is 3 or 4.
+template <int N>
+CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);
+
+/// A place on an axis; if it is outside of the axis's range, moved there by periods.
+double within_period(const CutAxis& axis, double place);
 
 /// The space that is cut.
 struct CutSpace {
@@ -69,7 +79,8 @@ std::vector<double> parse_scale(const std::vector<std::string>& scale, const Cut
 std::vector<double> meet_vertices(std::vector<double> values, std::span<const double> vertices, std::size_t dim,
                                   std::size_t axis);
 
-/// Completes cuts: sets the axes' own names, the normals, and levels for values that mean vertices. Throws
+/// Completes cuts: sets the axes' own names, the normals, and levels for values that mean vertices or are outside of
+/// the range of a periodic axis. Throws
 /// InvalidArgument for axes and normals that the space does not have, EmptyResult for a cut outside of the space's
 /// extent unless `allow_empty`.
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty);

@@ -183,6 +183,10 @@ bool crosses_period(const Contour<N, Real>& contour, const Hyperplane<N>& cut) {
   });
 }
 
+/// The remark on cuts that cross a period.
+inline constexpr const char* kUnrolledForCuts =
+    "the contour is unrolled for cuts across a period: it ends at both ends of its periodic axes";
+
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
 /// Extraction<N, double>.
 template <class Result, class Use>

@@ -36,6 +36,17 @@ double period_along(const Grid<N>& grid, int axis, const Period<N>& period) {
   return apart <= 1e-6 * size && rest > 0.5 * step && rest < 1.5 * step ? std::abs(length) : 0.0;
 }
 
+/// The axis with its first sample repeated at the end, one period after it.
+inline Axis with_repeated_sample(const Axis& axis, double period) {
+  std::vector<double> coordinates;
+  for (std::size_t i = 0; i < axis.size(); ++i) coordinates.push_back(axis[i]);
+  coordinates.push_back(axis[0] + std::copysign(period, axis[axis.size() - 1] - axis[0]));
+  Axis longer = Axis::rectilinear(std::move(coordinates));
+  longer.name = axis.name;
+  longer.unit = axis.unit;
+  return longer;
+}
+
 /// The image with its first samples repeated at the end of an axis, one period after them.
 template <Value T, int N>
 OwnedImage<T, N> with_repeated_samples(const OwnedImage<T, N>& owned, int axis, double period) {
@@ -43,13 +54,7 @@ OwnedImage<T, N> with_repeated_samples(const OwnedImage<T, N>& owned, int axis, 
   result.grid = owned.grid;
   Axis& along = result.grid.axes[static_cast<std::size_t>(axis)];
   const std::size_t size = along.size();
-  std::vector<double> coordinates;
-  for (std::size_t i = 0; i < size; ++i) coordinates.push_back(along[i]);
-  coordinates.push_back(coordinates[0] + std::copysign(period, along[size - 1] - along[0]));
-  Axis longer = Axis::rectilinear(std::move(coordinates));
-  longer.name = along.name;
-  longer.unit = along.unit;
-  along = std::move(longer);
+  along = with_repeated_sample(along, period);
   std::size_t row = 1;
   for (int a = 0; a < axis; ++a) row *= owned.grid.axes[static_cast<std::size_t>(a)].size();
   const T* const samples = owned.values.data();
