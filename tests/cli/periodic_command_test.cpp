@@ -384,6 +384,20 @@ TEST_F(MeshAttribute, ArraysOfAMeshAreInterpolatedAtItsContour) {
   expect_refused({"--attribute", other + ":g"}, "the mesh has other points than");
 }
 
+TEST_F(MeshAttribute, ErrorsOfFilesThatAnAttributeRefersToNameTheOption) {
+  first_ = write("image.nii",
+                 nifti_bytes(sample({3, 3, 3}, [](const std::vector<double>& x) { return x[0] / 2; }), {1, 1, 1}));
+  (void)write("cells.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1"));
+  const std::string collection = write("series.pvd",
+                                       R"(<VTKFile type="Collection"><Collection>
+<DataSet timestep="0" file="cells.vtu"/></Collection></VTKFile>)");
+  const RunResult run =
+      run_tegl({"contour", first_, "--iso", "0.25", "--attribute", collection + ":g", "-o", path("none.vtkhdf")});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("--attribute " + collection));
+  EXPECT_THAT(run.err, testing::Not(HasSubstr(first_)));
+}
+
 TEST_F(MeshAttribute, TheErrorOfAnUnknownFormatNamesMeshesAndTables) {
   const std::string file = write("what.foo", "abc");
   for (const std::vector<std::string>& arguments :

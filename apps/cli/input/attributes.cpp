@@ -48,6 +48,17 @@ void require_same_grid(const std::string& file, const std::vector<CurvedAxis>& i
                   file, contour.empty() ? "has none" : "another one"));
 }
 
+/// Reads an image of --attribute, which its errors name: they may name only a file that it refers to.
+ReadImageResult read_attribute(const std::string& file, const ReadImageOptions& options) {
+  try {
+    return read_other_image(file, options);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::Cancelled || std::string_view(error.what()).find(file) != std::string_view::npos)
+      throw;
+    throw Error(error.code(), fmt::format("--attribute {}: {}", file, error.what()));
+  }
+}
+
 /// Throws: the image has nothing to do with the contour, whose image has the sizes `own`.
 [[noreturn]] void throw_unrelated(const std::string& file, const AnyImage& image, const std::vector<std::size_t>& own,
                                   const char* reason) {
@@ -121,7 +132,7 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
     const Progress progress = bar.stage("attribute");
     reading.variable = from.variable;
     reading.work.progress = [&](double fraction) { return progress(0.7 * fraction); };
-    const ReadImageResult input = read_other_image(from.file, reading);
+    const ReadImageResult input = read_attribute(from.file, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: an image of {} dimensions for a contour in {}D; expected {}", from.file,
