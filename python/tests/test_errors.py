@@ -74,7 +74,7 @@ def contour(**arguments):
     (lambda: tegl.Index(VOLUME, threads=-1), ValueError, THREADS),
     (lambda: contour(threads=1.5), TypeError, "threads is 1.5; expected a whole number"),
     (lambda: contour(level="a"), TypeError, "level is 'a'; expected a number"),
-    (lambda: contour(level=None), TypeError, "level is None; expected a number"),
+    (lambda: contour(level=None), TypeError, "level is missing"),
     (lambda: contour(spacing="a"), TypeError, "spacing is 'a'; expected a number"),
     (lambda: contour(spacing=(1, "a", 2)), TypeError, "spacing[1] is 'a'; expected a number"),
     (lambda: contour(affine="a"), TypeError, "affine is 'a'; expected 3 x 4 or 4 x 4 numbers"),

@@ -319,7 +319,7 @@ def test_meshes_like_those_of_meshio():
     assert np.array_equal(tegl.contour_mesh(mesh, values="f", level=0.0).vertices, expected.vertices)
     for arguments, error, text in [(dict(level=0.0), ValueError, "'f', 'g'; expected the name"),
                                    (dict(values="h", level=0.0), ValueError, "'h'; expected one of 'f', 'g'"),
-                                   (dict(values="f"), TypeError, "level are missing"),
+                                   (dict(values="f"), TypeError, "level is missing"),
                                    (dict(cells=cells, values="f", level=0.0), TypeError, "twice")]:
         with pytest.raises(error) as raised:
             tegl.contour_mesh(mesh, **arguments)

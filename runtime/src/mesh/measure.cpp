@@ -127,9 +127,10 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
   }
   std::fill(of_vertices.begin(), of_vertices.end(), Index{1});
   for (const Index v : rows) of_vertices[v] = 0;
+  detail::tell(work.progress, 0.75);
   // sums over simplices
   const detail::PieceMeasures<N> all =
-      detail::measure_pieces<N>(contour, of_vertices, {}, 1, work.threads, detail::part_of(work.progress, 0.7, 1.0))
+      detail::measure_pieces<N>(contour, of_vertices, {}, 1, work.threads, detail::part_of(work.progress, 0.75, 1.0))
           .front();
   result.size = all.size;
   result.content = detail::content_of(all, faces, direction);
