@@ -14,6 +14,7 @@
 #include "mesh/open_ridges.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -21,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/radix_sort.hpp"
 #include "base/workers.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
@@ -199,6 +201,26 @@ FaceCounts find_by_stars(std::span<const Index> rows, std::size_t vertex_count, 
   return counts;
 }
 
+/// As count_sides, with progress: sides are sorted by the smallest vertex, then some vertices' at a time.
+template <std::size_t Size, class OnOpen>
+FaceCounts count_by_vertex(std::vector<RidgeSide<Size>> sides, std::size_t vertex_count, unsigned threads,
+                           const Progress& progress, const OnOpen& on_open) {
+  constexpr std::size_t kSome = 4096;
+  const auto vertex_of = [](const RidgeSide<Size>& side) { return side.vertices[0]; };
+  sort_by_bits(sides, static_cast<unsigned>(std::bit_width(vertex_count)), vertex_of, threads);
+  FaceCounts counts;
+  std::vector<RidgeSide<Size>> some;
+  for (std::size_t from = 0, end = 0; from < sides.size(); from = end) {
+    tell(progress, static_cast<double>(from) / static_cast<double>(sides.size()));
+    end = std::min(sides.size(), from + kSome);
+    while (end < sides.size() && vertex_of(sides[end]) == vertex_of(sides[end - 1])) ++end;
+    some.assign(sides.data() + from, sides.data() + end);
+    count_sides(some, counts, on_open);
+  }
+  tell(progress, 1.0);
+  return counts;
+}
+
 }  // namespace
 
 template <int N>
@@ -212,12 +234,10 @@ FaceCounts find_open_ridges(std::span<const Index> rows, std::size_t vertex_coun
     tell(progress, 1.0);
     return {};
   }
-  const Progress rest = part_of(progress, 0.6, 1.0);
-  if (marked > vertex_count / 2) return find_by_stars<N>(rows, vertex_count, threads, rest, on_open);
-  std::vector<RidgeSide<N - 1>> sides = marked_sides<N>(simplices, open, threads, rest);
-  FaceCounts counts;
-  count_sides(sides, counts, on_open);
-  return counts;
+  if (marked > vertex_count / 2)
+    return find_by_stars<N>(rows, vertex_count, threads, part_of(progress, 0.6, 1.0), on_open);
+  auto sides = marked_sides<N>(simplices, open, threads, part_of(progress, 0.6, 0.8));
+  return count_by_vertex(std::move(sides), vertex_count, threads, part_of(progress, 0.8, 1.0), on_open);
 }
 
 #define TEGL_OPEN_RIDGES(N)                                                                               \

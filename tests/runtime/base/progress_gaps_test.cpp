@@ -86,8 +86,7 @@ class ProgressGaps : public testing::Test {
            select_components(*contour_, *labels_, std::vector<bool>(labels_->count, true), work(p));
          },
          0.3},
-        // sorts the faces at the border, which are many here, at once
-        {"measure", [work](const Progress& p) { measure(*contour_, work(p)); }, 0.4},
+        {"measure", [work](const Progress& p) { measure(*contour_, work(p)); }, 0.2},
         {"measure_cuts", [work](const Progress& p) { measure_cuts(*contour_, times(), work(p)); }, 0.2},
         {"slice_stack", [work](const Progress& p) { slice_stack(*contour_, hyperplanes(), work(p)); }},
         {"elements", [work](const Progress& p) { elements(*contour_, work(p)); }, 0.2},
