@@ -107,10 +107,7 @@ class CompactCells::Filler {
 
   BuiltContour operator()() {
     if (cells_.shape_ == CellShape::hexahedron_prism && is_of_image()) return std::move(built_);
-    DisjointSets sets(cells_.table_.edge_count);
-    for (const auto& [t, facet] : sigma_) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
-    std::map<Index, std::vector<Piece>> components;
-    for (const Piece& piece : sigma_) components[sets.find(piece.triangle[0])].push_back(piece);
+    auto components = components_of(sigma_, cells_.table_.edge_count);
     if (std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
       copy_barycentric(components);
     for (const auto& [root, component] : components) add_sphere(component);
@@ -118,11 +115,7 @@ class CompactCells::Filler {
   }
 
  private:
-  /// A triangle of the contour's boundary and its facet.
-  struct Piece {
-    Triangle triangle;
-    std::size_t facet;
-  };
+  using Piece = SigmaPiece<std::uint8_t>;
   using Component = std::vector<Piece>;
 
   [[nodiscard]] const tables::CellTable& table_of_facet(std::size_t f) const noexcept {
@@ -141,10 +134,8 @@ class CompactCells::Filler {
 
   /// The tetrahedron between a triangle and a vertex inside the cell, with its positive side towards high.
   void add_cone(const Piece& piece, unsigned apex) {
-    const Triangle& t = piece.triangle;
-    const bool is_inverted = cells_.facets_[piece.facet].of->is_inverted;
     built_.tetrahedra.push_back(
-        {t[0], is_inverted ? t[1] : t[2], is_inverted ? t[2] : t[1], static_cast<std::uint8_t>(apex)});
+        cone_of(piece.triangle, cells_.facets_[piece.facet].of->is_inverted, static_cast<std::uint8_t>(apex)));
   }
 
   /// Whether every triangle in a facet with a vertex has this vertex.

@@ -186,11 +186,7 @@ class DecidedCells::Filler {
   }
 
  private:
-  /// A triangle of Sigma and its facet.
-  struct Piece {
-    Triangle triangle;
-    std::size_t facet;
-  };
+  using Piece = SigmaPiece<Local>;
   using Component = std::vector<Piece>;
 
   void begin(const CellKey& key) {
@@ -206,10 +202,7 @@ class DecidedCells::Filler {
 
   void fill() {
     for (std::size_t f = 0; f < cells_.facets_.size(); ++f) add_contour(f);
-    DisjointSets sets(kCones);
-    for (const auto& [t, facet] : sigma_) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
-    std::map<Index, Component> components;
-    for (const Piece& piece : sigma_) components[sets.find(piece.triangle[0])].push_back(piece);
+    auto components = components_of(sigma_, kCones);
     const bool joins = key_->tile != tile::Choice::separate && components.size() > 1;
     if (joins || std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
       copy_regions(key_->tile != tile::Choice::high, components);
@@ -310,9 +303,7 @@ class DecidedCells::Filler {
 
   /// The tetrahedron between a triangle and a vertex inside the cell, with its positive side towards high.
   [[nodiscard]] Tetrahedron cone_of(const Piece& piece, Local apex) const noexcept {
-    const Triangle& t = piece.triangle;
-    const bool is_inverted = cells_.facets_[piece.facet].of->is_inverted;
-    return {t[0], is_inverted ? t[1] : t[2], is_inverted ? t[2] : t[1], apex};
+    return detail::cone_of(piece.triangle, cells_.facets_[piece.facet].of->is_inverted, apex);
   }
 
   void add_sphere(const Component& component) {
