@@ -38,7 +38,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     level
         The isovalue. With `positions` "relaxed" it may be left out for an array of exactly two values: their middle.
     label
-        In place of `level`: the contour around the samples of this value, that of 1 there and 0 elsewhere at 0.5.
+        In place of `level`: the contour at 0.5 of the mask that is 1 at the samples of this value, 0 elsewhere.
     spacing, origin
         Distance of the samples along each axis, and coordinate of the first one, in the order of the array's axes; or
         one number for all.

@@ -52,7 +52,7 @@ std::string take_grid(ReadImageResult& input, const std::string& file, const Ext
                       std::optional<std::uint64_t>& folded_cells);
 /// The space of an image with the ranges of its curved coordinates.
 CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved);
-/// As space_of, to the outer faces of cells. `faces`: those of the file.
+/// As space_of, to the outer faces of cells. `faces`: as in the file.
 CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces);
 
 /// As space_of, over the whole periods of the axes of --periodic.
