@@ -58,15 +58,16 @@ class CellBits {
  public:
   using Frame = CellFrame<N, Axes>;
 
-  CellBits(const SlabView<N>& view, std::size_t row) noexcept {
+  CellBits(const SlabView<N>& view, std::size_t row) noexcept { rows(view, row, rows_.data()); }
+
+  /// Writes the rows of corner bits of a row of cells to `out`.
+  static void rows(const SlabView<N>& view, std::size_t row, const Word** out) noexcept {
     for (unsigned r = 0; r < Frame::kRows; ++r) {
       const unsigned mask = Frame::spread(Frame::row_corner(r));
       const Layer<N>& layer = *view.layers[mask >> (N - 1) & 1u];
-      rows_[r] = layer.high.data() + view.shape->shifted(row, mask) * view.shape->pitch();
+      out[r] = layer.high.data() + view.shape->shifted(row, mask) * view.shape->pitch();
     }
   }
-
-  [[nodiscard]] const std::array<const Word*, Frame::kRows>& rows() const noexcept { return rows_; }
 
   void load(std::size_t w) noexcept {
     for (unsigned r = 0; r < Frame::kRows; ++r) {
@@ -135,16 +136,15 @@ class CellEdges {
   /// For each local edge: first vertex of its stream in this row.
   static void firsts(const SlabView<N>& view, std::size_t row, Index* out) noexcept {
     constexpr auto kStreams = streams();
-    constexpr auto kPlaces = places();
-    std::array<Index, kStreamCount> first;
-    // Forced unrolling: each stream's row is then computed with one or two additions.
+    // Forced unrolling: each stream's row is then computed with one or two additions. And no array in between: vector
+    // loads of numbers that have just been stored one by one would wait for these stores.
     [&]<std::size_t... S>(std::index_sequence<S...>) {
-      ((first[S] = view.edges(kStreams[S].axis, kStreams[S].mask >> (N - 1) & 1u)
-                       .first(view.shape->shifted(row, kStreams[S].mask))),
+      (store_first<S>(view.edges(kStreams[S].axis, kStreams[S].mask >> (N - 1) & 1u)
+                          .first(view.shape->shifted(row, kStreams[S].mask)),
+                      out),
        ...);
     }
     (std::make_index_sequence<kStreamCount>{});
-    for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = first[kPlaces[e].stream];
   }
   /// Vertex numbers of all edges of cell `bit`. Successive calls need ascending bits. Entries of non-critical edges are
   /// undefined.
@@ -196,6 +196,15 @@ class CellEdges {
           result[e] = {s, (mask & 1u) != 0};
     }
     return result;
+  }
+
+  template <unsigned Stream>
+  [[gnu::always_inline]] static void store_first(Index first, Index* out) noexcept {
+    constexpr auto kPlaces = places();
+    [&]<std::size_t... E>(std::index_sequence<E...>) {
+      ((kPlaces[E].stream == Stream ? static_cast<void>(out[E] = first) : static_cast<void>(0)), ...);
+    }
+    (std::make_index_sequence<Frame::kEdges>{});
   }
 
   std::array<Index, kStreamCount> base_;

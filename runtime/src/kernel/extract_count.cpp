@@ -207,8 +207,7 @@ template <int N>
 TileRow tile_row(const RowShape<N>& shape, const SlabView<N>& view, const Slab<N>& slab, std::size_t row) {
   constexpr unsigned kAll = (1u << N) - 1;
   TileRow tiles{{}, shape.size(0) - 1, slab.all_valid ? nullptr : slab.valid.data() + row * shape.words()};
-  const CellBits<N, kAll> cells(view, row);
-  std::copy(cells.rows().begin(), cells.rows().end(), tiles.corners.begin());
+  CellBits<N, kAll>::rows(view, row, tiles.corners.data());
   return tiles;
 }
 

@@ -61,8 +61,9 @@ struct TileEdges {
   const std::uint16_t* at;
   std::size_t active;
   /// By axis, in the order of TileCount::edges: destination of the positions of the edges' first samples, ascending. Up
-  /// to 16 entries past the end are overwritten.
-  std::array<std::uint32_t*, 4> out;
+  /// to 16 entries past the end are overwritten. Not copied: vector loads of pointers that have just been stored one by
+  /// one would wait for these stores.
+  const std::array<std::uint32_t*, 4>& out;
 };
 
 /// Lists a row's critical edges, except those at its last sample.
