@@ -96,6 +96,12 @@ struct EdgesInRows {
   std::size_t count;
 };
 
+/// The memory of a layer of samples.
+struct LayerInMemory {
+  const std::byte* first = nullptr;  ///< the sample of index 0; null: unknown
+  std::ptrdiff_t sample_bytes = 0;
+};
+
 /// Some cells of K axes, and edges of each (bit masks).
 template <int N, int K>
 struct CellsWithEdges {
@@ -118,6 +124,8 @@ class EdgeCrossings {
 
   /// Steps between samples within a layer. The entry of the last axis is undefined.
   [[nodiscard]] const Strides& strides() const noexcept { return strides_; }
+  /// Where layer k is in memory, to fetch samples before edge_alphas reads them.
+  [[nodiscard]] virtual LayerInMemory layer_in_memory(std::size_t /*k*/) const noexcept { return {}; }
   /// Interpolation parameters of critical edges along `axis` that start in layer k.
   virtual void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept = 0;
   /// Interpolation parameters for the edges in the bit mask `edges` of the cell along `axes` based at `base`: local

@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include "hwy/cache_control.h"
 #include "image/vertex_moves.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
@@ -60,7 +61,8 @@ class EdgeWriter {
         uncertainty_(uncertainty),
         shape_(shape),
         strides_(source.strides()),
-        full_(full(shape.size(0))) {
+        full_(full(shape.size(0))),
+        fetches_(shape.rows() * shape.size(0) >= kLeastFetched) {
     for (int a = 0; a < N; ++a) lists_[a].allocate(shape.size(0), a > 0 && a + 1 < N);
     segments_.reserve(most_segments(shape.size(0)));  // nothing may throw after construction
     if (placement.normals() == nullptr) return;
@@ -77,7 +79,15 @@ class EdgeWriter {
   }
 
   /// Edges added between start() and finish() belong to `target`.
-  void start(const EdgeTarget<Vertex>& target) noexcept { target_ = target; }
+  void start(const EdgeTarget<Vertex>& target) noexcept {
+    target_ = target;
+    if (!fetches_) return;
+    for (int axis = 0; axis < N; ++axis) {
+      const LayerInMemory layer = source_.layer_in_memory(run(axis).layer);
+      ends_[axis] = {layer, axis == N - 1 ? source_.layer_in_memory(run(axis).layer + 1).first
+                                          : layer.first + strides_[axis] * layer.sample_bytes};
+    }
+  }
   void finish() noexcept { flush(); }
 
   /// Adds the edges of a row of a slab and of the layer above it, derived from its active tiles.
@@ -119,6 +129,8 @@ class EdgeWriter {
   static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
   static constexpr std::size_t kAtOnce = 8;    ///< values per store
   static constexpr std::size_t kPiece = 4096;  ///< maximum edges of one row processed at a time
+  /// Samples of the smallest layer that is not still in a near cache when its vertices are computed.
+  static constexpr std::size_t kLeastFetched = std::size_t{1} << 16;
 
   /// Number of edges that make a list full, for rows of `samples` samples; then capacities of its arrays.
   static constexpr std::size_t full(std::size_t samples) noexcept {
@@ -194,11 +206,24 @@ class EdgeWriter {
       fill(list.rows, list.size, filled, offset);
       for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, filled, placement_.sample(a, index[a]));
       if (axis > 0 && axis + 1 < N) fill(list.end, list.size, filled, placement_.sample(axis, index[axis] + 1));
+      fetch_samples(axis, list.at.data() + list.size, filled, offset);
       segments_.push_back({row, axis, static_cast<std::uint32_t>(list.size), count, firsts[axis]});
       list.size += count;
       longest = std::max(longest, list.size);
     }
     if (alone || longest >= full_) flush();
+  }
+
+  /// Requests the samples at the ends of a row's edges: most are no longer in the nearest cache, and other rows are
+  /// processed before their vertices are computed.
+  void fetch_samples(int axis, const std::uint32_t* at, std::size_t count, std::ptrdiff_t row) const noexcept {
+    const Ends& ends = ends_[axis];
+    if (ends.layer.first == nullptr) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto offset = (row + static_cast<std::ptrdiff_t>(at[i]) * strides_[0]) * ends.layer.sample_bytes;
+      hwy::Prefetch(ends.layer.first + offset);
+      if (axis != 0) hwy::Prefetch(ends.next + offset);  // along the row, both are in the same cache line or adjacent
+    }
   }
 
   /// Adds the edges at a row's last sample, where no tile starts. Each is the last of its list.
@@ -327,8 +352,15 @@ class EdgeWriter {
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;
   std::size_t full_;
+  bool fetches_;                            ///< whether samples are requested before they are needed
   std::unique_ptr<NormalScratch> normals_;  ///< null: no normals requested
   EdgeTarget<Vertex> target_{};
+  /// Where the ends of edges along an axis are in memory.
+  struct Ends {
+    LayerInMemory layer;              ///< in which the edges start
+    const std::byte* next = nullptr;  ///< one step along the axis from its first sample
+  };
+  std::array<Ends, N> ends_{};  ///< by axis
   std::array<List, N> lists_;
   std::vector<Segment> segments_;
 };
