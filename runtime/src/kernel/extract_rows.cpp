@@ -134,25 +134,34 @@ HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8
 
 #if HWY_TARGET <= HWY_AVX3_DL
 
+/// Highway's AVX3_DL does not include these instructions, but every processor with it has them.
+const bool kHasGfni = [] {
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("gfni") != 0;
+}();
+
 /// Transposes eight words, each with one corner of 64 tiles, to one byte per tile.
 HWY_INLINE __m512i corner_bytes(__m512i words) {
-  alignas(64) static constexpr auto kByWord = [] {
+  if (HWY_UNLIKELY(!kHasGfni)) {
+    alignas(64) Word corners[8];
+    alignas(64) std::uint8_t bytes[kWordBits];
+    _mm512_store_si512(corners, words);
+    corners_to_bytes(corners, 8, bytes);
+    return _mm512_load_si512(bytes);
+  }
+  // byte 7 - c of block b: byte b of corner c
+  alignas(64) static constexpr auto kByBlock = [] {
     std::array<std::uint8_t, 64> order{};
-    for (unsigned i = 0; i < 64; ++i) order[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
+    for (unsigned i = 0; i < 64; ++i) order[i] = static_cast<std::uint8_t>((7 - i % 8) * 8 + i / 8);
     return order;
   }();
-  __m512i x = _mm512_permutexvar_epi8(_mm512_load_si512(kByWord.data()), words);
-  // Transpose each 8 x 8 block of bits by swapping quarters at three sizes.
-  const auto swap = [&x](int distance, long long chosen) HWY_ATTR {
-    const __m512i mask = _mm512_set1_epi64(chosen);
-    const __m128i by = _mm_cvtsi32_si128(distance);
-    const __m512i t = _mm512_ternarylogic_epi64(x, _mm512_srl_epi64(x, by), mask, 0x28);
-    x = _mm512_ternarylogic_epi64(x, t, _mm512_sll_epi64(t, by), 0x96);
-  };
-  swap(7, 0x00AA00AA00AA00AA);
-  swap(14, 0x0000CCCC0000CCCC);
-  swap(28, 0x00000000F0F0F0F0);
-  return x;
+  const __m512i blocks = _mm512_permutexvar_epi8(_mm512_load_si512(kByBlock.data()), words);
+  // Each block is a matrix of 8 x 8 bits, its first row in the highest byte. Multiplied by the unit vectors, it gives
+  // its columns. Not by the compiler's intrinsic, which the target's options exclude.
+  const __m512i units = _mm512_set1_epi64(static_cast<long long>(0x8040201008040201));
+  __m512i columns;
+  asm("vgf2p8affineqb $0, %2, %1, %0" : "=v"(columns) : "v"(units), "v"(blocks));
+  return columns;
 }
 
 /// Signatures of the 64 tiles from word w on, one byte each. N = 4: lower (`half` = 0) or upper eight corners.
@@ -167,20 +176,35 @@ HWY_INLINE __m512i signature_bytes(const TileRow& row, std::size_t w, unsigned h
   return corner_bytes(_mm512_mask_shrdi_epi64(here, 0xAA, here, _mm512_unpackhi_epi64(words, words), 1));
 }
 
-/// Sum over `signatures` of their entries in a table of 256.
-HWY_INLINE std::uint32_t sum_of_entries(__m512i signatures, const std::uint8_t* table) {
+/// Sums of the entries of `signatures` in a table of 256, to be added up.
+HWY_INLINE __m512i sums_of_entries(__m512i signatures, const std::uint8_t* table) {
   const __m512i low = _mm512_permutex2var_epi8(_mm512_loadu_si512(table), signatures, _mm512_loadu_si512(table + 64));
   const __m512i high =
       _mm512_permutex2var_epi8(_mm512_loadu_si512(table + 128), signatures, _mm512_loadu_si512(table + 192));
   const __m512i entries = _mm512_mask_blend_epi8(_mm512_movepi8_mask(signatures), low, high);
-  return static_cast<std::uint32_t>(_mm512_reduce_add_epi64(_mm512_sad_epu8(entries, _mm512_setzero_si512())));
+  return _mm512_sad_epu8(entries, _mm512_setzero_si512());
 }
 
-/// Writes signatures and positions of the tiles `mixed` of word w, starting at entry `at`. Returns the number of their
-/// simplices. In 2D and 3D the only branch on the number of tiles is whether there are more than 32.
+/// A sum of numbers of simplices.
+class SimplexSum {
+ public:
+  HWY_INLINE SimplexSum() : sums_(_mm512_setzero_si512()) {}
+  HWY_INLINE void add(__m512i sums) { sums_ = _mm512_add_epi64(sums_, sums); }
+  HWY_INLINE void add(std::uint64_t number) { number_ += number; }
+  HWY_INLINE std::uint64_t total() const {
+    return number_ + static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums_));
+  }
+
+ private:
+  __m512i sums_;
+  std::uint64_t number_ = 0;
+};
+
+/// Writes signatures and positions of the tiles `mixed` of word w, starting at entry `at`. Adds the number of their
+/// simplices to `simplices`. In 2D and 3D the only branch on the number of tiles is whether there are more than 32.
 template <int N>
-HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
-                                    const TileRoom& room, std::size_t at) {
+HWY_INLINE void take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed, const TileRoom& room,
+                           std::size_t at, SimplexSum& simplices) {
   alignas(64) static constexpr auto kCountUp = [] {
     std::array<std::uint8_t, 64> numbers{};
     for (unsigned i = 0; i < 64; ++i) numbers[i] = static_cast<std::uint8_t>(i);
@@ -205,22 +229,32 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     const __m512i high = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 1));
     store(out, [&](int half)
                    HWY_ATTR { return _mm512_or_si512(half_of(low, half), _mm512_slli_epi16(half_of(high, half), 8)); });
-    std::uint32_t simplices = 0;
-    for (unsigned i = 0; i < count && row.sizes; ++i) simplices += table.entries[out[i]] & RowTable::kCountMask;
-    return simplices;
+    std::uint64_t sum = 0;
+    for (unsigned i = 0; i < count && row.sizes; ++i) sum += table.entries[out[i]] & RowTable::kCountMask;
+    simplices.add(sum);
   } else {
     store(out, [&](int half) HWY_ATTR { return half_of(low, half); });
-    return sum_of_entries(low, table.counts);  // unused lanes have signature 0, which has no simplices
+    simplices.add(sums_of_entries(low, table.counts));  // unused lanes have signature 0, which has no simplices
   }
 }
 
 #else
 
-/// Writes signatures and positions of the tiles `mixed` of word w, starting at entry `at`. Returns the number of their
-/// simplices.
+/// A sum of numbers of simplices.
+class SimplexSum {
+ public:
+  HWY_INLINE void add(std::uint64_t number) { number_ += number; }
+  HWY_INLINE std::uint64_t total() const { return number_; }
+
+ private:
+  std::uint64_t number_ = 0;
+};
+
+/// Writes signatures and positions of the tiles `mixed` of word w, starting at entry `at`. Adds the number of their
+/// simplices to `sum`.
 template <int N>
-HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
-                                    const TileRoom& room, std::size_t at) {
+HWY_INLINE void take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed, const TileRoom& room,
+                           std::size_t at, SimplexSum& sum) {
   constexpr unsigned kRows = 1u << (N - 1);
   constexpr unsigned kCorners = 2 * kRows;
   constexpr unsigned kFew = HWY_TARGET <= HWY_AVX3 ? 2 : HWY_TARGET <= HWY_AVX2 ? 4 : HWY_TARGET == HWY_SCALAR ? 64 : 8;
@@ -230,7 +264,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     corners[2 * r + 1] = row.corners[r][w] >> 1 | row.corners[r][w + 1] << (kWordBits - 1);
   }
   const auto first = static_cast<unsigned>(w * kWordBits);
-  std::uint32_t simplices = 0;
+  std::uint64_t simplices = 0;
   const auto take = [&](unsigned bit, unsigned signature) HWY_ATTR {
     room.signatures[at] = static_cast<std::uint16_t>(signature);
     // few tiles: gather the corners of each
@@ -245,7 +279,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
       take(bit, signature);
     }
     // many tiles: transpose all 64
-    return simplices;
+    return sum.add(simplices);
   }
   alignas(64) std::uint8_t bytes[kCorners > 8 ? 2 : 1][kWordBits];
   corners_to_bytes(corners, std::min(kCorners, 8u), bytes[0]);
@@ -256,7 +290,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     if constexpr (kCorners > 8) signature |= static_cast<unsigned>(bytes[1][bit]) << 8;
     take(bit, signature);
   }
-  return simplices;
+  sum.add(simplices);
 }
 
 #endif
@@ -265,6 +299,7 @@ template <int N>
 HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, const TileRoom& room) {
   const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // words of samples
   TileCount count;
+  SimplexSum simplices;
   // find active words of up to 64, then the signatures of their tiles
   for (std::size_t block = 0; block < words; block += kWordBits) {
     Word present = mixed_words<N>(row.corners, block, std::min(kWordBits, words - block), room.active, count.edges);
@@ -273,10 +308,11 @@ HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, cons
       const std::size_t w = block + static_cast<std::size_t>(std::countr_zero(present));
       if (row.valid != nullptr) room.active[w] &= row.valid[w];
       const Word mixed = room.active[w];
-      count.simplices += take_tiles<N>(row, table, w, mixed, room, count.active);
+      take_tiles<N>(row, table, w, mixed, room, count.active, simplices);
       count.active += static_cast<std::uint32_t>(std::popcount(mixed));
     }
   }
+  count.simplices = simplices.total();
   if (table.has_own_vertices() && row.sizes)
     for (std::uint32_t i = 0; i < count.active; ++i) count.own_vertices += table.own_vertices(room.signatures[i]);
   // sums over the row
@@ -618,54 +654,28 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-HWY_EXPORT(count2);
-HWY_EXPORT(count3);
-HWY_EXPORT(count4);
-HWY_EXPORT(edges2);
-HWY_EXPORT(write2);
-HWY_EXPORT(edges3);
-HWY_EXPORT(write3);
-HWY_EXPORT(edges4);
-HWY_EXPORT(write4);
+#define TEGL_DISPATCH(N)                                                                                     \
+  HWY_EXPORT(count##N);                                                                                      \
+  HWY_EXPORT(edges##N);                                                                                      \
+  HWY_EXPORT(write##N);                                                                                      \
+  template <>                                                                                                \
+  TileCount count_tile_row<N>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {    \
+    return HWY_DYNAMIC_DISPATCH(count##N)(row, table, room);                                                 \
+  }                                                                                                          \
+  template <>                                                                                                \
+  void list_tile_edges<N>(const TileEdges& row) noexcept {                                                   \
+    HWY_DYNAMIC_DISPATCH(edges##N)(row);                                                                     \
+  }                                                                                                          \
+  template <>                                                                                                \
+  void write_tile_row<N>(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) noexcept { \
+    HWY_DYNAMIC_DISPATCH(write##N)(row, table, own);                                                         \
+  }
+TEGL_DISPATCH(2)
+TEGL_DISPATCH(3)
+TEGL_DISPATCH(4)
+#undef TEGL_DISPATCH
+
 HWY_EXPORT(count_edges);
-
-template <>
-TileCount count_tile_row<2>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
-  return HWY_DYNAMIC_DISPATCH(count2)(row, table, room);
-}
-template <>
-TileCount count_tile_row<3>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
-  return HWY_DYNAMIC_DISPATCH(count3)(row, table, room);
-}
-template <>
-TileCount count_tile_row<4>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
-  return HWY_DYNAMIC_DISPATCH(count4)(row, table, room);
-}
-template <>
-void list_tile_edges<2>(const TileEdges& row) noexcept {
-  HWY_DYNAMIC_DISPATCH(edges2)(row);
-}
-template <>
-void write_tile_row<2>(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) noexcept {
-  HWY_DYNAMIC_DISPATCH(write2)(row, table, own);
-}
-template <>
-void list_tile_edges<3>(const TileEdges& row) noexcept {
-  HWY_DYNAMIC_DISPATCH(edges3)(row);
-}
-template <>
-void write_tile_row<3>(const TileOutput<3>& row, const RowTable& table, const OwnTiles<3>& own) noexcept {
-  HWY_DYNAMIC_DISPATCH(write3)(row, table, own);
-}
-template <>
-void list_tile_edges<4>(const TileEdges& row) noexcept {
-  HWY_DYNAMIC_DISPATCH(edges4)(row);
-}
-template <>
-void write_tile_row<4>(const TileOutput<4>& row, const RowTable& table, const OwnTiles<4>& own) noexcept {
-  HWY_DYNAMIC_DISPATCH(write4)(row, table, own);
-}
-
 std::uint32_t count_edge_row(const Word* a, const Word* b, std::size_t samples, const Word* valid, Word* critical,
                              std::uint32_t* prefix) noexcept {
   return HWY_DYNAMIC_DISPATCH(count_edges)(a, b, samples, valid, critical, prefix);
