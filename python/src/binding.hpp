@@ -114,6 +114,20 @@ class Call {
     }
   }
 
+  /// Calls use() with the GIL, from within run(), by the thread that called it. An exception ends run(), which passes
+  /// it on.
+  template <class Use>
+  void with_python(const Use& use) {
+    const py::gil_scoped_acquire acquire;
+    try {
+      use();
+      return;
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    throw Error(ErrorCode::Cancelled, "a function of the caller raised an exception");
+  }
+
  private:
   bool tell(double fraction);
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -179,23 +180,44 @@ AnyContour placed_contour_of(const AnyImage& image, const PositionOptions& posit
   });
 }
 
-/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `cells`: samples are
-/// cells, with these faces. `curved`: of a curved grid, or empty.
+/// The function of PositionOptions::custom_of_many that calls a Python function. It gets arrays of its own, which it
+/// may keep.
+auto custom_of_many(Call& call, const py::object& custom) {
+  return [&call, &custom](std::span<const double> first, std::span<const double> second, double level,
+                          std::span<double> out) {
+    call.with_python([&] {
+      const auto copy = [](std::span<const double> from) {
+        return py::array_t<double>(static_cast<py::ssize_t>(from.size()), from.data());
+      };
+      const auto places = py::cast<py::array_t<double, py::array::c_style>>(custom(copy(first), copy(second), level));
+      if (static_cast<std::size_t>(places.size()) != out.size())
+        throw py::value_error("not as many positions as edges");
+      std::copy_n(places.data(), out.size(), out.begin());
+    });
+  };
+}
+
+/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `custom`: for "custom", a
+/// function of the arrays of both samples and the level. `cells`: samples are cells, with these faces. `curved`: of a
+/// curved grid, or empty.
 std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule,
-                                               const py::array_t<float, py::array::c_style>& values, double margin,
-                                               double last_axis_weight, const std::optional<CellFaces>& cells,
-                                               const CurvedAxes& curved, double level, bool is_double,
-                                               const py::dict& arguments, const py::object& progress) {
+                                               const py::array_t<float, py::array::c_style>& values,
+                                               const py::object& custom, double margin, double last_axis_weight,
+                                               const std::optional<CellFaces>& cells, const CurvedAxes& curved,
+                                               double level, bool is_double, const py::dict& arguments,
+                                               const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
   PositionOptions positions;
   positions.rule = named<Positions>("positions", rule,
                                     {{"linear", Positions::linear},
+                                     {"custom", Positions::custom},
                                      {"filtered", Positions::filtered},
                                      {"gravitation", Positions::gravitation},
                                      {"relaxed", Positions::relaxed}});
   positions.filtered = std::span<const float>(values.data(), static_cast<std::size_t>(values.size()));
+  if (!custom.is_none()) positions.custom_of_many = custom_of_many(call, custom);
   positions.margin = margin;
   positions.last_axis_weight = last_axis_weight;
   const std::vector<CurvedAxis> axes = curved_axes(curved);
@@ -429,9 +451,9 @@ void bind_extract(py::module_& m) {
   m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("level"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::extract_curved);
   m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), doc::find_folds);
-  m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("margin"),
-        py::arg("last_axis_weight"), py::arg("cells"), py::arg("curved"), py::arg("level"), py::arg("double"),
-        py::arg("options"), py::arg("progress"), doc::extract_placed);
+  m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("custom"),
+        py::arg("margin"), py::arg("last_axis_weight"), py::arg("cells"), py::arg("curved"), py::arg("level"),
+        py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_placed);
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),

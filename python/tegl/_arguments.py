@@ -577,11 +577,36 @@ def normals_kind(normals: object, gradient: object) -> str:
     return "sobel" if kind else ""
 
 
-def position_values(positions: str, image: object, prepared: Prepared) -> np.ndarray:
+#: A function of two arrays of samples, one at or above the level, the other below, and of the level. Its result: for each
+#: pair, or for all, the position as a number from 0, at the first sample, to 1, at the second.
+PositionFunction = Callable[[np.ndarray, np.ndarray, float], object]
+
+
+def position_function(positions: object) -> Callable[[np.ndarray, np.ndarray, float], np.ndarray] | None:
+    """A function that calls `positions` and checks what it returns; None for rules with names."""
+    if not callable(positions):
+        return None
+    function = typing.cast(PositionFunction, positions)
+
+    def places(first: np.ndarray, second: np.ndarray, level: float) -> np.ndarray:
+        found = function(first, second, level)
+        array = np.ma.filled(found, np.nan) if np.ma.isMaskedArray(found) else np.asarray(found)
+        if array.dtype.kind not in "biuf":
+            raise TypeError(f"the function for positions returned {found!r}; expected numbers from 0 to 1")
+        if array.shape not in ((), first.shape):
+            raise ValueError(f"the function for positions returned an array of the shape {array.shape}; expected "
+                             f"{first.shape}, as its arguments, or one number")
+        return np.ascontiguousarray(np.broadcast_to(array, first.shape), np.float64)
+
+    return places
+
+
+def position_values(positions: object, image: object, prepared: Prepared) -> np.ndarray:
     """The samples of the second image for "filtered", in the library's order; none for other rules."""
     kinds = typing.get_args(_kinds.Positions)
-    if as_text("positions", positions) not in kinds:
-        raise ValueError(f"positions is {positions!r}; expected one of {', '.join(map(repr, kinds))}")
+    if not callable(positions) and as_text("positions", positions) not in kinds:
+        raise ValueError(f"positions is {positions!r}; expected one of {', '.join(map(repr, kinds))}, or a function of the "
+                         "samples")
     if positions != "filtered":
         if image is not None:
             raise ValueError(f"positions_image with positions {positions!r}; expected positions='filtered'")

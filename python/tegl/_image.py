@@ -26,7 +26,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
             periodic=None, lattice: _kinds.Lattice | None = None, division: _kinds.Division | None = None,
-            positions: _kinds.Positions = "linear", positions_image=None, time_weight: float = 1.0,
+            positions: _kinds.Positions | _arguments.PositionFunction = "linear", positions_image=None, time_weight: float = 1.0,
             samples: _kinds.Samples = "points", curved=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
 
@@ -96,7 +96,10 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     positions
         Where vertices lie between two samples: "linear" (interpolation), "relaxed" (smooth surfaces of masks and labels,
         without stair steps; every sample stays on its side), "filtered" (linear in `positions_image`) or "gravitation"
-        (moved towards neighbouring samples, for masks). Not with `periodic` and `lattice`. See docs/positions.md.
+        (moved towards neighbouring samples, for masks). Or a function `positions(first, second, level)` of two arrays with
+        the samples at the ends of many edges, one of them at or above the level and the other below. It returns an array
+        with the positions, from 0 at the first sample to 1 at the second, or one number for all; others are clamped. Not
+        with `periodic` and `lattice`. See docs/positions.md.
     positions_image
         For "filtered": an array of the same shape, such as a smoothed one. Its samples are clamped to the side of the
         array's samples. Where it is NaN, the array's own sample counts.
@@ -164,8 +167,9 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                                          options, progress)
         elif positions != "linear" or of_cells:
             faces = _cell_faces(array, prepared, (spacing, origin, coords)) if of_cells else None
-            core = _tegl.extract_placed(prepared.image, positions, values, 0.01, weight, faces, of_samples, level, is_double,
-                                        options, progress)
+            rule = "custom" if callable(positions) else positions
+            core = _tegl.extract_placed(prepared.image, rule, values, _arguments.position_function(positions), 0.01, weight,
+                                        faces, of_samples, level, is_double, options, progress)
             if curved is not None:
                 _warn_of_folds(prepared, of_samples)
         elif lattice is not None:

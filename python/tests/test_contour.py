@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """tegl.contour: what it takes, what it gives, and that nothing is copied on the way."""
 
+import functools
 import gc
 import pickle
 import sys
+import time
+import weakref
 
 import numpy as np
 import pytest
@@ -386,3 +389,65 @@ def test_positions_of_masks():
         tegl.contour(mask, 0.5, positions="relaxed", periodic="all")
     with pytest.raises(ValueError, match="expected positions='relaxed'"):
         tegl.contour(mask, 0.5, time_weight=0)
+
+
+@pytest.mark.parametrize("shape", [(9, 8), (40, 41, 39), (6, 5, 6, 4)])
+def test_positions_by_a_function(shape):
+    volume = np.random.default_rng(2).random(shape)
+    kept = []
+
+    def linear(first, second, level):
+        kept.append((first, second))
+        assert level == 0.5 and first.shape == second.shape and np.all((first >= level) != (second >= level))
+        return (level - first) / (second - first)
+
+    expected = tegl.contour(volume, 0.5, dtype=np.float64)
+    placed = tegl.contour(volume, 0.5, dtype=np.float64, positions=linear, threads=2)
+    np.testing.assert_array_equal(placed.simplices, expected.simplices)
+    np.testing.assert_allclose(placed.vertices, expected.vertices, atol=1e-12)
+    # the arrays are the caller's, in few calls
+    assert sum(len(first) for first, _ in kept) > len(kept) * 20 and np.isin(kept[0][0], volume).all()
+    # one number, at both ends of a step along the array's last axis
+    step = np.broadcast_to(np.arange(shape[-1]) >= 2, shape)
+    for position, place in ((0.25, 1.25), (1.5, 2), (-3, 1), (np.float32(0.5), 1.5), (True, 2)):
+        contour = tegl.contour(step, 0.5, positions=lambda first, second, level, position=position: position)
+        assert set(contour.vertices[:, -1]) == {place}
+
+
+def test_errors_of_functions_for_positions_propagate():
+    volume = np.random.default_rng(2).random((6, 7, 8))
+
+    class Mine(Exception):
+        pass
+
+    def fails(first, second, level):
+        raise Mine("in the function")
+
+    with pytest.raises(Mine, match="in the function"):
+        tegl.contour(volume, 0.5, positions=fails)
+    with pytest.raises(Mine):
+        tegl.contour(volume, 0.5, positions=fails, progress=lambda fraction: True)
+    for error, wrong, text in ((ValueError, lambda a, b, level: a[1:], r"the shape \(\d+,\); expected \(\d+,\)"),
+                               (ValueError, lambda a, b, level: np.nan, "returned NaN for samples"),
+                               (ValueError, lambda a, b, level: np.ma.masked_greater(a, 0.9), "returned NaN"),
+                               (TypeError, lambda a, b, level: None, "returned None; expected numbers from 0 to 1"),
+                               (TypeError, lambda a, b, level: a * 1j, "expected numbers from 0 to 1"),
+                               (TypeError, lambda a, b: a, "positional argument")):
+        with pytest.raises(error, match=text):
+            tegl.contour(volume, 0.5, positions=wrong)
+    with pytest.raises(ValueError, match="or a function"):
+        tegl.contour(volume, 0.5, positions="custom")
+    with pytest.raises(ValueError, match="an image of cells"):
+        tegl.contour(volume, 0.5, positions=lambda a, b, level: 0.5, samples="cells")
+    with pytest.raises(ValueError, match="periodic with positions"):
+        tegl.contour(volume, 0.5, positions=lambda a, b, level: 0.5, periodic="all")
+    with pytest.raises(tegl.Cancelled):
+        tegl.contour(volume, 0.5, positions=lambda a, b, level: time.sleep(0.03) or 0.5, progress=lambda fraction: False)
+    # nothing keeps the function or its arrays
+    calls = [0]
+    function = functools.partial(lambda calls, a, b, level: calls.append(weakref.ref(a)) or 0.5, calls)
+    of_function = weakref.ref(function)
+    tegl.contour(volume, 0.5, positions=function)
+    del function
+    gc.collect()
+    assert of_function() is None and len(calls) > 1 and all(array() is None for array in calls[1:])

@@ -13,6 +13,7 @@ from typing_extensions import assert_type
 volume = np.zeros((4, 5, 6, 7))
 contour = tegl.contour(volume, 0.5, spacing=(1, 2, 3, 4), normals=True)
 assert_type(contour, tegl.Contour)
+assert_type(tegl.contour(volume, 0.5, positions=lambda first, second, level: (level - first) / (second - first)), tegl.Contour)
 assert_type(contour.isovalue, Optional[float])
 assert_type(contour.ndim, int)
 assert_type(contour.axis_names, Tuple[str, ...])

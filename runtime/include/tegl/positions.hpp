@@ -37,6 +37,12 @@ struct PositionOptions {
   /// clamped. One of the samples is at or above the isovalue, the other is below. Called by several threads at once;
   /// an exception ends the extraction and is passed on.
   std::function<double(double first, double second, double isovalue)> custom = {};
+  /// For `custom`, in place of the function `custom`: the positions between many pairs of samples, first[i] and
+  /// second[i], as out[i], for interpreters and vector units. Called by the calling thread for blocks of at most 65 536
+  /// edges, in the same order for any number of threads. Memory: 12 bytes per edge between a high and a low sample.
+  std::function<void(std::span<const double> first, std::span<const double> second, double isovalue,
+                     std::span<double> out)>
+      custom_of_many = {};
   /// For `relaxed`: minimum distance of vertices from samples as a share of an edge, in (0, 0.5), unless
   /// ExtractOptions::epsilon is larger.
   double margin = 0.01;
@@ -62,8 +68,9 @@ requires DimensionBetween<N, 2, 5>
 /// positions on edges.
 ///
 /// Errors: as `extract`; InvalidArgument for `filtered` values that are not as many as samples, `custom` without a
-/// function or with a function that returns NaN, and for a margin or weight outside of its range; UnsupportedData for
-/// `gravitation` in 5D; TooLarge for `relaxed` with more than 2^30 vertices on edges.
+/// function or with a function that returns NaN or with two functions, and for a margin or weight outside of its range;
+/// UnsupportedData for `gravitation` in 5D; TooLarge for `relaxed` and `custom_of_many` with more than 2^30 vertices on
+/// edges.
 ///
 /// Time and memory: docs/positions.md. Streams, indexes of active tiles, slices of images, facets, and periodic
 /// contours have linear positions only.

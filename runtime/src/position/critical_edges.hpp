@@ -112,6 +112,8 @@ class CriticalEdges {
   [[nodiscard]] Number first(int axis) const noexcept { return axis < N ? first_[axis].front() : count(); }
   /// Number of the first edge along `axis` in a row.
   [[nodiscard]] Number first_in_row(int axis, std::size_t row) const noexcept { return first_[axis][row]; }
+  /// First sample of an edge in its row.
+  [[nodiscard]] std::uint32_t at(Number number) const noexcept { return at_[number]; }
   [[nodiscard]] bool has_edges(int axis, std::size_t row) const noexcept {
     return first_[axis][row] != first_[axis][row + 1];
   }

@@ -12,8 +12,6 @@
 #include <mutex>
 #include <span>
 
-#include <fmt/format.h>
-
 #include "base/workers.hpp"
 #include "image/edge_alphas.hpp"
 #include "position/placed_source.hpp"
@@ -121,10 +119,7 @@ class CustomPositions final : public PositionsOnEdges<N> {
     try {
       const double position = call_apart([&] { return position_(first, second, samples_.isovalue()); });
       if (std::isnan(position))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the function for custom positions returned NaN for samples {} and {} and the isovalue "
-                                "{}; expected a number from 0 to 1",
-                                first, second, samples_.isovalue()));
+        throw Error(ErrorCode::InvalidArgument, nan_position(first, second, samples_.isovalue()));
       return position;
     } catch (...) {
       const std::lock_guard lock(mutex_);

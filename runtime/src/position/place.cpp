@@ -12,6 +12,7 @@
 #include "kernel/extract_in_memory.hpp"
 #include "position/edge_rules.hpp"
 #include "position/gravitation.hpp"
+#include "position/listed_positions.hpp"
 #include "position/relaxed_positions.hpp"
 
 namespace tegl::detail {
@@ -21,9 +22,12 @@ void check_positions(const PositionOptions& positions, std::size_t samples, int 
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("filtered positions with {} values; expected one for each of the image's {} samples",
                             positions.filtered.size(), samples));
-  if (positions.rule == Positions::custom && !positions.custom)
+  if (positions.rule == Positions::custom && !positions.custom && !positions.custom_of_many)
     throw Error(ErrorCode::InvalidArgument,
-                "custom positions without a function; expected one in PositionOptions::custom");
+                "custom positions without a function; expected one in PositionOptions::custom or custom_of_many");
+  if (positions.rule == Positions::custom && positions.custom && positions.custom_of_many)
+    throw Error(ErrorCode::InvalidArgument,
+                "custom positions with two functions, custom and custom_of_many; expected one of the two");
   if (positions.rule == Positions::gravitation && dimensions > 4)
     throw Error(ErrorCode::UnsupportedData,
                 fmt::format("gravitation of a {}D image; expected 2 to 4 dimensions", dimensions));
@@ -45,6 +49,28 @@ Extraction<N, Real> extract_on_edges(SampleSource<N>& samples, const Grid<N>& gr
   return extract_in_memory<N, Real>(placed, grid, options, plan);
 }
 
+/// Passes on how far the extraction is after a first share for the positions.
+ExtractOptions after_share(const ExtractOptions& options, double share) {
+  ExtractOptions rest = options;
+  rest.work.progress = part_of(options.work.progress, share, 1.0);
+  return rest;
+}
+
+template <int N, class Real>
+Extraction<N, Real> extract_custom(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
+                                   const ExtractOptions& options, const ExtractPlan& plan) {
+  if (positions.custom_of_many) {
+    constexpr double kShare = 0.5;  // of the function in the time
+    const BlockPositions<N> rule(samples, grid, positions,
+                                 {options.work.threads, part_of(options.work.progress, 0.0, kShare)});
+    return extract_on_edges<N, Real>(samples, grid, rule, after_share(options, kShare), plan);
+  }
+  const CustomPositions<N> rule(samples, positions);
+  Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options, plan);
+  rule.rethrow();
+  return result;
+}
+
 template <int N, class Real>
 Extraction<N, Real> extract_relaxed(SampleSource<N>& samples, const Grid<N>& grid, const PositionOptions& positions,
                                     const ExtractOptions& options, const ExtractPlan& plan) {
@@ -54,9 +80,7 @@ Extraction<N, Real> extract_relaxed(SampleSource<N>& samples, const Grid<N>& gri
   relaxation.last_axis_weight = positions.last_axis_weight;
   relaxation.work = {options.work.threads, part_of(options.work.progress, 0.0, kShare)};
   const RelaxedPositions<N> relaxed(samples, grid, options, relaxation);
-  ExtractOptions rest = options;
-  rest.work.progress = part_of(options.work.progress, kShare, 1.0);
-  return extract_on_edges<N, Real>(samples, grid, relaxed, rest, plan);
+  return extract_on_edges<N, Real>(samples, grid, relaxed, after_share(options, kShare), plan);
 }
 
 }  // namespace
@@ -70,12 +94,8 @@ Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, StartsHigh sta
       return extract_on_edges<N, Real>(
           samples, grid, FilteredPositions<N>(samples, starts_high, grid, positions.filtered, options.epsilon), options,
           plan);
-    case Positions::custom: {
-      const CustomPositions<N> rule(samples, positions);
-      Extraction<N, Real> result = extract_on_edges<N, Real>(samples, grid, rule, options, plan);
-      rule.rethrow();
-      return result;
-    }
+    case Positions::custom:
+      return extract_custom<N, Real>(samples, grid, positions, options, plan);
     case Positions::gravitation:
       return extract_on_edges<N, Real, GravitationSource<N>>(
           samples, grid, Gravitation<N>(samples, grid, options.work.threads), options, plan);

@@ -8,7 +8,10 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "base/function_ref.hpp"
 #include "image/sample_source.hpp"
@@ -82,6 +85,14 @@ struct LayerEdges {
 
 /// For at most kWordBits edges in rows of layer k: whether their first ends are high, as bits.
 using StartsHigh = FunctionRef<Word(std::size_t k, const EdgesInRows& edges)>;
+
+/// The text of the error of a custom rule that returns NaN.
+inline std::string nan_position(double first, double second, double isovalue) {
+  return fmt::format(
+      "the function for custom positions returned NaN for samples {} and {} and the isovalue {}; expected a number "
+      "from 0 to 1",
+      first, second, isovalue);
+}
 
 /// A rule for positions on critical edges.
 template <int N>

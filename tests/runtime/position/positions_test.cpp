@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -302,6 +303,41 @@ TEST(Positions, CustomGetsTheSamplesAndTheIsovalue) {
   EXPECT_EQ(contour.vertices[1][0], 0.125f);
 }
 
+TEST(Positions, FunctionsOfManyEdgesGiveWhatFunctionsOfOneGive) {
+  const auto expect_same = []<int N>(const OwnedImage<float, N>& image, double isovalue) {
+    const PositionOptions one = by(Positions::custom);
+    std::vector<std::pair<double, double>> asked[2];
+    for (const unsigned threads : {1u, 3u}) {
+      auto& calls = asked[threads / 3];
+      PositionOptions many = by(Positions::custom);
+      many.custom = {};
+      many.custom_of_many = [&](std::span<const double> first, std::span<const double> second, double level,
+                                std::span<double> out) {
+        for (std::size_t i = 0; i < out.size(); ++i) {
+          calls.emplace_back(first[i], second[i]);
+          out[i] = one.custom(first[i], second[i], level);
+        }
+      };
+      ExtractOptions options;
+      options.work.threads = threads;
+      options.epsilon = 0.01;
+      const auto expected = extract_placed<double>(image.view(), isovalue, one, options);
+      const auto actual = extract_placed<double>(image.view(), isovalue, many, options);
+      EXPECT_TRUE(same_bytes(actual.vertices, expected.vertices));
+      EXPECT_TRUE(same_bytes(actual.simplices, expected.simplices));
+    }
+    EXPECT_EQ(asked[0], asked[1]);
+    EXPECT_GT(asked[0].size(), 30u);
+  };
+  auto missing = random_image<float, 3>(50, 1);  // more than one block of edges
+  for (std::size_t i = 5; i < missing.values.size(); i += 97)
+    missing.values[i] = std::numeric_limits<float>::quiet_NaN();
+  expect_same(random_image<float, 2>(12, 1), 40);
+  expect_same(missing, 40);
+  expect_same(random_image<float, 4>(5, 3), 40);
+  expect_same(random_image<float, 5>(4, 3), 40);
+}
+
 TEST(Positions, ErrorsNameTheValue) {
   const auto image = random_image<float, 2>(8, 1);
   const auto extract_by = [&](const PositionOptions& options) { return extract_placed(image.view(), 40, options); };
@@ -319,6 +355,17 @@ TEST(Positions, ErrorsNameTheValue) {
   options.custom = [](double, double, double) { return std::numeric_limits<double>::quiet_NaN(); };
   expect_error(ErrorCode::InvalidArgument, "returned NaN", [&] { (void)extract_by(options); });
   options.custom = [](double, double, double) -> double { throw std::out_of_range("of the caller"); };
+  EXPECT_THROW((void)extract_by(options), std::out_of_range);
+  options.custom_of_many = [](auto, auto, double, std::span<double> out) { std::ranges::fill(out, 0.5); };
+  expect_error(ErrorCode::InvalidArgument, "two functions", [&] { (void)extract_by(options); });
+  options.custom = {};
+  const auto clamped = [&](double position) {
+    options.custom_of_many = [=](auto, auto, double, std::span<double> out) { std::ranges::fill(out, position); };
+    return extract_by(options).vertices;
+  };
+  EXPECT_EQ(clamped(7), clamped(1));
+  expect_error(ErrorCode::InvalidArgument, "returned NaN", [&] { (void)clamped(std::nan("")); });
+  options.custom_of_many = [](auto, auto, double, std::span<double>) { throw std::out_of_range("of the caller"); };
   EXPECT_THROW((void)extract_by(options), std::out_of_range);
   expect_error(ErrorCode::UnsupportedData, "gravitation of a 5D image", [] {
     const auto five = random_image<float, 5>(3, 1);
