@@ -16,6 +16,7 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "tegl/check.hpp"
+#include "tegl/filter.hpp"
 #include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 
@@ -285,6 +286,39 @@ TEST(Positions, FilteredByAKernelAgainstTheConditionChangeNoSample) {
     expect_sides(image, 0.5, contour);
     EXPECT_TRUE(same_bytes(contour.simplices, extract<double>(image.view(), 0.5).simplices));
   }
+}
+
+/// Filtered by random kernels, with weights of both signs, of 3 to 7 samples along each axis.
+template <int N, Value T>
+void expect_sides_for_random_kernels(std::size_t size, unsigned kernels) {
+  std::mt19937_64 random(N);
+  std::size_t crossed = 0;
+  for (unsigned seed = 0; seed < kernels; ++seed) {
+    const auto image = random_image<T, N>(size, seed);
+    Convolution kernel;
+    std::size_t weights = 1;
+    for (int a = 0; a < N; ++a) {
+      kernel.sizes.push_back(N < 4 ? 3 + 2 * (random() % 3) : 3);
+      weights *= kernel.sizes.back();
+    }
+    for (std::size_t i = 0; i < weights; ++i)
+      kernel.weights.push_back((static_cast<double>(random() >> 11) * 0x1p-53 - 0.3) / static_cast<double>(weights));
+    const auto filtered = filter_image(image.view(), kernel);
+    const std::vector<float> values(filtered.values.begin(), filtered.values.end());
+    for (std::size_t i = 0; i < values.size(); ++i) crossed += (values[i] >= 40) != (image.values[i] >= 40) ? 1 : 0;
+    const auto contour = extract_placed<double>(image.view(), 40, by(Positions::filtered, values), {.epsilon = 0.001});
+    EXPECT_TRUE(same_bytes(contour.simplices, extract<double>(image.view(), 40).simplices)) << N << ' ' << seed;
+    if constexpr (N < 5) expect_sides(image, 40, contour);
+  }
+  EXPECT_GT(crossed, 0u);  // samples would change their sides without clamping
+}
+TEST(Positions, FilteredByRandomKernelsEverySampleStaysOnItsSide) {
+  expect_sides_for_random_kernels<2, std::uint8_t>(12, 6);
+  expect_sides_for_random_kernels<2, float>(12, 6);
+  expect_sides_for_random_kernels<3, std::int16_t>(6, 4);
+  expect_sides_for_random_kernels<3, double>(6, 4);
+  expect_sides_for_random_kernels<4, float>(4, 2);
+  expect_sides_for_random_kernels<5, std::uint8_t>(4, 2);
 }
 
 TEST(Positions, CustomGetsTheSamplesAndTheIsovalue) {
