@@ -47,7 +47,9 @@ constexpr const char* kSliceExamples =
     "'frame'.\n"
     "For an image, only the layers next to each cut are contoured; all of them with --plane, --periodic, --lattice,\n"
     "--division and --samples-are cells. A saved contour is cut directly, all cuts of one direction in one pass.\n"
-    "Places on a periodic axis are modulo its period.";
+    "Places on a periodic axis are modulo its period.\n"
+    "At a layer of the image, a saved 5D contour by --ambiguity low or high has other tetrahedra than the layer's\n"
+    "contour, with the same topology: cut the image for the layer's own.";
 
 void require_cuttable(int dim, std::string_view what) {
   if (dim >= 3 && dim <= 5) return;

@@ -142,6 +142,47 @@ TEST(SliceFive, AtALayerHasTheTopologyOfTheLayerWithTies) {
     }
 }
 
+/// The vertices on edges of the grid: those with at most one coordinate that is no whole number.
+template <int N>
+std::vector<std::array<float, N>> vertices_on_edges(const Contour<N, float>& contour) {
+  std::vector<std::array<float, N>> found;
+  for (const auto& vertex : test::sorted_vertices(contour))
+    if (std::ranges::count_if(vertex, [](float x) { return x != std::floor(x); }) <= 1) found.push_back(vertex);
+  return found;
+}
+
+TEST(SliceFive, AtALayerByLowAndHighHasTheVerticesAndTheTopologyOfTheLayer) {
+  const auto noise = test::noise<float, 5>(std::array<std::size_t, 5>{4, 4, 4, 4, 3}, 8);
+  const auto ball = test::sample_field<float, 5>(Grid<5>::unit({7, 7, 7, 7, 5}), [](const Point<5>& x) {
+    double sum = 0;
+    for (const double of_axis : x) sum += (of_axis - 2.9) * (of_axis - 2.9);
+    return 2.7 - std::sqrt(sum);
+  });
+  bool any_other_simplices = false;
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high})
+    for (const bool close : {false, true})
+      for (const auto& [image, isovalue] : {std::pair{&noise, 0.5}, {&ball, 0.0}}) {
+        const ExtractOptions options{.ambiguity = ambiguity, .close = close};
+        const Contour<5, float> contour = extract(image->view(), isovalue, options);
+        for (const std::size_t k : {1u, 2u}) {
+          const auto layer = extract(test::layer_across(image->view(), 4, k), isovalue, options);
+          const auto cut = slice(contour, Hyperplane<5>::across(4, static_cast<double>(k)));
+          EXPECT_GT(layer.simplices.size(), 100u);
+          EXPECT_EQ(vertices_on_edges(cut), vertices_on_edges(layer));
+          const MeshReport of_cut = check(cut), of_layer = check(layer);
+          EXPECT_EQ(of_cut.components, of_layer.components);
+          EXPECT_EQ(of_cut.euler, of_layer.euler);
+          EXPECT_EQ(of_cut.boundary_simplices, of_layer.boundary_simplices);
+          EXPECT_TRUE(test::is_oriented_manifold(of_cut));
+          if (image == &ball) {
+            EXPECT_EQ(test::sorted_vertices(cut), test::sorted_vertices(layer));
+          }
+          any_other_simplices = any_other_simplices || of_cut.simplices != of_layer.simplices;
+        }
+      }
+  EXPECT_TRUE(any_other_simplices);  // otherwise they are equal, and this test is to say so
+}
+
 TEST(SliceFive, AtALayerIsTheContourOfTheLayerWithTies) {
   const auto image = test::coarse_noise<float, 5>(Grid<5>::unit({4, 4, 4, 3, 4}), 8, 3);
   const ExtractOptions options{.ambiguity = Ambiguity::mean};
