@@ -38,9 +38,8 @@ std::string field_help() {
       text += fmt::format("      {} = {}: {}\n", one.name, number(one.value), one.meaning);
   }
   return text +
-         "FIELD may also be an expression of x, y, z, t and r (the distance from the origin): + - * / ^, comparisons, "
-         "?:,\n"
-         "sin, exp, sqrt, abs, min, max, _pi, and ball(x, y, z, radius), box(x, a, y, b, z, c),\n"
+         "FIELD may also be an expression of x, y, z, t, u and r (the distance from the origin): + - * / ^,\n"
+         "comparisons, ?:, sin, exp, sqrt, abs, min, max, _pi, and ball(x, y, z, radius), box(x, a, y, b, z, c),\n"
          "torus(x, y, z, ring, tube). Contours are at 0, except those of orbitals.";
 }
 

@@ -37,8 +37,9 @@ struct Orbital {
 };
 
 /// A real hydrogen-like wave function in units of Bohr radii: `extent` of these are one unit of length. 2D: in the
-/// plane y = 0. 4D: the density of two orbitals with equal weights, one beat from t = -1 to 1. Errors: InvalidArgument
-/// for impossible quantum numbers.
+/// plane y = 0. 4D: the density of two orbitals with equal weights, one beat from t = -1 to 1. 5D: the same, with the
+/// first orbital alone at u = -1, equal weights at 0 and the second one alone at 1. Errors: InvalidArgument for
+/// impossible quantum numbers.
 Field make_orbital(int dim, const Orbital& first, const Orbital& second, double extent);
 
 }  // namespace tegl::detail

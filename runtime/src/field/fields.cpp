@@ -195,7 +195,7 @@ Field make_orbital_field(const FieldRequest& of) {
   const auto number = [&](const char* name) { return of.whole(name, -12, 12); };
   const detail::Orbital first{number("n"), number("l"), number("m")};
   const detail::Orbital second{number("n2"), number("l2"), number("m2")};
-  const int n = of.dim == 4 ? std::max(first.n, second.n) : first.n;
+  const int n = of.dim >= 4 ? std::max(first.n, second.n) : first.n;
   const double extent = of.get("extent") == 0 ? 2.0 * n * n + 4 : of.positive("extent");
   return detail::make_orbital(of.dim, first, second, extent);
 }
@@ -265,15 +265,16 @@ const std::vector<KnownField>& known_fields() {
          {"bore", 0.3, "radius of the bores"}}},
        &make_csg},
       {{"orbital",
-        "a hydrogen-like wave function; in 2D its plane y = 0, in 4D the density of two through a beat",
+        "a hydrogen-like wave function; in 2D its plane y = 0, in 4D the density of two through a beat, in 5D with "
+        "more of the second one as u grows",
         2,
-        4,
+        5,
         {{"n", 1, "principal quantum number"},
          {"l", 0, "azimuthal quantum number"},
          {"m", 0, "magnetic quantum number"},
-         {"n2", 2, "4D: of the second state"},
-         {"l2", 1, "4D"},
-         {"m2", 0, "4D"},
+         {"n2", 2, "4D, 5D: of the second state"},
+         {"l2", 1, "4D, 5D"},
+         {"m2", 0, "4D, 5D"},
          {"extent", 0, "Bohr radii at a coordinate of 1; 0: 2 n^2 + 4"}}},
        &make_orbital_field},
       {{"noise", "independent samples, uniform from -0.5 to 0.5", 2, 5, {}, true}, &make_noise},

@@ -62,15 +62,17 @@ double wave(const Orbital& of, double x, double y, double z) {
 
 Field make_orbital(int dim, const Orbital& first, const Orbital& second, double extent) {
   require_possible(first);
-  if (dim == 4) require_possible(second);
+  if (dim >= 4) require_possible(second);
   return field_by_point(dim, [=](const FieldPoint& at) {
     const double x = at[0] * extent;
     const double y = dim == 2 ? 0 : at[1] * extent;
     const double z = (dim == 2 ? at[1] : at[2]) * extent;
     const double one = wave(first, x, y, z);
-    if (dim != 4) return one;
+    if (dim < 4) return one;
     const double other = wave(second, x, y, z);
-    return (one * one + other * other) / 2 + one * other * std::cos(std::numbers::pi * at[3]);
+    const double angle = std::numbers::pi / 4 * (1 + (dim == 5 ? at[4] : 0));
+    const double of_first = std::cos(angle) * one, of_second = std::sin(angle) * other;
+    return of_first * of_first + of_second * of_second + 2 * of_first * of_second * std::cos(std::numbers::pi * at[3]);
   });
 }
 

@@ -105,6 +105,14 @@ TEST(Field, OrbitalsHaveTheNorm1AndAreOrthogonal) {
   const Field beat = make_field("orbital", 4);
   const std::array<double, 4> start = {0.1, 0, 0.2, -1}, end = {0.1, 0, 0.2, 1};
   EXPECT_NEAR(beat(start.data()), beat(end.data()), 1e-12);
+  // 5D: from the density of the first state to that of the second
+  const Field mixed = make_field("orbital", 5);
+  const Field one = make_field("orbital", 3, {{"extent", 12}}), two = make_field("orbital", 3, {{"n", 2}, {"l", 1}});
+  const std::array<double, 5> first = {0.1, 0, 0.2, 0.3, -1}, both = {0.1, 0, 0.2, 0.3, 0},
+                              second = {0.1, 0, 0.2, 0.3, 1};
+  EXPECT_NEAR(mixed(first.data()), std::pow(one(first.data()), 2), 1e-12);
+  EXPECT_NEAR(mixed(both.data()), beat(both.data()), 1e-12);
+  EXPECT_NEAR(mixed(second.data()), std::pow(two(second.data()), 2), 1e-12);
 }
 
 TEST(Field, LatticesShiftTheirLayers) {
