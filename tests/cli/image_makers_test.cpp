@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "sample_files.hpp"
 #include "tegl/check.hpp"
@@ -96,12 +97,72 @@ TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
   expect_refused({"scale-space", volume, "--sigmas", "0.5:2:3", "--iso", "99999", "-o", path("d.nrrd")}, "99999", 5);
   EXPECT_FALSE(std::filesystem::exists(path("d.nrrd")));
   for (const std::vector<std::string>& options : {std::vector<std::string>{"--scale-space", "2,1"},
-                                                  {"--scale-space", "0.5:2:3", "--stream"},
+                                                  {"--scale-space", "0.5:2:3", "--index", volume},
                                                   {"--scale-space", "0.5:2:3", "--lattice", "fcc"}}) {
     std::vector<std::string> arguments = {"contour", volume, "--iso", "128", "-o", path("c.vtkhdf")};
     arguments.insert(arguments.end(), options.begin(), options.end());
     EXPECT_EQ(run_tegl(arguments).exit, 2);
   }
+}
+
+TEST_F(ImageMakers, StreamedContoursOverTheScaleAreThoseInMemory) {
+  const std::string picture = write("picture.nii", nifti_bytes(noise({21, 18}, 2), {1, 2}));
+  const std::string volume = write("volume.nii", nifti_bytes(noise({9, 8, 7}, 1), {1, 2, 1}));
+  const std::string film = write("film.nii", nifti_bytes(noise({5, 5, 4, 3}, 1), {1, 1, 1, 1}));
+  const std::vector<std::string> scales = {"contour", "--scale-space", "0.5:2:5", "--no-check", "-q"};
+  const auto run = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = scales;
+    arguments.push_back(file);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_tegl(arguments);
+  };
+  for (const std::string& file : {picture, volume})
+    for (std::vector<std::string> more : std::vector<std::vector<std::string>>{
+             {"--iso", "120,130"}, {"--iso", "128,131", "--close", "--normals", "--threads", "3"}}) {
+      SCOPED_TRACE(file + more[1]);
+      more.insert(more.end(), {"-o", path("whole{n}.vtkhdf")});
+      ASSERT_EQ(run(file, more).exit, 0);
+      more.back() = path("streamed{n}.vtkhdf");
+      more.emplace_back("--stream");
+      const RunResult streamed = run(file, more);
+      ASSERT_EQ(streamed.exit, 0) << streamed.err;
+      for (const char* const n : {"1", "2"}) {
+        const Mesh x = read_mesh(path(std::string("whole") + n + ".vtkhdf"));
+        const Mesh y = read_mesh(path(std::string("streamed") + n + ".vtkhdf"));
+        EXPECT_GT(x.simplices.size(), 100u);
+        EXPECT_TRUE(x.simplices == y.simplices && x.coordinates == y.coordinates && x.normals == y.normals);
+        EXPECT_EQ(x.axis_names, y.axis_names);
+        EXPECT_EQ(y.axis_names.back(), "log2_sigma");
+      }
+    }
+  const auto before = files();
+  EXPECT_EQ(run(volume, {"--iso", "99999", "--stream", "-o", path("c.vtkhdf")}).exit, 5);
+  expect_refused({"contour", film, "--iso", "128", "-o", path("c.vtkhdf"), "--scale-space", "1,2", "--stream"},
+                 "--scale-space and --stream with an image of 4 axes; expected 2 or 3", 2);
+  expect_refused({"contour", volume, "--iso", "128", "-o", path("c.ply"), "--scale-space", "1,2", "--stream"}, ".ply",
+                 6);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(ImageMakers, StreamedContoursOverTheScaleNeedMemoryForSomeLayersOnly) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space";
+#endif
+  // 1 MiB of samples with 160 scales: 640 MiB
+  std::string pixels(std::size_t{1024} * 1024, '\0');
+  for (std::size_t y = 500; y < 530; ++y) pixels.replace(y * 1024 + 500, 30, 30, 'd');
+  const std::string raw = write("picture.raw", pixels);
+  const std::string out = path("scales.vtkhdf");
+  const auto run = [&](const char* stream) {
+    const std::string command = "ulimit -v 491520; exec " TEGL_PROGRAM " contour " + raw +
+                                " --raw 1024x1024 --raw-type uint8 --scale-space 0.5:2:160 --iso 20.5 --threads 1 -q " +
+                                stream + " -o " + out + " 2> " + path("said");
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  EXPECT_EQ(run(""), 70);
+  ASSERT_EQ(run("--stream"), 0);
+  const RunResult check = run_tegl({"check", out, "--json"});
+  EXPECT_EQ(check.json()["components"], 1);
 }
 
 TEST_F(ImageMakers, PackedImagesOfFiveAxesAreContouredAtTheirValues) {

@@ -15,7 +15,7 @@
 #include "base/progress.hpp"
 #include "commands/append_mesh.hpp"
 #include "commands/facets.hpp"
-#include "commands/image_makers.hpp"
+#include "commands/over_scales.hpp"
 #include "commands/streaming.hpp"
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
@@ -30,7 +30,6 @@
 #include "output/result.hpp"
 #include "tegl/io/active_tiles.hpp"
 #include "tegl/pick.hpp"
-#include "tegl/scale_space.hpp"
 
 namespace tegl::cli {
 
@@ -86,11 +85,7 @@ class ContourCommand final : public Command {
         ->type_name("X,Y,Z[,T]");
     positions_.add_to(app());
     merging_.add_to(app());
-    app()
-        .add_option("--scale-space", scale_space_,
-                    "contour the image smoothed at these scales, with the scale as one more axis, as by 'tegl "
-                    "scale-space': FIRST:LAST:COUNT or a list, in units of the axes")
-        ->type_name("SIGMAS");
+    scales_.add_to(app());
     attributes_.add_to(app());
     compress_.add_to(app());
     app().add_flag("--stream", stream_,
@@ -198,7 +193,7 @@ class ContourCommand final : public Command {
 
   /// Whether no option is given that needs straight axes.
   [[nodiscard]] bool knows_curved_grids() const {
-    return index_.empty() && !options_.polygon_triangulation() && sigmas_.empty();
+    return index_.empty() && !options_.polygon_triangulation() && !scales_.are_given();
   }
 
   /// Refuses --positions with options of functions that know linear positions only, and checks its own options.
@@ -213,41 +208,13 @@ class ContourCommand final : public Command {
     positions_.require();
   }
 
-  [[nodiscard]] bool has_scale_space() const { return app().count("--scale-space") > 0; }
-
   /// Refuses --scale-space with options that need the image itself, or layers of a file.
   void require_scale_space() {
-    if (!has_scale_space()) return;
-    sigmas_ = parse_sigmas("--scale-space", scale_space_);
-    if (sigmas_.size() < 2)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--scale-space {} has one scale; expected at least two, as in 0.5:8:24", scale_space_));
-    const auto refuse = [&](bool given, const char* with) {
-      if (given)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("--scale-space with {}; expected one of the two", with));
-    };
-    refuse(is_streamed(), "--stream");
-    refuse(!index_.empty(), "--index");
-    refuse(facets_, "--facets");
-    refuse(attributes_.wanted(), "--attribute");
-    refuse(!options_.tiling().is_plain() && !options_.tiling().of_cells, "--periodic, --lattice or --division");
-  }
-
-  /// Replaces an image in 2 to 4 dimensions by its scale space.
-  void make_scale_space(std::variant<ReadImageResult, ReadImage5dResult>& input, Progress progress) const {
-    ScaleSpaceOptions options;
-    options.filter.work = {options_.threads(), std::move(progress)};
-    if (std::holds_alternative<ReadImage5dResult>(input))
-      throw Error(ErrorCode::InvalidArgument, "--scale-space with an image of 5 axes; expected 2 to 4");
-    ReadImageResult from = std::move(std::get<ReadImageResult>(input));
-    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
-      auto scales = ScaleSpaceLayers<T, N>(owned.view(), sigmas_, options).all();
-      if constexpr (N == 4)
-        input = ReadImage5dResult{std::move(scales), std::move(from.info)};
-      else
-        input = ReadImageResult{AnyImageN<N + 1>(std::move(scales)), std::move(from.info)};
-    };
-    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, from.image);
+    scales_.require();
+    scales_.refuse(!index_.empty(), "--index");
+    scales_.refuse(facets_, "--facets");
+    scales_.refuse(attributes_.wanted(), "--attribute");
+    scales_.refuse(!options_.tiling().is_plain() && !options_.tiling().of_cells, "--periodic, --lattice or --division");
   }
 
   /// Refuses options that 5D contours do not have.
@@ -333,7 +300,7 @@ class ContourCommand final : public Command {
     auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused,
                           takes_stored_integers(options));
     remark(positions_.apply(any, results, options_.allows_empty()));
-    if (!sigmas_.empty()) make_scale_space(any, bar.stage("scale space"));
+    if (scales_.are_given()) scales_.apply(any, options_.threads(), bar.stage("scale space"));
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       return contour_5d(*in_5d, options, watch, bar, results);
     ReadImageResult input = std::move(std::get<ReadImageResult>(any));
@@ -432,7 +399,7 @@ class ContourCommand final : public Command {
   /// Whether the samples may be stored integers: for contours that depend on the samples' sides and, along edges, on
   /// their differences only. Other rules compare sums, and files beside the image have its values.
   [[nodiscard]] bool takes_stored_integers(const ExtractOptions& options) const {
-    return index_.empty() && sigmas_.empty() && positions_.are_linear() && !positions_.has_label() &&
+    return index_.empty() && !scales_.are_given() && positions_.are_linear() && !positions_.has_label() &&
            options_.tiling().is_plain() && !options_.polygon_triangulation() &&
            (options.ambiguity == Ambiguity::low || options.ambiguity == Ambiguity::high);
   }
@@ -508,7 +475,7 @@ class ContourCommand final : public Command {
     if (std::count(sizes.begin(), sizes.end(), 'x') >= 4) return false;  // 5D contours are made in memory
     const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
                               app().count("--pick") > 0 || !positions_.are_linear() || merging_.are_given() ||
-                              has_scale_space() || options_.wants_shape_normals() || attributes_.wanted() ||
+                              scales_.are_given() || options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
@@ -650,6 +617,13 @@ class ContourCommand final : public Command {
     return tell(streams, results);
   }
 
+  /// The layers of FILE, or those of its scale space, which need FILE in memory: `image`.
+  OpenLayersResult open_or_smooth(ReadImageResult& image, ProgressBar& bar) {
+    if (!scales_.are_given()) return open();
+    image = read(bar.stage("read"));
+    return scales_.layers(image, options_.threads());
+  }
+
   void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     // validate options and files
     require_open_files(results.size());
@@ -660,7 +634,10 @@ class ContourCommand final : public Command {
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "normals from the gradient"));
     // open, extract and write in one pass
-    OpenLayersResult input = with_option_to_4d("--stream", [&] { return open(); });
+    ReadImageResult image;  // of a scale space, whose layers are computed from it
+    Stopwatch watch;
+    OpenLayersResult input = with_option_to_4d("--stream", [&] { return open_or_smooth(image, bar); });
+    const double read_seconds = watch.lap();
     refuse_cells_of_file(input.info.samples_are_cells);
     for (ContourResult& result : results) {
       result.input = inputs();
@@ -670,13 +647,13 @@ class ContourCommand final : public Command {
     const StreamOptions streaming{options, options_.single_precision(), options_.allows_empty(),
                                   compress_.compression()};
     for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));
+    results.front().seconds.read += read_seconds;
     for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);
   }
 
   ExtractionOptions options_;
   MergeArguments merging_;
-  std::string scale_space_;
-  std::vector<double> sigmas_;
+  ScaleSpaceArguments scales_;
   PositionArguments positions_;
   Tiling tiling_;  ///< with the image's curved grid
   PositionOptions placed_;
