@@ -3,6 +3,7 @@
 // --positions of tegl contour, run as in a shell.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -70,6 +71,13 @@ TEST_F(PositionsCommand, MasksNeedNoIsovalueAndLabelsAreMasks) {
   EXPECT_THAT(middle.err, HasSubstr("the isovalue is 0.5, the middle of the image's two values, 0 and 1"));
   EXPECT_EQ(middle.json()["isovalue"], 0.5);
   EXPECT_EQ(read_mesh(path("b.ply")).coordinates, read_mesh(path("a.ply")).coordinates);
+  // the number found is in the name of the file
+  const RunResult named = run_tegl({"contour", mask_, "--positions", "relaxed", "-o", path("m_{iso}.ply"), "--json"});
+  EXPECT_EQ(named.json()["output"], path("m_0.5.ply")) << named.err << named.out;
+  EXPECT_EQ(read_mesh(path("m_0.5.ply")).coordinates, read_mesh(path("a.ply")).coordinates);
+  const RunResult no_folder = run_tegl({"contour", mask_, "--positions", "relaxed", "-o", path("no{iso}/m.ply")});
+  EXPECT_EQ(no_folder.exit, 6);
+  EXPECT_THAT(no_folder.err, HasSubstr("no0.5"));
   const auto labels = [](const std::vector<double>& x) {
     return std::hypot(x[0] - 11.6, x[1] - 10.4, x[2] - 11) < 8.3 ? 7.0 : x[0] < 4 ? 9.0 : 0.0;
   };

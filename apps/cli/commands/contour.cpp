@@ -135,7 +135,7 @@ class ContourCommand final : public Command {
   /// Checks the names of outputs and the other inputs.
   void require_files(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
-      require_output(output, files());
+      if (!is_named_by_image()) require_output(output, files());
       require_output_keeps(output, options_.normals(), attributes_.wanted() || one_file_);
       compress_.require_known(output);
     }
@@ -162,6 +162,16 @@ class ContourCommand final : public Command {
       results[i].compression = compress_.compression();
     }
     return results;
+  }
+
+  /// Whether the output's name has an isovalue that is found in the image.
+  [[nodiscard]] bool is_named_by_image() const {
+    return positions_.finds_isovalue(options_) && output_.find("{iso}") != std::string::npos;
+  }
+
+  void name_by_isovalue(ContourResult& result) const {
+    result.output = isovalue_outputs(output_, {{*result.isovalue, number(*result.isovalue)}}).front();
+    require_output(result.output, files());
   }
 
   /// Refuses --samples-are file with options that cells do not have, if the samples of FILE are cells.
@@ -300,6 +310,7 @@ class ContourCommand final : public Command {
     auto any = read_to_5d(bar.stage("read"), knows_curved_grids() ? CurvedGrids::allowed : CurvedGrids::refused,
                           takes_stored_integers(options));
     remark(positions_.apply(any, results, options_.allows_empty()));
+    if (is_named_by_image()) name_by_isovalue(results.front());
     if (scales_.are_given()) scales_.apply(any, options_.threads(), bar.stage("scale space"));
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       return contour_5d(*in_5d, options, watch, bar, results);

@@ -68,6 +68,11 @@ void take_label(AnyDimension& image, double label, bool allow_empty) {
   image = std::move(mask);
 }
 
+bool has_isovalue(const ExtractionOptions& options) {
+  const std::vector<std::string> given = options.given();
+  return std::find(given.begin(), given.end(), "--iso") != given.end();
+}
+
 /// The two values of an image. Throws InvalidArgument if it has more or fewer.
 template <class AnyDimension>
 std::pair<double, double> two_values_of(const AnyDimension& image) {
@@ -118,13 +123,15 @@ void PositionArguments::add_to(CLI::App& app) {
 }
 
 std::vector<SpelledNumber> PositionArguments::isovalues(const ExtractionOptions& options) const {
-  const std::vector<std::string> given = options.given();
-  const bool has_isovalue = std::find(given.begin(), given.end(), "--iso") != given.end();
-  if (has_label() && has_isovalue)
+  if (has_label() && has_isovalue(options))
     throw Error(ErrorCode::InvalidArgument, fmt::format("--label {} with --iso; expected one of the two", label_));
   if (has_label()) return {{0.5, "0.5"}};
-  if (!has_isovalue && rule_ == "relaxed") return {{std::numeric_limits<double>::quiet_NaN(), "middle"}};
+  if (finds_isovalue(options)) return {{std::numeric_limits<double>::quiet_NaN(), "{iso}"}};
   return options.isovalues();
+}
+
+bool PositionArguments::finds_isovalue(const ExtractionOptions& options) const {
+  return !has_label() && rule_ == "relaxed" && !has_isovalue(options);
 }
 
 std::string PositionArguments::apply(std::variant<ReadImageResult, ReadImage5dResult>& input,

@@ -26,6 +26,8 @@ class PositionArguments {
   /// The isovalues of --iso; 1/2 with --label; NaN by default with --positions relaxed: see `apply`. Throws
   /// InvalidArgument without --iso otherwise, and for --iso with --label.
   [[nodiscard]] std::vector<SpelledNumber> isovalues(const ExtractionOptions& options) const;
+  /// Whether `apply` sets the isovalue.
+  [[nodiscard]] bool finds_isovalue(const ExtractionOptions& options) const;
   /// With --label, replaces the image by 1 for samples that have this value and 0 for others; missing ones stay
   /// missing. Sets isovalues of NaN to the middle of the image's two values, and returns a remark of this. Throws
   /// EmptyResult if no sample has the label, unless `allow_empty`, InvalidArgument if the image has not exactly two
