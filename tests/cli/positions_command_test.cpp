@@ -102,6 +102,42 @@ TEST_F(PositionsCommand, MasksNeedNoIsovalueAndLabelsAreMasks) {
   EXPECT_FALSE(std::filesystem::exists(path("d.ply")));
 }
 
+TEST_F(PositionsCommand, MasksOfFiveAxesHaveRelaxedPositions) {
+  std::string bytes;  // a ball
+  for (std::size_t i = 0; i < 6 * 6 * 6 * 6 * 6; ++i) {
+    double sum = 0;
+    for (std::size_t rest = i, a = 0; a < 5; ++a, rest /= 6)
+      sum += (static_cast<double>(rest % 6) - 2.4) * (static_cast<double>(rest % 6) - 2.4);
+    bytes.push_back(sum < 4 ? 1 : 0);
+  }
+  const std::string raw = write("mask.raw", bytes);
+  const auto contour = [&](const std::vector<std::string>& more, const std::string& output) {
+    std::vector<std::string> arguments = {"contour",    raw,     "--raw", "6x6x6x6x6",
+                                          "--raw-type", "uint8", "-o",    path(output)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return read_mesh(path(output));
+  };
+  const Mesh linear = contour({"--iso", "0.5"}, "a.vtkhdf"), relaxed = contour({"--positions", "relaxed"}, "b.vtkhdf");
+  const Mesh label = contour({"--label", "1", "--positions", "relaxed"}, "c.vtkhdf");
+  EXPECT_GT(linear.simplices.size(), 1000u);
+  EXPECT_EQ(relaxed.simplices, linear.simplices);
+  EXPECT_NE(relaxed.coordinates, linear.coordinates);
+  EXPECT_EQ(relaxed.coordinates, label.coordinates);
+  const auto spread = [](const Mesh& mesh) {
+    double least = 100, most = 0;
+    for (std::size_t i = 0; i < mesh.coordinates.size(); i += 5) {
+      double sum = 0;
+      for (std::size_t a = 0; a < 5; ++a) sum += std::pow(mesh.coordinates[i + a] - 2.4, 2);
+      least = std::min(least, std::sqrt(sum));
+      most = std::max(most, std::sqrt(sum));
+    }
+    return most - least;
+  };
+  EXPECT_LT(spread(relaxed), spread(linear));
+}
+
 TEST_F(PositionsCommand, WrongOptionsAreRefused) {
   const std::string output = path("none.vtkhdf");
   expect_refused({"--positions", "smooth", "-o", output}, "--positions");

@@ -233,7 +233,6 @@ class ContourCommand final : public Command {
     for (const char* const name : {"--index", "--pick", "--merge", "--merge-within", "--one-file"})
       if (app().get_option_no_throw(name) != nullptr && app().count(name) > 0)
         throw Error(ErrorCode::InvalidArgument, fmt::format("{} with an image of 5 axes; expected 2 to 4 axes", name));
-    if (!positions_.are_linear()) positions_.refuse("an image of 5 axes");
     if (attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument, "--attribute with an image of 5 axes; expected 2 to 4 axes");
   }
@@ -242,6 +241,7 @@ class ContourCommand final : public Command {
   void contour_5d(const ReadImage5dResult& input, ExtractOptions& options, Stopwatch& watch, ProgressBar& bar,
                   std::vector<ContourResult>& results) {
     require_to_5d();
+    const PositionOptions placed = positions_.library_options_5d();
     require_output_holds(results.front().output, 4);
     for (ContourResult& result : results) {
       result.input = inputs();
@@ -253,11 +253,15 @@ class ContourCommand final : public Command {
     WrittenFiles written;
     for (ContourResult& result : results) {
       options.work.progress = bar.stage("contour");
-      result.mesh = extract_and_use<Mesh>(input.image, result.isovalue_of_samples, options, options_.single_precision(),
-                                          [&](auto extraction) {
-                                            result.stats = extraction.stats;
-                                            return to_mesh(std::move(extraction.contour));
-                                          });
+      const auto finished = [&](auto extraction) {
+        result.stats = extraction.stats;
+        return to_mesh(std::move(extraction.contour));
+      };
+      const bool single_precision = options_.single_precision();
+      result.mesh = positions_.are_linear() ? extract_and_use<Mesh>(input.image, result.isovalue_of_samples, options,
+                                                                    single_precision, finished)
+                                            : extract_placed_and_use<Mesh>(input.image, result.isovalue_of_samples,
+                                                                           placed, options, single_precision, finished);
       result.seconds.add(*result.stats);
       check_and_write(result, bar, written);
       leave_the_sizes(result);

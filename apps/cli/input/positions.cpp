@@ -142,7 +142,7 @@ std::string PositionArguments::apply(std::variant<ReadImageResult, ReadImage5dRe
     for (ContourResult& result : results) result.label = label;
     return "";
   }
-  if (!std::isnan(*results.front().isovalue) || std::holds_alternative<ReadImage5dResult>(input)) return "";
+  if (!std::isnan(*results.front().isovalue)) return "";
   const auto [low, high] = std::visit([](const auto& read) { return two_values_of(read.image); }, input);
   for (ContourResult& result : results) result.isovalue = low + (high - low) / 2;
   return fmt::format("no --iso: the isovalue is {}, the middle of the image's two values, {} and {}",
@@ -172,14 +172,26 @@ void PositionArguments::require() const {
   if (!file_.empty()) require_input(parse_file_and_variable(file_).file, Folders::allowed);
 }
 
-PositionOptions PositionArguments::library_options(const AnyImage& image, ReadImageOptions reading,
-                                                   std::vector<float>& values) const {
+PositionOptions PositionArguments::without_image() const {
   PositionOptions options;
   options.rule = rule_ == "filtered"      ? Positions::filtered
                  : rule_ == "gravitation" ? Positions::gravitation
                  : rule_ == "relaxed"     ? Positions::relaxed
                                           : Positions::linear;
   options.last_axis_weight = parse_finite("--last-axis-weight", weight_);
+  return options;
+}
+
+PositionOptions PositionArguments::library_options_5d() const {
+  if (!are_linear() && rule_ != "relaxed")
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--positions {} with an image of 5 axes; expected --positions linear or relaxed", rule_));
+  return without_image();
+}
+
+PositionOptions PositionArguments::library_options(const AnyImage& image, ReadImageOptions reading,
+                                                   std::vector<float>& values) const {
+  PositionOptions options = without_image();
   if (options.rule != Positions::filtered) return options;
   const FileAndVariable from = parse_file_and_variable(file_);
   reading.variable = from.variable;

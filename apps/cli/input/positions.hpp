@@ -53,7 +53,12 @@ class PositionArguments {
   [[nodiscard]] PositionOptions library_options(const AnyImage& image, ReadImageOptions reading,
                                                 std::vector<float>& values) const;
 
+  /// The same for an image of 5 axes. Throws InvalidArgument for other rules than linear and relaxed.
+  [[nodiscard]] PositionOptions library_options_5d() const;
+
  private:
+  [[nodiscard]] PositionOptions without_image() const;
+
   std::string rule_ = "linear";
   std::string file_;
   std::string weight_ = "1";
@@ -77,6 +82,18 @@ Result extract_placed_and_use(const AnyImage& image, double isovalue, const Posi
     return use(extract_placed_with_stats<double>(owned.view(), isovalue, positions, options));
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+/// The same for an image in 5 dimensions.
+template <class Result, class Use>
+Result extract_placed_and_use(const AnyImage5d& image, double isovalue, const PositionOptions& positions,
+                              const ExtractOptions& options, bool single_precision, const Use& use) {
+  return std::visit(
+      [&](const auto& owned) -> Result {
+        if (single_precision) return use(extract_placed_with_stats<float>(owned.view(), isovalue, positions, options));
+        return use(extract_placed_with_stats<double>(owned.view(), isovalue, positions, options));
+      },
+      image);
 }
 
 }  // namespace tegl::cli
