@@ -100,6 +100,13 @@ TEST_F(Contour, OfIntegersWithASlopeIsTheContourOfTheirValues) {
       for (std::size_t i = 0; i < a.coordinates.size(); ++i) ASSERT_NEAR(a.coordinates[i], b.coordinates[i], 1e-5);
     }
   }
+  // two files as one 4D image: with one slope, and with two, so that the values are converted
+  const std::string third = write("third.nii", nifti_bytes_int16(stored, 0.3f, 1));
+  const auto of_two = [&](float slope) {
+    const std::string fourth = write("fourth.nii", nifti_bytes_int16(stored, slope, 1));
+    return run_tegl({"contour", third, fourth, "--iso", "5.2", "-o", path("series.vtkhdf"), "--json"}).json();
+  };
+  EXPECT_EQ(of_two(0.3f)["simplices"], of_two(std::nextafter(0.3f, 1.0f))["simplices"]);
   const std::string file = write("integers.nii", nifti_bytes_int16(stored, -0.3f, 1));
   const RunResult run = run_tegl({"contour", file, "--iso", "2", "-o", path("none.ply")});
   EXPECT_EQ(run.exit, 5) << run.err;

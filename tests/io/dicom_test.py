@@ -207,6 +207,31 @@ class Dicom(unittest.TestCase):
                 self.assertEqual(image["value_unit"], "HU")
                 self.assert_volume(image, files=files_of(folder))
 
+    def test_stored_integers_have_the_values_of_the_image(self):
+        cases = [((0.5, 3), np.int16, None, "int16"), ((-0.3, 7.1), np.uint16, 12, "uint16"), ((2, 0), np.int16, None, "int16"),
+                 ((-2, 1), np.uint8, None, "uint8"), ((0.25, 0), np.int32, None, "int32"),
+                 ((1, -1024), np.uint16, 12, None), ((1e-3, 1e5), np.int16, None, None), ((1, 0), np.int16, None, None)]
+        for number, ((slope, intercept), dtype, bits, kept) in enumerate(cases):
+            with self.subTest(slope=slope, dtype=dtype):
+                folder = self.folder / str(number)
+                folder.mkdir()
+                tags = {"BitsStored": bits} if bits else {}
+                Writer(folder, seed=number).volume(dtype=dtype, low=0, high=250, RescaleSlope=slope,
+                                                   RescaleIntercept=intercept, **tags)
+                image = dump(folder)
+                for paths in ([folder], files_of(folder)):
+                    stored = dump(*paths, how="stored")
+                    self.assertEqual(stored.pop("kept"), kept is not None)
+                    self.assertEqual(stored["type"], kept or image["type"])
+                    self.assertEqual({**stored, "type": image["type"]}, image)
+
+    def test_integers_of_slices_with_different_slopes_are_not_kept(self):
+        Writer(self.folder).volume(dtype=np.uint16, low=0, high=900, RescaleIntercept=0,
+                                   RescaleSlope=lambda k: 0.5 + 0.25 * k)
+        stored = dump(self.folder, how="stored")
+        self.assertFalse(stored.pop("kept"))
+        self.assertEqual(stored, dump(self.folder))
+
     def test_every_slice_has_its_own_slope(self):
         Writer(self.folder, modality="PT").volume(dtype=np.uint16, low=0, high=9000, RescaleIntercept=0,
                                                   RescaleSlope=lambda k: 0.5 + 0.25 * k)

@@ -17,6 +17,7 @@
 #include "base/common.hpp"
 #include "base/raw_image.hpp"
 #include "base/reading_process.hpp"
+#include "base/stored_integers.hpp"
 #include "dicom/dicom_file.hpp"
 
 namespace tegl::io_detail {
@@ -450,6 +451,7 @@ Volume arrange(std::vector<DicomFile> files) {
 struct Rescaling {
   std::string type;  ///< of the result
   bool any = false;
+  std::optional<ValueScaling> kept = {};  ///< set if values stay as they are stored
 };
 
 /// Selects the value type: the stored type without rescaling; integers if slopes and intercepts are integers and equal
@@ -480,6 +482,24 @@ Rescaling rescaling_of(const Volume& volume) {
   return {first.type.ends_with("32") ? "double" : "float", true};
 }
 
+std::size_t bytes_of(const std::string& type) {
+  return std::visit([]<class T>(const ValueVector<T>&) { return sizeof(T); }, array_of_type(type));
+}
+
+/// Keeps the stored integers if all frames have one scaling and their values take more memory.
+Rescaling with_stored_integers(Rescaling rescaling, const Volume& volume) {
+  const DicomFile& first = volume.files.front();
+  const DicomFrame& frame = first.frames.front();
+  const bool same = std::all_of(volume.planes.begin(), volume.planes.end(), [&](const Plane& plane) {
+    return volume.frame(plane).slope == frame.slope && volume.frame(plane).intercept == frame.intercept;
+  });
+  if (!rescaling.any || !same || bytes_of(rescaling.type) <= bytes_of(first.type)) return rescaling;
+  auto kept = integer_scaling(array_of_type(first.type), frame.slope, frame.intercept);
+  if (!kept) return rescaling;
+  kept->single_precision = rescaling.type == "float";
+  return {first.type, false, kept};
+}
+
 /// Reads the values of planes in order; caches the last decoded file, which may have many planes.
 class PlaneReader {
  public:
@@ -499,6 +519,7 @@ class PlaneReader {
       }
       append(volume_.frame(plane), plane.frame * size, size, values);
     }
+    if (rescaling_.kept && rescaling_.kept->slope < 0) return in_reverse_order(std::move(values));
     return values;
   }
 
@@ -515,10 +536,14 @@ class PlaneReader {
         [&]<class To, class From>(ValueVector<To>& to, const ValueVector<From>& from) {
           const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
           const auto end = begin + static_cast<std::ptrdiff_t>(size);
-          std::transform(begin, end, std::back_inserter(to), [&](From value) {
-            return rescaling_.any ? static_cast<To>(frame.slope * static_cast<double>(value) + frame.intercept)
-                                  : static_cast<To>(value);
-          });
+          to.resize(to.size() + size);
+          const auto result = to.end() - static_cast<std::ptrdiff_t>(size);
+          if (rescaling_.any)
+            std::transform(begin, end, result, [slope = frame.slope, intercept = frame.intercept](From value) {
+              return static_cast<To>(slope * static_cast<double>(value) + intercept);
+            });
+          else
+            std::transform(begin, end, result, [](From value) { return static_cast<To>(value); });
         },
         values, values_);
   }
@@ -545,7 +570,8 @@ bool is_dicom(const fs::path& path) {
   return fs::is_directory(path) || lower_name(path) == "dicomdir" || is_dicom_file(path);
 }
 
-RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series, const Progress& progress) {
+RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series, bool keep_stored,
+                     const Progress& progress) {
   // select and arrange the series
   Found found = read_all_series(paths, progress);
   if (series.empty() && found.series.size() == 1 && !found.damaged.empty()) throw found.damaged.front();
@@ -567,6 +593,8 @@ RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series,
   result.grid = moves ? with_last_axis(spatial.grid, volume.time) : std::move(spatial.grid);
   // reader of layers
   Rescaling rescaling = rescaling_of(volume);
+  if (keep_stored) rescaling = with_stored_integers(std::move(rescaling), volume);
+  result.info.scaling = rescaling.kept;
   const auto reader = std::make_shared<PlaneReader>(std::move(volume), std::move(rescaling));
   result.read = [reader, per_layer, flat, columns, progress](std::size_t first, std::size_t count) {
     if (!flat || count == 0) return reader->read(first * per_layer, count * per_layer, progress);

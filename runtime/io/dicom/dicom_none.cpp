@@ -27,7 +27,7 @@ bool is_dicom(const std::filesystem::path& path) {
 
 void load_dicom_dictionary() {}
 
-RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::string&, const Progress&) {
+RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::string&, bool, const Progress&) {
   fail_without_dcmtk(paths.front());
 }
 

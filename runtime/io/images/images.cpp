@@ -149,12 +149,12 @@ RawLayers open_stored_layers(StoredImage&& stored, const fs::path& path) {
   return layers;
 }
 
-RawLayers open_dicom_with(const fs::path& path, const ReadImageOptions& options) {
+RawLayers open_dicom_with(const fs::path& path, bool keep_stored, const ReadImageOptions& options) {
   if (!options.fixed.empty())
     fail(ErrorCode::InvalidArgument, path,
          "an index of the dimension '{}' for DICOM, whose dimensions have no names; expected none, or a netCDF file",
          options.fixed[0].dimension);
-  return open_dicom(std::span(&path, 1), options.variable, options.work.progress);
+  return open_dicom(std::span(&path, 1), options.variable, keep_stored, options.work.progress);
 }
 
 /// The images of a collection, over time.
@@ -185,7 +185,7 @@ RawImage all_layers(RawLayers&& layers, Extent extent) {
 
 RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImageOptions& options) {
   if (is_dicom(path)) {
-    return all_layers(open_dicom_with(path, options), extent);
+    return all_layers(open_dicom_with(path, options.keep_stored, options), extent);
   }
   require_readable_file(path);
   const Format format = format_of(path);
@@ -199,7 +199,7 @@ RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImag
 }
 
 RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOptions& options) {
-  if (is_dicom(path)) return open_dicom_with(path, options);
+  if (is_dicom(path)) return open_dicom_with(path, false, options);
   require_readable_file(path);
   const Format format = format_of(path);
   if (format == Format::NetCdf) return open_netcdf_layers(path, options);

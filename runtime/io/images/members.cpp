@@ -230,43 +230,81 @@ void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::p
       to);
 }
 
-}  // namespace
+/// The files of a series in its order, with equal grids.
+struct Members {
+  std::vector<fs::path> paths;
+  RawGrid grid;           ///< of the whole series
+  ImageInfo info;         ///< likewise
+  std::size_t layer = 1;  ///< number of samples of a file
+  std::size_t type = 0;   ///< index of ValueArray
+};
 
-LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options, const MemberReader& read) {
-  // headers, coordinates and grid
-  std::vector<Member> members = read_headers(files, options, read);
+Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   auto [last, direction] = make_axis(members, options);
-  RawLayers result;
-  const RawGrid& first = members.front().grid;
-  result.grid = with_last_axis(first, std::move(last));
-  result.info = members.front().info;
+  const Member& first = members.front();
+  Members result;
+  for (const Axis& axis : first.grid.axes) result.layer *= axis.size();
+  result.type = first.type;
+  result.grid = with_last_axis(first.grid, std::move(last));
+  result.info = first.info;
   if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
-  for (const Member& member : members)
+  for (const Member& member : members) {
     if (member.info.curved != result.info.curved)
       fail(ErrorCode::UnsupportedData, member.path,
            "has other curved coordinates than {}; expected the same in all files", members.front().path.string());
-  std::vector<fs::path> paths;
-  for (const Member& member : members) paths.push_back(member.path);
-  // reader of layers
-  const auto sizes = sizes_of(first);
-  const std::size_t layer =
-      std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });
-  result.read = [paths, layer, type = members.front().type, own = options, read](std::size_t begin, std::size_t count) {
-    ValueArray values = array_of_type(name_of_type(type));
-    expect_memory(kBytesPerValue * count * layer);
-    std::visit([&](auto& all) { all.reserve(count * layer); }, values);
-    for (std::size_t i = begin; i < begin + count; ++i) {
-      Progress progress;
-      if (own.work.progress)
-        progress = [&](double share) {
-          return own.work.progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
-        };
-      append(values, read(paths[i], Extent::whole, progress).values, layer, paths[i]);
-      tick(progress, 1.0, paths[i]);
-    }
-    return values;
+    result.paths.push_back(member.path);
+  }
+  return result;
+}
+
+/// Reads the values of `count` files; nullopt as soon as the scaling of a file is not that of `members.info`.
+std::optional<ValueArray> read_values(const Members& members, std::size_t begin, std::size_t count,
+                                      const Progress& progress, const MemberReader& read) {
+  ValueArray values = array_of_type(name_of_type(members.type));
+  expect_memory(kBytesPerValue * count * members.layer);
+  std::visit([&](auto& all) { all.reserve(count * members.layer); }, values);
+  for (std::size_t i = begin; i < begin + count; ++i) {
+    Progress of_file;
+    if (progress)
+      of_file = [&](double share) {
+        return progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
+      };
+    RawImage image = read(members.paths[i], Extent::whole, of_file);
+    if (image.info.scaling != members.info.scaling) return std::nullopt;
+    append(values, std::move(image.values), members.layer, members.paths[i]);
+    tick(of_file, 1.0, members.paths[i]);
+  }
+  return values;
+}
+
+}  // namespace
+
+LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options, const MemberReader& read) {
+  Members members = join(read_headers(files, options, read), options);
+  RawLayers result;
+  result.grid = members.grid;
+  result.info = members.info;
+  std::vector<fs::path> paths = members.paths;
+  result.read = [members = std::move(members), own = options, read](std::size_t begin, std::size_t count) {
+    return read_values(members, begin, count, own.work.progress, read).value();
   };
   return {std::move(result), std::move(paths)};
+}
+
+std::optional<ImageOfFiles> read_stored_members(std::span<const fs::path> files, const SeriesOptions& options,
+                                                const MemberReader& read) {
+  // A file without integers, or with another scaling, ends this quickly: at its header.
+  std::optional<ValueScaling> scaling;
+  for (const fs::path& path : files) {
+    tick(options.work.progress, 0.0, path);
+    const std::optional<ValueScaling> own = read(path, Extent::header, {}).info.scaling;
+    if (!own || (scaling && own != scaling)) return std::nullopt;
+    scaling = own;
+  }
+  Members members = join(read_headers(files, options, read), options);
+  auto values = read_values(members, 0, members.paths.size(), options.work.progress, read);
+  if (!values) return std::nullopt;
+  return ImageOfFiles{{std::move(members.grid), std::move(*values), std::move(members.info)}, std::move(members.paths)};
 }
 
 }  // namespace tegl::io_detail

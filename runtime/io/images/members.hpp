@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "base/raw_image.hpp"
@@ -21,5 +22,11 @@ using MemberReader =
 /// those of read_series.
 LayersOfFiles open_members(std::span<const std::filesystem::path> files, const SeriesOptions& options,
                            const MemberReader& read);
+
+/// Reads a series with one file per layer, whose integers `read` leaves as they are stored: see
+/// ReadImageOptions::keep_stored. nullopt if a file has none or has another scaling than the first. Options and errors
+/// as for open_members.
+std::optional<ImageOfFiles> read_stored_members(std::span<const std::filesystem::path> files,
+                                                const SeriesOptions& options, const MemberReader& read);
 
 }  // namespace tegl::io_detail

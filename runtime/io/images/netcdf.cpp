@@ -27,9 +27,9 @@
 #include "base/collected_values.hpp"
 #include "base/common.hpp"
 #include "base/reading_process.hpp"
+#include "base/stored_integers.hpp"
 #include "images/netcdf_file.hpp"
 #include "images/netcdf_packing.hpp"
-#include "images/stored_integers.hpp"
 
 namespace tegl::io_detail {
 
@@ -565,7 +565,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
-  if (options.keep_stored && packing.any_attribute && extent == Extent::whole && found.info.curved.empty())
+  if (options.keep_stored && packing.any_attribute && found.info.curved.empty())
     image.values = stored_values(file, found.variable, slab, packing, options.work.progress, found.info.scaling);
   else
     image.values = unpacked_values(file, found.variable, slab, packing, options.work.progress);

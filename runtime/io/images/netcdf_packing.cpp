@@ -15,7 +15,7 @@
 #include <utility>
 #include <variant>
 
-#include "images/stored_integers.hpp"
+#include "base/stored_integers.hpp"
 
 namespace tegl::io_detail {
 

@@ -15,7 +15,7 @@
 
 #include "base/common.hpp"
 #include "base/inflate.hpp"
-#include "images/stored_integers.hpp"
+#include "base/stored_integers.hpp"
 
 namespace tegl::io_detail {
 

@@ -58,35 +58,52 @@ void require_sound(std::span<const fs::path> files, const SeriesOptions& options
                             std::numeric_limits<double>::min()));
 }
 
-RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
+/// `keep_stored`: see ReadImageOptions.
+RawLayers open_dicom_files(std::span<const fs::path> files, bool keep_stored, const SeriesOptions& options) {
   if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
     fail(ErrorCode::InvalidArgument, files[0],
          "is a DICOM file, which contains its position; expected no coordinates, step, unit or order");
   if (!options.fixed.empty())
     fail(ErrorCode::InvalidArgument, files[0], "is a DICOM file, which has no dimension '{}'; expected no fixed index",
          options.fixed[0].dimension);
-  return open_dicom(files, options.variable, options.work.progress);
+  return open_dicom(files, options.variable, keep_stored, options.work.progress);
+}
+
+MemberReader reader_of(const SeriesOptions& options) {
+  return [options](const fs::path& path, Extent extent, const Progress& progress) {
+    return read_member(path, extent, options, progress);
+  };
 }
 
 LayersOfFiles open_several(std::span<const fs::path> files, SeriesOptions options) {
-  options.keep_stored = false;  // several files may have several scalings
-  if (options.raw || !are_dicom_files(files))
-    return open_members(files, options, [options](const fs::path& path, Extent extent, const Progress& progress) {
-      return read_member(path, extent, options, progress);
-    });
-  return {open_dicom_files(files, options), {files.begin(), files.end()}};
+  options.keep_stored = false;
+  if (options.raw || !are_dicom_files(files)) return open_members(files, options, reader_of(options));
+  return {open_dicom_files(files, false, options), {files.begin(), files.end()}};
+}
+
+ImageOfFiles all_layers(LayersOfFiles&& opened) {
+  auto& [layers, files] = opened;
+  ValueArray values = layers.read(0, layers.grid.axes.back().size());
+  return {{std::move(layers.grid), std::move(values), std::move(layers.info)}, std::move(files)};
 }
 
 /// Reads one or several files in this process.
 ImageOfFiles read_files(std::span<const fs::path> files, const SeriesOptions& options) {
   if (files.size() == 1) return {read_member(files[0], Extent::whole, options, options.work.progress), {files[0]}};
-  auto [layers, order] = open_several(files, options);
-  ImageOfFiles result;
-  result.image.values = layers.read(0, layers.grid.axes.back().size());
-  result.image.grid = std::move(layers.grid);
-  result.image.info = std::move(layers.info);
-  result.files = std::move(order);
-  return result;
+  if (options.keep_stored && !options.raw) {
+    if (are_dicom_files(files))
+      return all_layers({open_dicom_files(files, true, options), {files.begin(), files.end()}});
+    // If a file has missing values, all files are read again: progress then waits.
+    SeriesOptions own = options;
+    if (options.work.progress)
+      own.work.progress = [&options, most = 0.0](double share) mutable {
+        most = std::max(most, share);
+        return options.work.progress(most);
+      };
+    if (auto stored = read_stored_members(files, own, reader_of(own))) return std::move(*stored);
+    return all_layers(open_several(files, own));
+  }
+  return all_layers(open_several(files, options));
 }
 
 LayersOfFiles open_files(std::span<const fs::path> files, const SeriesOptions& options) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Prints an image as JSON, coordinates and all values, for comparison with other readers. Arguments: the series or
-// variable (may be empty), "whole" or "layers", and the files. Reads them both in this process and in a child process,
-// and expects equal results; of error messages the range of layers read together is ignored.
+// variable (may be empty), "whole", "stored" or "layers", and the files. "stored" keeps stored integers (`keep_stored`)
+// and prints their values. Reads the files both in this process and in a child process, and expects equal results; of
+// error messages the range of layers read together is ignored.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -43,6 +44,9 @@ json whole(std::span<const std::filesystem::path> files, const tegl::SeriesOptio
   const auto of_image = [&]<class T, int N>(const tegl::OwnedImage<T, N>& image) {
     json result = describe(image.grid);
     result["values"] = image.values;
+    if (options.keep_stored) result["kept"] = read.info.scaling.has_value();
+    if (read.info.scaling)
+      for (json& value : result["values"]) value = read.info.scaling->value_of(value);
     result["type"] = type_of(T{});
     result["frame"] = read.info.world_frame;
     result["remarks"] = read.info.remarks;
@@ -82,6 +86,7 @@ int main(int argc, char** argv) {
   tegl::SeriesOptions options;
   options.variable = argv[1];
   const std::vector<std::filesystem::path> files(argv + 3, argv + argc);
+  options.keep_stored = std::string(argv[2]) == "stored";
   const auto read = [&](bool separate_process) -> json {
     options.separate_process = separate_process;
     try {

@@ -5,6 +5,7 @@
 
 #include "images/layers_support.hpp"
 #include "images/netcdf_files.hpp"
+#include "images/nifti_files.hpp"
 #include "io_support.hpp"
 
 namespace tegl::test {
@@ -221,6 +222,77 @@ TEST_F(Series, OfNetcdfLiesAtItsTimes) {
   EXPECT_EQ(image.values[12], 1);
   EXPECT_EQ(read.info.value_unit, "degC");
   expect_layers_of(read.image, open_series(files_).layers);
+}
+
+/// The values of an image of `keep_stored`, which has stored integers of type T if `kept`, else values.
+template <class T>
+std::vector<float> values_of(const ReadImageResult& read, bool kept) {
+  EXPECT_EQ(read.info.scaling.has_value(), kept);
+  if (!kept) {
+    const auto values = image_as<float, 4>(read.image).values;
+    return {values.begin(), values.end()};
+  }
+  std::vector<float> values;
+  for (const T stored : image_as<T, 4>(read.image).values)
+    values.push_back(static_cast<float>(read.info.scaling->value_of(stored)));
+  return values;
+}
+
+TEST_F(Series, KeepsStoredIntegersIfAllFilesHaveOneScaling) {
+  constexpr int kInt16 = 4;
+  SeriesOptions options;
+  options.keep_stored = true;
+  const auto write = [&](const std::vector<float>& slopes) {
+    files_.clear();
+    for (std::size_t k = 0; k < slopes.size(); ++k) {
+      std::vector<std::int16_t> stored(24);
+      for (std::size_t i = 0; i < 24; ++i) stored[i] = static_cast<std::int16_t>((24 * k + i) * 7919 % 65536);
+      add("volume_" + std::to_string(k) + ".nii",
+          NiftiHeader({2, 3, 4}, kInt16, 16).scaling(slopes[k], -3.7F).bytes() + bytes_of(stored));
+    }
+  };
+  for (const auto& [slopes, kept] : std::vector<std::pair<std::vector<float>, bool>>{
+           {{0.3F, 0.3F, 0.3F}, true}, {{-0.3F, -0.3F}, true}, {{0.3F, 0.3F, 0.4F}, false}, {{0.3F, -0.3F}, false}}) {
+    write(slopes);
+    const ReadImageResult converted = read_series(files_);
+    EXPECT_EQ(values_of<std::int16_t>(read_series(files_, options), kept), values_of<std::int16_t>(converted, false));
+    expect_layers_of(converted.image, open_series(files_, options).layers);
+  }
+  write({0.3F, 1e-9F});  // float has no number between the values of neighbouring integers of the second file
+  EXPECT_EQ(values_of<std::int16_t>(read_series(files_, options), false),
+            values_of<std::int16_t>(read_series(files_), false));
+}
+
+TEST_F(Series, WithAMissingValueInAnyFileIsConverted) {
+  SeriesOptions options;
+  options.keep_stored = true;
+  std::vector<double> told;
+  options.work.progress = [&](double share) {
+    told.push_back(share);
+    return true;
+  };
+  for (const int missing : {-1, 2}) {
+    files_.clear();
+    told.clear();
+    for (int k = 0; k < 3; ++k) {
+      files_.push_back(dir_ / ("volume_" + std::to_string(k) + ".nc"));
+      NcWriter file(files_.back());
+      const int value =
+          file.variable("v", NC_SHORT, {file.dimension("z", 2), file.dimension("y", 3), file.dimension("x", 4)});
+      file.number(value, "scale_factor", NC_DOUBLE, {0.3});
+      file.number(value, "_FillValue", NC_SHORT, {-5});
+      file.end();
+      std::vector<double> stored(24, 10.0 * k);
+      if (k == missing) stored[7] = -5;
+      file.values(value, stored);
+    }
+    const auto values = values_of<std::int16_t>(read_series(files_), false);
+    const auto read = read_series(files_, options);
+    EXPECT_THAT(values_of<std::int16_t>(read, missing < 0), testing::Pointwise(testing::NanSensitiveFloatEq(), values));
+    EXPECT_EQ(std::isnan(values[24 + 24 + 7]), missing == 2);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1);
+  }
 }
 
 /// Files of one day each often count time from that day: all of them are at 0.

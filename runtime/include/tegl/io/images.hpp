@@ -48,6 +48,8 @@ struct ValueScaling {
   /// are below it, and the same are equal to it, so signatures and simplices are those of the values. Positions are
   /// computed without the rounding of values. Takes at most 33 steps.
   [[nodiscard]] double stored_isovalue(double isovalue) const noexcept;
+
+  bool operator==(const ValueScaling&) const = default;
 };
 
 /// Metadata of an image file besides values and grid.
@@ -108,10 +110,11 @@ struct ReadImageOptions {
   /// plus some 20 ms for each gigabyte that this process has in small pages. Other threads may run meanwhile. Linux
   /// only.
   bool separate_process = false;
-  /// NIfTI and netCDF: integers with a scale and an offset stay as they are stored, in half of the memory or less, and
-  /// ImageInfo::scaling maps them to values. For integers of up to 32 bits, not uint32. By default they are converted;
-  /// also if values are missing, if the grid is curved, and if float (of 32 bits: double) has not four numbers between
-  /// the values of neighbouring integers.
+  /// NIfTI, netCDF and DICOM: integers with a scale and an offset stay as they are stored, in half of the memory or
+  /// less, and ImageInfo::scaling maps them to values. For integers of up to 32 bits, not uint32. By default they are
+  /// converted; also if values are missing, if the grid is curved, if frames or files have different scales or offsets,
+  /// and if float (of 32 bits: double) has not four numbers between the values of neighbouring integers. Integers of
+  /// DICOM whose values are integers of the same size are always converted: they take no more memory.
   bool keep_stored = false;
 };
 

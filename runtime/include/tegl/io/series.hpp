@@ -38,7 +38,7 @@ struct SeriesOptions {
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
-  bool keep_stored = false;                ///< as in ReadImageOptions, for a single file
+  bool keep_stored = false;                ///< as in ReadImageOptions; not in open_series
 };
 
 /// An image read from several files, and the list of files.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Implements ValueScaling: contours of values from the integers that a file stores.
-#include "images/stored_integers.hpp"
+#include "base/stored_integers.hpp"
 
 #include <algorithm>
 #include <cmath>
