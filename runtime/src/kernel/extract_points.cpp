@@ -87,8 +87,9 @@ HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std
   return hn::Load(d, coordinates);
 }
 
-/// Writes as many vertices as D has lanes, starting at edge `i`.
-template <class D, int N, class Real>
+/// Writes as many vertices as D has lanes, starting at edge `i`. The edges are along `Axis`, which is a constant so
+/// that coordinates stay in registers.
+template <int Axis, class D, int N, class Real>
 HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i) {
   const hn::Rebind<Real, D> real;
   // axis coordinates
@@ -97,10 +98,10 @@ HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i)
   point[0] = along_row(d, edges, at, 0);
   for (int a = 1; a + 1 < N; ++a) point[a] = hn::LoadU(d, edges.start[a] + i);
   point[N - 1] = hn::Set(d, edges.layer);
-  const auto end = edges.axis == 0       ? along_row(d, edges, at, 1)
-                   : edges.axis == N - 1 ? hn::Set(d, edges.next_layer)
-                                         : hn::LoadU(d, edges.end + i);
-  point[edges.axis] = between(d, point[edges.axis], end, hn::LoadU(d, edges.alphas + i));
+  const auto end = Axis == 0       ? along_row(d, edges, at, 1)
+                   : Axis == N - 1 ? hn::Set(d, edges.next_layer)
+                                   : hn::LoadU(d, edges.end + i);
+  point[Axis] = between(d, point[Axis], end, hn::LoadU(d, edges.alphas + i));
   // world coordinates
   std::array<hn::Vec<decltype(real)>, N> vertex;
   for (int a = 0; a < N; ++a) {
@@ -117,12 +118,22 @@ HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i)
   store_vertices(real, vertex, edges.out[i].data());
 }
 
-template <int N, class Real>
-HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
+template <int Axis, int N, class Real>
+HWY_INLINE void points_along(const EdgePoints<N, Real>& edges) {
   constexpr std::size_t kLanes = hn::MaxLanes(AllLanes());
   std::size_t i = 0;
-  for (; i + kLanes <= edges.count; i += kLanes) write_some(AllLanes(), edges, i);
-  for (; i < edges.count; ++i) write_some(OneLane(), edges, i);
+  for (; i + kLanes <= edges.count; i += kLanes) write_some<Axis>(AllLanes(), edges, i);
+  for (; i < edges.count; ++i) write_some<Axis>(OneLane(), edges, i);
+}
+
+template <int N, class Real>
+HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
+  if (edges.axis == 0) return points_along<0>(edges);
+  if (edges.axis == 1) return points_along<1>(edges);
+  if constexpr (N > 2)
+    if (edges.axis == 2) return points_along<2>(edges);
+  if constexpr (N > 3)
+    if (edges.axis == 3) return points_along<3>(edges);
 }
 
 // Highway's dispatch tables cannot hold templates.
