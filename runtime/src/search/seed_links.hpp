@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/radix_sort.hpp"
 #include "search/padded_ranges.hpp"
 #include "search/seed_trees.hpp"
 
@@ -88,7 +89,7 @@ template <class Key>
 class Levels {
  public:
   Levels(std::vector<Key> keys) : keys_(std::move(keys)) {
-    std::sort(keys_.begin(), keys_.end());
+    sort_by_bits(keys_, 8 * sizeof(Key), [](Key key) { return key; });
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     if (keys_.empty()) return;
     const auto all = static_cast<std::uint64_t>(keys_.back() - keys_.front());

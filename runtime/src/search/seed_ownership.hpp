@@ -32,7 +32,8 @@ class Ownership {
   void offer(std::uint32_t i, Key least, Key greatest) {
     lowest_ = std::min(lowest_, least);
     highest_ = std::max(highest_, greatest);
-    offers_.push_back({least, greatest, parts_of_[i]});
+    const std::uint64_t first = parts_of_[i];
+    offers_.push_back({least, greatest, std::min(parts_[first].end, greatest), parts_[first].owner, first});
   }
   /// If the offers cover i, i passes to their owners; otherwise i owns itself. Clears the offers. Returns whether i was
   /// given up.
@@ -85,17 +86,42 @@ class Ownership {
                  LinkCollector<Key>& collector) const {
     const Part* of_a = &parts_[parts_of_[a]];
     const Part* of_b = &parts_[parts_of_[b]];
+    while (of_a->end <= level) ++of_a;
+    while (of_b->end <= level) ++of_b;
     while (level < end) {
-      while (of_a->end <= level) ++of_a;
-      while (of_b->end <= level) ++of_b;
-      const Key both = std::min({of_a->end, of_b->end, end});
+      const Key both = std::min(std::min(of_a->end, of_b->end), end);
       if (of_a->owner != of_b->owner) {
         const std::uint32_t p = number(of_a->owner);
         const std::uint32_t q = number(of_b->owner);
         collector.add({std::min(p, q), std::max(p, q), level, both});
       }
       level = both;
+      // without branches: which of the two goes on is hard to predict
+      of_a += of_a->end <= level ? 1 : 0;
+      of_b += of_b->end <= level ? 1 : 0;
     }
+  }
+
+  /// Replaces owners of i that were given up, if is_gone(owner), by their own owners, which are not gone. The parts of
+  /// i then follow those of the tile resolved before. `level`, `end`: the range of i.
+  template <class IsGone>
+  void resolve(std::uint32_t i, Key level, Key end, const IsGone& is_gone) {
+    const std::uint64_t first = parts_.size();
+    for (std::uint64_t p = parts_of_[i]; level < end; ++p) {
+      const Part part = parts_[p];
+      if (!is_gone(part.owner)) {
+        append(part, first);
+        level = part.end;
+        continue;
+      }
+      std::uint64_t q = parts_of_[part.owner];
+      while (parts_[q].end <= level) ++q;
+      for (; level < part.end; ++q) {
+        level = std::min(parts_[q].end, part.end);
+        append({level, parts_[q].owner}, first);
+      }
+    }
+    parts_of_[i] = first;
   }
 
   /// Sets the parts of i, as owner and end, in ascending order.
@@ -112,7 +138,9 @@ class Ownership {
   };
   struct Offer {
     Key least, greatest;
-    std::uint64_t part;  ///< the first part that may still matter
+    Key end;              ///< of the first part that may still matter; at most `greatest`
+    std::uint32_t owner;  ///< of that part
+    std::uint64_t part;
   };
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
@@ -126,20 +154,31 @@ class Ownership {
     while (level < end) {
       Part best{level, 0};
       for (Offer& offer : offers_) {
-        if (offer.least > level || offer.greatest <= level) continue;
-        while (parts_[offer.part].end <= level) ++offer.part;
-        const Key to = std::min(parts_[offer.part].end, offer.greatest);
-        if (to > best.end) best = {to, parts_[offer.part].owner};
+        while (offer.end <= level && offer.end < offer.greatest) go_on(offer);
+        // without branches: which offer reaches farthest is hard to predict
+        const Key to = offer.least <= level ? offer.end : Key{0};
+        best.owner = to > best.end ? offer.owner : best.owner;
+        best.end = std::max(best.end, to);
       }
       if (best.end == level) return false;
       level = best.end;
       best.end = std::min(best.end, end);
-      if (parts_.size() > first && parts_.back().owner == best.owner)
-        parts_.back().end = best.end;
-      else
-        parts_.push_back(best);
+      append(best, first);
     }
     return true;
+  }
+  /// Adds a part to those from `first` on; equal owners in a row have one part.
+  void append(const Part& part, std::uint64_t first) {
+    if (parts_.size() > first && parts_.back().owner == part.owner)
+      parts_.back().end = part.end;
+    else
+      parts_.push_back(part);
+  }
+  /// To the next part of an offer.
+  void go_on(Offer& offer) const {
+    const Part& part = parts_[++offer.part];
+    offer.end = std::min(part.end, offer.greatest);
+    offer.owner = part.owner;
   }
 
   std::vector<std::uint64_t> parts_of_;  ///< first part of each tile; the last part ends with the range

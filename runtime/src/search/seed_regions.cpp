@@ -18,6 +18,7 @@
 #include "search/seed_links.hpp"
 #include "search/seed_ownership.hpp"
 #include "search/tile_blocks.hpp"
+#include "search/wanted_links.hpp"
 
 namespace tegl::detail {
 
@@ -230,17 +231,14 @@ class BlockTrees {
         finished_(finished),
         first_owner_(first_owner),
         neighbours_(grid.neighbours()),
-        least_(grid.room()),
-        greatest_(grid.room()),
+        near_(neighbours_.size()),
+        least_(grid.room() + kReadBeyond),
+        greatest_(grid.room() + kReadBeyond),
         places_(grid.room()),
         is_earlier_(grid.room()),
         owners_(grid.room()),
         outside_(grid.room()),
-        low_(grid.width()),
-        high_(grid.width()),
-        from_(grid.width()),
-        to_(grid.width()),
-        wanted_(grid.width()) {
+        wanted_(grid.ahead().size()) {
     for (const BlockGrid::Earlier& earlier : grid.earlier()) is_earlier_[earlier.tile] = true;
   }
 
@@ -371,20 +369,12 @@ class BlockTrees {
       any = true;
     }
     if (!any) return;
-    for (const std::uint32_t tile : order) {
-      bool stays = true;
-      owners_.for_owners(tile, least_[tile], greatest_[tile],
-                         [&](std::uint32_t owner, Key) { stays = stays && number_[owner] != kGone; });
-      if (stays) continue;
-      parts_.clear();
-      for_roots(tile, least_[tile], greatest_[tile], [&](std::uint32_t root, Key end) {
-        if (!parts_.empty() && parts_.back().first == root)
-          parts_.back().second = end;
-        else
-          parts_.emplace_back(root, end);
-      });
-      owners_.set(tile, parts_);
-    }
+    // Tiles that were given up pass to tiles that stay, or that come before them in the order and are resolved.
+    const auto is_gone = [&](std::uint32_t owner) { return number_[owner] == kGone; };
+    const auto resolve = [&](std::uint32_t tile) { owners_.resolve(tile, least_[tile], greatest_[tile], is_gone); };
+    for (const std::uint32_t tile : order)
+      if (is_gone(tile)) resolve(tile);
+    for (const std::uint32_t tile : tiles_) resolve(tile);  // `link` reads the parts in this order
   }
   /// Whether other trees cover the tile; `parts_` are then their parts. Neighbours across faces nearly always do, so
   /// they are tried first.
@@ -431,44 +421,42 @@ class BlockTrees {
   bool is_given_up(std::uint32_t tile) {
     const Key least = least_[tile];
     const Key greatest = greatest_[tile];
-    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
-      if (i == grid_.faces() && owners_.give_up_to_offers(tile, least, greatest)) return true;
+    return offer_neighbours(tile, 0, grid_.faces()) || owners_.give_up_to_offers(tile, least, greatest) ||
+           offer_neighbours(tile, grid_.faces(), neighbours_.size()) || owners_.give_up(tile, least, greatest);
+  }
+  /// Offers neighbours of the tile, or gives it up to one of them.
+  bool offer_neighbours(std::uint32_t tile, std::size_t from, std::size_t to) {
+    const Key least = least_[tile];
+    const Key greatest = greatest_[tile];
+    // without branches, which would be hard to predict
+    std::size_t count = 0;
+    for (std::size_t i = from; i < to; ++i) {
       const auto other = static_cast<std::uint32_t>(tile + neighbours_[i]);
-      if (!owners_.has(other) || !overlap(tile, other)) continue;
+      near_[count] = other;
+      count += static_cast<std::size_t>(owners_.has(other)) & static_cast<std::size_t>(overlap(tile, other));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t other = near_[i];
       // A tile that contains the range with room at both ends is as good as any. In noise most tiles lie in one.
       if (least_[other] < least && greatest < greatest_[other] && owners_.give_up_to_one(tile, other, least, greatest))
         return true;
       owners_.offer(other, least_[other], greatest_[other]);
     }
-    return owners_.give_up(tile, least, greatest);
+    return false;
   }
 
-  /// Sets `wanted_` for `count` tiles of a row: whether a tile and its neighbour ahead are active at a common level at
-  /// which no tile between them is (as tested with one or two of these). At other levels the tile between is linked to
-  /// both, or connected to them by tiles between, so that a link is superfluous. Returns whether any is wanted.
-  bool find_wanted(std::uint32_t tile, std::uint32_t count, const BlockGrid::Ahead& ahead) {
-    const Key* const least = &least_[tile];
-    const Key* const greatest = &greatest_[tile];
-    // levels that are not covered yet: from `low_` to `high_`
-    for (std::uint32_t i = 0; i < count; ++i) {
-      low_[i] = from_[i] = std::max(least[i], least[i + ahead.distance]);
-      high_[i] = to_[i] = std::min(greatest[i], greatest[i + ahead.distance]);
-    }
-    const auto is_any = [&] {
-      unsigned any = 0;
-      for (std::uint32_t i = 0; i < count; ++i) any |= low_[i] < high_[i] ? 1U : 0U;
-      return any != 0;
-    };
+  /// As find_wanted_links, for one tile and neighbour.
+  [[nodiscard]] bool is_wanted(std::uint32_t tile, const BlockGrid::Ahead& ahead) const {
+    const auto other = static_cast<std::uint32_t>(tile + ahead.distance);
+    const Key from = std::max(least_[tile], least_[other]), to = std::min(greatest_[tile], greatest_[other]);
+    Key low = from, high = to;
     for (const std::ptrdiff_t distance : ahead.between) {
-      if (!is_any()) return false;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const Key first = least[i + distance], end = greatest[i + distance];
-        low_[i] = first <= from_[i] && low_[i] < end ? end : low_[i];
-        high_[i] = to_[i] <= end && first < high_[i] ? first : high_[i];
-      }
+      if (low >= high) return false;
+      const Key first = least_[tile + distance], end = greatest_[tile + distance];
+      if (first <= from && low < end) low = end;
+      if (to <= end && first < high) high = first;
     }
-    for (std::uint32_t i = 0; i < count; ++i) wanted_[i] = low_[i] < high_[i] ? 1 : 0;
-    return is_any();
+    return low < high;
   }
   /// Collects the links among the tiles of the block and to earlier blocks, and numbers the trees of the latter.
   void link(Regions<Key>& trees) {
@@ -486,18 +474,19 @@ class BlockTrees {
       owners_.add_links(tile, other, std::max(least_[tile], least_[other]), std::min(greatest_[tile], greatest_[other]),
                         number, collector);
     };
-    for (const auto& [tile, count] : rows_)
-      for (const BlockGrid::Ahead& ahead : grid_.ahead()) {
-        if (!find_wanted(tile, count, ahead)) continue;
-        for (std::uint32_t i = 0; i < count; ++i) {
-          const auto other = static_cast<std::uint32_t>(tile + i + ahead.distance);
-          if (wanted_[i] != 0 && owners_.has(other)) add_links(tile + i, other);
+    for (const auto& [tile, count] : rows_) {
+      find_wanted_links(RangesOf<Key>(&least_[tile], &greatest_[tile]), count, grid_.ahead(), wanted_.data());
+      for (std::size_t a = 0; a < wanted_.size(); ++a)
+        for (std::uint64_t bits = wanted_[a]; bits != 0; bits &= bits - 1) {
+          const auto at = static_cast<std::uint32_t>(tile + static_cast<std::uint32_t>(std::countr_zero(bits)));
+          const auto other = static_cast<std::uint32_t>(at + grid_.ahead()[a].distance);
+          if (owners_.has(other)) add_links(at, other);
         }
-      }
+    }
     for (const std::uint32_t tile : border_)
       for (const BlockGrid::Ahead& ahead : grid_.ahead()) {
         const auto other = static_cast<std::uint32_t>(tile - ahead.distance);
-        if (is_earlier_[other] && owners_.has(other) && find_wanted(other, 1, ahead)) add_links(tile, other);
+        if (is_earlier_[other] && owners_.has(other) && is_wanted(other, ahead)) add_links(tile, other);
       }
     trees.links = collector.take();
   }
@@ -537,7 +526,8 @@ class BlockTrees {
   const std::vector<FinishedBlock<Key>>& finished_;
   std::vector<std::uint32_t>& first_owner_;
   std::vector<std::ptrdiff_t> neighbours_;
-  std::vector<Key> least_, greatest_;  ///< by tile of the box
+  std::vector<std::uint32_t> near_;    ///< those that matter to a tile
+  std::vector<Key> least_, greatest_;  ///< by tile of the box, and kReadBeyond more
   std::vector<Place> places_;          ///< by tile of the box
   std::vector<bool> is_earlier_;       ///< by tile of the box: whether it belongs to an earlier block
   Ownership<Key> owners_;              ///< of the tiles of the box: tiles of the block, and roots outside
@@ -549,8 +539,7 @@ class BlockTrees {
   std::vector<std::uint8_t> classes_;
   std::vector<KeyLink<Key>> offered_;  ///< a: the offering root
   std::vector<std::pair<std::uint32_t, Key>> parts_;
-  std::vector<Key> low_, high_, from_, to_;  ///< by tile of a row (see find_wanted)
-  std::vector<std::uint8_t> wanted_;         ///< by tile of a row
+  std::vector<std::uint64_t> wanted_;  ///< by neighbour ahead (see find_wanted_links)
 };
 
 /// The regions of all tiles. Blocks of a group are built at the same time; the result is that of building them one
