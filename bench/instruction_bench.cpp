@@ -15,10 +15,14 @@
 #include "run.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/deviation.hpp"
 #include "tegl/elements.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/project.hpp"
+#include "tegl/sample.hpp"
 #include "tegl/scrubber.hpp"
+#include "tegl/seed_set.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/track.hpp"
@@ -107,6 +111,34 @@ void count_check() {
   measured([&] { use(check(contour, kOneThread)); });
 }
 
+void count_sample() {
+  const auto image = make_field<4>("balls", 16);
+  const auto contour = extract<double>(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
+  measured([&] { use(sample(image.view(), contour, "value", "", kOneThread)); });
+}
+
+/// The simplified contour and the original one, each to the other.
+void count_deviation() {
+  const auto image = make_field<4>("balls", 8);
+  const auto contour = extract<double>(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
+  SimplifyOptions<4> half;
+  half.ratio = 0.5;
+  half.measure = false;
+  half.work = kOneThread;
+  const auto simple = simplify(contour, half).contour;
+  DeviationOptions<4> options;
+  options.work = kOneThread;
+  measured([&] { use(deviation(contour, simple, options)); });
+}
+
+/// Seeds out of so many tiles with different values that trees are given up by blocks.
+void count_seeds() {
+  const auto image = make_field<3>("metaballs", 48);
+  SeedSetOptions options;
+  options.work = kOneThread;
+  measured([&] { use(find_seeds(image.view(), options)); });
+}
+
 /// An operation on a 4D contour. `work(contour)` returns its result.
 template <class Work>
 NamedCase operation_case(const std::string& name, std::size_t samples, const Work& work) {
@@ -147,6 +179,13 @@ std::vector<NamedCase> operation_cases() {
       operation_case("outline", 16, [](const Contour4& c) { return outline(c, {}, kOneThread); }),
       operation_case("elements", 16, [](const Contour4& c) { return elements(c, kOneThread); }),
       operation_case("simplify", 8, [=](const Contour4& c) { return simplify(c, half); }),
+      operation_case("incidence", 16, [](const Contour4& c) { return Incidence<4>(c, kOneThread); }),
+      operation_case(
+          "split_components", 16,
+          [](const Contour4& c) { return split_components(c, label_components(c, kOneThread), kOneThread); }),
+      {"deviation balls 8^4", count_deviation},
+      {"sample balls 16^4", count_sample},
+      {"find_seeds metaballs 48^3", count_seeds},
   };
 }
 

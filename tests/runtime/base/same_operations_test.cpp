@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The results of operations on contours do not depend on the number of threads: equal bytes for 1 to 4 threads.
+// The results of operations on contours, and of the search for seeds, do not depend on the number of threads: equal
+// bytes for 1 to 4 threads.
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -16,7 +18,9 @@
 #include "tegl/incidence.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/project.hpp"
+#include "tegl/sample.hpp"
 #include "tegl/scrubber.hpp"
+#include "tegl/seed_set.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/track.hpp"
@@ -187,6 +191,15 @@ TYPED_TEST(SameOperations, OfCheckComponentsMeasuresAndElements) {
   });
 }
 
+TYPED_TEST(SameOperations, OfValuesAtVertices) {
+  constexpr int N = TypeParam::value;
+  const Contour<N, double>& contour = contour_of_noise<N>();
+  const auto image = noise<float, N>(N == 4 ? 14 : N == 3 ? 40 : 300, 6);
+  expect_same_bytes("sample", [&](Bytes& bytes, const WorkOptions& work) {
+    bytes.add(sample(image.view(), contour, "value", "", work));
+  });
+}
+
 TYPED_TEST(SameOperations, OfTracks) {
   constexpr int N = TypeParam::value;
   const Contour<N, double>& contour = contour_of_noise<N>();
@@ -329,6 +342,42 @@ TEST(SameOperationsOfProjections, In4d) {
   });
   expect_same_bytes("outline",
                     [&](Bytes& bytes, const WorkOptions& work) { bytes.add(outline(contour, projection, work)); });
+}
+
+void add_seeds(Bytes& bytes, const SeedSet& set) {
+  bytes.add_all(set.tiles);
+  bytes.add_all(set.least);
+  bytes.add_all(set.greatest);
+}
+
+TEST(SameOperationsOfImages, SeedsByAllMethods) {
+  const auto image = noise<float, 3>(20, 5);
+  for (const SeedMethod method : seed_methods())
+    expect_same_bytes("find_seeds", [&](Bytes& bytes, const WorkOptions& work) {
+      SeedSetOptions options;
+      options.method = method;
+      options.work = work;
+      add_seeds(bytes, find_seeds(image.view(), options));
+    });
+}
+
+TEST(SameOperationsOfImages, SeedsOutOfManyTiles) {
+  // smooth values, all different: more trees than are covered directly
+  auto image = noise<float, 3>(48, 5);
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const auto x = static_cast<double>(i % 48), y = static_cast<double>(i / 48 % 48), z = static_cast<double>(i / 2304);
+    image.values[i] = static_cast<float>(std::sin(0.2 * x) * std::cos(0.13 * y) + std::sin(0.2 * y + 0.3) +
+                                         std::sin(0.2 * z + 0.6) * std::cos(0.13 * x));
+  }
+  for (const Neighbourhood neighbourhood : {Neighbourhood::faces, Neighbourhood::all})
+    expect_same_bytes("find_seeds", [&](Bytes& bytes, const WorkOptions& work) {
+      SeedSetOptions options;
+      options.neighbourhood = neighbourhood;
+      options.work = work;
+      const SeedSet set = find_seeds(image.view(), options);
+      EXPECT_TRUE(set.stats.reduced);
+      add_seeds(bytes, set);
+    });
 }
 
 }  // namespace
