@@ -264,8 +264,9 @@ Contour<3, Real> outline_with(const Contour<4, Real>& contour, const detail::Inc
   raised.vertex_attributes = contour.vertex_attributes;
   replace(raised.vertex_attributes, height_attribute(contour, projection, view));
   raised.simplex_attributes = contour.simplex_attributes;
-  Contour<3, double> cut = slice(raised, Hyperplane<4>::across(3, 0.0), {work.threads, {}});
-  detail::tell(work.progress, 0.9, kCancelledProject);
+  detail::tell(work.progress, 0.65, kCancelledProject);
+  Contour<3, double> cut =
+      slice(raised, Hyperplane<4>::across(3, 0.0), {work.threads, detail::part_of(work.progress, 0.65, 0.9)});
   Contour<3, Real> result;
   result.direction = contour.direction;
   name_axes(contour, projection, result.axis_names, result.axis_units);

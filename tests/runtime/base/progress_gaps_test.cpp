@@ -15,11 +15,16 @@
 #include "progress_probe.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/deviation.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/incidence.hpp"
 #include "tegl/io.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/project.hpp"
 #include "tegl/sample.hpp"
+#include "tegl/scrubber.hpp"
+#include "tegl/seed_set.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/track.hpp"
@@ -89,6 +94,26 @@ class ProgressGaps : public testing::Test {
         {"measure", [work](const Progress& p) { measure(*contour_, work(p)); }, 0.2},
         {"measure_cuts", [work](const Progress& p) { measure_cuts(*contour_, times(), work(p)); }, 0.2},
         {"slice_stack", [work](const Progress& p) { slice_stack(*contour_, hyperplanes(), work(p)); }},
+        {"Scrubber",
+         [work](const Progress& p) { const Scrubber<kN, float> built(*contour_, Hyperplane<kN>{}, work(p)); }, 0.6},
+        {"project", [work](const Progress& p) { project(*contour_, {}, work(p)); }, 0.6},
+        // the outline itself, which in noise has as many simplices as the contour, is made between two calls
+        {"outline", [work](const Progress& p) { outline(*contour_, {}, work(p)); }, 0.9},
+        {"Incidence", [work](const Progress& p) { const Incidence<kN> found(*contour_, work(p)); }, 0.6},
+        {"deviation",
+         [threads](const Progress& p) {
+           DeviationOptions<3> options;
+           options.work = {threads, p};
+           deviation(*surface_, *surface_, options);
+         },
+         0.4},
+        {"find_seeds",
+         [threads](const Progress& p) {
+           SeedSetOptions options;
+           options.work = {threads, p};
+           find_seeds(image_->view(), options);
+         },
+         0.4},
         {"elements", [work](const Progress& p) { elements(*contour_, work(p)); }, 0.2},
         {"sample", [work](const Progress& p) { sample(image_->view(), *contour_, "v", "", work(p)); }, 0.3},
         {"track", [follow](const Progress& p) { follow({}, p); }},
