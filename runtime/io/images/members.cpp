@@ -234,7 +234,7 @@ void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::p
 struct Members {
   std::vector<fs::path> paths;
   RawGrid grid;           ///< of the whole series
-  ImageInfo info;         ///< likewise
+  ImageInfo info;         ///< of the first file, for the whole series
   std::size_t layer = 1;  ///< number of samples of a file
   std::size_t type = 0;   ///< index of ValueArray
 };
@@ -293,7 +293,7 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
 
 std::optional<ImageOfFiles> read_stored_members(std::span<const fs::path> files, const SeriesOptions& options,
                                                 const MemberReader& read) {
-  // A file without integers, or with another scaling, ends this quickly: at its header.
+  // Headers show whether a file has other integers, except for missing values.
   std::optional<ValueScaling> scaling;
   for (const fs::path& path : files) {
     tick(options.work.progress, 0.0, path);
