@@ -283,7 +283,6 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   expect_refused({"--lattice", "d4", "-o", output}, "lattice d4 of a 3D image; expected 4 dimensions");
   expect_refused({"--lattice", "hexagonal", "-o", output}, "hexagonal");
   expect_refused({"--lattice", "bcc", "--periodic", "x", "-o", output}, "--periodic x with --lattice bcc");
-  expect_refused({"--lattice", "bcc", "--close", "-o", output}, "close");
   expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
   expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output}, "normals on a lattice by a kernel");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});

@@ -5,10 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "tegl/complex.hpp"
 #include "tegl/image.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl {
 
@@ -24,6 +28,8 @@ enum class Lattice : std::uint8_t {
 
 /// The name of a lattice, such as "fcc".
 [[nodiscard]] std::string_view name_of(Lattice lattice) noexcept;
+/// The lattice with this name, or none.
+[[nodiscard]] std::optional<Lattice> parse_lattice(std::string_view name) noexcept;
 /// Dimension of its images.
 [[nodiscard]] int dimension(Lattice lattice) noexcept;
 /// The step between layers, in steps along the other axes, for which the lattice has all its symmetries: sqrt(3) / 2
@@ -34,23 +40,44 @@ enum class Lattice : std::uint8_t {
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Extraction<N, Real> extract_lattice_with_stats(const Image<T, N>& image, Lattice lattice, double isovalue,
-                                                             const ExtractOptions& options = {});
+                                                             const ExtractOptions& options = {},
+                                                             const AxisPeriods<N>& periods = {});
 
 /// Extracts the contour of an image on a lattice. Cells that would need samples outside of the image are left out, so
 /// its sides are uneven; at the first and last layer, octahedra are cut to pyramids. In 2D and 3D without missing
-/// values, rows of samples are classified 64 at a time, and the cells are not stored; otherwise the contour is that of
-/// `lattice_complex`. Both have the same vertices and simplices, in another order.
+/// values, caps and periods, rows of samples are classified 64 at a time, and the cells are not stored; otherwise the
+/// contour is that of `lattice_complex`. Both have the same vertices and simplices, in another order.
+///
+/// ExtractOptions::close closes the contour at the uneven sides; caps are the high part of the border of
+/// `lattice_complex`.
+///
+/// `periods`: of periodic axes (tegl/periodic.hpp; 0: not periodic). Cells across the seam connect the last samples to
+/// the first ones, and the contour is wrapped (Contour::periods). The layers need an even number, at least 6, as the
+/// odd ones are shifted; other periodic axes at least 3 samples. Not for fcc_in_time.
 ///
 /// Normals (Normals::differences) come from gradients by least squares on a sample and its neighbours on the lattice,
 /// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex`; InvalidArgument
-/// for options that complexes do not have: close, ambiguity resolved from the data, Normals::sobel. The result does not
-/// depend on the number of threads. O(P) time; in 2D and 3D about 1.3 bytes per sample of fcc.
+/// for options that lattices do not have: ambiguity resolved from the data, Normals::sobel; and for periods that are
+/// not the number of samples x the step. The result does not depend on the number of threads. O(P) time; in 2D and 3D
+/// about 1.3 bytes per sample of fcc, with caps or periods those of `lattice_complex`, twice.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,
-                                               const ExtractOptions& options = {}) {
-  return extract_lattice_with_stats<Real>(image, lattice, isovalue, options).contour;
+                                               const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {}) {
+  return extract_lattice_with_stats<Real>(image, lattice, isovalue, options, periods).contour;
 }
+
+/// Interpolates other numbers at the samples of an image on a lattice to the vertices of its contour, as an attribute.
+/// `numbers`: #P x width, row = sample, axis 0 fastest; NaN: missing. The result has a row for each vertex of
+/// `extract_lattice` with the same arguments; it is NaN where a number is missing at a sample that the vertex depends
+/// on. Weights are those of the coordinates, as in `interpolate_points`. Errors: those of `extract_lattice`;
+/// InvalidArgument if the size of `numbers` is not a multiple of the number of samples. Time: that of
+/// `extract_lattice`, for N numbers per sample at a time.
+template <Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] Attribute interpolate_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,
+                                            std::span<const double> numbers, std::string name, std::string unit = {},
+                                            const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {});
 
 /// The cells between the samples of an image on a lattice, with their values; points are numbered as samples,
 /// axis 0 fastest. `extract` of it is the contour of the image. Cells that would need samples outside of the image are

@@ -102,6 +102,11 @@ struct ComplexAccess {
   /// The complex with other points, which may be any numbers, and the same orientations of the cells.
   template <int N>
   static Complex<N> at_places(const Complex<N>& complex, std::vector<std::array<double, N>> places);
+  /// The complex with other points and values, `number` of the old points among the new ones, and the same orientations
+  /// of the cells, whose corners may then be a period apart.
+  template <int N>
+  static Complex<N> identified(const Complex<N>& complex, std::vector<std::array<double, N>> points,
+                               std::vector<double> values, std::span<const Index> number);
   /// A complex of cells that need no check.
   template <int N>
   static Complex<N> layered(std::vector<std::array<double, N>> points, CellGroups cells);

@@ -14,6 +14,7 @@
 
 #include "complex/border_facets.hpp"
 #include "complex/complex_edges.hpp"
+#include "complex/image_points.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {
@@ -84,6 +85,30 @@ Complex<N> ComplexAccess::at_places(const Complex<N>& complex, std::vector<std::
   return moved;
 }
 
+template <int N>
+Complex<N> ComplexAccess::identified(const Complex<N>& complex, std::vector<std::array<double, N>> points,
+                                     std::vector<double> values, std::span<const Index> number) {
+  Complex<N> result(std::move(points), std::span<const CellType>(), {});
+  CellGroups cells = *complex.cells_;
+  for (CellGroup& group : cells.groups)
+    for (Index& corner : group.corners) corner = number[corner];
+  result.cells_ = std::make_shared<const CellGroups>(std::move(cells));
+  result.signs_ = complex.signs_;
+  result.values_ = std::move(values);
+  return result;
+}
+
+template Complex<2> ComplexAccess::identified<2>(const Complex<2>&, std::vector<std::array<double, 2>>,
+                                                 std::vector<double>, std::span<const Index>);
+template Complex<3> ComplexAccess::identified<3>(const Complex<3>&, std::vector<std::array<double, 3>>,
+                                                 std::vector<double>, std::span<const Index>);
+template Complex<4> ComplexAccess::identified<4>(const Complex<4>&, std::vector<std::array<double, 4>>,
+                                                 std::vector<double>, std::span<const Index>);
+
+template Complex<2> ComplexAccess::at_places<2>(const Complex<2>&, std::vector<std::array<double, 2>>);
+template Complex<3> ComplexAccess::at_places<3>(const Complex<3>&, std::vector<std::array<double, 3>>);
+template Complex<4> ComplexAccess::at_places<4>(const Complex<4>&, std::vector<std::array<double, 4>>);
+
 template Complex<2> ComplexAccess::oriented<2>(std::vector<std::array<double, 2>>, CellType, std::span<const Index>);
 template Complex<3> ComplexAccess::oriented<3>(std::vector<std::array<double, 3>>, CellType, std::span<const Index>);
 template Complex<4> ComplexAccess::oriented<4>(std::vector<std::array<double, 4>>, CellType, std::span<const Index>);
@@ -153,31 +178,17 @@ template <int N>
 requires DimensionBetween<N, 2, 4> std::size_t Complex<N>::edge_count()
 const noexcept { return edges_ == nullptr ? 0 : edges_->ends.size(); }
 
-// Coordinates of vertices are linear in those of the points, with weights that depend on the values only. So the
-// numbers take the place of the coordinates, N at a time.
 template <int N>
 requires DimensionBetween<N, 2, 4> Attribute interpolate_points(const Complex<N>& complex, double isovalue,
                                                                 std::span<const double> numbers, std::string name,
                                                                 std::string unit, const ExtractOptions& options) {
-  const std::size_t points = complex.points().size();
-  const std::size_t width = points == 0 ? 1 : numbers.size() / points;
-  if (width == 0 || numbers.size() != width * points)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} numbers; expected one or several for each of the {} points", numbers.size(), points));
   ExtractOptions of_numbers = options;
   of_numbers.normals = Normals::none;
-  Attribute attribute{std::move(name), std::move(unit), static_cast<int>(width), {}};
-  for (std::size_t first = 0; first < width; first += N) {
-    const std::size_t count = std::min<std::size_t>(N, width - first);
-    std::vector<std::array<double, N>> places(points);
-    for (std::size_t p = 0; p < points; ++p) std::copy_n(numbers.data() + p * width + first, count, places[p].data());
-    const Contour<N, double> contour =
-        extract<double>(detail::ComplexAccess::at_places<N>(complex, std::move(places)), isovalue, of_numbers);
-    attribute.values.resize(contour.vertices.size() * width);
-    for (std::size_t v = 0; v < contour.vertices.size(); ++v)
-      std::copy_n(contour.vertices[v].data(), count, attribute.values.data() + v * width + first);
-  }
-  return attribute;
+  return detail::interpolate_as_places<N>(
+      complex.points().size(), numbers, {std::move(name), std::move(unit), 1, {}},
+      [&](std::vector<std::array<double, N>> places) {
+        return extract<double>(detail::ComplexAccess::at_places<N>(complex, std::move(places)), isovalue, of_numbers);
+      });
 }
 
 #define TEGL_INSTANTIATE_COMPLEXES(N)                                                                       \

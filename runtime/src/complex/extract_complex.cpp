@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
@@ -73,14 +74,16 @@ std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumb
 template <int N, class Real>
 class ComplexWriter {
  public:
-  /// `gradients`: null if the contour gets no normals.
+  /// `gradients`: null if the contour gets no normals. The arguments must outlive this object.
   ComplexWriter(const Complex<N>& complex, const ContourNumbers& numbers, const PointGradients<N>* gradients,
-                double isovalue, const ExtractOptions& options, Contour<N, Real>& contour)
+                std::span<const Period<N>> periods, double isovalue, const ExtractOptions& options,
+                Contour<N, Real>& contour)
       : complex_(complex),
         cells_(ComplexAccess::cells(complex)),
         signs_(ComplexAccess::signs(complex)),
         numbers_(numbers),
         gradients_(gradients),
+        periods_(periods),
         isovalue_(isovalue),
         epsilon_(options.epsilon),
         is_layered_(ComplexAccess::is_layered(complex)),
@@ -141,9 +144,10 @@ class ComplexWriter {
           mean.add_vertex(static_cast<Index>(point.number()));
       write(v, mean);
       if (between == caps.between().end() || between->added != j) continue;
-      const Point at_mean = mean.mean(), &corner = complex_.points()[between->corner];
+      const Point &corner = complex_.points()[between->corner], at_mean = near(corner, mean.mean());
       for (std::size_t i = 0; i < N; ++i)
         contour_.vertices[v][i] = static_cast<Real>(corner[i] + between->weight * (at_mean[i] - corner[i]));
+      keep_inside(contour_.vertices[v]);
       ++between;
     }
     contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
@@ -192,11 +196,14 @@ class ComplexWriter {
         const auto [low, high] = inside_of<Real>(low_layer_, high_layer_);
         vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
       }
+      writer_.keep_inside(vertex);
       return vertex;
     }
 
    private:
-    void add(const Point& point) noexcept {
+    void add(Point point) noexcept {
+      if (count_ == 0) first_ = point;
+      point = writer_.near(first_, point);
       for (std::size_t i = 0; i < N; ++i) {
         sum_[i] += point[i];
         lowest_[i] = std::min(lowest_[i], point[i]);
@@ -213,11 +220,24 @@ class ComplexWriter {
     }
 
     const ComplexWriter& writer_;
-    Point sum_{}, lowest_, highest_, normal_{};
+    Point sum_{}, lowest_, highest_, first_{}, normal_{};
     double count_ = 0;
     double low_layer_ = std::numeric_limits<double>::infinity();
     double high_layer_ = -std::numeric_limits<double>::infinity();
   };
+
+  /// The place of a point nearest to another, modulo the periods.
+  [[nodiscard]] Point near(const Point& to, Point point) const noexcept {
+    if (!periods_.empty()) move_near<N>(periods_, to, point);
+    return point;
+  }
+  /// Moves a vertex into the periods.
+  void keep_inside(Vertex& vertex) const noexcept {
+    if (periods_.empty()) return;
+    Point point = widened_point<N>(vertex);
+    move_inside<N, Real>(periods_, point);
+    for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(point[i]);
+  }
 
   void write(std::size_t number, const Mean& mean) const noexcept {
     contour_.vertices[number] = mean.place();
@@ -232,10 +252,11 @@ class ComplexWriter {
   }
 
   void write_edge_point(const EdgeEnds& ends, std::size_t number) const noexcept {
-    const Point &from = complex_.points()[ends[0]], &to = complex_.points()[ends[1]];
+    const Point &from = complex_.points()[ends[0]], to = near(from, complex_.points()[ends[1]]);
     const double alpha = alpha_of(complex_.values()[ends[0]], complex_.values()[ends[1]], isovalue_, epsilon_);
     Vertex& vertex = contour_.vertices[number];
     vertex = point_on_edge<Real>(from, to, alpha);
+    keep_inside(vertex);
     if (is_layered_ && from[N - 1] != to[N - 1]) keep_between(ends[0], ends[1], vertex);
     if (gradients_ == nullptr) return;
     const Point &at_from = gradients_->at(ends[0]), &at_to = gradients_->at(ends[1]);
@@ -362,9 +383,10 @@ class ComplexWriter {
                                double part) const noexcept {
     Mean centre(*this);
     for (std::uint32_t v = 0; v < table.corner_count; ++v) centre.add_corner(corners[v]);
-    const Point a = point.mean(), b = centre.mean();
+    const Point a = point.mean(), b = near(a, centre.mean());
     Vertex vertex;
     for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(a[i] * (1 - part) + b[i] * part);
+    keep_inside(vertex);
     if (is_layered_) keep_between(corners[0], corners[table.corner_count - 1], vertex);
     return vertex;
   }
@@ -374,6 +396,7 @@ class ComplexWriter {
   const CellSigns& signs_;
   const ContourNumbers& numbers_;
   const PointGradients<N>* gradients_;
+  std::span<const Period<N>> periods_;
   double isovalue_, epsilon_;
   bool is_layered_, descends_;
   Contour<N, Real>& contour_;
@@ -398,22 +421,27 @@ std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const Contour
 /// Writes normals and positions of vertices, and simplices.
 template <class Real, int N>
 void write_contour(const Complex<N>& complex, const ContourNumbers& numbers, const ComplexCaps<N>* caps,
-                   double isovalue, const ExtractOptions& options, const Progress& progress,
-                   Contour<N, Real>& contour) {
+                   double isovalue, const ExtractOptions& options, const Surroundings<N>& around,
+                   const Progress& progress, Contour<N, Real>& contour) {
   const unsigned threads = options.work.threads;
   const double start = options.normals == Normals::none ? 0.0 : 0.5;
   std::optional<PointGradients<N>> gradients;
   if (options.normals != Normals::none) {
     std::vector<Index> others = corners_of_sides(complex, numbers);
     if (caps != nullptr) others.insert(others.end(), caps->corners().begin(), caps->corners().end());
-    gradients.emplace(complex, numbers.edge_ends(), others, WorkOptions{threads, part_of(progress, 0.0, start)});
+    const WorkOptions work{threads, part_of(progress, 0.0, start)};
+    if (around.gradient)
+      gradients.emplace(complex, numbers.edge_ends(), others, around.gradient, work);
+    else
+      gradients.emplace(complex, numbers.edge_ends(), others, work);
     contour.normals.resize(numbers.size().vertices);
   }
   contour.direction = options.direction;
   contour.vertices.resize(numbers.size().vertices);
   contour.simplices.resize(numbers.size().simplices);
   const Progress rest = part_of(progress, start, 1.0);
-  ComplexWriter<N, Real> writer(complex, numbers, gradients ? &*gradients : nullptr, isovalue, options, contour);
+  ComplexWriter<N, Real> writer(complex, numbers, gradients ? &*gradients : nullptr, around.periods, isovalue, options,
+                                contour);
   writer.write_edge_points({threads, part_of(rest, 0.0, 0.25)});
   writer.write_polygon_centres({threads, part_of(rest, 0.25, 0.4)});
   writer.write_cells({threads, part_of(rest, 0.4, 1.0)});
@@ -423,7 +451,7 @@ void write_contour(const Complex<N>& complex, const ContourNumbers& numbers, con
 /// Extracts the contour from all cells, or from those of `active`.
 template <class Real, int N>
 Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
-                                  const std::vector<Index>* active) {
+                                  const std::vector<Index>* active, const Surroundings<N>& around = {}) {
   Extraction<N, Real> result;
   Contour<N, Real>& contour = result.contour;
   const Progress& progress = options.work.progress;
@@ -438,8 +466,9 @@ Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, co
   const auto caps = find_caps<N>(complex, numbers, isovalue, options, part_of(progress, numbered, 0.6));
   watch.add_to(result.stats.close_seconds);
   // write
-  write_contour<Real>(complex, numbers, caps ? &*caps : nullptr, isovalue, options, part_of(progress, 0.6, 1.0),
+  write_contour<Real>(complex, numbers, caps ? &*caps : nullptr, isovalue, options, around, part_of(progress, 0.6, 1.0),
                       contour);
+  contour.periods = around.periods;
   if (auto touching = numbers.vertices_at_missing(cells); !touching.empty()) {
     for (std::size_t v = numbers.size().vertices; v < contour.vertices.size(); ++v)
       touching.push_back(static_cast<Index>(v));
@@ -450,14 +479,21 @@ Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, co
 }
 
 }  // namespace
+
+template <class Real, int N>
+Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                               const Surroundings<N>& around) {
+  check_complex_options(N, isovalue, options);
+  check_range<Real>(complex);
+  return extract_cells<Real>(complex, isovalue, options, nullptr, around);
+}
+
 }  // namespace detail
 
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex, double isovalue,
                                                                           const ExtractOptions& options) {
-  detail::check_complex_options(N, isovalue, options);
-  detail::check_range<Real>(complex);
-  return detail::extract_cells<Real>(complex, isovalue, options, nullptr);
+  return detail::extract_in<Real>(complex, isovalue, options, detail::Surroundings<N>());
 }
 
 template <Coordinate Real, int N>
@@ -511,6 +547,10 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
 }
 
 #define TEGL_INSTANTIATE_COMPLEX(N)                                                                               \
+  template Extraction<N, float> detail::extract_in<float, N>(const Complex<N>&, double, const ExtractOptions&,    \
+                                                             const detail::Surroundings<N>&);                     \
+  template Extraction<N, double> detail::extract_in<double, N>(const Complex<N>&, double, const ExtractOptions&,  \
+                                                               const detail::Surroundings<N>&);                   \
   template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, double, const ExtractOptions&);   \
   template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, double, const ExtractOptions&); \
   template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, const CellIndex&, double,         \

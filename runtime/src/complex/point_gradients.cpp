@@ -12,10 +12,10 @@
 namespace tegl::detail {
 
 template <int N>
-PointGradients<N>::PointGradients(const Complex<N>& complex, std::span<const EdgeEnds> crossed,
-                                  std::span<const Index> others, const WorkOptions& work)
-    : bits_(block_count(complex.points().size(), 64)), before_(bits_.size()) {
-  // mark the points
+void PointGradients<N>::mark_points(std::size_t points, std::span<const EdgeEnds> crossed,
+                                    std::span<const Index> others) {
+  bits_.resize(block_count(points, 64));
+  before_.resize(bits_.size());
   const auto mark = [&](Index p) { bits_[p >> 6] |= std::uint64_t{1} << (p & 63u); };
   for (const EdgeEnds& ends : crossed)
     for (const Index p : ends) mark(p);
@@ -26,6 +26,25 @@ PointGradients<N>::PointGradients(const Complex<N>& complex, std::span<const Edg
     count += static_cast<std::size_t>(std::popcount(bits_[w]));
   }
   gradients_.resize(count);
+}
+
+template <int N>
+PointGradients<N>::PointGradients(const Complex<N>& complex, std::span<const EdgeEnds> crossed,
+                                  std::span<const Index> others, const std::function<Gradient(Index)>& gradient,
+                                  const WorkOptions& work) {
+  mark_points(complex.points().size(), crossed, others);
+  for_each_item(bits_.size(), work.threads, work.progress, [&](std::size_t w) {
+    std::size_t next = before_[w];
+    for (std::uint64_t rest = bits_[w]; rest != 0; rest &= rest - 1)
+      gradients_[next++] = gradient(static_cast<Index>(64 * w + static_cast<std::size_t>(std::countr_zero(rest))));
+  });
+}
+
+template <int N>
+PointGradients<N>::PointGradients(const Complex<N>& complex, std::span<const EdgeEnds> crossed,
+                                  std::span<const Index> others, const WorkOptions& work) {
+  mark_points(complex.points().size(), crossed, others);
+  const std::size_t count = gradients_.size();
   // their edges
   const CellGroups& cells = ComplexAccess::cells(complex);
   const ComplexEdges* const known = ComplexAccess::edges(complex);

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,20 @@
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
+
+/// What is known beside a complex, for the positions and normals of its contour.
+template <int N>
+struct Surroundings {
+  /// The gradient at a point; empty: by least squares on the complex. Called by several threads.
+  std::function<std::array<double, N>(Index)> gradient = {};
+  /// Corners of a cell are at the places nearest to each other modulo these; the contour is wrapped.
+  std::vector<Period<N>> periods = {};
+};
+
+/// As `extract_with_stats` of a complex with surroundings.
+template <class Real, int N>
+[[nodiscard]] Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                                             const Surroundings<N>& around);
 
 template <int N>
 class PointGradients {
@@ -28,6 +43,9 @@ class PointGradients {
   /// at one. Errors: Cancelled.
   PointGradients(const Complex<N>& complex, std::span<const EdgeEnds> crossed, std::span<const Index> others,
                  const WorkOptions& work);
+  /// The same points with other gradients. Errors: Cancelled.
+  PointGradients(const Complex<N>& complex, std::span<const EdgeEnds> crossed, std::span<const Index> others,
+                 const std::function<Gradient(Index)>& gradient, const WorkOptions& work);
 
   /// The gradient at one of the points; 0 along directions in which there are no neighbours.
   [[nodiscard]] const Gradient& at(Index p) const noexcept { return gradients_[number(p)]; }
@@ -57,6 +75,7 @@ class PointGradients {
     return before_[p >> 6] + static_cast<std::size_t>(std::popcount(below));
   }
   [[nodiscard]] static Gradient solve(const Sums& sums) noexcept;
+  void mark_points(std::size_t points, std::span<const EdgeEnds> crossed, std::span<const Index> others);
 
   std::vector<std::uint64_t> bits_;  ///< which points
   std::vector<std::size_t> before_;  ///< points before each word of bits_

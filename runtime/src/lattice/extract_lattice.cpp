@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,12 +14,17 @@
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
+#include "complex/cell_groups.hpp"
 #include "complex/contour_numbers.hpp"
 #include "complex/edge_alpha.hpp"
+#include "complex/image_points.hpp"
+#include "complex/point_gradients.hpp"
 #include "image/row_source.hpp"
 #include "kernel/memory_output.hpp"
 #include "lattice/lattice_gradients.hpp"
 #include "lattice/lattice_rows.hpp"
+#include "lattice/periodic_lattice.hpp"
+#include "periodic/periods.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
 
@@ -50,12 +54,15 @@ class LatticeWriter {
   using Vertex = std::array<Real, N>;
   using Sample = std::array<std::size_t, N>;
 
+  /// `places`: of samples, in place of those on the grid; null: none.
   LatticeWriter(const SampleSource<N>& source, const Grid<N>& grid, const LatticeRows& rows,
-                const LatticeGradients<N>* gradients, const ExtractOptions& options, Contour<N, Real>& contour)
+                const LatticeGradients<N>* gradients, const std::vector<std::array<double, N>>* places,
+                const ExtractOptions& options, Contour<N, Real>& contour)
       : source_(source),
         grid_(grid),
         rows_(rows),
         gradients_(gradients),
+        places_(places),
         rows_in_layer_(N == 3 ? grid.axes[1].size() : 1),
         epsilon_(options.epsilon),
         is_mapped_(grid.has_world_map()),
@@ -124,6 +131,7 @@ class LatticeWriter {
     return index;
   }
   [[nodiscard]] std::array<double, N> place(const Sample& index) const {
+    if (places_ != nullptr) return (*places_)[number_of<N>(grid_, index)];
     std::array<double, N> x;
     for (int a = 0; a < N; ++a) x[a] = coordinates_[a][index[a]] + (index[N - 1] % 2 == 1 ? half_steps_[a] : 0.0);
     return is_mapped_ ? place_in_world<N>(grid_, x) : x;
@@ -154,6 +162,7 @@ class LatticeWriter {
   const Grid<N>& grid_;
   const LatticeRows& rows_;
   const LatticeGradients<N>* gradients_;
+  const std::vector<std::array<double, N>>* places_;
   std::size_t rows_in_layer_;
   double epsilon_;
   bool is_mapped_;
@@ -162,10 +171,10 @@ class LatticeWriter {
   Contour<N, Real>& contour_;
 };
 
-/// Extracts by rows of bits. Returns false, and nothing else, if samples are missing.
+/// Extracts by rows of bits. Returns false, and nothing else, if samples are missing. `places`: as in LatticeWriter.
 template <int N, class Real>
 bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice lattice, const ExtractOptions& options,
-                     Extraction<N, Real>& result) {
+                     const std::vector<std::array<double, N>>* places, Extraction<N, Real>& result) {
   const Progress& progress = options.work.progress;
   const unsigned threads = options.work.threads;
   const std::array<LayerPattern, 2> patterns = make_patterns<N>(lattice, grid, options);
@@ -185,7 +194,8 @@ bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice latti
     gradients.emplace(source, grid, lattice, options.direction);
     result.contour.normals.resize(rows.vertices());
   }
-  const LatticeWriter<N, Real> writer(source, grid, rows, gradients ? &*gradients : nullptr, options, result.contour);
+  const LatticeWriter<N, Real> writer(source, grid, rows, gradients ? &*gradients : nullptr, places, options,
+                                      result.contour);
   for_each_item(rows.row_count(), threads, part_of(progress, 0.5, 0.75),
                 [&](std::size_t r) { writer.write_edge_points(r); });
   for_each_item(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t r) { writer.write_cells(r); });
@@ -193,55 +203,63 @@ bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice latti
   return true;
 }
 
-/// Adds normals to the contour of a complex: on edges from the gradients at their ends, at other vertices the mean of
-/// those in their simplices.
-template <int N, class Real>
-void add_normals(const Complex<N>& complex, const LatticeGradients<N>& gradients, const Grid<N>& grid, double isovalue,
-                 const ExtractOptions& options, Contour<N, Real>& contour) {
-  const CellGroups& cells = ComplexAccess::cells(complex);
-  ExtractStats stats;
-  const ContourNumbers numbers(cells, ComplexAccess::edges(complex), complex.values(), isovalue, options, {}, stats);
-  const auto sizes = grid.sizes();
-  const auto sample = [&](Index p) {
-    std::array<std::size_t, N> index;
-    for (int a = 0; a < N; p = static_cast<Index>(p / sizes[a]), ++a) index[a] = p % sizes[a];
-    return index;
-  };
-  const auto& ends = numbers.edge_ends();
-  contour.normals.assign(contour.vertices.size(), {});
-  for_each_item(ends.size(), options.work.threads, {}, [&](std::size_t v) {
-    const auto& [from, to] = ends[v];
-    const double alpha = alpha_of(complex.values()[from], complex.values()[to], isovalue, options.epsilon);
-    contour.normals[v] = gradients.template normal<Real>(sample(from), sample(to), alpha);
-  });
-  std::vector<std::array<double, N>> sums(contour.vertices.size() - ends.size());
-  for (const auto& simplex : contour.simplices)
-    for (const Index v : simplex)
-      for (const Index other : simplex)
-        if (v >= ends.size() && other < ends.size())
-          for (int a = 0; a < N; ++a) sums[v - ends.size()][a] += double{contour.normals[other][a]};
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    contour.normals[ends.size() + i] = LatticeGradients<N>::template unit<Real>(sums[i]);
-  // copies of vertices beside missing values
-  std::map<std::array<Real, N>, Index> touching;
-  for (const Index v : numbers.vertices_at_missing(cells)) touching.emplace(contour.vertices[v], v);
-  for (std::size_t v = numbers.size().vertices; v < contour.vertices.size(); ++v)
-    if (const auto found = touching.find(contour.vertices[v]); found != touching.end())
-      contour.normals[v] = contour.normals[found->second];
-}
-
 template <int N>
 void check_lattice_options(double isovalue, ExtractOptions options) {
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
                 "normals on a lattice by a kernel, by context or to one side; expected differences");
-  if (options.close)
-    throw Error(ErrorCode::InvalidArgument, "close is set; expected false for the contour of a lattice");
   if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
     throw Error(ErrorCode::InvalidArgument,
                 "ambiguity resolved from the data; expected low or high for the contour of a lattice");
   options.normals = Normals::none;
   check_complex_options(N, isovalue, options);
+}
+
+/// The contour of an image on a lattice. `places`: of samples, in place of those on the grid, without normals and
+/// modulo no periods; null: none.
+template <class Real, Value T, int N>
+Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,
+                                       const ExtractOptions& options, const AxisPeriods<N>& periods,
+                                       const std::vector<std::array<double, N>>* places) {
+  check_lattice_options<N>(isovalue, options);
+  check_dimension(lattice, N);
+  const Grid<N>& grid = image.grid();
+  const unsigned periodic = periodic_axes<N>(periods);
+  if (periodic != 0) {
+    check_lattice_periods<N>(grid, lattice, periods);
+    check_periods<N>(grid, periods, options);
+  }
+  Extraction<N, Real> result;
+  if constexpr (N < 4)
+    if (periodic == 0 && !options.close && is_in_range<Real>(grid)) {
+      check_grid(grid, lattice, N - 1);
+      (void)count_samples(grid, "a lattice");
+      ImageSource<T, N> samples(image, isovalue, options.epsilon);
+      if (extract_by_rows<N, Real>(samples, grid, lattice, options, places, result)) {
+        describe(grid, options, result.contour);
+        return result;
+      }
+    }
+  if (periodic != 0) check_grid(grid, lattice, N - 1);
+  const Complex<N> complex =
+      periodic == 0 ? lattice_complex(image, lattice) : periodic_lattice_complex(image, lattice, periods);
+  if (places != nullptr)
+    return extract_with_stats<Real>(ComplexAccess::at_places<N>(complex, *places), isovalue, options);
+  Surroundings<N> around;
+  if (periodic != 0) around.periods = world_periods<N>(grid, periods);
+  const ImageSource<T, N> source(image, isovalue, options.epsilon);
+  std::optional<LatticeGradients<N>> gradients;
+  if (options.normals != Normals::none) {
+    gradients.emplace(source, grid, lattice, options.direction, periodic, around.periods);
+    around.gradient = [&, sizes = grid.sizes()](Index p) {
+      std::array<std::size_t, N> index;
+      for (int a = 0; a < N; p = static_cast<Index>(p / sizes[a]), ++a) index[a] = p % sizes[a];
+      return gradients->at(index);
+    };
+  }
+  result = extract_in<Real>(complex, isovalue, options, around);
+  describe(grid, options, result.contour);
+  return result;
 }
 
 }  // namespace
@@ -250,38 +268,39 @@ void check_lattice_options(double isovalue, ExtractOptions options) {
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_lattice_with_stats(const Image<T, N>& image,
                                                                                   Lattice lattice, double isovalue,
-                                                                                  const ExtractOptions& options) {
-  detail::check_lattice_options<N>(isovalue, options);
-  detail::check_dimension(lattice, N);
-  const Grid<N>& grid = image.grid();
-  Extraction<N, Real> result;
-  const detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  if constexpr (N < 4)
-    if (detail::is_in_range<Real>(grid)) {
-      detail::check_grid(grid, lattice, N - 1);
-      (void)detail::count_samples(grid, "a lattice");
-      detail::ImageSource<T, N> samples(image, isovalue, options.epsilon);
-      if (detail::extract_by_rows<N, Real>(samples, grid, lattice, options, result)) {
-        detail::describe(grid, options, result.contour);
-        return result;
-      }
-    }
-  const Complex<N> complex = lattice_complex(image, lattice);
-  ExtractOptions without = options;
-  without.normals = Normals::none;
-  result = extract_with_stats<Real>(complex, isovalue, without);
-  if (options.normals != Normals::none) {
-    const detail::LatticeGradients<N> gradients(source, grid, lattice, options.direction);
-    without.work.progress = {};
-    detail::add_normals<N, Real>(complex, gradients, grid, isovalue, without, result.contour);
-  }
-  detail::describe(grid, options, result.contour);
-  return result;
+                                                                                  const ExtractOptions& options,
+                                                                                  const AxisPeriods<N>& periods) {
+  return detail::extract_on_lattice<Real, T, N>(image, lattice, isovalue, options, periods, nullptr);
+}
+
+template <Value T, int N>
+requires DimensionBetween<N, 2, 4> Attribute interpolate_lattice(const Image<T, N>& image, Lattice lattice,
+                                                                 double isovalue, std::span<const double> numbers,
+                                                                 std::string name, std::string unit,
+                                                                 const ExtractOptions& options,
+                                                                 const AxisPeriods<N>& periods) {
+  ExtractOptions of_numbers = options;
+  of_numbers.normals = Normals::none;
+  return detail::interpolate_as_places<N>(
+      detail::count_samples(image.grid(), "a lattice"), numbers, {std::move(name), std::move(unit), 1, {}},
+      [&](const std::vector<std::array<double, N>>& places) {
+        return detail::extract_on_lattice<double, T, N>(image, lattice, isovalue, of_numbers, periods, &places).contour;
+      });
 }
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                 \
   template Extraction<N, Real> extract_lattice_with_stats<Real, T, N>(const Image<T, N>&, Lattice, double, \
-                                                                      const ExtractOptions&);
+                                                                      const ExtractOptions&, const AxisPeriods<N>&);
 #include "base/instantiate.hpp"
+#define TEGL_INSTANTIATE_DIM(T, N)                                                                           \
+  template Attribute interpolate_lattice<T, N>(const Image<T, N>&, Lattice, double, std::span<const double>, \
+                                               std::string, std::string, const ExtractOptions&,              \
+                                               const AxisPeriods<N>&);
+#define TEGL_INSTANTIATE(T)  \
+  TEGL_INSTANTIATE_DIM(T, 2) \
+  TEGL_INSTANTIATE_DIM(T, 3) \
+  TEGL_INSTANTIATE_DIM(T, 4)
+#include "base/instantiate.hpp"
+#undef TEGL_INSTANTIATE_DIM
 
 }  // namespace tegl

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -59,6 +61,11 @@ Complex<4> in_time_of(const Image<T, 4>& image) {
 }  // namespace
 
 std::string_view name_of(Lattice lattice) noexcept { return facts_of(lattice).name; }
+std::optional<Lattice> parse_lattice(std::string_view name) noexcept {
+  for (const LatticeFacts& facts : kLattices)
+    if (facts.name == name) return facts.lattice;
+  return std::nullopt;
+}
 int dimension(Lattice lattice) noexcept { return facts_of(lattice).dim; }
 double layer_step(Lattice lattice) noexcept { return facts_of(lattice).layer_step; }
 

@@ -27,7 +27,8 @@ using Place = LatticePlace;
 /// Collects cells; those with a corner outside of the array are left out.
 class Collector {
  public:
-  explicit Collector(const std::array<std::size_t, 4>& sizes) : sizes_(sizes) {}
+  Collector(const std::array<std::size_t, 4>& sizes, const std::array<std::size_t, 4>& margin)
+      : sizes_(sizes), margin_(margin) {}
 
   [[nodiscard]] std::ptrdiff_t size(int axis) const { return static_cast<std::ptrdiff_t>(sizes_[axis]); }
 
@@ -44,13 +45,14 @@ class Collector {
   }
   [[nodiscard]] LatticeCells take() { return std::move(cells_); }
 
-  /// Calls work(place) for all samples, axis 0 fastest.
+  /// Calls work(place) for all samples that have cells, axis 0 fastest.
   template <class Work>
   void for_samples(const Work& work) const {
-    for (Place at{}; at[3] < size(3); ++at[3])
-      for (at[2] = 0; at[2] < size(2); ++at[2])
-        for (at[1] = 0; at[1] < size(1); ++at[1])
-          for (at[0] = 0; at[0] < size(0); ++at[0]) work(at);
+    Place at{};
+    for (at[3] = first(3); at[3] < end(3); ++at[3])
+      for (at[2] = first(2); at[2] < end(2); ++at[2])
+        for (at[1] = first(1); at[1] < end(1); ++at[1])
+          for (at[0] = first(0); at[0] < end(0); ++at[0]) work(at);
   }
 
  private:
@@ -60,7 +62,10 @@ class Collector {
     return static_cast<Index>(result);
   }
 
-  std::array<std::size_t, 4> sizes_;
+  [[nodiscard]] std::ptrdiff_t first(int axis) const { return static_cast<std::ptrdiff_t>(margin_[axis]); }
+  [[nodiscard]] std::ptrdiff_t end(int axis) const { return size(axis) - first(axis); }
+
+  std::array<std::size_t, 4> sizes_, margin_;
   LatticeCells cells_;
 };
 
@@ -182,8 +187,9 @@ class PatternCollector {
 
 }  // namespace
 
-LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes) {
-  Collector cells(sizes);
+LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes,
+                              const std::array<std::size_t, 4>& margin) {
+  Collector cells(sizes, margin);
   add_cells(lattice, cells);
   return cells.take();
 }

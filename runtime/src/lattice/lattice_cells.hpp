@@ -18,8 +18,10 @@ struct LatticeCells {
   std::vector<Index> corners;
 };
 
-/// The cells of `lattice` (not fcc_in_time) over an array of these sizes, axis 0 fastest.
-[[nodiscard]] LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes);
+/// The cells of `lattice` (not fcc_in_time) over an array of these sizes, axis 0 fastest. `margin`: samples at both
+/// ends of each axis that have no cells of their own, but may be corners of others.
+[[nodiscard]] LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes,
+                                            const std::array<std::size_t, 4>& margin = {});
 
 /// Indices of a sample, or their differences.
 using LatticePlace = std::array<std::ptrdiff_t, 4>;

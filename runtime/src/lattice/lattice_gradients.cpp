@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "base/periods.hpp"
+
 namespace tegl::detail {
 
 namespace {
@@ -15,23 +17,19 @@ using Column = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Square = Eigen::Matrix<double, N, N>;
 
-template <int N>
-Column<N> difference(const Grid<N>& grid, int layers, const std::array<std::size_t, N>& from,
-                     const std::array<std::size_t, N>& to) {
-  const auto a = lattice_place<N>(grid, from, layers), b = lattice_place<N>(grid, to, layers);
-  return Column<N>(b.data()) - Column<N>(a.data());
-}
-
 }  // namespace
 
 template <int N>
 LatticeGradients<N>::LatticeGradients(const CornerValues<N>& values, const Grid<N>& grid, Lattice lattice,
-                                      GradientDirection direction)
+                                      GradientDirection direction, unsigned periodic,
+                                      std::span<const Period<N>> periods)
     : values_(values),
       grid_(grid),
       sizes_(grid.sizes()),
       layers_(lattice == Lattice::fcc_in_time ? 2 : N - 1),
       sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
+      periodic_(periodic),
+      periods_(periods),
       neighbours_(neighbours_of_lattice(lattice == Lattice::fcc_in_time ? Lattice::fcc : lattice)) {
   if (lattice == Lattice::fcc_in_time)
     for (auto& of : neighbours_) of.insert(of.end(), {{0, 0, 0, -1}, {0, 0, 0, 1}});
@@ -56,7 +54,7 @@ template <int N>
 bool LatticeGradients<N>::is_inside(const Sample& index) const {
   if (weights_[0].empty()) return false;
   for (int a = 0; a < N; ++a)
-    if (index[a] < 2 || index[a] + 2 >= sizes_[a]) return false;
+    if ((periodic_ >> a & 1u) == 0 && (index[a] < 2 || index[a] + 2 >= sizes_[a])) return false;
   return true;
 }
 
@@ -73,7 +71,7 @@ void LatticeGradients<N>::find_weights() {
     Square<N> sum = Square<N>::Zero();
     std::vector<Column<N>> steps;
     for (const LatticePlace& step : neighbours_[parity]) {
-      steps.push_back(difference<N>(grid_, layers_, middle, moved(middle, step)));
+      steps.push_back(Column<N>(difference(middle, moved(middle, step)).data()));
       sum += steps.back() * steps.back().transpose();
     }
     const Square<N> inverse = sum.inverse();
@@ -86,6 +84,15 @@ void LatticeGradients<N>::find_weights() {
 }
 
 template <int N>
+std::array<double, N> LatticeGradients<N>::difference(const Sample& from, const Sample& to) const {
+  const Gradient a = lattice_place<N>(grid_, from, layers_);
+  Gradient b = lattice_place<N>(grid_, to, layers_);
+  move_near<N>(periods_, a, b);
+  for (int i = 0; i < N; ++i) b[i] -= a[i];
+  return b;
+}
+
+template <int N>
 std::array<double, N> LatticeGradients<N>::by_least_squares(const Sample& index, double here) const {
   Square<N> sum = Square<N>::Zero();
   Column<N> right = Column<N>::Zero();
@@ -94,7 +101,7 @@ std::array<double, N> LatticeGradients<N>::by_least_squares(const Sample& index,
     if (!exists(there)) continue;
     const double change = values_.value(there) - here;
     if (!std::isfinite(change)) continue;
-    const Column<N> d = difference<N>(grid_, layers_, index, there);
+    const Column<N> d(difference(index, there).data());
     sum += d * d.transpose();
     right += change * d;
   }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "image/sample_source.hpp"
@@ -24,8 +25,9 @@ class LatticeGradients {
   using Sample = std::array<std::size_t, N>;
   using Gradient = std::array<double, N>;
 
-  /// The arguments must outlive this object.
-  LatticeGradients(const CornerValues<N>& values, const Grid<N>& grid, Lattice lattice, GradientDirection direction);
+  /// The arguments must outlive this object. Bit a of `periodic`: axis a is; `periods`: of these axes, in the world.
+  LatticeGradients(const CornerValues<N>& values, const Grid<N>& grid, Lattice lattice, GradientDirection direction,
+                   unsigned periodic = 0, std::span<const Period<N>> periods = {});
 
   /// The unit normal at `alpha` between two samples, on the side of the direction; 0 if the gradient is zero.
   template <class Real>
@@ -48,8 +50,12 @@ class LatticeGradients {
   [[nodiscard]] Gradient at(const Sample& index) const;
 
  private:
-  static Sample moved(Sample index, const LatticePlace& step) {
-    for (int a = 0; a < N; ++a) index[a] += static_cast<std::size_t>(step[a]);  // modulo 2^64
+  [[nodiscard]] Sample moved(Sample index, const LatticePlace& step) const {
+    for (int a = 0; a < N; ++a) {
+      index[a] += static_cast<std::size_t>(step[a]);  // modulo 2^64
+      if ((periodic_ >> a & 1u) == 0 || index[a] < sizes_[a]) continue;
+      index[a] += step[a] < 0 ? sizes_[a] : std::size_t{0} - sizes_[a];
+    }
     return index;
   }
   [[nodiscard]] bool exists(const Sample& index) const {
@@ -61,12 +67,16 @@ class LatticeGradients {
   [[nodiscard]] bool is_inside(const Sample& index) const;
   void find_weights();
   [[nodiscard]] Gradient by_least_squares(const Sample& index, double here) const;
+  /// From a sample to the nearest place of another.
+  [[nodiscard]] Gradient difference(const Sample& from, const Sample& to) const;
 
   const CornerValues<N>& values_;
   const Grid<N>& grid_;
   Sample sizes_;
   int layers_;
   double sign_;
+  unsigned periodic_;
+  std::span<const Period<N>> periods_;
   std::array<std::vector<LatticePlace>, 2> neighbours_;
   std::array<std::vector<Gradient>, 2> weights_;  ///< empty: of an uneven or small grid
 };

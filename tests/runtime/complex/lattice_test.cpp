@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "complex/complex_cases.hpp"
+#include "complex/lattice_image.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
 #include "lattice/lattice_cells.hpp"
@@ -26,32 +27,6 @@ namespace tegl {
 namespace {
 
 using namespace test;
-
-/// An image on a lattice with its isotropic steps, around the origin, within about [-1, 1]^N.
-template <int N, class F>
-OwnedImage<double, N> lattice_image(Lattice lattice, std::size_t samples, F f) {
-  const double step = 2.2 / static_cast<double>(samples - 1);
-  const int layers = lattice == Lattice::fcc_in_time ? 2 : N - 1;
-  OwnedImage<double, N> image;
-  std::array<std::size_t, N> sizes;
-  for (int a = 0; a < N; ++a) {
-    const bool is_layered = a == layers;
-    const double here = is_layered ? step * layer_step(lattice) : step;
-    sizes[a] = is_layered ? static_cast<std::size_t>(2.2 / here) + 1 : samples;
-    image.grid.axes[a] = Axis::uniform(sizes[a], -0.5 * here * static_cast<double>(sizes[a] - 1), here);
-  }
-  std::array<std::size_t, N> index{};
-  std::size_t count = 1;
-  for (const std::size_t size : sizes) count *= size;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::array<double, N> x;
-    for (int a = 0; a < N; ++a)
-      x[a] = image.grid.axes[a][index[a]] + (a < layers && index[layers] % 2 == 1 ? 0.5 * step : 0.0);
-    image.values.push_back(f(x, index, sizes));
-    for (int a = 0; a < N && ++index[a] == sizes[a]; ++a) index[a] = 0;
-  }
-  return image;
-}
 
 /// Noise, low near the border of the array.
 template <int N>
@@ -83,14 +58,6 @@ TEST(Lattice, NoiseHasAClosedOrientedManifold) {
   expect_closed_noise<3>(Lattice::bcc, 14);
   expect_closed_noise<4>(Lattice::d4, 9);
   expect_closed_noise<4>(Lattice::fcc_in_time, 9);
-}
-
-/// Noise up to the border of the array.
-template <int N>
-auto noise_everywhere(unsigned seed) {
-  return [random = std::mt19937(seed)](const auto&, const auto&, const auto&) mutable {
-    return std::uniform_real_distribution<double>()(random);
-  };
 }
 
 template <int N>

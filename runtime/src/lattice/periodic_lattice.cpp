@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A longer image, with a margin of the samples at the other end of each periodic axis, has all cells in one piece, and
+// so their orientations. Then the samples of the margin become those that they repeat. No cell has two of them: cells
+// extend over one step of the shifted axes and two layers.
+#include "lattice/periodic_lattice.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "complex/cell_groups.hpp"
+#include "complex/image_points.hpp"
+#include "lattice/lattice_cells.hpp"
+#include "lattice/lattice_grid.hpp"
+#include "periodic/periodic_layers.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+constexpr std::size_t kMargin = 2;  // even, so that layers keep their parity
+
+[[noreturn]] void refuse(Lattice lattice, const std::string& text) {
+  throw Error(ErrorCode::InvalidArgument, fmt::format("lattice {}: {}", name_of(lattice), text));
+}
+
+}  // namespace
+
+template <int N>
+void check_lattice_periods(const Grid<N>& grid, Lattice lattice, const AxisPeriods<N>& periods) {
+  if (lattice == Lattice::fcc_in_time)
+    refuse(lattice, "periodic axes; expected none: periods are for triangular, fcc, bcc and d4");
+  for (int a = 0; a < N; ++a) {
+    if (periods[a] == 0.0) continue;
+    const Axis& axis = grid.axes[a];
+    const std::size_t size = axis.size();
+    // farther than half a period apart, points of one cell would have no nearest places
+    if (a == N - 1 && (size % 2 != 0 || size < 6))
+      refuse(lattice, fmt::format("the periodic axis {} has {} layers; expected an even number, at least 6, as odd "
+                                  "layers are shifted",
+                                  a, size));
+    if (size < 3) refuse(lattice, fmt::format("the periodic axis {} has {} samples; expected at least 3", a, size));
+    const double expected = static_cast<double>(size) * std::abs(axis.step());
+    if (axis.is_uniform() && !(std::abs(periods[a] - expected) <= 1e-6 * expected))
+      refuse(lattice, fmt::format("the period of axis {} is {}; expected {}, the number of samples x the step", a,
+                                  periods[a], expected));
+  }
+}
+
+template <Value T, int N>
+Complex<N> periodic_lattice_complex(const Image<T, N>& image, Lattice lattice, const AxisPeriods<N>& periods) {
+  Grid<N> longer = image.grid();
+  const auto sizes = image.grid().sizes();
+  std::array<std::size_t, 4> margin{};
+  for (int a = 0; a < N; ++a) {
+    if (periods[a] == 0.0) continue;
+    margin[a] = kMargin;
+    longer.axes[a] = wrapped_axis(image.grid().axes[a], periods[a], kMargin, kMargin);
+  }
+  const LatticeCells cells = cells_of_lattice(lattice, four_sizes(longer), margin);
+  std::vector<Index> number;
+  for_each_sample<N>(longer.sizes(), [&](std::array<std::size_t, N> index) {
+    std::size_t at = 0;
+    for (int a = N - 1; a >= 0; --a) at = at * sizes[a] + (index[a] + sizes[a] - margin[a]) % sizes[a];
+    number.push_back(static_cast<Index>(at));
+  });
+  return ComplexAccess::identified<N>(Complex<N>(points_of(longer, N - 1), cells.types, cells.corners),
+                                      points_of(image.grid(), N - 1), values_of(image), number);
+}
+
+#define TEGL_INSTANTIATE_DIM(T, N) \
+  template Complex<N> periodic_lattice_complex<T, N>(const Image<T, N>&, Lattice, const AxisPeriods<N>&);
+#define TEGL_INSTANTIATE(T)  \
+  TEGL_INSTANTIATE_DIM(T, 2) \
+  TEGL_INSTANTIATE_DIM(T, 3) \
+  TEGL_INSTANTIATE_DIM(T, 4)
+#include "base/instantiate.hpp"
+#undef TEGL_INSTANTIATE_DIM
+
+template void check_lattice_periods<2>(const Grid<2>&, Lattice, const AxisPeriods<2>&);
+template void check_lattice_periods<3>(const Grid<3>&, Lattice, const AxisPeriods<3>&);
+template void check_lattice_periods<4>(const Grid<4>&, Lattice, const AxisPeriods<4>&);
+
+}  // namespace tegl::detail
