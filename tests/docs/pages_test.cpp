@@ -242,4 +242,27 @@ TEST(OtherTilings, ACurvedGridHasArraysOfCoordinates) {
   for (const auto& vertex : surface.vertices) EXPECT_NEAR(std::hypot(vertex[0] - 156, vertex[1] + 16), 3.0, 0.1);
 }
 
+TEST(OtherTilings, ACurvedGridAroundTheGlobeIsPeriodic) {
+  const tegl::Grid<3> grid = tegl::Grid<3>::unit({36, 10, 5});
+  std::vector<double> longitudes, latitudes;
+  for (int j = 0; j < 10; ++j)
+    for (int i = 0; i < 36; ++i) {
+      longitudes.push_back(10.0 * i + 0.1 * j);
+      latitudes.push_back(-20.0 + 4 * j);
+    }
+  std::vector<float> values;
+  for (int k = 0; k < 5; ++k)
+    for (const double latitude : latitudes) values.push_back(static_cast<float>(15.0 - latitude + 0.1 * k));
+  const tegl::Image<float, 3> image(values.data(), grid);
+  const std::vector<tegl::CurvedAxis> curved = {{0, 0b011, longitudes, "lon", "degrees_east"},
+                                                {1, 0b011, latitudes, "lat"}};
+  // [seams]
+  // Axis 0 runs around the globe: 360 degrees after the first samples follow the last ones.
+  const auto seams = tegl::find_seams(image.grid(), curved, std::array{0});
+  const auto closed = tegl::extract_curved(image, curved, 15.0, {}, seams);
+  // [/seams]
+  ASSERT_EQ(closed.periods.size(), 1u);
+  EXPECT_EQ(closed.periods[0].vector[0], 360.0);
+}
+
 }  // namespace

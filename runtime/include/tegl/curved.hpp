@@ -11,14 +11,43 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl {
+
+/// A periodic axis of a curved grid: cells across the seam connect the last samples along it to the first ones.
+template <int N>
+struct CurvedSeam {
+  int axis = 0;           ///< of the image
+  Vector<N> vector = {};  ///< from the places of the first samples to where they follow the last ones; 0: the same
+                          ///< places, as in O-grids around a body. Along an axis that is not curved: its period.
+};
+/// Seams of a curved grid, which are not deduced.
+template <int N>
+using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
+
+/// The seams of these axes. Vectors are 360 for coordinates with a unit of degrees_east (or another as in
+/// `longitude_periods`) that the seam continues, and the periods of `longitude_periods` or `sample_periods` for axes
+/// that are not curved; otherwise 0. Errors: InvalidGrid (as `extract_curved`, and an axis that the grid does not
+/// have).
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                                                    std::span<const int> axes);
+
+/// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as
+/// `extract_curved`).
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] AxisPeriods<N> index_periods(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                                           const CurvedSeams<N>& seams);
 
 /// Cells of a curved grid that are not mapped to space one to one: at a corner, the edges have another orientation than
 /// in most cells, or none.
@@ -30,11 +59,12 @@ struct GridFolds {
 };
 
 /// Finds the cells in which the grid is folded. The grid's own coordinates along curved axes are not used. Cells with
-/// unknown coordinates do not count. Errors: InvalidGrid (as `extract_curved`). O(cells) time.
+/// unknown coordinates do not count. Cells across seams have the index of the last sample. Errors: InvalidGrid (as
+/// `extract_curved`). O(cells) time.
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] GridFolds<N> find_folds(const Grid<N>& grid, std::span<const CurvedAxis> curved,
-                                      const WorkOptions& work = {});
+                                      const WorkOptions& work = {}, const CurvedSeams<N>& seams = {});
 
 /// The grid on which `on_curved_grid` expects a contour: along curved axes, indices (negative ones along one axis, if
 /// the curved grid has the other orientation); along others, the grid's own coordinates. Errors: InvalidGrid (as
@@ -45,32 +75,44 @@ requires DimensionBetween<N, 2, 4>
 
 /// Moves a contour from index_grid(grid, curved) to the curved grid: vertices by multilinear interpolation of the
 /// samples' coordinates, normals by the Jacobian (central differences, interpolated). Attributes remain,
-/// and moved contours are not copied. Errors: InvalidGrid (as `extract_curved`); UnsupportedData for a vertex between
-/// samples of unknown coordinates, and for a contour with periods. O(V) time.
+/// and moved contours are not copied. With seams, the contour must be the one of `extract_periodic` on `index_grid`
+/// with `index_periods`. Errors: InvalidGrid (as `extract_curved`); UnsupportedData for a vertex between samples of
+/// unknown coordinates, and for a contour with periods and no seams; InvalidArgument for one with seams and other
+/// periods. O(V) time.
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> on_curved_grid(Contour<N, Real> contour, const Grid<N>& grid,
-                                              std::span<const CurvedAxis> curved, const WorkOptions& work = {});
+                                              std::span<const CurvedAxis> curved, const WorkOptions& work = {},
+                                              const CurvedSeams<N>& seams = {});
 
 /// As `extract_curved`, with counts and times; these do not include the time to move the vertices.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Extraction<N, Real> extract_curved_with_stats(const Image<T, N>& image,
                                                             std::span<const CurvedAxis> curved, double isovalue,
-                                                            const ExtractOptions& options = {}) {
+                                                            const ExtractOptions& options = {},
+                                                            const CurvedSeams<N>& seams = {}) {
   ExtractOptions of_indices = options;
   if (options.work.progress) of_indices.work.progress = [&](double done) { return options.work.progress(0.9 * done); };
   WorkOptions moving = options.work;
   if (options.work.progress) moving.progress = [&](double done) { return options.work.progress(0.9 + 0.1 * done); };
   const Image<T, N> indexed(image.data(), index_grid<N>(image.grid(), curved), image.strides());
-  Extraction<N, Real> made = extract_with_stats<Real>(indexed, isovalue, of_indices);
-  return {on_curved_grid<Real>(std::move(made.contour), image.grid(), curved, moving), made.stats};
+  Extraction<N, Real> made = seams.empty()
+                                 ? extract_with_stats<Real>(indexed, isovalue, of_indices)
+                                 : extract_periodic_with_stats<Real>(
+                                       indexed, index_periods<N>(image.grid(), curved, seams), isovalue, of_indices);
+  return {on_curved_grid<Real>(std::move(made.contour), image.grid(), curved, moving, seams), made.stats};
 }
 
 /// Extracts the contour of an image whose samples have coordinates of their own. Simplices, with their vertex numbers,
 /// equal the ones of `extract` on the indices, reversed if the grid has the other orientation; so the contour faces the
 /// side of ExtractOptions::direction in space. The image's grid gives the sizes, the coordinates of axes that are not
 /// curved, and names and units.
+///
+/// `seams`: periodic axes. The contour continues across them as that of `extract_periodic` on the indices. If the
+/// places of a seam's first samples are the same behind its last ones, the contour is closed there in space; otherwise
+/// it is wrapped (Contour::periods), so that `unroll` makes it one for pictures. Cells must be shorter than half a
+/// period.
 ///
 /// A contour on a grid without folds (`find_folds`) is embedded if the cells of the grid are; with folds, parts
 /// overlap.
@@ -82,8 +124,9 @@ requires DimensionBetween<N, 2, 4>
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_curved(const Image<T, N>& image, std::span<const CurvedAxis> curved,
-                                              double isovalue, const ExtractOptions& options = {}) {
-  return extract_curved_with_stats<Real>(image, curved, isovalue, options).contour;
+                                              double isovalue, const ExtractOptions& options = {},
+                                              const CurvedSeams<N>& seams = {}) {
+  return extract_curved_with_stats<Real>(image, curved, isovalue, options, seams).contour;
 }
 
 }  // namespace tegl

@@ -19,6 +19,8 @@
 #include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "curved/curved_map.hpp"
+#include "curved/curved_seams.hpp"
+#include "periodic/periodic_layers.hpp"
 
 namespace tegl {
 namespace {
@@ -27,8 +29,10 @@ namespace {
 template <int N>
 class Mover {
  public:
-  Mover(const Grid<N>& grid, std::span<const CurvedAxis> curved)
-      : map_(grid, curved), indices_(index_grid<N>(grid, curved)), locator_(indices_) {
+  /// `indices`: grid of the points.
+  Mover(const Grid<N>& grid, std::span<const CurvedAxis> curved, Grid<N> indices, std::span<const CurvedSeam<N>> seams)
+      : map_(grid, curved), indices_(std::move(indices)), locator_(indices_) {
+    map_.set_seams(seams);
     is_straight_and_needed_ = (map_.along() & ~map_.curved()) != 0;
     for (int a = 0; a < N; ++a) steps_[a] = map_.is_curved(a) ? indices_.axes[a].step() : 0.0;
   }
@@ -134,12 +138,55 @@ template <int N>
                           fmt::join(index, ", ")));
 }
 
+/// Moves a contour by a mover.
+template <class Real, int N>
+void move_contour(const Mover<N>& mover, std::span<const CurvedAxis> curved, const WorkOptions& work,
+                  Contour<N, Real>& contour) {
+  const std::size_t vertices = contour.vertices.size();
+  // The first vertex without a place keeps its indices, for the message.
+  std::atomic<std::size_t> unknown{vertices};
+  detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
+    std::array<detail::CurvedBlock, 2> blocks;  // one is looked up before the other is moved, as memory is slow
+    const auto look_up = [&](std::size_t first) {
+      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
+      block.count = std::min(to - first, block.kMost);
+      detail::load_points(contour.vertices[first].data(), N, mover.read(), block);
+      mover.look_up(block);
+    };
+    if (from < to) look_up(from);
+    for (std::size_t first = from; first < to; first += detail::CurvedBlock::kMost) {
+      if (to - first > detail::CurvedBlock::kMost) look_up(first + detail::CurvedBlock::kMost);
+      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
+      mover.move(block);
+      if (const std::size_t i = first_unknown<N>(block, mover.written()); i < block.count) {
+        detail::lower_to(unknown, first + i);
+        continue;
+      }
+      for (std::size_t v = first; v < first + block.count && !contour.normals.empty(); ++v) {
+        const auto normal =
+            mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
+        for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
+      }
+      detail::store_points(block, N, mover.written(), contour.vertices[first].data());
+    }
+  });
+  if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));
+  for (const CurvedAxis& one : curved) {
+    if (!one.name.empty()) contour.axis_names[one.axis] = one.name;
+    if (!one.unit.empty()) contour.axis_units[one.axis] = one.unit;
+  }
+}
+
 }  // namespace
 
 template <int N>
 requires DimensionBetween<N, 2, 4> GridFolds<N> find_folds(const Grid<N>& grid, std::span<const CurvedAxis> curved,
-                                                           const WorkOptions& work) {
+                                                           const WorkOptions& work, const CurvedSeams<N>& seams) {
   detail::require_curved<N>(grid, curved);
+  if (!seams.empty()) {
+    const detail::LongerCurved<N> longer = detail::longer_curved<N>(grid, curved, seams);
+    return find_folds<N>(longer.grid, longer.curved, work);
+  }
   const detail::CurvedMap<N> map(grid, curved);
   GridFolds<N> folds;
   if (curved.empty()) return folds;
@@ -201,52 +248,40 @@ requires DimensionBetween<N, 2, 4> Grid<N> index_grid(const Grid<N>& grid, std::
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Real> contour, const Grid<N>& grid,
                                                                    std::span<const CurvedAxis> curved,
-                                                                   const WorkOptions& work) {
-  detail::require_unwrapped(contour, "on_curved_grid");
-  const Mover<N> mover(grid, curved);
-  const std::size_t vertices = contour.vertices.size();
-  // The first vertex without a place keeps its indices, for the message.
-  std::atomic<std::size_t> unknown{vertices};
-  detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    std::array<detail::CurvedBlock, 2> blocks;  // one is looked up before the other is moved, as memory is slow
-    const auto look_up = [&](std::size_t first) {
-      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
-      block.count = std::min(to - first, block.kMost);
-      detail::load_points(contour.vertices[first].data(), N, mover.read(), block);
-      mover.look_up(block);
-    };
-    if (from < to) look_up(from);
-    for (std::size_t first = from; first < to; first += detail::CurvedBlock::kMost) {
-      if (to - first > detail::CurvedBlock::kMost) look_up(first + detail::CurvedBlock::kMost);
-      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
-      mover.move(block);
-      if (const std::size_t i = first_unknown<N>(block, mover.written()); i < block.count) {
-        detail::lower_to(unknown, first + i);
-        continue;
-      }
-      for (std::size_t v = first; v < first + block.count && !contour.normals.empty(); ++v) {
-        const auto normal =
-            mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
-        for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
-      }
-      detail::store_points(block, N, mover.written(), contour.vertices[first].data());
-    }
-  });
-  if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));
-  for (const CurvedAxis& one : curved) {
-    if (!one.name.empty()) contour.axis_names[one.axis] = one.name;
-    if (!one.unit.empty()) contour.axis_units[one.axis] = one.unit;
+                                                                   const WorkOptions& work,
+                                                                   const CurvedSeams<N>& seams) {
+  Grid<N> indices = index_grid<N>(grid, curved);
+  if (seams.empty()) {
+    detail::require_unwrapped(contour, "on_curved_grid");
+    move_contour<Real, N>(Mover<N>(grid, curved, std::move(indices), {}), curved, work, contour);
+    return contour;
+  }
+  if (contour.periods.size() != seams.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("on_curved_grid: a contour with {} periods and {} seams; expected as many",
+                            contour.periods.size(), seams.size()));
+  const detail::LongerCurved<N> longer = detail::longer_curved<N>(grid, curved, seams);
+  indices = detail::longer_grid<N>(indices, index_periods<N>(grid, curved, seams));
+  contour.periods.clear();
+  move_contour<Real, N>(Mover<N>(longer.grid, longer.curved, std::move(indices), seams), curved, work, contour);
+  contour.periods = detail::periods_of_seams<N>(grid, curved, seams);
+  if (contour.periods.empty()) return contour;
+  for (auto& vertex : contour.vertices) {
+    std::array<double, N> place = detail::widened_point<N>(vertex);
+    detail::move_inside<N, Real>(contour.periods, place);
+    for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(place[a]);
   }
   return contour;
 }
 
 #define TEGL_INSTANTIATE_CURVED(N)                                                                                    \
-  template GridFolds<N> find_folds<N>(const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&);               \
+  template GridFolds<N> find_folds<N>(const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&,                \
+                                      const CurvedSeams<N>&);                                                         \
   template Grid<N> index_grid<N>(const Grid<N>&, std::span<const CurvedAxis>);                                        \
   template Contour<N, float> on_curved_grid<float, N>(Contour<N, float>, const Grid<N>&, std::span<const CurvedAxis>, \
-                                                      const WorkOptions&);                                            \
-  template Contour<N, double> on_curved_grid<double, N>(Contour<N, double>, const Grid<N>&,                           \
-                                                        std::span<const CurvedAxis>, const WorkOptions&);
+                                                      const WorkOptions&, const CurvedSeams<N>&);                     \
+  template Contour<N, double> on_curved_grid<double, N>(                                                              \
+      Contour<N, double>, const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&, const CurvedSeams<N>&);
 TEGL_INSTANTIATE_CURVED(2)
 TEGL_INSTANTIATE_CURVED(3)
 TEGL_INSTANTIATE_CURVED(4)

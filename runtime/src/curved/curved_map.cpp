@@ -137,21 +137,27 @@ double CurvedMap<N>::inside(std::size_t k, const CellPlace<N>& place) const noex
 
 template <int N>
 double CurvedMap<N>::difference(std::size_t k, const SampleIndex& index, int a) const noexcept {
-  SampleIndex before = index, after = index;
-  if (index[a] > 0) --before[a];
-  if (index[a] + 1 < sizes_[a]) ++after[a];
   const double here = value(k, index);
-  double low = value(k, before), high = value(k, after);
-  double steps = static_cast<double>(after[a] - before[a]);
-  // one-sided next to unknown coordinates
-  if (std::isnan(low)) {
-    low = here;
-    --steps;
-  }
-  if (std::isnan(high)) {
-    high = here;
-    --steps;
-  }
+  double low = here, high = here, steps = 0.0;
+  // one-sided at the border and next to unknown coordinates
+  const auto take = [&](std::size_t to, double turn, double& x) {
+    SampleIndex at = index;
+    at[a] = to;
+    const double there = value(k, at) + turn;
+    if (std::isnan(there)) return;
+    x = there;
+    ++steps;
+  };
+  const bool wraps = (periodic_ >> a & 1u) != 0;
+  const double turn = turns_[a][axes_[k].axis];
+  if (index[a] > 0)
+    take(index[a] - 1, 0.0, low);
+  else if (wraps)
+    take(sizes_[a] - 2, -turn, low);
+  if (index[a] + 1 < sizes_[a])
+    take(index[a] + 1, 0.0, high);
+  else if (wraps)
+    take(1, turn, high);
   return steps > 0.0 ? (high - low) / steps : 0.0;
 }
 

@@ -37,6 +37,13 @@ class CurvedMap {
   [[nodiscard]] double orientation(const SampleIndex& cell, unsigned corner) const noexcept;
   /// The orientation of most of some cells that are spread over the grid: 1 or -1.
   [[nodiscard]] double main_orientation() const;
+  /// Continues derivatives across seams, where the map's last sample along the axis repeats the first one.
+  void set_seams(std::span<const CurvedSeam<N>> seams) noexcept {
+    for (const CurvedSeam<N>& seam : seams) {
+      periodic_ |= 1u << seam.axis;
+      turns_[seam.axis] = seam.vector;
+    }
+  }
 
   /// Finds the ends of the edges of places in the grid, and starts to load coordinates there.
   void look_up(CurvedBlock& block) const noexcept;
@@ -62,6 +69,8 @@ class CurvedMap {
   SampleIndex sizes_;
   unsigned curved_ = 0;
   unsigned along_ = 0;
+  unsigned periodic_ = 0;
+  std::array<Vector<N>, N> turns_{};  ///< by periodic axis
 };
 
 }  // namespace tegl::detail

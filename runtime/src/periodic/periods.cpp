@@ -43,10 +43,8 @@ void check_period(const Axis& axis, int a, double period) {
 }
 
 bool is_longitude(const Axis& axis) {
-  constexpr std::array<std::string_view, 6> kUnits = {"degrees_east", "degree_east", "degree_E",
-                                                      "degrees_E",    "degreeE",     "degreesE"};
   constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
-  if (axis.size() < 3 || std::find(kUnits.begin(), kUnits.end(), axis.unit) == kUnits.end()) return false;
+  if (axis.size() < 3 || !detail::is_longitude_unit(axis.unit)) return false;
   const double step = (axis[axis.size() - 1] - axis[0]) / static_cast<double>(axis.size() - 1);
   for (std::size_t i = 1; i < axis.size(); ++i)
     if (std::abs(axis[i] - axis[i - 1] - step) > kTolerance * std::abs(step)) return false;
@@ -79,6 +77,12 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> longitude_periods(const Grid<N
 }
 
 namespace detail {
+
+bool is_longitude_unit(std::string_view unit) noexcept {
+  constexpr std::array<std::string_view, 6> kUnits = {"degrees_east", "degree_east", "degree_E",
+                                                      "degrees_E",    "degreeE",     "degreesE"};
+  return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
+}
 
 template <int N>
 void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const ExtractOptions& options) {

@@ -3,11 +3,15 @@
 // Checks of periodic axes, and their periods in the world.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "tegl/periodic.hpp"
 
 namespace tegl::detail {
+
+/// Whether a unit is that of longitudes: degrees_east and its other spellings.
+[[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
 
 /// Throws InvalidArgument for bad periods, and for options that periodic extraction does not have.
 template <int N>

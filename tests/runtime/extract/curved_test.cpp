@@ -231,6 +231,177 @@ TEST(Curved, TorusInToroidalCoordinates) {
   EXPECT_NEAR(measure(contour).size, area, 0.005 * area);
 }
 
+/// An O-grid around a body: radius and angle, or with `height` also z; the angle's last sample is one step before its
+/// first one.
+template <int N, class F>
+CurvedImage<N> around_body(const std::array<std::size_t, N>& sizes, F value) {
+  const double part = static_cast<double>(sizes[1] - 1) / static_cast<double>(sizes[1]);
+  return curved_image<N>(
+      sizes,
+      [&](const std::array<double, N>& u) {
+        const double r = 0.5 + u[0], phi = 2.0 * kPi * u[1] * part;
+        std::array<double, N> x{r * std::cos(phi), r * std::sin(phi)};
+        if constexpr (N == 3) x[2] = u[2];
+        return x;
+      },
+      value);
+}
+
+/// The cells of a grid as a mesh whose axis 1 is periodic: the last points are connected to the first ones.
+template <int N>
+Complex<N> ring_mesh_of(const CurvedImage<N>& image) {
+  const auto sizes = image.image.grid.sizes();
+  std::vector<std::array<double, N>> points;
+  for (std::size_t i = 0; i < image.count(); ++i) points.push_back(image.place(i));
+  std::vector<Index> corners;
+  const auto number = [&](std::size_t x, std::size_t y, std::size_t z) {
+    return static_cast<Index>((z * sizes[1] + y % sizes[1]) * sizes[0] + x);
+  };
+  for (std::size_t z = 0; z < (N == 2 ? 1 : sizes[N - 1] - 1); ++z)
+    for (std::size_t y = 0; y < sizes[1]; ++y)
+      for (std::size_t x = 0; x + 1 < sizes[0]; ++x)
+        for (std::size_t side = 0; side < (N == 2 ? 1u : 2u); ++side)
+          corners.insert(corners.end(), {number(x, y, z + side), number(x + 1, y, z + side),
+                                         number(x + 1, y + 1, z + side), number(x, y + 1, z + side)});
+  Complex<N> complex(std::move(points), N == 2 ? CellType::quadrilateral : CellType::hexahedron, corners);
+  complex.set_values(std::vector<double>(image.image.values.begin(), image.image.values.end()));
+  return complex;
+}
+
+template <int N>
+void expect_the_ring_of_cells(const std::array<std::size_t, N>& sizes) {
+  std::mt19937 random(7);
+  const CurvedImage<N> noise = around_body<N>(
+      sizes, [&](const std::array<double, N>&) { return std::uniform_real_distribution<double>()(random); });
+  const std::vector<CurvedSeam<N>> seams = {{1, {}}};
+  for (const bool close : {false, true}) {
+    ExtractOptions options;
+    options.close = close;
+    const auto contour = extract_curved<double>(noise.image.view(), noise.curved, 0.5, options, seams);
+    EXPECT_TRUE(contour.periods.empty());
+    const auto of_mesh = extract<double>(ring_mesh_of(noise), 0.5, options);
+    EXPECT_TRUE(is_oriented_manifold(check(contour)));
+    EXPECT_EQ(check(contour).euler, check(of_mesh).euler);
+    EXPECT_EQ(check(contour).components, check(of_mesh).components);
+    EXPECT_EQ(check(contour).boundary_simplices, check(of_mesh).boundary_simplices);
+    EXPECT_EQ(contour.vertices.size(), of_mesh.vertices.size());
+    EXPECT_NEAR(measure(contour).size, measure(of_mesh).size, 1e-9 * measure(of_mesh).size);
+    if (close) continue;  // caps of images and of meshes have other diagonals
+    EXPECT_EQ(sorted_places(contour), sorted_places(of_mesh));
+  }
+}
+
+TEST(CurvedSeams, AnOGridHasTheContourOfItsCellsWithMergedPoints) {
+  expect_the_ring_of_cells<2>({9, 14});
+  expect_the_ring_of_cells<3>({5, 9, 6});
+}
+
+TEST(CurvedSeams, ARingAroundABodyIsClosedAndOneComponent) {
+  const auto image =
+      around_body<2>({33, 64}, [](const std::array<double, 2>& x) { return 1.0 - std::hypot(x[0] - 0.1, x[1]); });
+  const std::vector<int> axes = {1};
+  const auto seams = find_seams<2>(image.image.grid, image.curved, axes);
+  ASSERT_EQ(seams.size(), 1u);
+  EXPECT_EQ(seams[0].vector, (Vector<2>{}));
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  const auto contour = extract_curved<double>(image.image.view(), image.curved, 0.0, options, seams);
+  const MeshReport report = check(contour);
+  EXPECT_TRUE(is_closed_oriented_manifold(report));
+  EXPECT_EQ(report.components, 1u);
+  EXPECT_NEAR(measure(contour).content.value(), kPi, 0.01);
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    EXPECT_NEAR(contour.normals[v][0], contour.vertices[v][0] - 0.1, 0.02);
+    EXPECT_NEAR(contour.normals[v][1], contour.vertices[v][1], 0.02);
+  }
+  EXPECT_EQ(find_folds<2>(image.image.grid, image.curved, {}, seams), GridFolds<2>{});
+  ExtractOptions threads;
+  threads.work.threads = 3;
+  EXPECT_EQ(extract_curved<double>(image.image.view(), image.curved, 0.0, threads, seams).simplices, contour.simplices);
+}
+
+/// A global ocean grid: longitudes and latitudes in arrays, tilted against each other; `from`: first longitude.
+OwnedImage<double, 2> globe(double from, std::vector<CurvedAxis>& curved) {
+  OwnedImage<double, 2> image;
+  image.grid = Grid<2>::unit({36, 17});
+  curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+  for (int j = 0; j < 17; ++j)
+    for (int i = 0; i < 36; ++i) {
+      const double lat = -80.0 + 10.0 * j + 2.0 * std::sin(2.0 * kPi * i / 36.0), lon = from + 10.0 * i + 0.1 * j;
+      curved[0].values.push_back(lon);
+      curved[1].values.push_back(lat);
+      // a cap around 180 degrees east, at the equator
+      const double away = lon - 180.0 - 360.0 * std::round((lon - 180.0) / 360.0);
+      image.values.push_back(40.0 - std::hypot(away, lat));
+    }
+  return image;
+}
+
+TEST(CurvedSeams, AThingThatCrossesTheDateLineIsOneClosedComponent) {
+  std::vector<CurvedAxis> curved;
+  for (const double from : {-175.0, 3.0, -359.0}) {
+    const auto image = globe(from, curved);
+    const std::vector<int> axes = {0};
+    const auto seams = find_seams<2>(image.grid, curved, axes);
+    EXPECT_EQ(seams[0].vector, (Vector<2>{360.0, 0.0}));
+    const auto contour = extract_curved<double>(image.view(), curved, 0.0, {}, seams);
+    ASSERT_EQ(contour.periods.size(), 1u);
+    EXPECT_EQ(contour.periods[0].vector, (Vector<2>{360.0, 0.0}));
+    EXPECT_EQ(contour.axis_names[0], "lon");
+    const MeshReport report = check(contour);
+    EXPECT_TRUE(is_closed_oriented_manifold(report));
+    EXPECT_EQ(report.components, 1u);
+    EXPECT_NEAR(measure(contour).content.value(), kPi * 1600.0, 80.0);  // cells of 10 degrees
+    for (const auto& vertex : contour.vertices) EXPECT_TRUE(vertex[0] > from - 1.0 && vertex[0] < from + 361.0);
+    const auto unrolled = unroll(contour).contour;
+    double longest = 0;
+    for (const auto& simplex : unrolled.simplices)
+      longest = std::max(longest, std::abs(unrolled.vertices[simplex[0]][0] - unrolled.vertices[simplex[1]][0]));
+    EXPECT_LT(longest, 20.0);
+  }
+}
+
+TEST(CurvedSeams, AStraightAxisBesideACurvedOneIsPeriodic) {
+  // straight longitudes, heights that follow the ground: z(x, z)
+  OwnedImage<double, 2> image;
+  image.grid = Grid<2>::unit({24, 11});
+  image.grid.axes[0] = Axis::uniform(24, 0.0, 15.0);
+  image.grid.axes[0].unit = "degrees_east";
+  std::vector<CurvedAxis> curved = {{1, 3, {}, "z", "m"}};
+  for (int j = 0; j < 11; ++j)
+    for (int i = 0; i < 24; ++i) {
+      const double z = j + 0.5 * std::cos(2.0 * kPi * i / 24.0);
+      curved[0].values.push_back(z);
+      image.values.push_back(5.0 - z);
+    }
+  const std::vector<int> axes = {0};
+  const auto seams = find_seams<2>(image.grid, curved, axes);
+  EXPECT_EQ(seams[0].vector, (Vector<2>{360.0, 0.0}));
+  const auto contour = extract_curved<double>(image.view(), curved, 0.0, {}, seams);
+  EXPECT_TRUE(is_closed_oriented_manifold(check(contour)));
+  for (const auto& vertex : contour.vertices) EXPECT_NEAR(vertex[1], 5.0, 0.02);
+  EXPECT_NEAR(measure(contour).size, 360.0, 0.1);
+}
+
+TEST(CurvedSeams, WrongSeamsAreErrors) {
+  std::vector<CurvedAxis> curved;
+  const auto image = globe(0.0, curved);
+  const auto refused = [&](const std::vector<CurvedSeam<2>>& seams, const char* text) {
+    expect_error(ErrorCode::InvalidGrid, text, [&] { (void)extract_curved(image.view(), curved, 0.0, {}, seams); });
+  };
+  refused({{2, {}}}, "a seam of axis 2; expected an axis from 0 to 1");
+  refused({{0, {}}, {0, {}}}, "two seams of axis 0");
+  refused({{0, {std::nan(""), 0.0}}}, "the vector component nan");
+  refused({{0, {360.0, 0.0}}, {1, {360.0, 0.0}}}, "the vectors of the seams are dependent");
+  curved.pop_back();
+  refused({{0, {360.0, 1.0}}}, "along coordinate 1, which does not differ along it");
+  refused({{1, {}}}, "the seam of axis 1, which is not curved, has the period 0");
+  auto contour = extract(image.view(), 0.0);
+  const std::vector<CurvedSeam<2>> seams = {{0, {360.0, 0.0}}};
+  expect_error(ErrorCode::InvalidArgument, "a contour with 0 periods and 1 seams",
+               [&] { (void)on_curved_grid(contour, image.grid, curved, {}, seams); });
+}
+
 TEST(Curved, StraightAxesKeepTheirCoordinates) {
   // Longitude and latitude by two indices; uneven depths; times. The same as a mesh over time, cut at a time.
   OwnedImage<float, 4> image;

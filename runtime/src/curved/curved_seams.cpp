@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "curved/curved_seams.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include "base/periods.hpp"
+#include "curved/curved_map.hpp"
+#include "periodic/periodic_layers.hpp"
+#include "periodic/periods.hpp"
+
+namespace tegl {
+namespace detail {
+
+namespace {
+
+template <int N>
+std::size_t size_along(const CurvedAxis& one, const Grid<N>& grid, int first, int end) {
+  std::size_t size = 1;
+  for (int a = first; a < end; ++a) size *= (one.along >> a & 1u) != 0 ? grid.axes[a].size() : 1;
+  return size;
+}
+
+bool is_axis_curved(std::span<const CurvedAxis> curved, int axis) {
+  return std::any_of(curved.begin(), curved.end(), [&](const CurvedAxis& one) { return one.axis == axis; });
+}
+
+template <int N>
+void require_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved, std::span<const CurvedSeam<N>> seams) {
+  require_curved<N>(grid, curved);
+  const auto fail = [](const std::string& text) { throw Error(ErrorCode::InvalidGrid, text); };
+  unsigned seen = 0;
+  for (const CurvedSeam<N>& seam : seams) {
+    if (seam.axis < 0 || seam.axis >= N)
+      fail(fmt::format("a seam of axis {}; expected an axis from 0 to {}", seam.axis, N - 1));
+    if ((seen >> seam.axis & 1u) != 0) fail(fmt::format("two seams of axis {}; expected one", seam.axis));
+    seen |= 1u << seam.axis;
+    for (int c = 0; c < N; ++c) {
+      const double x = seam.vector[c];
+      const bool is_straight = !is_axis_curved(curved, c);
+      if (!std::isfinite(x)) fail(fmt::format("the seam of axis {} has the vector component {}", seam.axis, x));
+      if (is_straight && c == seam.axis && x == 0.0)
+        fail(fmt::format("the seam of axis {}, which is not curved, has the period 0; expected another", c));
+      bool may_differ = is_straight && c == seam.axis;
+      for (const CurvedAxis& one : curved)
+        may_differ = may_differ || (one.axis == c && (one.along >> seam.axis & 1u) != 0);
+      if (x != 0.0 && !may_differ)
+        fail(fmt::format("the seam of axis {} has {} along coordinate {}, which does not differ along it; expected 0",
+                         seam.axis, x, c));
+    }
+  }
+}
+
+}  // namespace
+
+template <int N>
+LongerCurved<N> longer_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                              std::span<const CurvedSeam<N>> seams) {
+  require_seams<N>(grid, curved, seams);
+  LongerCurved<N> longer{grid, {curved.begin(), curved.end()}};
+  for (const CurvedSeam<N>& seam : seams) {
+    for (CurvedAxis& one : longer.curved) {
+      if ((one.along >> seam.axis & 1u) == 0) continue;
+      // slices across the axis are runs of `row` values, one run for each step along the axes behind
+      const std::size_t row = size_along(one, longer.grid, 0, seam.axis);
+      const std::size_t block = row * longer.grid.axes[seam.axis].size();
+      std::vector<double> values;
+      values.reserve(one.values.size() / block * (block + row));
+      for (std::size_t first = 0; first < one.values.size(); first += block) {
+        const auto from = one.values.begin() + static_cast<std::ptrdiff_t>(first);
+        values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(block));
+        for (std::size_t i = 0; i < row; ++i) values.push_back(one.values[first + i] + seam.vector[one.axis]);
+      }
+      one.values = std::move(values);
+    }
+    Axis& axis = longer.grid.axes[seam.axis];
+    if (is_axis_curved(curved, seam.axis)) {
+      Axis indices = Axis::uniform(axis.size() + 1);
+      indices.name = axis.name;
+      indices.unit = axis.unit;
+      axis = std::move(indices);
+    } else {
+      axis = wrapped_axis(axis, std::abs(seam.vector[seam.axis]), 0, 1);
+    }
+  }
+  return longer;
+}
+
+template <int N>
+std::vector<Period<N>> periods_of_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                                        std::span<const CurvedSeam<N>> seams) {
+  std::vector<Period<N>> periods;
+  for (const CurvedSeam<N>& seam : seams)
+    if (seam.vector != Vector<N>{}) periods.push_back({seam.vector, {}, 0});
+  if (periods.empty()) return periods;
+  // the dual vectors in the space of the vectors
+  Eigen::MatrixXd vectors(N, static_cast<Eigen::Index>(periods.size()));
+  for (std::size_t p = 0; p < periods.size(); ++p)
+    for (int c = 0; c < N; ++c) vectors(c, static_cast<Eigen::Index>(p)) = periods[p].vector[c];
+  const Eigen::MatrixXd gram = vectors.transpose() * vectors;
+  const Eigen::FullPivLU<Eigen::MatrixXd> solver(gram);
+  if (!solver.isInvertible())
+    throw Error(ErrorCode::InvalidGrid, "the vectors of the seams are dependent; expected independent ones");
+  const Eigen::MatrixXd duals = vectors * solver.inverse();
+  for (std::size_t p = 0; p < periods.size(); ++p)
+    for (int c = 0; c < N; ++c) {
+      const double dual = periods[p].dual[c] = duals(c, static_cast<Eigen::Index>(p));
+      double least = std::numeric_limits<double>::infinity();
+      const auto add = [&](double x) { least = std::isfinite(x) ? std::min(least, dual * x) : least; };
+      for (const CurvedAxis& one : curved)
+        if (one.axis == c) std::for_each(one.values.begin(), one.values.end(), add);
+      if (!is_axis_curved(curved, c))
+        for (std::size_t i = 0; i < grid.axes[c].size(); ++i) add(grid.axes[c][i]);
+      if (std::isfinite(least)) periods[p].start += least;
+    }
+  return periods;
+}
+
+}  // namespace detail
+
+template <int N>
+requires DimensionBetween<N, 2, 4> AxisPeriods<N> index_periods(const Grid<N>& grid, std::span<const CurvedAxis> curved,
+                                                                const CurvedSeams<N>& seams) {
+  detail::require_seams<N>(grid, curved, seams);
+  AxisPeriods<N> periods{};
+  for (const CurvedSeam<N>& seam : seams)
+    periods[seam.axis] = detail::is_axis_curved(curved, seam.axis) ? static_cast<double>(grid.axes[seam.axis].size())
+                                                                   : std::abs(seam.vector[seam.axis]);
+  return periods;
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid,
+                                                                         std::span<const CurvedAxis> curved,
+                                                                         std::span<const int> axes) {
+  detail::require_curved<N>(grid, curved);
+  std::vector<CurvedSeam<N>> seams;
+  for (const int a : axes) {
+    if (a < 0 || a >= N)
+      throw Error(ErrorCode::InvalidGrid, fmt::format("a seam of axis {}; expected an axis from 0 to {}", a, N - 1));
+    CurvedSeam<N>& seam = seams.emplace_back(CurvedSeam<N>{a, {}});
+    if (!detail::is_axis_curved(curved, a)) {
+      const double longitude = longitude_periods(grid)[a];
+      const double period = longitude != 0.0 ? longitude : sample_periods(grid, std::span(&a, 1))[a];
+      seam.vector[a] = grid.axes[a].is_descending() ? -period : period;
+    }
+    for (const CurvedAxis& one : curved) {
+      if ((one.along >> a & 1u) == 0 || !detail::is_longitude_unit(one.unit)) continue;
+      // the mean distance from the last samples to the first ones
+      const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
+      double sum = 0.0, count = 0.0;
+      for (std::size_t first = 0; first < one.values.size(); first += block)
+        for (std::size_t i = 0; i < row; ++i) {
+          const double step = one.values[first + block - row + i] - one.values[first + i];
+          if (!std::isfinite(step)) continue;
+          sum += step;
+          ++count;
+        }
+      constexpr double kTurn = 360.0;
+      if (count > 0.0) seam.vector[one.axis] = kTurn * std::round(sum / count / kTurn);
+    }
+  }
+  return seams;
+}
+
+#define TEGL_INSTANTIATE_SEAMS(N)                                                                               \
+  namespace detail {                                                                                            \
+  template LongerCurved<N> longer_curved<N>(const Grid<N>&, std::span<const CurvedAxis>,                        \
+                                            std::span<const CurvedSeam<N>>);                                    \
+  template std::vector<Period<N>> periods_of_seams<N>(const Grid<N>&, std::span<const CurvedAxis>,              \
+                                                      std::span<const CurvedSeam<N>>);                          \
+  }                                                                                                             \
+  template AxisPeriods<N> index_periods<N>(const Grid<N>&, std::span<const CurvedAxis>, const CurvedSeams<N>&); \
+  template std::vector<CurvedSeam<N>> find_seams<N>(const Grid<N>&, std::span<const CurvedAxis>, std::span<const int>);
+TEGL_INSTANTIATE_SEAMS(2)
+TEGL_INSTANTIATE_SEAMS(3)
+TEGL_INSTANTIATE_SEAMS(4)
+#undef TEGL_INSTANTIATE_SEAMS
+
+}  // namespace tegl
