@@ -14,6 +14,7 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,10 +57,11 @@ int main(int argc, char** argv) {
   known.find_edges(options.work);
   for (std::string command; std::getline(std::cin, command);) {
     tegl::Contour<3> contour;
-    tegl::Complex<3> fresh = plain;
+    std::optional<tegl::Complex<3>> fresh;
+    if (command == "edges") fresh = plain;
     const double start = now(options.work.threads);
     if (command == "edges")
-      fresh.find_edges(options.work);
+      fresh->find_edges(options.work);
     else
       contour = tegl::extract(command == "known" ? known : plain, 0.0, options);
     const double time = now(options.work.threads) - start;

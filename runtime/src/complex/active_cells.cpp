@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "base/progress.hpp"
@@ -26,9 +26,11 @@ struct Scratch {
 /// Lists the active cells among cells from ... to - 1.
 void scan(const CellGroup& group, std::size_t from, std::size_t to, const PointBits& bits, Scratch& scratch,
           ActiveBlock& block) {
+  constexpr std::size_t kTogether = 4, kListed = 64;
   const std::size_t count = to - from;
   const auto full = static_cast<std::uint16_t>((1u << group.corner_count) - 1);
-  scratch.signatures.resize(count);
+  scratch.signatures.resize(count + kTogether);
+  std::fill_n(scratch.signatures.begin() + static_cast<std::ptrdiff_t>(count), kTogether, std::uint16_t{0});
   gather_signatures(group, from, to, bits.high.data(), scratch.signatures.data());
   if (!bits.missing.empty()) {
     scratch.missing.resize(count);
@@ -39,25 +41,43 @@ void scan(const CellGroup& group, std::size_t from, std::size_t to, const PointB
       scratch.signatures[i] = 0;
     }
   }
-  // four at a time, as most cells are not active
+  // four at a time, as most cells are not active; the four of those that are without a branch for each
   const std::uint64_t all_full = full * std::uint64_t{0x0001000100010001};
-  for (std::size_t i = 0; i < count; i += 4) {
+  std::array<ActiveCell, kListed> listed;
+  std::size_t active = 0;
+  const std::uint16_t* const signatures = scratch.signatures.data();
+  for (std::size_t i = 0; i < count; i += kTogether) {
     std::uint64_t four = 0;
-    std::memcpy(&four, scratch.signatures.data() + i, 2 * std::min<std::size_t>(4, count - i));
+    std::memcpy(&four, signatures + i, sizeof(four));
     if (four == 0 || four == all_full) continue;
-    for (std::size_t j = i; j < std::min(count, i + 4); ++j)
-      if (const std::uint16_t signature = scratch.signatures[j]; signature != 0 && signature != full)
-        block.cells.push_back({static_cast<Index>(from + j), signature, 0});
+    for (std::size_t j = i; j < i + kTogether; ++j) {
+      listed[active] = {static_cast<Index>(from + j), signatures[j], 0};
+      active += signatures[j] != 0 && signatures[j] != full ? 1 : 0;
+    }
+    if (active + kTogether <= kListed) continue;
+    block.cells.insert(block.cells.end(), listed.begin(), listed.begin() + static_cast<std::ptrdiff_t>(active));
+    active = 0;
   }
+  block.cells.insert(block.cells.end(), listed.begin(), listed.begin() + static_cast<std::ptrdiff_t>(active));
 }
 
 /// The same, passing over blocks whose points are all high or all low. `from` is the first cell of a block.
 void scan_blocks(const CellBlocks& blocks, const CellGroup& group, std::size_t from, std::size_t to,
                  const PointBits& bits, Scratch& scratch, ActiveBlock& block) {
-  constexpr std::size_t kCells = CellBlocks::kCells;
-  for (std::size_t first = from; first < to; first += kCells)
-    if (!blocks.is_uniform(first / kCells, bits.high.data()))
-      scan(group, first, std::min(to, first + kCells), bits, scratch, block);
+  constexpr std::size_t kCells = CellBlocks::kCells, kCacheLine = 64 / sizeof(Index);
+  const auto scan_from = [&](std::size_t first) {
+    scan(group, first, std::min(to, first + kCells), bits, scratch, block);
+  };
+  std::size_t waiting = to;  // a block whose corners are on their way from memory
+  for (std::size_t first = from; first < to; first += kCells) {
+    if (blocks.is_uniform(first / kCells, bits.high.data())) continue;
+    const Index* const corners = group.cell(first);
+    const Index* const end = group.cell(std::min(to, first + kCells));
+    for (const Index* line = corners; line < end; line += kCacheLine) __builtin_prefetch(line);
+    if (waiting != to) scan_from(waiting);
+    waiting = first;
+  }
+  if (waiting != to) scan_from(waiting);
 }
 
 /// Resolves ambiguous cells from the values.
@@ -148,17 +168,17 @@ PointBits classify_points(std::span<const double> values, double isovalue, const
   std::vector<std::uint32_t> missing(words);
   std::atomic<bool> any_missing = false;
   for_each_part(words, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t w = from; w < to; ++w) {
-      std::uint32_t high = 0, none = 0;
-      const std::size_t end = std::min(values.size(), (w + 1) * 32);
-      for (std::size_t p = w * 32; p < end; ++p) {
-        high |= std::uint32_t{values[p] >= isovalue} << (p & 31u);
-        none |= std::uint32_t{std::isnan(values[p])} << (p & 31u);
-      }
-      bits.high[w] = high;
-      missing[w] = none;
-      if (none != 0) any_missing.store(true, std::memory_order_relaxed);
+    const std::size_t whole = std::clamp(values.size() / 32, from, to);
+    compare_values(values.data() + from * 32, whole - from, isovalue, bits.high.data() + from, missing.data() + from);
+    if (whole < to) {  // the last word
+      std::array<double, 32> rest;
+      rest.fill(-std::numeric_limits<double>::infinity());
+      std::copy(values.begin() + static_cast<std::ptrdiff_t>(whole * 32), values.end(), rest.begin());
+      compare_values(rest.data(), 1, isovalue, bits.high.data() + whole, missing.data() + whole);
     }
+    if (std::any_of(missing.begin() + static_cast<std::ptrdiff_t>(from),
+                    missing.begin() + static_cast<std::ptrdiff_t>(to), [](std::uint32_t word) { return word != 0; }))
+      any_missing.store(true, std::memory_order_relaxed);
   });
   if (any_missing) bits.missing = std::move(missing);
   return bits;

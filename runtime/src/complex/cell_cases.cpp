@@ -2,6 +2,7 @@
 //
 // Lists the crossed edges and, if all vertices are on edges, the simplices of each signature of a shape.
 #include <algorithm>
+#include <array>
 
 #include "complex/cell_cases.hpp"
 
@@ -20,6 +21,8 @@ void CellCases::add_cases() {
       ordinal_of[e] = of.crossings++;
       edges_.push_back(e);
     }
+    if (table_->edge_count <= std::tuple_size_v<Picks>)
+      std::copy_n(edges_.begin() + of.first_edge, of.crossings, picks_.emplace_back().begin());
     of.first_simplex = static_cast<std::uint32_t>(ordinals_[0].size());
     if (!is_plain_) continue;
     const CellContour contour = (*this)[s];

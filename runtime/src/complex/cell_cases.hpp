@@ -112,6 +112,10 @@ class CellCases {
     return ordinals_[flip ? 1 : 0].data() + of.first_simplex;
   }
 
+  /// The crossed edges of a signature, ascending; afterwards 0.
+  using Picks = std::array<std::int32_t, 8>;
+  /// By signature; null for shapes of more than 8 edges.
+  [[nodiscard]] const Picks* picks() const noexcept { return picks_.empty() ? nullptr : picks_.data(); }
   /// Number of crossed edges.
   [[nodiscard]] unsigned crossing_count(unsigned signature) const noexcept {
     if (cases_.empty()) return static_cast<unsigned>(std::popcount(crossed_edges(*table_, signature)));
@@ -140,6 +144,7 @@ class CellCases {
   std::shared_ptr<BuiltCells> built_;
   std::vector<Case> cases_;          ///< by signature; empty for shapes of more corners
   std::vector<std::uint8_t> edges_;  ///< the crossed edges of all cases
+  std::vector<Picks> picks_;
   std::array<std::vector<std::uint8_t>, 2> ordinals_;
 };
 

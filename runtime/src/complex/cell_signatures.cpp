@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Gathers the bits of cells' corners. Highway's foreach_target compiles this file once per instruction set: tetrahedra
-// and quadrilaterals are gathered several at a time.
+// Compares values with the isovalue and gathers the bits of cells' corners. Highway's foreach_target compiles this file
+// once per instruction set: values are compared several at a time, tetrahedra and quadrilaterals gathered likewise.
 #include "complex/cell_signatures.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -50,6 +50,24 @@ HWY_INLINE void gather_cells(const Index* corners, std::size_t count, const std:
   for (; i < count; ++i) signatures[i] = signature_of<kCorners>(corners + kCorners * i, bits);
 }
 
+void compare(const double* values, std::size_t words, double isovalue, std::uint32_t* high, std::uint32_t* missing) {
+  const hn::CappedTag<double, 8> d;
+  const auto limit = hn::Set(d, isovalue);
+  for (std::size_t w = 0; w < words; ++w, values += 32) {
+    std::uint32_t is_high = 0, is_missing = 0;
+    for (std::size_t i = 0; i < 32; i += hn::Lanes(d)) {
+      const auto value = hn::LoadU(d, values + i);
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Ge(value, limit), bits);
+      is_high |= std::uint32_t{bits[0]} << i;
+      hn::StoreMaskBits(d, hn::IsNaN(value), bits);
+      is_missing |= std::uint32_t{bits[0]} << i;
+    }
+    high[w] = is_high;
+    missing[w] = is_missing;
+  }
+}
+
 void gather(std::size_t corner_count, const Index* corners, std::size_t count, const std::uint32_t* bits,
             std::uint16_t* signatures) {
   switch (corner_count) {
@@ -84,6 +102,12 @@ HWY_EXPORT(gather);
 void gather_signatures(const CellGroup& group, std::size_t from, std::size_t to, const std::uint32_t* bits,
                        std::uint16_t* signatures) noexcept {
   HWY_DYNAMIC_DISPATCH(gather)(group.corner_count, group.cell(from), to - from, bits, signatures);
+}
+
+HWY_EXPORT(compare);
+void compare_values(const double* values, std::size_t words, double isovalue, std::uint32_t* high,
+                    std::uint32_t* missing) noexcept {
+  HWY_DYNAMIC_DISPATCH(compare)(values, words, isovalue, high, missing);
 }
 
 }  // namespace tegl::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Signatures of cells from one bit per point.
+// One bit per point, and signatures of cells from these bits.
 #pragma once
 
 #include <cstddef>
@@ -14,5 +14,10 @@ namespace tegl::detail {
 /// + i. `bits`: bit p % 32 of word p / 32.
 void gather_signatures(const CellGroup& group, std::size_t from, std::size_t to, const std::uint32_t* bits,
                        std::uint16_t* signatures) noexcept;
+
+/// Compares 32 x `words` values with the isovalue, 32 for each word: bits of `high` are set where a value is not below
+/// it, bits of `missing` where a value is NaN.
+void compare_values(const double* values, std::size_t words, double isovalue, std::uint32_t* high,
+                    std::uint32_t* missing) noexcept;
 
 }  // namespace tegl::detail

@@ -30,7 +30,10 @@ CrossingNumbers::CrossingNumbers(const CellGroups& cells, const CellTables& tabl
                                  const std::vector<ActiveBlock>& blocks, const ComplexEdges* edges, std::size_t points,
                                  const WorkOptions& work)
     : cells_(cells), tables_(tables), blocks_(blocks), edges_(edges), of_blocks_(blocks.size()) {
-  for (std::size_t b = 0; b < blocks.size(); ++b) of_blocks_[b].resize(blocks[b].crossings);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    of_blocks_[b].reserve(blocks[b].crossings + kListedBeyond);
+    of_blocks_[b].resize(blocks[b].crossings);
+  }
   if (edges == nullptr)
     sort(points, work);
   else
@@ -61,34 +64,31 @@ void CrossingNumbers::count_bits(const WorkOptions& work) {
   // set the bits of crossed edges
   std::vector<EdgeWord> words(block_count(edges_->ends.size(), 64));
   const bool is_one = work.threads == 1;
-  for_each_block(blocks_.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5),
-                 [&](std::size_t b, std::size_t, std::size_t) {
-                   const CellCases& cases = tables_.of_group[blocks_[b].group];
-                   const Index* const of_cells = edges_->of_cells[blocks_[b].group].data();
-                   Index* crossed = of_blocks_[b].data();
-                   for (const ActiveCell& cell : blocks_[b].cells) {
-                     const Index* const of_cell = of_cells + std::size_t{cell.cell} * cases.table().edge_count;
-                     cases.for_each_crossed(cell.signature, [&](unsigned e) {
-                       const Index edge = of_cell[e];
-                       *crossed++ = edge;
-                       const std::uint64_t bit = std::uint64_t{1} << (edge & 63u);
-                       if (is_one) {
-                         words[edge >> 6].crossed |= bit;
-                         return;
-                       }
-                       std::atomic_ref<std::uint64_t> word(words[edge >> 6].crossed);
-                       if ((word.load(std::memory_order_relaxed) & bit) == 0)
-                         word.fetch_or(bit, std::memory_order_relaxed);
-                     });
-                   }
-                 });
+  for_each_block(
+      blocks_.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5), [&](std::size_t b, std::size_t, std::size_t) {
+        const ActiveBlock& block = blocks_[b];
+        Buffer<Index>& listed = of_blocks_[b];
+        listed.resize(block.crossings + kListedBeyond);
+        list_crossed(tables_.of_group[block.group], edges_->of_cells[block.group], block.cells, listed.data());
+        listed.resize(block.crossings);
+        if (is_one) return set_crossed(words.data(), listed.data(), listed.size());
+        for (const Index edge : listed) {
+          const std::uint64_t bit = std::uint64_t{1} << (edge & 63u);
+          std::atomic_ref<std::uint64_t> word(words[edge >> 6].crossed);
+          if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+        }
+      });
   // count
   const std::uint64_t count = count_before(words);
   require_numbers(count);
   // list
   ends_.resize(count);
   for_each_part(words.size(), work.threads, part_of(work.progress, 0.5, 0.7), [&](std::size_t from, std::size_t to) {
+    constexpr std::size_t kAhead = 16;
     for (std::size_t w = from; w < to; ++w) {
+      if (w + kAhead < to && words[w + kAhead].crossed != 0)
+        __builtin_prefetch(
+            &edges_->ends[(w + kAhead) * 64 + static_cast<std::size_t>(std::countr_zero(words[w + kAhead].crossed))]);
       std::uint64_t number = words[w].before;
       for (std::uint64_t word = words[w].crossed; word != 0; word &= word - 1)
         ends_[number++] = edges_->ends[w * 64 + static_cast<std::size_t>(std::countr_zero(word))];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Counts bits. Highway's foreach_target compiles this file once per instruction set.
+// Lists, marks and counts crossed edges. Highway's foreach_target compiles this file once per instruction set.
 #include "complex/edge_words.hpp"
 
 #include <bit>
@@ -14,6 +14,33 @@
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+void list(const CellCases& cases, const Index* edges, std::size_t edge_total, const ActiveCell* cells,
+          std::size_t count, Index* listed) {
+  const hn::CappedTag<Index, kListedBeyond> d;
+  const std::size_t edge_count = cases.table().edge_count;
+  // cells whose edges are in one register
+  const bool is_together = hn::Lanes(d) == kListedBeyond && cases.picks() != nullptr;
+  for (std::size_t i = 0; i < count; ++i) {
+    constexpr std::size_t kAhead = 16;
+    if (i + kAhead < count) __builtin_prefetch(edges + cells[i + kAhead].cell * edge_count);
+    const std::size_t first = cells[i].cell * edge_count;
+    const unsigned signature = cells[i].signature;
+    if (is_together && first + kListedBeyond <= edge_total) {
+      const auto picks = hn::SetTableIndices(d, cases.picks()[signature].data());
+      hn::StoreU(hn::TableLookupLanes(hn::LoadU(d, edges + first), picks), d, listed);
+      listed += cases.of_signature(signature).crossings;
+    } else {
+      cases.for_each_crossed(signature, [&](unsigned e) { *listed++ = edges[first + e]; });
+    }
+  }
+}
+
+void set(EdgeWord* words, const Index* edges, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) words[edges[i] >> 6].crossed |= std::uint64_t{1} << (edges[i] & 63u);
+}
 
 std::uint64_t bits_before(EdgeWord* words, std::size_t count) {
   std::uint64_t sum = 0;
@@ -40,6 +67,15 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
+HWY_EXPORT(list);
+void list_crossed(const CellCases& cases, std::span<const Index> edges, std::span<const ActiveCell> cells,
+                  Index* listed) noexcept {
+  HWY_DYNAMIC_DISPATCH(list)(cases, edges.data(), edges.size(), cells.data(), cells.size(), listed);
+}
+HWY_EXPORT(set);
+void set_crossed(EdgeWord* words, const Index* edges, std::size_t count) noexcept {
+  HWY_DYNAMIC_DISPATCH(set)(words, edges, count);
+}
 HWY_EXPORT(bits_before);
 std::uint64_t count_before(std::vector<EdgeWord>& words) noexcept {
   return HWY_DYNAMIC_DISPATCH(bits_before)(words.data(), words.size());

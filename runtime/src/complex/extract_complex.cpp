@@ -91,8 +91,25 @@ class ComplexWriter {
         contour_(contour) {}
 
   void write_edge_points(const WorkOptions& work) {
-    const auto& ends = numbers_.edge_ends();
-    for_each_item(ends.size(), work.threads, work.progress, [&](std::size_t i) { write_edge_point(ends[i], i); });
+    const EdgeEnds* const ends = numbers_.edge_ends().data();
+    const std::size_t count = numbers_.edge_ends().size();
+    if (is_layered_ || gradients_ != nullptr) {
+      for_each_item(count, work.threads, work.progress, [&](std::size_t i) { write_edge_point(ends[i], i); });
+      return;
+    }
+    const Point* const points = complex_.points().data();
+    const double* const values = complex_.values().data();
+    Vertex* const vertices = contour_.vertices.data();
+    const double isovalue = isovalue_, epsilon = epsilon_;
+    for_each_item(count, work.threads, work.progress, [=](std::size_t i) {
+      constexpr std::size_t kAhead = 16;
+      if (i + kAhead < count) {  // larger ends are further apart than smaller ones
+        __builtin_prefetch(points + ends[i + kAhead][1]);
+        __builtin_prefetch(values + ends[i + kAhead][1]);
+      }
+      const auto [p, q] = ends[i];
+      vertices[i] = point_on_edge<Real>(points[p], points[q], alpha_of(values[p], values[q], isovalue, epsilon));
+    });
   }
 
   void write_polygon_centres(const WorkOptions& work) {

@@ -79,10 +79,12 @@ class LatticeWriter {
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       if (!rows_.has_row(j, k, kinds[kind].to)) continue;
       const auto crossed = rows_.crossed(r, kind);
+      const std::array<std::ptrdiff_t, 3>& to = kinds[kind].to;
+      const RowPlaces from_row(*this, sample(0, j, k, {})), to_row(*this, sample(0, j, k, to));
       for (std::size_t w = 0; w < rows_.words(); ++w)
         for (Word rest = crossed.bits[w]; rest != 0; rest &= rest - 1) {
           const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-          write_edge_point(sample(i, j, k, {}), sample(i, j, k, kinds[kind].to), next++);
+          write_edge_point(sample(i, j, k, {}), sample(i, j, k, to), from_row, to_row, next++);
         }
     }
   }
@@ -130,16 +132,40 @@ class LatticeWriter {
     index[N - 1] = k + static_cast<std::size_t>(to[2]);
     return index;
   }
-  [[nodiscard]] std::array<double, N> place(const Sample& index) const {
-    if (places_ != nullptr) return (*places_)[number_of<N>(grid_, index)];
-    std::array<double, N> x;
-    for (int a = 0; a < N; ++a) x[a] = coordinates_[a][index[a]] + (index[N - 1] % 2 == 1 ? half_steps_[a] : 0.0);
-    return is_mapped_ ? place_in_world<N>(grid_, x) : x;
-  }
+  /// The places of a row's samples.
+  class RowPlaces {
+   public:
+    /// `in_row`: a sample of the row.
+    RowPlaces(const LatticeWriter& writer, const Sample& in_row) : writer_(writer), in_row_(in_row) {
+      if (writer.places_ != nullptr) return;
+      const auto shift = [&](int a) { return in_row[N - 1] % 2 == 1 ? writer.half_steps_[a] : 0.0; };
+      for (int a = 1; a < N; ++a) place_[a] = writer.coordinates_[a][in_row[a]] + shift(a);
+      shift_ = shift(0);
+    }
+    [[nodiscard]] std::array<double, N> operator[](std::size_t i) const noexcept {
+      if (writer_.places_ != nullptr) return given(i);
+      std::array<double, N> x = place_;
+      x[0] = writer_.coordinates_[0][i] + shift_;
+      return writer_.is_mapped_ ? place_in_world<N>(writer_.grid_, x) : x;
+    }
 
-  void write_edge_point(const Sample& from, const Sample& to, Index number) const {
+   private:
+    [[nodiscard]] std::array<double, N> given(std::size_t i) const noexcept {
+      Sample index = in_row_;
+      index[0] = i;
+      return (*writer_.places_)[number_of<N>(writer_.grid_, index)];
+    }
+
+    const LatticeWriter& writer_;
+    Sample in_row_;
+    std::array<double, N> place_{};
+    double shift_ = 0.0;
+  };
+
+  void write_edge_point(const Sample& from, const Sample& to, const RowPlaces& from_row, const RowPlaces& to_row,
+                        Index number) const {
     const double alpha = alpha_of(source_.value(from), source_.value(to), source_.isovalue(), epsilon_);
-    contour_.vertices[number] = point_on_edge<Real>(place(from), place(to), alpha);
+    contour_.vertices[number] = point_on_edge<Real>(from_row[from[0]], to_row[to[0]], alpha);
     if (gradients_ != nullptr) contour_.normals[number] = gradients_->template normal<Real>(from, to, alpha);
   }
 
