@@ -131,6 +131,20 @@ std::vector<Complex<4>> noisy_complexes(std::size_t samples, std::uint64_t seed)
   return complexes;
 }
 
+// Minutes; with --gtest_also_run_disabled_tests.
+TEST(Compact4d, DISABLED_MovingMeshesOfAHundredThousandCells) {
+  for (Complex<4>& complex : noisy_complexes(32, 7)) {
+    EXPECT_GT(complex.cell_count(), complex.cell_count() < 150000 ? 89000u : 100000u);
+    for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
+      ExtractOptions options = compact_by(Ambiguity::low);
+      options.triangulation = triangulation;
+      expect_closed_manifold(extract(complex, 0.5, options));
+    }
+    ExtractOptions closed = compact_by(Ambiguity::high, true);
+    expect_closed_manifold(extract(complex, -2.0 / 3.0, closed));
+  }
+}
+
 TEST(Compact4d, NoiseOnMovingMeshesHasAClosedOrientedManifoldWhateverTheNumbersOfPoints) {
   for (Complex<4>& complex : noisy_complexes(8, 11)) {
     std::vector<std::size_t> sizes;
@@ -273,6 +287,35 @@ TEST(Decided4d, NoiseOnMovingMeshesHasAClosedOrientedManifoldWhateverTheNumbersO
       }
       EXPECT_EQ(reports[0].euler, reports[1].euler);
       EXPECT_EQ(reports[0].components, reports[1].components);
+    }
+}
+
+TEST(Decided4d, CellsInAnyOrderOfTheirCornersHaveAClosedContour) {
+  MeshData<4> mesh = cube_mesh(grid_points<4>({5, 5, 5, 5}, 0.1));
+  std::vector<double> values = closed_noise(mesh, 3);
+  mesh = renumbered(mesh, values, 4);
+  // another corner first in each cell: the order of a grid's cell, seen along other axes
+  std::mt19937_64 random(6);
+  for (std::size_t c = 0; c < mesh.corners.size(); c += 16) {
+    std::array<unsigned, 4> axes = {0, 1, 2, 3};
+    std::shuffle(axes.begin(), axes.end(), random);
+    const auto flip = static_cast<unsigned>(random() % 16);
+    std::array<Index, 16> turned;
+    for (unsigned v = 0; v < 16; ++v) {
+      unsigned from = flip;
+      for (unsigned a = 0; a < 4; ++a) from ^= (v >> a & 1u) << axes[a];
+      turned[v] = mesh.corners[c + from];
+    }
+    std::copy(turned.begin(), turned.end(), mesh.corners.begin() + static_cast<std::ptrdiff_t>(c));
+  }
+  Complex<4> complex = mesh.complex();
+  complex.set_values(values);
+  for (const Ambiguity rule : kFromData)
+    for (const Triangulation triangulation : kOfEach) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(rule) << " " << static_cast<int>(triangulation));
+      const auto contour = extract<double>(complex, 0.5, decided_by(rule, triangulation));
+      EXPECT_GT(contour.simplices.size(), 1000u);
+      expect_closed_manifold(contour);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "tegl/delaunay.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <limits>
@@ -51,8 +52,63 @@ constexpr CellType kSimplex = N == 2   ? CellType::triangle
                               : N == 3 ? CellType::tetrahedron
                                        : CellType::simplex4;
 
+/// Points with whole coordinates on concentric spheres, so that many are on one sphere without others inside.
 template <int N>
-void expect_closed_contour(const Complex<N>& complex) {
+Points<N> on_spheres(int most) {
+  Points<N> points;
+  std::array<int, N> at;
+  at.fill(-most);
+  for (bool is_in = true; is_in;) {
+    int square = 0;
+    for (const int x : at) square += x * x;
+    if (square <= most * most && square % 3 != 1) {
+      auto& point = points.emplace_back();
+      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(at[a]) / most;
+    }
+    int a = 0;
+    while (a < N && ++at[a] > most) at[a++] = -most;
+    is_in = a < N;
+  }
+  return points;
+}
+
+/// The volume of the part of a simplex with values above the isovalue, times N!: by the definition of linear
+/// interpolation, a sum over the corners that are high.
+template <int N>
+double content_above(const Points<N>& points, const std::vector<double>& values, const Index* corners,
+                     double isovalue) {
+  Eigen::Matrix<double, N, N> edges;
+  for (int k = 0; k < N; ++k)
+    for (int i = 0; i < N; ++i) edges(i, k) = points[corners[k + 1]][i] - points[corners[0]][i];
+  std::array<double, N + 1> f;
+  bool all_high = true;
+  for (int i = 0; i <= N; ++i) {
+    f[i] = values[corners[i]] - isovalue;
+    all_high = all_high && f[i] >= 0;
+  }
+  double part = all_high ? 1.0 : 0.0;
+  for (int i = 0; i <= N && !all_high; ++i) {
+    if (f[i] < 0) continue;
+    double term = 1.0;
+    for (int j = 0; j <= N; ++j)
+      if (j != i) term *= f[i] / (f[i] - f[j]);
+    part += term;
+  }
+  return part * std::abs(edges.determinant());
+}
+
+template <int N>
+double content_above(const Complex<N>& complex, const Points<N>& points, double isovalue) {
+  const std::vector<Index> corners = delaunay_corners<N>(points);
+  double sum = 0.0;
+  for (std::size_t c = 0; c < corners.size(); c += N + 1)
+    sum += content_above<N>(points, complex.values(), corners.data() + c, isovalue);
+  for (int n = 2; n <= N; ++n) sum /= n;
+  return sum;
+}
+
+template <int N>
+void expect_closed_contour(const Complex<N>& complex, const Points<N>& points) {
   const auto contour = extract<double>(complex, 0.5);
   EXPECT_GT(contour.simplices.size(), 20u);
   const MeshReport report = check(contour);
@@ -60,28 +116,35 @@ void expect_closed_contour(const Complex<N>& complex) {
   EXPECT_EQ(report.nonmanifold_simplices, 0u);
   EXPECT_EQ(report.bad_links, 0u);
   EXPECT_EQ(report.orientation_conflicts, 0u);
+  const double content = content_above<N>(complex, points, 0.5);
+  EXPECT_NEAR(content, measure(contour).content.value_or(-1.0), 1e-7 * content);
 }
 
-/// Sets noise that is low near the border, and expects a closed manifold.
+/// Sets noise that is low near the border, and expects a closed manifold around the part that is above by definition.
 template <int N>
-void expect_closed_noise(const Points<N>& points, const std::string& name) {
+void expect_closed_noise(const Points<N>& points, const std::string& name, std::size_t least_cells = 0) {
   if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
   SCOPED_TRACE(name + " in " + std::to_string(N) + "D");
   Complex<N> complex = delaunay<N>(points);
   std::mt19937 random(5);
   std::vector<double> values;
   for (const auto& point : points) {
-    double most = 0.0;
-    for (const double x : point) most = std::max(most, std::abs(x));
-    values.push_back(most < 0.75 ? std::uniform_real_distribution<double>()(random) : 0.0);
+    double most = 0.0, square = 0.0;
+    for (const double x : point) {
+      most = std::max(most, std::abs(x));
+      square += x * x;
+    }
+    const bool is_inside = name == "spheres" ? square < 0.5 : most < 0.75;
+    values.push_back(is_inside ? std::uniform_real_distribution<double>()(random) : 0.0);
   }
   complex.set_values(values);
-  expect_closed_contour(complex);
-  if (name != "grid") return;
+  EXPECT_GE(complex.cell_count(), least_cells);
+  expect_closed_contour<N>(complex, points);
+  if (name == "random") return;
   // the same cells by the constructor, which computes the orientation of each from rounded coordinates
   Complex<N> again(points, kSimplex<N>, delaunay_corners<N>(points));
   again.set_values(values);
-  expect_closed_contour(again);
+  expect_closed_contour<N>(again, points);
 }
 
 TEST(Delaunay, NoiseOnRandomPointsHasAClosedOrientedManifold) {
@@ -95,6 +158,26 @@ TEST(Delaunay, GridsWhosePointsAreOnCommonSpheresAreTriangulated) {
   expect_closed_noise<3>(grid<3>(11), "grid");
   expect_closed_noise<4>(grid<4>(6), "grid");
   expect_closed_noise<4>(grid<4>(7), "grid");
+}
+
+TEST(Delaunay, PointsOnCommonSpheresAreTriangulated) {
+  expect_closed_noise<2>(on_spheres<2>(15), "spheres");
+  expect_closed_noise<3>(on_spheres<3>(6), "spheres");
+  expect_closed_noise<4>(on_spheres<4>(4), "spheres");
+}
+
+// Minutes; with --gtest_also_run_disabled_tests.
+TEST(Delaunay, DISABLED_AHundredThousandCells) {
+  constexpr std::size_t kCells = 100000;
+  expect_closed_noise<2>(random_points<2>(51000, 1), "random", kCells);
+  expect_closed_noise<3>(random_points<3>(16000, 2), "random", kCells);
+  expect_closed_noise<4>(random_points<4>(5000, 3), "random", kCells);
+  expect_closed_noise<2>(grid<2>(226), "grid", kCells);
+  expect_closed_noise<3>(grid<3>(28), "grid", kCells);
+  expect_closed_noise<4>(grid<4>(10), "grid", kCells);
+  expect_closed_noise<2>(on_spheres<2>(160), "spheres", kCells);
+  expect_closed_noise<3>(on_spheres<3>(19), "spheres", kCells);
+  expect_closed_noise<4>(on_spheres<4>(7), "spheres", kCells);
 }
 
 TEST(Delaunay, TheFlatCellsOfAGridKeepTheirOrientationOverTime) {
