@@ -138,12 +138,11 @@ void add_parts(unsigned f, std::size_t list, CubeLists& result) {
     }
     for (std::size_t u = t; u < triangles.size(); u += 3) {
       if ((vertices >> triangles[u] & 1u) == 0) continue;
-      std::array<std::uint8_t, 4> word{};
-      for (std::size_t i = 0; i < 3; ++i) word[1 + i] = static_cast<std::uint8_t>(lifted_vertex(f, triangles[u + i]));
-      if (detail::face_sign(f) < 0) std::swap(word[2], word[3]);
-      result.words.push_back(word);
+      if (f == 0) result.words.push_back({128, triangles[u], triangles[u + 1], triangles[u + 2]});
       ++part.triangle_count;
     }
+    if (f != 0)
+      part.first_triangle = result.parts[result.parts.size() - f * std::size_t{result.parts_of_cube}].first_triangle;
     result.parts.push_back(part);
   }
 }

@@ -38,8 +38,8 @@ struct CubeLists {
   };
   /// A connected component of a list in one of the cubes.
   struct Part {
-    std::uint32_t apexes;  ///< edges of the tile that may be a cone apex
-    std::uint32_t first_triangle;
+    std::uint32_t apexes;          ///< edges of the tile that may be a cone apex
+    std::uint32_t first_triangle;  ///< in `words`
     std::uint8_t triangle_count, cube;
     std::uint64_t vertices;
   };
@@ -51,7 +51,7 @@ struct CubeLists {
   std::vector<std::uint32_t> apexes;               ///< by cube, then by list and kNone
   std::uint32_t parts_of_cube = 0;                 ///< number of parts of a cube
   std::vector<Part> parts;                         ///< by cube, then by list
-  std::vector<std::array<std::uint8_t, 4>> words;  ///< triangles in the tile: 0 and three local vertices
+  std::vector<std::array<std::uint8_t, 4>> words;  ///< triangles by part, in the cube: 128 and three local vertices
 
   /// Triangles of a list in the cube.
   [[nodiscard]] std::span<const std::uint8_t> triangles_of(std::size_t list) const {

@@ -268,6 +268,9 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
     if (f == 1) add_all += "const unsigned end_of_1 = count;\n";
   }
   const std::string parts = edges ? "builder4_edges_parts.cpp" : "builder4_parts.cpp";
+  constexpr const char* kBuiltTriangles =
+      "{triangles_of_cubes_.data() + 4 * std::size_t{of_part.first_triangle},\n"
+      "                          of_part.triangle_count, of_part.cube}";
   return filled("builder4.cpp",
                 {{"banner", banner},
                  {"name", builder_name(request)},
@@ -286,11 +289,10 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                  {"with_neighbours", with_neighbours()},
                  {"local_functions", edges ? std::string(template_text("builder4_edges_local.cpp")) : std::string()},
                  {"find_parts", filled(parts, {{"add_cubes", add_all}})},
-                 {"triangles_of_part", edges ? "triangles_of_cubes_.data() + 4 * std::size_t{of_part.first_triangle}"
-                                             : "cubes_.triangles(of_part)"},
+                 {"triangles_of_part", edges ? kBuiltTriangles : "cubes_.triangles(of_part)"},
                  {"nested", std::string(template_text("builder4_nested.cpp"))},
                  {"cone_all", edges ? std::string(template_text("builder4_edges_cone.cpp"))
-                                    : filled("builder4_cone.cpp", {{"add_cubes", for_cubes("add({});")}})},
+                                    : std::string(template_text("builder4_cone.cpp"))},
                  {"find_connected", edges ? std::string(template_text("builder4_edges_connected.cpp"))
                                           : filled("builder4_connected.cpp", {{"add_cubes", for_cubes("add({});")}})}});
 }

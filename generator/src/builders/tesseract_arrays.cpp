@@ -184,18 +184,20 @@ void define_lists(std::string& text, const CubeLists& lists, const std::string& 
   });
   define(text, name("std::uint32_t", "Apexes"), lists.apexes, mask);
   std::vector<CubeLists::Part> parts = lists.parts;
+  parts.resize(lists.parts_of_cube);
+  define(text, name("ResolvedCubes::PartTriangles", "Parts"), parts,
+         [](const CubeLists::Part& p) { return fmt::format("{{{},{}}}", p.first_triangle, p.triangle_count); });
+  parts = lists.parts;
   parts.resize(parts.size() + CubeLists::kMostParts);
-  define(text, name("ResolvedCubes::Part", "Parts"), parts, [](const CubeLists::Part& p) {
-    return fmt::format("{{{:#x},{},{},{}}}", p.apexes, p.first_triangle, p.triangle_count, p.cube);
-  });
+  define(text, name("std::uint32_t", "PartApexes"), parts, [](const CubeLists::Part& p) { return mask(p.apexes); });
   define(text, name("std::uint64_t", "PartVertices"), parts, [](const CubeLists::Part& p) { return mask(p.vertices); });
-  constexpr std::size_t kWordsBehind = 8;
+  constexpr std::size_t kWordsBehind = 15;
   define_bytes(text, "kWords" + suffix, flat(lists.words, 4 * kWordsBehind), 32);
   fmt::format_to(Out(text),
                  "\nconstinit const ResolvedCubes kCubes{0}({{kLists{0}, kKeys{0}, kTriangles{0}, kFirstTriangle{0}, "
                  "kMasks{0}, kSummaries{0},\n                                          kApexes{0}, kParts{0}, "
-                 "kPartVertices{0}, kWords{0}, {1}}});\n",
-                 suffix, lists.words.size() / CubeLists::kCubes);
+                 "kPartApexes{0}, kPartVertices{0}, kWords{0}}});\n",
+                 suffix);
 }
 
 void define_regions(std::string& text, const CubeRegions& regions, const std::string& suffix) {

@@ -40,6 +40,14 @@ void variants(std::string& text, const VariantTables& table, std::string& defini
 
 /// The set of ambiguous tiles.
 std::string ambiguous_definition(int dim, const std::vector<bool>& ambiguous) {
+  if (dim == 4) {
+    std::vector<std::uint64_t> words(ambiguous.size() / 64);
+    for (std::size_t s = 0; s < ambiguous.size(); ++s) words[s / 64] |= std::uint64_t{ambiguous[s]} << (s % 64);
+    std::string text = "\nconst SignatureSet4 kAmbiguous4 = {{";
+    for (std::size_t i = 0; i < words.size(); ++i)
+      text += fmt::format("{}{:#x},", i % 6 == 0 ? "\n    " : "", words[i]);
+    return text + "}};\n";
+  }
   std::string text = fmt::format("\nconst std::array<bool, {}> kAmbiguous{} = {{{{", ambiguous.size(), dim);
   for (std::size_t s = 0; s < ambiguous.size(); ++s)
     text += fmt::format("{}{},", s % 50 == 0 ? "\n    " : "", ambiguous[s] ? 1 : 0);

@@ -313,11 +313,11 @@ void RowOfTesseracts::begin_word(std::size_t word, std::uint32_t ordinal) noexce
 void RowOfTesseracts::fetch(const ResolvedCubes& cubes, const ResolvedTile& tile) noexcept {
   for (unsigned f = 0; f < 8; ++f) {
     const unsigned list = tile.lists[f];
-    hwy::Prefetch(cubes.triangles(f, list));
+    hwy::Prefetch(cubes.triangles(f, list).words);
     if (tile.is_connected) continue;
     const std::uint32_t part = ResolvedCubes::first_part(f) + cubes.summary(list).first_part;
     hwy::Prefetch(cubes.part_vertices() + part);
-    hwy::Prefetch(&cubes.part(part));
+    hwy::Prefetch(cubes.part_apexes() + part);
   }
 }
 

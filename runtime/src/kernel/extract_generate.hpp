@@ -163,8 +163,6 @@ class TileWriter {
     own.cubes = &cubes;
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, *own.scratch.of_word);
     if (!estimator_->is_callers()) own.tesseracts = &tesseracts;
-    // read for one tile after the other, and seldom in a cache
-    for (std::uint32_t i = 0; i < tiles.count; ++i) hwy::Prefetch(&ambiguous_signatures<N>()[tiles.signatures[i]]);
     const Slab<N>& slab = *own.view.slab;
     if (!slab.assembled.empty()) {
       own.assembled = &slab.assembled[chunk_of(own.row)];

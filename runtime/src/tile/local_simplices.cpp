@@ -76,13 +76,15 @@ void write_local(const LocalSimplices& simplices, Simplex* out) {
 #endif
 }
 
+/// Orders of the bytes of four tetrahedra: as they are, and with the last two vertices exchanged.
+alignas(16) constexpr std::uint8_t kOrders[2][16] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
+                                                     {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14}};
+
 void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t* to, bool swap, std::uint8_t* out) {
 #if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
   builders::ResolvedTesseract::map_tetrahedra(from, count, to, swap, out);
 #else
   const hn::CappedTag<std::uint8_t, 32> d;  // the 16 entries of each half of `to` are in every block of 16 lanes
-  alignas(16) static constexpr std::uint8_t kOrders[2][16] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
-                                                              {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14}};
   const auto order = hn::LoadDup128(d, kOrders[swap ? 1 : 0]);
   // Not loaded at once: the words have just been written.
   const hn::Repartition<std::uint64_t, decltype(d)> words;
@@ -105,6 +107,74 @@ void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t*
 #endif
 }
 
+using builders::ResolvedCubes;
+
+#if HWY_TARGET != HWY_SCALAR
+
+#if HWY_TARGET <= HWY_AVX3
+using ConeTag = hn::CappedTag<std::uint32_t, kMoreSimplices + 1>;
+#else
+using ConeTag = hn::CappedTag<std::uint32_t, 4>;
+/// By set of four words: the bytes of its words one after the other.
+struct Orders {
+  alignas(16) std::uint8_t of[16][16];
+};
+constexpr Orders kTogether = [] {
+  Orders orders{};
+  for (unsigned set = 0; set < 16; ++set)
+    for (unsigned word = 0, to = 0; word < 4; ++word)
+      for (unsigned i = 0; (set >> word & 1u) != 0 && i < 4; ++i)
+        orders.of[set][to++] = static_cast<std::uint8_t>(4 * word + i);
+  return orders;
+}();
+#endif
+
+/// Stores the chosen words one after the other and returns their end. What follows overwrites the surplus.
+HWY_INLINE std::uint32_t* append(hn::Vec<ConeTag> all, hn::Mask<ConeTag> chosen, std::uint32_t* out) {
+  const ConeTag words;
+#if HWY_TARGET <= HWY_AVX3
+  hn::StoreU(hn::Compress(all, chosen), words, out);
+#else  // For smaller registers, Compress of Highway 1.0 copies a table to the stack in each call.
+  const hn::Repartition<std::uint8_t, ConeTag> bytes;
+  std::uint8_t set[8] = {};
+  hn::StoreMaskBits(words, chosen, set);
+  const auto together = hn::TableLookupBytes(hn::BitCast(bytes, all), hn::Load(bytes, kTogether.of[set[0]]));
+  hn::StoreU(hn::BitCast(words, together), words, out);
+#endif
+  return out + hn::CountTrue(words, chosen);
+}
+
+#endif
+
+/// Maps the triangles' vertices and sets the apex, except for triangles that have it.
+std::uint32_t* cone_local(const ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
+                          std::uint32_t* out) {
+#if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  return builders::ResolvedTesseract::add_cones(triangles, count, apex, out);
+#else
+  const ConeTag words;
+  const hn::Repartition<std::uint8_t, decltype(words)> bytes;
+  constexpr std::uint32_t kLanes = hn::MaxLanes(words);
+  const auto first = hn::Set(words, apex);
+  const auto in_all = hn::Set(bytes, static_cast<std::uint8_t>(apex));
+  const auto of_triangle = hn::Set(words, ~std::uint32_t{255});
+  const auto none = hn::Zero(words);
+  for (const ResolvedCubes::Triangles* end = triangles + count; triangles != end; ++triangles) {
+    const auto order = hn::LoadDup128(bytes, kOrders[ResolvedCubes::is_reversed(triangles->cube) ? 1 : 0]);
+    const auto lifted = hn::LoadDup128(bytes, ResolvedCubes::lifted(triangles->cube).data());
+    for (std::uint32_t t = 0; t < triangles->count; t += kLanes) {
+      const auto local = hn::TableLookupBytes(hn::LoadU(bytes, triangles->words + 4 * std::size_t{t}), order);
+      const auto mapped = hn::TableLookupBytesOr0(lifted, local);
+      const auto is_apex = hn::BitCast(words, hn::VecFromMask(bytes, hn::Eq(mapped, in_all)));
+      const auto is_without = hn::Eq(hn::And(is_apex, of_triangle), none);
+      const auto chosen = hn::And(is_without, hn::FirstN(words, triangles->count - t));
+      out = append(hn::Or(hn::BitCast(words, mapped), first), chosen, out);
+    }
+  }
+  return out;
+#endif
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
 HWY_AFTER_NAMESPACE();
@@ -124,6 +194,13 @@ HWY_EXPORT(map_local);
 void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint64_t* to, bool swap,
                    std::uint8_t* out) noexcept {
   HWY_DYNAMIC_DISPATCH(map_local)(from, count, to, swap, out);
+}
+
+HWY_EXPORT(cone_local);
+
+std::uint32_t* add_cones(const builders::ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
+                         std::uint32_t* out) noexcept {
+  return HWY_DYNAMIC_DISPATCH(cone_local)(triangles, count, apex, out);
 }
 
 }  // namespace tegl::detail

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "builder4.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
@@ -30,5 +31,9 @@ void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) n
 inline constexpr std::size_t kMoreSimplices = 15;
 void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint64_t* to, bool swap,
                    std::uint8_t* out) noexcept;
+
+/// Appends cones (builders::ResolvedTesseract::AddCones).
+std::uint32_t* add_cones(const builders::ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
+                         std::uint32_t* out) noexcept;
 
 }  // namespace tegl::detail

@@ -22,7 +22,7 @@ const tables::VariantTable& variant_table(Triangulation triangulation) noexcept 
 /// Whether a tile depends on the data beyond its signature: a square is ambiguous, or it may have several facets. By
 /// signature.
 template <int N>
-const std::array<bool, std::size_t{1} << (1u << N)>& ambiguous_signatures() noexcept {
+const auto& ambiguous_signatures() noexcept {
   if constexpr (N == 2) {
     static constexpr std::array<bool, 16> kAmbiguous2 = {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0};
     return kAmbiguous2;

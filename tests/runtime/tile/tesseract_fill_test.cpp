@@ -151,7 +151,9 @@ class AsBuilt {
     for (unsigned v = 0; v < kFirstOwn + view.own_vertices; ++v) {
       tile::Vertex vertex;
       vertex.kind = v < 32 ? tile::VertexKind::edge : tile::VertexKind::side;
-      vertex.face = v < 32 ? edge_face_[v] : v < kFirstOwn ? face_of_cube((v - 32) / ResolvedCubes::kMostOwn) : lattice_.tile();
+      vertex.face = v < 32          ? edge_face_[v]
+                    : v < kFirstOwn ? face_of_cube((v - 32) / ResolvedCubes::kMostOwn)
+                                    : lattice_.tile();
       vertex.number = v;
       tile.vertices.push_back(vertex);
     }
@@ -434,6 +436,28 @@ TEST_F(ResolvedTiles, BarycentricSpheresAreConedFromBarycentres) {
     }
     ASSERT_NE(view.masks[0] & ResolvedTesseract::kIsBarycentre, 0u);
     for (std::uint32_t q = 0; q < view.simplex_count; ++q) ASSERT_EQ(view.simplices[4 * q], kFirstOwn);
+  }
+}
+
+TEST(ResolvedCones, VectorInstructionsAddTheSame) {
+  constexpr std::size_t kMost = ResolvedCubes::kCubes * ResolvedCubes::kMostTriangles + ResolvedCubes::kWordsBehind;
+  std::array<std::uint32_t, kMost> one_by_one{}, at_once{};
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
+    const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
+    for (unsigned list = 0; list < ResolvedCubes::kLists; ++list) {
+      std::array<ResolvedCubes::Triangles, ResolvedCubes::kCubes> triangles;
+      for (unsigned f = 0; f < ResolvedCubes::kCubes; ++f) triangles[f] = cubes.triangles(f, list);
+      for (unsigned apex = 0; apex <= kFirstOwn; ++apex) {
+        const auto* const end =
+            ResolvedTesseract::add_cones(triangles.data(), triangles.size(), apex, one_by_one.data());
+        const auto count = static_cast<std::size_t>(end - one_by_one.data());
+        ASSERT_EQ(add_cones(triangles.data(), triangles.size(), apex, at_once.data()), at_once.data() + count)
+            << "list " << list << " apex " << apex;
+        ASSERT_TRUE(
+            std::equal(at_once.begin(), at_once.begin() + static_cast<std::ptrdiff_t>(count), one_by_one.begin()))
+            << "list " << list << " apex " << apex;
+      }
+    }
   }
 }
 

@@ -37,10 +37,18 @@ extern const RowTable kTile4EstimatedBarycentricRows, kTile4EstimatedCompactRows
 extern const VariantTable kTile2BarycentricVariants, kTile2CompactVariants;
 extern const VariantTable kTile3BarycentricVariants, kTile3CompactVariants;
 
+/// A set of 4D signatures as bits: with a byte for each it would not stay in the nearest cache.
+struct SignatureSet4 {
+  std::array<std::uint64_t, 65536 / 64> words;
+  constexpr bool operator[](std::size_t signature) const noexcept {
+    return (words[signature / 64] >> (signature % 64) & 1u) != 0;
+  }
+};
+
 /// Whether a tile depends on the data beyond its signature: a square is ambiguous, or it may have several facets. By
 /// signature. In 4D: if false, Sigma is empty or one sphere.
 extern const std::array<bool, 256> kAmbiguous3;
-extern const std::array<bool, 65536> kAmbiguous4;
+extern const SignatureSet4 kAmbiguous4;
 
 /// By entry of kTile3Resolved.
 extern const std::array<CubeJoin, 656> kCubeJoins;
