@@ -151,6 +151,24 @@ void drop_trailing_axes(RawGrid& grid, ImageInfo& info) {
   }
 }
 
+std::optional<Lattice> lattice_of_text(std::string_view name, const std::filesystem::path& path) {
+  if (name.empty() || name == "cubic") return std::nullopt;
+  const std::optional<Lattice> lattice = parse_lattice(name);
+  if (!lattice)
+    fail(ErrorCode::MalformedFile, path, "{} is {}; expected cubic, triangular, fcc, bcc, d4 or fcc_in_time",
+         kLatticeKey, shown(name));
+  return lattice;
+}
+
+void settle_lattice(const RawGrid& grid, ImageInfo& info, const std::filesystem::path& path) {
+  if (!info.lattice) return;
+  const auto axes = static_cast<int>(grid.axes.size());
+  if (info.lattice == Lattice::fcc_in_time && axes == 3) info.lattice = Lattice::fcc;
+  if (dimension(*info.lattice) != axes)
+    fail(ErrorCode::UnsupportedData, path, "has the lattice {}, and is read as an image of {} axes; expected {}",
+         name_of(*info.lattice), axes, dimension(*info.lattice));
+}
+
 void fail_axes(const RawGrid& grid, const ImageInfo& info, const std::filesystem::path& path) {
   std::vector<std::size_t> sizes;
   for (const Axis& axis : grid.axes) sizes.push_back(axis.size());

@@ -61,6 +61,14 @@ RawGrid with_last_axis(const RawGrid& grid, Axis last);
 /// slice in space), the remaining axes have the plane's own coordinates and no world frame.
 void drop_trailing_axes(RawGrid& grid, ImageInfo& info);
 
+/// The key (NRRD), attribute (netCDF) or array (.npz) with the name of the samples' lattice.
+inline constexpr const char* kLatticeKey = "sample_lattice";
+/// The lattice of this name; none for "cubic" and for an empty text. Throws MalformedFile for another name.
+[[nodiscard]] std::optional<Lattice> lattice_of_text(std::string_view name, const std::filesystem::path& path);
+/// Fits the lattice of a file to the axes that are read: one time of fcc_in_time is fcc. Throws UnsupportedData for a
+/// lattice of another dimension.
+void settle_lattice(const RawGrid& grid, ImageInfo& info, const std::filesystem::path& path);
+
 /// The grid with static dimension N, which must be its number of axes.
 template <int N>
 Grid<N> fixed_grid(const RawGrid& grid) {

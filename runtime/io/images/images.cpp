@@ -195,6 +195,7 @@ RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImag
                        ? read_netcdf(path, extent, options)
                        : read_stored(open_stored(path, format, options), extent, options.work.progress);
   drop_trailing_axes(image.grid, image.info);
+  settle_lattice(image.grid, image.info, path);
   return image;
 }
 
@@ -202,13 +203,18 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   if (is_dicom(path)) return open_dicom_with(path, false, options);
   require_readable_file(path);
   const Format format = format_of(path);
-  if (format == Format::NetCdf) return open_netcdf_layers(path, options);
+  if (format == Format::NetCdf) {
+    RawLayers layers = open_netcdf_layers(path, options);
+    settle_lattice(layers.grid, layers.info, path);
+    return layers;
+  }
   if (format == Format::Vtk) return open_vtk_layers(path, options);
   if (format == Format::Pvd) return open_pvd_layers(path, options);
   ReadImageOptions converted = options;
   converted.keep_stored = false;
   StoredImage stored = open_stored(path, format, converted);
   drop_trailing_axes(stored.grid, stored.info);
+  settle_lattice(stored.grid, stored.info, path);
   return open_stored_layers(std::move(stored), path);
 }
 

@@ -86,6 +86,19 @@ void require_same_grid(const Member& member, const Member& first) {
          turned ? "orientation" : "origin", first.path.string());
 }
 
+/// "cubic" for none.
+std::string_view name_of_lattice(std::optional<Lattice> lattice) { return lattice ? name_of(*lattice) : "cubic"; }
+
+/// The lattice of images on `lattice` over time.
+std::optional<Lattice> lattice_in_time(std::optional<Lattice> lattice, const fs::path& path) {
+  if (!lattice) return std::nullopt;
+  if (*lattice != Lattice::fcc)
+    fail(ErrorCode::UnsupportedData, path,
+         "is on the lattice {}, and one of several files; expected files on the lattice fcc or cubic ones",
+         name_of(*lattice));
+  return Lattice::fcc_in_time;
+}
+
 void require_same(const Member& member, const Member& first) {
   if (member.type != first.type)
     fail(ErrorCode::UnsupportedData, member.path, "has values of type {}; expected {}, as {}",
@@ -96,6 +109,9 @@ void require_same(const Member& member, const Member& first) {
   if (member.info.world_frame != first.info.world_frame)
     fail(ErrorCode::UnsupportedData, member.path, "is in the frame '{}'; expected '{}', as {}", member.info.world_frame,
          first.info.world_frame, first.path.string());
+  if (member.info.lattice != first.info.lattice)
+    fail(ErrorCode::UnsupportedData, member.path, "is on the lattice {}; expected {}, as {}",
+         name_of_lattice(member.info.lattice), name_of_lattice(first.info.lattice), first.path.string());
   require_same_grid(member, first);
 }
 
@@ -247,6 +263,7 @@ Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   result.type = first.type;
   result.grid = with_last_axis(first.grid, std::move(last));
   result.info = first.info;
+  result.info.lattice = lattice_in_time(result.info.lattice, first.path);
   if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
   for (const Member& member : members) {
     if (member.info.curved != result.info.curved)

@@ -484,6 +484,14 @@ void require_image(const NcFile& file, const NcVariable& variable, const NcSlab&
        is_fixed ? fmt::format(", of which the fixed indices leave {}", axes) : "", described.axes.back());
 }
 
+/// Throws unless only the slowest dimensions have one index: times of images on a lattice.
+void require_whole_lattice(const NcFile& file, Lattice lattice, const NcSlab& slab) {
+  const auto first = std::ranges::find_if(slab.count, [](std::size_t count) { return count > 1; });
+  if (std::find(first, slab.count.end(), 1U) != slab.count.end())
+    fail(ErrorCode::UnsupportedData, file.path(),
+         "one index of a dimension of samples on the lattice {}; expected all of its samples", name_of(lattice));
+}
+
 /// Finds the requested variable, and checks that it can be an image.
 Found find_variable(const NcFile& file, const ReadImageOptions& options) {
   const auto all = file.variables();
@@ -500,6 +508,8 @@ Found find_variable(const NcFile& file, const ReadImageOptions& options) {
   info.value_name = file.text(variable, "long_name");
   if (info.value_name.empty()) info.value_name = file.text(variable, "standard_name");
   info.stored_type = parse_value_type(nc_type_name(variable.type));
+  info.lattice = lattice_of_text(file.text(variable, kLatticeKey), file.path());
+  if (info.lattice) require_whole_lattice(file, *info.lattice, slab);
   return {variable, slab, info};
 }
 

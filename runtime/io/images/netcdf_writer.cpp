@@ -123,6 +123,7 @@ void NetcdfWriter::write_head(const ImageHead& head) {
         "variable");
   put_text(variable_, "units", head.info.value_unit);
   put_text(variable_, "long_name", head.info.value_name);
+  if (head.info.lattice) put_text(variable_, kLatticeKey, std::string(name_of(*head.info.lattice)));
   constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
   constexpr double kMissingDouble = std::numeric_limits<double>::quiet_NaN();
   if (head.type == ValueType::float32)

@@ -281,6 +281,52 @@ StoredImage open_member(const fs::path& path, const ZipMember& member) {
   return image;
 }
 
+/// The text of an array of one text, such as numpy.array("fcc"): UCS-4, padded by zeros.
+std::string text_of(const fs::path& path, const ZipMember& member) {
+  constexpr std::uint64_t kMost = 4096;  // a header and a name
+  const std::string label = fmt::format("array {}: ", shown(*array_name(member)));
+  std::vector<unsigned char> bytes;
+  if (member.bytes <= kMost && member.is_deflated) {
+    bytes.resize(static_cast<std::size_t>(member.bytes));
+    bytes.resize(InflateStream(path, member.offset, member.compressed_bytes, member.crc).read(bytes));
+  } else if (member.bytes <= kMost) {
+    bytes = read_bytes(path, member.offset, static_cast<std::size_t>(member.bytes));
+  }
+  const auto fail_text = [&] {
+    fail(ErrorCode::MalformedFile, path, "{}expected one text, the name of a lattice", label);
+  };
+  if (bytes.size() != member.bytes || bytes.empty()) fail_text();
+  const std::uint64_t start = header_bytes(bytes, path, label);
+  const auto before = static_cast<std::size_t>(bytes[6] == 1 ? 10 : 12);
+  if (start > bytes.size() || start < before) fail_text();
+  const std::string_view header(reinterpret_cast<const char*>(bytes.data()) + before,
+                                static_cast<std::size_t>(start) - before);
+  const NpyFields fields = Literal(header, path, label).fields();
+  if (!fields.shape.empty() || !fields.descr.starts_with("<U")) fail_text();
+  std::string text;
+  for (std::size_t at = static_cast<std::size_t>(start); at + 4 <= bytes.size(); at += 4) {
+    if (bytes[at] == 0) break;
+    text += bytes[at + 1] == 0 && bytes[at + 2] == 0 && bytes[at + 3] == 0 ? static_cast<char>(bytes[at]) : '?';
+  }
+  return text;
+}
+
+/// The lattice that an array of the archive names.
+std::optional<Lattice> lattice_of(const fs::path& path, const std::vector<ZipMember>& members) {
+  for (const ZipMember& member : members)
+    if (array_name(member) == kLatticeKey) return lattice_of_text(text_of(path, member), path);
+  return std::nullopt;
+}
+
+/// Gives the layers of a lattice their regular step: archives have no coordinates.
+void set_layer_step(StoredImage& image) {
+  if (!image.info.lattice || static_cast<int>(image.grid.axes.size()) != dimension(*image.info.lattice)) return;
+  Axis& layers = image.grid.axes.at(image.info.lattice == Lattice::fcc_in_time ? 2 : image.grid.axes.size() - 1);
+  Axis regular = Axis::uniform(layers.size(), 0.0, layer_step(*image.info.lattice));
+  regular.name = layers.name;
+  layers = std::move(regular);
+}
+
 bool is_image(const StoredImage& image) {
   const auto longer = std::ranges::count_if(image.grid.axes, [](const Axis& axis) { return axis.size() > 1; });
   return longer >= 2 && image.grid.axes.size() <= 5;
@@ -330,6 +376,8 @@ StoredImage open_npz(const fs::path& path, std::string_view variable) {
   for (const NamedImage& array : arrays) names.push_back(array.name);
   const auto chosen = [&](StoredImage&& image, std::string_view name) {
     image.info.variable = name;
+    image.info.lattice = lattice_of(path, members);
+    set_layer_step(image);
     image.info.variables = std::move(names);
     return std::move(image);
   };

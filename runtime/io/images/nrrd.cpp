@@ -48,9 +48,15 @@ std::string without_blanks(std::string_view text) {
   return result;
 }
 
-/// Parses one "field: description" line into `fields`; skips comments and key/value pairs.
+/// Parses one "field: description" line into `fields`; skips comments, and key/value pairs except kLatticeKey.
 void parse_line(std::string_view line, NrrdFields& fields, const fs::path& path) {
-  if (line.starts_with('#') || line.find(":=") != std::string_view::npos) return;
+  if (line.starts_with('#')) return;
+  if (const std::size_t assign = line.find(":="); assign != std::string_view::npos) {
+    if (line.substr(0, assign) != kLatticeKey) return;
+    if (!fields.emplace(kLatticeKey, trim(line.substr(assign + 2))).second)
+      fail(ErrorCode::MalformedFile, path, "key '{}' twice; expected it once", kLatticeKey);
+    return;
+  }
   const std::size_t colon = line.find(": ");
   const std::string name = without_blanks(line.substr(0, colon));
   const bool known = std::find(kFieldNames.begin(), kFieldNames.end(), name) != kFieldNames.end();
@@ -533,6 +539,7 @@ StoredImage open_nrrd(const fs::path& path, bool allow_outside_paths) {
   image.grid = make_grid(text.fields, header, image.info.world_frame, path);
   image.info.format = "NRRD";
   image.info.samples_are_cells = are_cells(text.fields, header, path);
+  image.info.lattice = lattice_of_text(optional_field(text.fields, kLatticeKey), path);
   image.info.stored_type = parse_value_type(header.type.name);
   image.info.value_unit = optional_field(text.fields, "sampleunits");
   std::erase(image.info.value_unit, '"');

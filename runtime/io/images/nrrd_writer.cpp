@@ -156,7 +156,9 @@ std::unique_ptr<LayerWriter> write_nrrd(const PendingPath& file, const ImageHead
   header += geometry_lines(head, file);
   header += fmt::format("centerings:{}\nlabels:{}\nunits:{}\n", centers, labels, units);
   if (!head.info.value_unit.empty()) header += fmt::format("sample units: {}\n", quoted(head.info.value_unit));
-  header += fmt::format("endian: {}\nencoding: raw\n\n", std::endian::native == std::endian::little ? "little" : "big");
+  header += fmt::format("endian: {}\nencoding: raw\n", std::endian::native == std::endian::little ? "little" : "big");
+  if (head.info.lattice) header += fmt::format("{}:={}\n", kLatticeKey, name_of(*head.info.lattice));
+  header += "\n";
   return std::make_unique<NrrdWriter>(file, header, head.layer_bytes);
 }
 

@@ -139,6 +139,7 @@ void put_info(Packer& packer, const ImageInfo& info) {
     packer.text(curved.unit);
   });
   packer.number(static_cast<std::uint64_t>(info.samples_are_cells));
+  packer.text(info.lattice ? name_of(*info.lattice) : "");
   put_list(packer, info.cell_faces, [&](const std::vector<double>& faces) {
     put_list(packer, faces, [&](double value) { packer.number(value); });
   });
@@ -164,6 +165,7 @@ ImageInfo get_info(Unpacker& unpacker) {
     return curved;
   });
   info.samples_are_cells = unpacker.number<std::uint64_t>() != 0;
+  info.lattice = parse_lattice(unpacker.text());
   get_list(unpacker, info.cell_faces, [&] {
     std::vector<double> faces;
     get_list(unpacker, faces, [&] { return unpacker.number<double>(); });

@@ -199,6 +199,63 @@ TEST_F(ImageWriter, CellsStayCells) {
   }
 }
 
+TEST_F(ImageWriter, LatticesAreRecorded) {
+  const auto check = [&]<int N>(Grid<N> grid, Lattice lattice) {
+    const auto image = noise<float, N>(grid, 1);
+    ImageInfo info;
+    info.lattice = lattice;
+    for (const std::string name : {"a.nrrd", "a.nc"}) {
+      write_image(image.view(), path(name), info);
+      EXPECT_EQ(read_image(path(name)).info.lattice, lattice) << name;
+      EXPECT_EQ(open_layers(path(name)).info.lattice, lattice) << name;
+      EXPECT_EQ(read_image(path(name), {.separate_process = true}).info.lattice, lattice) << name;
+    }
+  };
+  check(named_grid<2>(), Lattice::triangular);
+  check(named_grid<3>(), Lattice::fcc);
+  check(named_grid<3>(), Lattice::bcc);
+  check(named_grid<4>(), Lattice::d4);
+  check(named_grid<4>(), Lattice::fcc_in_time);
+  // one time of fcc over time is fcc; other dimensions have none
+  const ReadImageResult one = read_image(path("a.nc"), {.fixed = {{named_grid<4>().axes[3].name, 1}}});
+  EXPECT_EQ(one.info.lattice, Lattice::fcc);
+  expect_error(ErrorCode::UnsupportedData, "one index of a dimension of samples on the lattice fcc_in_time", [&] {
+    (void)read_image(path("a.nc"), {.fixed = {{named_grid<4>().axes[0].name, 1}}});
+  });
+  // fcc files over time
+  ImageInfo info;
+  info.lattice = Lattice::fcc;
+  std::vector<fs::path> files;
+  const auto each = noise<float, 3>(named_grid<3>(), 1);
+  for (const char* const name : {"t0.nrrd", "t1.nrrd"}) {
+    files.push_back(path(name));
+    write_image(each.view(), files.back(), info);
+  }
+  EXPECT_EQ(read_series(files).info.lattice, Lattice::fcc_in_time);
+  info.lattice = Lattice::bcc;
+  write_image(each.view(), files[1], info);
+  expect_error(ErrorCode::UnsupportedData, "is on the lattice bcc; expected fcc", [&] { (void)read_series(files); });
+  write_image(each.view(), files[0], info);
+  expect_error(ErrorCode::UnsupportedData, "is on the lattice bcc, and one of several files",
+               [&] { (void)read_series(files); });
+}
+
+TEST_F(ImageWriter, WrongLatticesAreErrors) {
+  const auto nrrd = [&](const std::string& key) {
+    write_file(path("a.nrrd"), "NRRD0004\ntype: uint8\ndimension: 2\nsizes: 2 2\nencoding: raw\n" + key + "\n\nabcd");
+    return path("a.nrrd");
+  };
+  EXPECT_EQ(read_image(nrrd("sample_lattice:=triangular")).info.lattice, Lattice::triangular);
+  EXPECT_EQ(read_image(nrrd("sample_lattice:=cubic")).info.lattice, std::nullopt);
+  EXPECT_EQ(read_image(nrrd("lattice:=hexagonal")).info.lattice, std::nullopt);
+  expect_error(ErrorCode::MalformedFile, "sample_lattice is 'hexagonal'; expected cubic, triangular, fcc",
+               [&] { (void)read_image(nrrd("sample_lattice:=hexagonal")); });
+  expect_error(ErrorCode::MalformedFile, "key 'sample_lattice' twice",
+               [&] { (void)read_image(nrrd("sample_lattice:=cubic\nsample_lattice:=cubic")); });
+  expect_error(ErrorCode::UnsupportedData, "has the lattice fcc, and is read as an image of 2 axes; expected 3",
+               [&] { (void)read_image(nrrd("sample_lattice:=fcc")); });
+}
+
 TEST_F(ImageWriter, NetcdfKeepsUnevenAxesAndCalendars) {
   Grid<3> grid = named_grid<3>();
   grid.axes[0] = Axis::rectilinear({0, 1, 4, 9});

@@ -223,6 +223,33 @@ TEST(Npz, ReadsStoredAndDeflatedMembers) {
     }
 }
 
+TEST(Npz, AnArrayOfOneTextNamesTheLattice) {
+  TempDir dir;
+  const auto text = [](const std::string& name, const std::string& type, const std::string& shape = "") {
+    std::string samples;
+    for (const char c : name) samples += little(static_cast<unsigned char>(c), 4);
+    return npy(type, shape, samples);
+  };
+  const auto lattice = [&](const std::string& array) {
+    for (const bool deflated : {false, true}) {
+      write_file(dir / "a.npz", zip({{"a.npy", npy("<i2", "3, 4", bytes_of(std::vector<std::int16_t>(12))), true},
+                                     {"sample_lattice.npy", array, deflated}}));
+      const auto found = read_image(dir / "a.npz").info.lattice;
+      if (found != Lattice::triangular) return found;
+    }
+    return std::optional(Lattice::triangular);
+  };
+  EXPECT_EQ(lattice(text("triangular", "<U10")), Lattice::triangular);
+  EXPECT_EQ(lattice(text("cubic", "<U5")), std::nullopt);
+  const auto refused = [&](const std::string& array, const char* message) {
+    expect_error(ErrorCode::MalformedFile, {message}, [&] { (void)lattice(array); });
+  };
+  refused(text("cube", "<U4"), "sample_lattice is 'cube'; expected cubic, triangular");
+  refused(text("ab", "<U1", "2,"), "array 'sample_lattice': expected one text");
+  refused(npy("<i4", "", little(3, 4)), "array 'sample_lattice': expected one text");
+  refused("\x93NUMPY", "sample_lattice");
+}
+
 TEST(Npz, ListsTheArraysThatAreImages) {
   TempDir dir;
   write_file(dir / "a.npz", zip({{"a.npy", kArray},

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tegl/image.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/value_type.hpp"
 #include "tegl/work.hpp"
 
@@ -71,6 +72,9 @@ struct ImageInfo {
   /// VTK: values of cells; NRRD: `centers: cell` on all axes. The samples then lie at the centres of cells, which
   /// tegl/cells.hpp makes contours of.
   bool samples_are_cells = false;
+  /// NRRD: the key `sample_lattice`, netCDF: the attribute, .npz: the array of this name. The samples are on this
+  /// lattice, which tegl/lattice.hpp makes contours of. None: on a cubic grid.
+  std::optional<Lattice> lattice = {};
   std::optional<ValueScaling> scaling = {};  ///< set if the image has stored integers (`keep_stored`)
   std::vector<std::string> remarks =
       {};  ///< DICOM: skipped files, uneven slice distances; coordinates that are not used
