@@ -270,24 +270,37 @@ std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const st
   });
 }
 
+/// The seams of periodic axes on a curved grid. `periods`: along their own axes; NaN: by the coordinates.
+template <int N>
+std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
+                                    const std::vector<int>& axes, const std::vector<double>& periods) {
+  std::vector<CurvedSeam<N>> seams = find_seams(grid, curved, axes);
+  for (std::size_t i = 0; i < seams.size(); ++i)
+    if (!std::isnan(periods[i])) seams[i].vector[axes[i]] = periods[i];
+  return seams;
+}
+
 template <class Real>
-AnyContour curved_contour_of(const AnyImage& image, std::span<const CurvedAxis> curved, double level,
-                             const ExtractOptions& options) {
+AnyContour curved_contour_of(const AnyImage& image, const std::vector<CurvedAxis>& curved, const std::vector<int>& axes,
+                             const std::vector<double>& periods, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N <= 4)
-      return {extract_curved<Real>(view, curved, level, options), level};
+      return {extract_curved<Real>(view, curved, level, options, seams_of(view.grid(), curved, axes, periods)), level};
     else
       throw_dimension("curved grids", N, "2 to 4 dimensions");
   });
 }
 
 /// Number of cells in which a curved grid is folded, and the index of the first, by axis of the library.
-std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage& image, const CurvedAxes& given) {
+std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage& image, const CurvedAxes& given,
+                                                                  const std::vector<int>& axes,
+                                                                  const std::vector<double>& periods) {
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return visit_image(
       image, [&]<class T, int N>(const Image<T, N>& view) -> std::pair<std::uint64_t, std::vector<std::size_t>> {
         if constexpr (N <= 4) {
-          const GridFolds<N> folds = find_folds<N>(view.grid(), curved);
+          const GridFolds<N> folds =
+              find_folds<N>(view.grid(), curved, {}, seams_of(view.grid(), curved, axes, periods));
           return {folds.cells, {folds.first.begin(), folds.first.end()}};
         } else {
           throw_dimension("curved grids", N, "2 to 4 dimensions");
@@ -295,40 +308,47 @@ std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage
       });
 }
 
-std::unique_ptr<AnyContour> extract_curved_any(const AnyImage& image, const CurvedAxes& given, double level,
-                                               bool is_double, const py::dict& arguments, const py::object& progress) {
+std::unique_ptr<AnyContour> extract_curved_any(const AnyImage& image, const CurvedAxes& given,
+                                               const std::vector<int>& axes, const std::vector<double>& periods,
+                                               double level, bool is_double, const py::dict& arguments,
+                                               const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return call.run([&] {
-    auto result = std::make_unique<AnyContour>(is_double ? curved_contour_of<double>(image, curved, level, options)
-                                                         : curved_contour_of<float>(image, curved, level, options));
+    auto result = std::make_unique<AnyContour>(
+        is_double ? curved_contour_of<double>(image, curved, axes, periods, level, options)
+                  : curved_contour_of<float>(image, curved, axes, periods, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
 }
 
 template <class Real>
-AnyContour lattice_contour_of(const AnyImage& image, Lattice lattice, double level, const ExtractOptions& options) {
+AnyContour lattice_contour_of(const AnyImage& image, Lattice lattice, const std::vector<int>& axes,
+                              const std::vector<double>& periods, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N <= 4) {
-      return {extract_lattice<Real>(view, lattice, level, options), level};
+      return {extract_lattice<Real>(view, lattice, level, options, periods_of(view.grid(), axes, periods)), level};
     } else {
       throw_dimension("lattices", N, "2 to 4 dimensions");
     }
   });
 }
 
-std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std::string& name, double level,
-                                                bool is_double, const py::dict& arguments, const py::object& progress) {
+std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std::string& name,
+                                                const std::vector<int>& axes, const std::vector<double>& periods,
+                                                double level, bool is_double, const py::dict& arguments,
+                                                const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
   const auto lattice = named<Lattice>("lattice", name, lattices());
   return call.run([&] {
-    auto result = std::make_unique<AnyContour>(is_double ? lattice_contour_of<double>(image, lattice, level, options)
-                                                         : lattice_contour_of<float>(image, lattice, level, options));
+    auto result = std::make_unique<AnyContour>(
+        is_double ? lattice_contour_of<double>(image, lattice, axes, periods, level, options)
+                  : lattice_contour_of<float>(image, lattice, axes, periods, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -393,8 +413,12 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const s
   const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> ContourSize {
     if (axes.empty() && lattice.empty() && division.empty()) return count(view, level, options);
     if constexpr (N <= 4) {
-      if (!lattice.empty())
-        return count(lattice_complex(view, named<Lattice>("lattice", lattice, lattices())), level, options);
+      if (!lattice.empty()) {
+        const auto on = named<Lattice>("lattice", lattice, lattices());
+        if (axes.empty()) return count(lattice_complex(view, on), level, options);
+        const auto contour = extract_lattice(view, on, level, options, periods_of(view.grid(), axes, periods));
+        return {contour.vertices.size(), contour.simplices.size()};
+      }
       if (!division.empty())
         return count(divided_complex(view, named<Division>("division", division, divisions()), level), level, options);
       return count_periodic(view, periods_of(view.grid(), axes, periods), level, options);
@@ -448,14 +472,16 @@ void bind_extract(py::module_& m) {
         py::arg("progress"), doc::extract);
   m.def("extract_periodic", &extract_periodic_any, py::arg("image"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
-  m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("level"), py::arg("double"),
-        py::arg("options"), py::arg("progress"), doc::extract_curved);
-  m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), doc::find_folds);
+  m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
+        py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_curved);
+  m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
+        doc::find_folds);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("custom"),
         py::arg("margin"), py::arg("last_axis_weight"), py::arg("cells"), py::arg("curved"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_placed);
-  m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("level"),
-        py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_lattice);
+  m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("axes"),
+        py::arg("periods"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
+        doc::extract_lattice);
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),
         py::arg("double"), py::arg("options"), py::arg("progress"), doc::divided_complex);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);

@@ -122,6 +122,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   put(result, "world_frame", info.world_frame);
   result["axis_directions"] = directions_of(info);
   result["samples_are_cells"] = info.samples_are_cells;
+  result["lattice"] = info.lattice ? py::object(py::str(std::string(name_of(*info.lattice)))) : py::object(py::none());
   result["cell_faces"] = py::cast(info.cell_faces);
   py::list curved;
   for (const CurvedAxis& one : info.curved)

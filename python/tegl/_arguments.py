@@ -196,7 +196,8 @@ def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.n
                              "which the coordinate does not differ")
         along = sum(1 << (prepared.ndim - 1 - a if prepared.is_reversed else a)
                     for a, size in enumerate(values.shape) if size > 1)
-        result.append((axis, along, values.ravel("C" if prepared.is_reversed else "F"), "", ""))
+        unit = prepared.units[prepared.ndim - 1 - axis if prepared.is_reversed else axis]
+        result.append((axis, along, values.ravel("C" if prepared.is_reversed else "F"), "", unit))
     return result
 
 
@@ -429,11 +430,14 @@ def _masked(array: np.ndarray, mask) -> np.ndarray:
 
 
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
-            time_axis=None, allow_curved: bool = False) -> Prepared:
+            time_axis=None, allow_curved: bool = False, allow_lattice: bool = False) -> Prepared:
     """The library's view of an array. Values are copied only if the type or a mask requires it."""
     if not allow_curved and getattr(data, "curved", None):
         raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected its `array`, with "
                          "indices as coordinates, or a contour")
+    if not allow_lattice and getattr(data, "__tegl_image__", None) and getattr(data, "lattice", None):
+        raise ValueError(f"an image on the lattice {data.lattice}, which only tegl.contour and tegl.count know; expected its "
+                         "`array`, or an image on a cubic grid")
     if isinstance(data, (str, os.PathLike)):
         raise TypeError(f"{data!r} is a path; expected an array, or tegl.read({data!r})")
     if hasattr(data, "data_vars"):

@@ -25,7 +25,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
             ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
             epsilon: float = 0.0, normals: bool | _kinds.Normals | np.ndarray = False, gradient: _kinds.Gradient = "differences",
             dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
-            periodic=None, lattice: _kinds.Lattice | None = None, division: _kinds.Division | None = None,
+            periodic=None, lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None, division: _kinds.Division | None = None,
             positions: _kinds.Positions | _arguments.PositionFunction = "linear", positions_image=None, time_weight: float = 1.0,
             samples: _kinds.Samples = "points", curved=None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes. It separates samples >= level from the others.
@@ -83,13 +83,16 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     periodic
         Axes that are periodic: a name or number, a list of these, "all", or a dict of axes and their periods. Otherwise
         the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
-        across the seam, and `Contour.unroll` makes one for pictures. See docs/other-tilings.md.
+        across the seam, and `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis
+        are connected to the first ones: at their own places (O-grids), 360 further along longitudes, or by a given period
+        along the axis's own coordinate (negative, if that descends). See docs/other-tilings.md.
 
     lattice
         Samples on a staggered lattice: the odd layers of the last library axis (of C-ordered arrays, the first axis) are
         shifted by half a step along the other axes. "triangular" (2D), "fcc" or "bcc" (3D), "d4" (4D), or "fcc_in_time"
         (4D: fcc in the last three axes, over time). For arrays without `spacing`, `coords` and `affine`, the step between
-        layers is 0.866, 0.707 or 0.5, with which the lattice is regular. See docs/other-tilings.md.
+        layers is 0.866, 0.707 or 0.5, with which the lattice is regular. Default: that of an image from `tegl.read`, which
+        "cubic" overrides. With `periodic`, the layers must be even in number. See docs/other-tilings.md.
     division
         How cells are divided into simplices: "kuhn" or "symmetric", in 2D and 3D also "alternating", or "hybrid", which
         divides ambiguous cells only. See docs/other-tilings.md.
@@ -126,7 +129,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
             raise ValueError(f"level {level!r} with label {label!r}; expected one of the two")
         array, level = _labels.mask_of(array, label), 0.5
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True,
+                                  allow_lattice=True)
     if level is None and positions != "relaxed":
         raise TypeError("level is missing; expected a number, such as tegl.contour(array, 0.5)")
     if level is None:
@@ -137,6 +141,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                                       axis_units=axis_units, time_axis=time_axis)
     if curved is None and getattr(array, "curved", None):
         curved = array.curved
+    lattice = _lattice_of(array, lattice)
     is_double = _arguments.is_double(dtype, prepared)
     values = _arguments.position_values(positions, positions_image, prepared)
     weight = _arguments.as_number("time_weight", time_weight)
@@ -158,10 +163,9 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                                            None if positions == "linear" and not of_cells else positions),
                                           ("curved", curved))
                  if value is not None]
-        if given == ["positions", "curved"]:  # the only pair that goes together
-            given = ["curved"]
-        if len(given) > 1:
+        if given not in (["positions", "curved"], ["lattice", "periodic"], ["periodic", "curved"]) and len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
+        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
         if division is not None:
             core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
                                          options, progress)
@@ -171,17 +175,16 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
             core = _tegl.extract_placed(prepared.image, rule, values, _arguments.position_function(positions), 0.01, weight,
                                         faces, of_samples, level, is_double, options, progress)
             if curved is not None:
-                _warn_of_folds(prepared, of_samples)
+                _warn_of_folds(prepared, of_samples, [], [])
         elif lattice is not None:
-            core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), level, is_double, options,
-                                         progress)
+            core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), axes, periods, level,
+                                         is_double, options, progress)
         elif curved is not None:
-            core = _tegl.extract_curved(prepared.image, of_samples, level, is_double, options, progress)
-            _warn_of_folds(prepared, of_samples)
+            core = _tegl.extract_curved(prepared.image, of_samples, axes, periods, level, is_double, options, progress)
+            _warn_of_folds(prepared, of_samples, axes, periods)
         elif periodic is None:
             core = _tegl.extract(prepared.image, level, is_double, options, progress)
         else:
-            axes, periods = _arguments.periodic_axes(periodic, prepared)
             core = _tegl.extract_periodic(prepared.image, axes, periods, level, is_double, options, progress)
     if not allow_empty and not len(core.simplices):
         _outside.require_level(prepared, level)
@@ -201,7 +204,7 @@ class ContourSize(typing.NamedTuple):
 def count(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
           axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None, time_axis: int | None = None,
           triangulation: _kinds.Triangulation = "compact", ambiguity: _kinds.Ambiguity = "low", close: bool = False,
-          threads: int = 0, progress: Progress | None = None, periodic=None, lattice: _kinds.Lattice | None = None,
+          threads: int = 0, progress: Progress | None = None, periodic=None, lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None,
           division: _kinds.Division | None = None) -> ContourSize:
     """The size of the contour that `contour` makes with the same arguments, without making it: (vertices, simplices).
 
@@ -211,13 +214,15 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
                                          close=close, epsilon=0.0, normals=False, gradient="differences",
                                          threads=threads)
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True,
+                                  allow_lattice=True)
     level = _arguments.as_number("level", level)
     options = prepared.library_options(options)
+    lattice = _lattice_of(array, lattice)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
                  if value is not None]
-        if len(given) > 1:
+        if len(given) > 1 and given != ["lattice", "periodic"]:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
         points = _arguments.as_text("lattice", "" if lattice is None else lattice)
@@ -303,6 +308,13 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
 _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_units", "time_axis")
 
 
+def _lattice_of(array, lattice: str | None) -> str | None:
+    """The argument `lattice`, or the image's own."""
+    if lattice is None:
+        lattice = getattr(array, "lattice", None) if isinstance(array, Image) else None
+    return None if lattice == "cubic" else lattice
+
+
 def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
     if normal is not None:  # an oblique cut needs the whole contour
         whole = contour(array, level, allow_empty=allow_empty, threads=threads,
@@ -370,6 +382,8 @@ class Image:
     _axes: tuple = dataclasses.field(repr=False, default=())
     #: coordinates of a curved grid, by axis: see `tegl.contour`; those axes have indices as `coords`. {}: straight axes
     curved: dict[int, np.ndarray] = dataclasses.field(repr=False, default_factory=dict)
+    #: the lattice that the samples are on, as the file says: "fcc", ...; None: a cubic grid. `tegl.contour` uses it.
+    lattice: _kinds.Lattice | None = None
     samples_are_cells: bool = False  #: whether the file says that the samples are cells, for `samples="file"`
     #: coordinates of the faces between cells along each axis, one more than samples, of files with cells of uneven size
     #: (.vtr); () or an empty array: midway between `coords`
@@ -499,7 +513,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         curved[ndim - 1 - axis if is_reversed else axis] = values.T if is_reversed else values
         names[axis], units[axis] = name or names[axis], unit or units[axis]
     return Image(array=array, coords=coords, axis_names=tuple(names)[turn],
-                 axis_units=tuple(units)[turn], curved=curved, samples_are_cells=found["samples_are_cells"],
+                 axis_units=tuple(units)[turn], curved=curved, lattice=found["lattice"], samples_are_cells=found["samples_are_cells"],
                  cell_faces=_faces_by_axis(found["cell_faces"], ndim)[turn], affine=affine,
                  time_axis=0 if is_reversed else ndim - 1,
                  value_name=found["value_name"], value_unit=found["value_unit"], format=found["format"],
@@ -531,8 +545,8 @@ def _refuse_other_coordinates(curved: list[int], prepared, spacing, origin, coor
             raise ValueError(f"coords[{axis}] with a curved grid along this axis; expected None for it")
 
 
-def _warn_of_folds(prepared, of_samples: list) -> None:
-    cells, first = _tegl.find_folds(prepared.image, of_samples)
+def _warn_of_folds(prepared, of_samples: list, axes: list, periods: list) -> None:
+    cells, first = _tegl.find_folds(prepared.image, of_samples, axes, periods)
     if cells:
         at = ", ".join(map(str, first[::-1] if prepared.is_reversed else first))
         warnings.warn(f"the curved grid is folded in {cells} {'cell' if cells == 1 else 'cells'}, the first at the sample "

@@ -227,7 +227,7 @@ def test_contours_of_lattices_and_of_scattered_points():
         outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
         assert np.abs(normals - outwards).max() < 0.1
     with pytest.raises(ValueError, match="expected one of the two"):
-        tegl.contour(ball, 0.0, lattice="fcc", periodic=0)
+        tegl.contour(ball, 0.0, lattice="fcc", division="kuhn")
     with pytest.raises(ValueError, match="lattice"):
         tegl.contour(ball, 0.0, lattice="hexagonal")
     with pytest.raises(ValueError, match="expected 4 dimensions"):
@@ -355,8 +355,8 @@ def test_curved_grids_have_the_coordinates_of_their_samples():
         tegl.contour(radius, 1.5, curved={0: x[:1]})
     with pytest.raises(TypeError, match="expected a dict"):
         tegl.contour(radius, 1.5, curved=[x, y])
-    with pytest.raises(ValueError, match="periodic with curved"):
-        tegl.contour(radius, 1.5, curved={0: x, 1: y}, periodic=1)
+    with pytest.raises(ValueError, match="division with curved"):
+        tegl.contour(radius, 1.5, curved={0: x, 1: y}, division="kuhn")
     for other in (dict(spacing=2), dict(origin=1), dict(coords=[np.arange(60), None])):
         with pytest.raises(ValueError, match=f"{next(iter(other))}.* with a curved grid"):
             tegl.contour(radius, 1.5, curved={0: x, 1: y}, **other)
@@ -464,6 +464,50 @@ def test_attributes_of_a_file_are_read_by_name(tmp_path):
     assert mesh.count(5.5) == (len(line.vertices), len(line.simplices))
     with pytest.raises(ValueError, match="attributes has 'h'; expected names among 'f', 'g'"):
         mesh.contour(5.5, attributes=["h"])
+
+
+def test_lattices_are_periodic_closed_and_recorded_in_files(tmp_path):
+    k, j, i = np.meshgrid(np.arange(20), np.arange(12), np.arange(12), indexing="ij")
+    turn = 2 * np.pi / np.array([20.0, 12.0, 12.0])
+    z, y, x = turn[0] * k, turn[1] * (j + 0.5 * (k % 2)), turn[2] * (i + 0.5 * (k % 2))
+    gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    cell = tegl.contour(gyroid, 0.01, lattice="fcc", periodic="all", dtype=np.float64)
+    assert cell.check().is_closed and cell.check().euler == -8
+    assert tegl.count(gyroid, 0.01, lattice="fcc", periodic="all") == (len(cell.vertices), len(cell.simplices))
+    assert tegl.contour(gyroid, 0.01, lattice="bcc", close=True).check().is_closed
+    with pytest.raises(ValueError, match="expected an even number"):
+        tegl.contour(gyroid[:19], 0.01, lattice="fcc", periodic=0)
+
+    np.savez(tmp_path / "a.npz", values=gyroid, sample_lattice="fcc")
+    image = tegl.read(tmp_path / "a.npz")
+    assert image.lattice == "fcc"
+    own = tegl.contour(image, 0.01, dtype=np.float64)
+    assert len(own.vertices) == len(tegl.contour(gyroid, 0.01, lattice="fcc").vertices)
+    assert len(own.vertices) == tegl.count(image, 0.01).vertices
+    cubic = tegl.contour(image, 0.01, lattice="cubic")
+    assert len(cubic.vertices) == len(tegl.contour(gyroid, 0.01).vertices)
+    with pytest.raises(ValueError, match="on the lattice fcc, which only tegl.contour and tegl.count know"):
+        tegl.filter(image, median=1)
+
+
+def test_curved_grids_are_periodic():
+    angle, radius = np.meshgrid(np.linspace(0, 2 * np.pi, 60, endpoint=False), np.linspace(1, 2, 20), indexing="ij")
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    ring = tegl.contour(1.5 - radius, 0.0, curved={0: x, 1: y}, periodic=0, normals=True, dtype=np.float64)
+    assert ring.check().is_closed and ring.check().components == 1
+    assert abs(np.hypot(*ring.vertices.T) - 1.5).max() < 0.003
+    assert abs(ring.normals - ring.vertices / 1.5).max() < 0.05
+
+    lon, lat = np.meshgrid(np.arange(-175.0, 185.0, 10.0), np.arange(-80.0, 81.0, 10.0))
+    away = lon - 180 - 360 * np.round((lon - 180) / 360)
+    spot = 40 - np.hypot(away, lat)
+    for periodic in ("lon", {"lon": 360.0}):
+        around = tegl.contour(spot, 0.0, curved={"lon": lon, "lat": lat}, periodic=periodic, axis_names=("lat", "lon"),
+                              axis_units=("degrees_north", "degrees_east"), dtype=np.float64)
+        assert around.check().is_closed and around.check().components == 1
+        flat = around.unroll()[0]
+        segments = flat.vertices[flat.simplices]
+        assert abs(segments[:, 0] - segments[:, 1]).max() < 20
 
 
 def test_count_has_the_size_of_contours_of_meshes_lattices_and_divisions():

@@ -388,7 +388,7 @@ TEST_F(Contour, OfACurvedGridHasItsCoordinates) {
     EXPECT_NE(refused.exit, 0) << more[0];
     EXPECT_THAT(refused.err, HasSubstr("--index-grid")) << more[0];
   }
-  EXPECT_THAT(run_tegl({"contour", model, "--iso", "1.5", "--periodic", "xi", "-o", path("x.vtkhdf")}).err,
+  EXPECT_THAT(run_tegl({"contour", model, "--iso", "1.5", "--division", "kuhn", "-o", path("x.vtkhdf")}).err,
               HasSubstr("curved grid"));
   // folds are counted
   EXPECT_EQ(run_tegl({"contour", model, "--iso", "1.5", "-o", path("x.vtkhdf"), "--json"}).json()["folded_cells"], 0);

@@ -280,8 +280,7 @@ TEST_F(ImageMakers, SamplesOfALatticeAreContouredOnIt) {
                         path("a.nrrd"), "-q"})
                   .exit,
               0);
-    const RunResult run =
-        run_tegl({"contour", path("a.nrrd"), "--lattice", lattice, "--iso", "0", "-o", path("a.vtkhdf"), "--json"});
+    const RunResult run = run_tegl({"contour", path("a.nrrd"), "--iso", "0", "-o", path("a.vtkhdf"), "--json"});
     ASSERT_EQ(run.exit, 0) << run.err;
     EXPECT_EQ(run.json()["components"], 1) << lattice;
     EXPECT_EQ(run.json()["boundary_simplices"], 0) << lattice;

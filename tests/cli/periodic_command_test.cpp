@@ -3,8 +3,10 @@
 // --periodic of tegl contour and of commands that contour an image, curved grids, and options of contours of meshes,
 // run as in a shell.
 #include <gmock/gmock.h>
+#include <netcdf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -21,6 +23,38 @@ namespace tegl::test {
 namespace {
 
 using testing::HasSubstr;
+
+/// A netCDF file of a global grid with two-dimensional longitudes and latitudes.
+void write_curved_globe(const std::string& path) {
+  constexpr std::size_t kLon = 36, kLat = 17;
+  std::vector<double> lon, lat, values;
+  for (std::size_t j = 0; j < kLat; ++j)
+    for (std::size_t i = 0; i < kLon; ++i) {
+      const auto along = static_cast<double>(i), up = static_cast<double>(j);
+      lon.push_back(-175.0 + 10.0 * along + 0.1 * up);
+      lat.push_back(-80.0 + 10.0 * up + std::sin(along / 36.0 * 2.0 * std::numbers::pi));
+      const double away = lon.back() - 180.0 - 360.0 * std::round((lon.back() - 180.0) / 360.0);
+      values.push_back(40.0 - std::hypot(away, lat.back()));
+    }
+  int file = 0, variable = 0;
+  std::array<int, 2> dimensions{};
+  const auto check = [](int status) { ASSERT_EQ(status, NC_NOERR) << nc_strerror(status); };
+  check(nc_create(path.c_str(), NC_CLOBBER, &file));
+  check(nc_def_dim(file, "j", kLat, &dimensions[0]));
+  check(nc_def_dim(file, "i", kLon, &dimensions[1]));
+  const auto define = [&](const char* name, const char* attribute, const std::string& text) {
+    check(nc_def_var(file, name, NC_DOUBLE, 2, dimensions.data(), &variable));
+    check(nc_put_att_text(file, variable, attribute, text.size(), text.c_str()));
+    return variable;
+  };
+  const int of_lon = define("lon", "units", "degrees_east"), of_lat = define("lat", "units", "degrees_north");
+  const int of_values = define("spot", "coordinates", "lon lat");
+  check(nc_enddef(file));
+  check(nc_put_var_double(file, of_lon, lon.data()));
+  check(nc_put_var_double(file, of_lat, lat.data()));
+  check(nc_put_var_double(file, of_values, values.data()));
+  check(nc_close(file));
+}
 
 class PeriodicCommand : public ProgramTest {
  protected:
@@ -42,6 +76,13 @@ class PeriodicCommand : public ProgramTest {
   }
   void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
     arguments.insert(arguments.begin(), {"contour", file_, "--iso", "0"});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+  void expect_refused_of(const std::string& file, std::vector<std::string> arguments,
+                         const std::string& message) const {
+    arguments.insert(arguments.begin(), {"contour", file, "--iso", "0"});
     const RunResult run = run_tegl(arguments);
     EXPECT_NE(run.exit, 0);
     EXPECT_THAT(run.err, HasSubstr(message));
@@ -282,11 +323,132 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   EXPECT_NEAR(measure["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 216, 20);
   expect_refused({"--lattice", "d4", "-o", output}, "lattice d4 of a 3D image; expected 4 dimensions");
   expect_refused({"--lattice", "hexagonal", "-o", output}, "hexagonal");
-  expect_refused({"--lattice", "bcc", "--periodic", "x", "-o", output}, "--periodic x with --lattice bcc");
+  expect_refused({"--lattice", "bcc", "--periodic", "y=19", "-o", output}, "the period of axis 1 is 19; expected 20");
   expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
   expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output}, "normals on a lattice by a kernel");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});
   EXPECT_FALSE(read_mesh(output).normals.empty());
+}
+
+TEST_F(PeriodicCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
+  const std::string file = path("gyroid.nrrd"), output = path("gyroid.vtkhdf");
+  const auto sample = [&](const char* lattice, const char* sizes, const char* field, const std::string& to) {
+    (void)run_json({"sample", field, "--lattice", lattice, "--size", sizes, "--range", "0:1", "-o", to});
+  };
+  const auto contour = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"contour", file, "-o", output};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_json(all);
+  };
+  // a wave along x; the file says that it is on the lattice
+  sample("fcc", "13,12,14", "sin(6.5*x)+0.01*y", file);
+  const nlohmann::json open = contour({"--iso", "0.2"});
+  EXPECT_GT(open["boundary_simplices"], 0);
+  const nlohmann::json closed = contour({"--iso", "0.2", "--close"});
+  EXPECT_EQ(closed["boundary_simplices"], 0);
+  EXPECT_GT(closed["simplices"], open["simplices"]);
+  const nlohmann::json around = contour({"--iso", "0.2", "--close", "--periodic", "x,y", "--normals"});
+  EXPECT_EQ(around["boundary_simplices"], 0);
+  EXPECT_EQ(run_json({"contour", file, "--iso", "0.2", "-o", output, "--periodic", "all"})["boundary_simplices"], 0);
+  // attributes: the image itself, and another one on the same lattice
+  sample("fcc", "13,12,14", "3*sin(6.5*x)+0.03*y+1", path("other.nrrd"));
+  for (const char* const more : {"--close", "--merge", "--periodic=x"}) {
+    const std::string with = path("with.vtkhdf");
+    (void)run_json({"contour", file, "--iso", "0.2", "-o", with, "--attribute", path("other.nrrd"), more});
+    const Mesh mesh = read_mesh(with);
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    EXPECT_EQ(mesh.vertex_attributes[0].name, "other");
+    std::size_t at_level = 0;
+    for (const double value : mesh.vertex_attributes[0].values) at_level += std::abs(value - 1.6) < 1e-5 ? 1 : 0;
+    EXPECT_GE(at_level, open["vertices"].get<std::size_t>() / 2) << more;
+  }
+  sample("fcc", "13,12,12", "x", path("shorter.nrrd"));
+  const auto refused = [&](std::vector<std::string> arguments, const char* message) {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  };
+  const std::string ply = path("a.ply");
+  refused({"contour", file, "--iso", "0.2", "-o", ply, "--attribute", path("shorter.nrrd")},
+          "expected the same lattice, numbers of samples and coordinates");
+  refused({"contour", file_, "--iso", "0", "-o", ply, "--attribute", file},
+          "an image on the lattice fcc, and the contour");
+  refused({"slice", file, "--iso", "0.2", "--at", "z=0.5", "-o", ply, "--attribute", file},
+          "--attribute on the lattice");
+  sample("bcc", "6,6,7", "x", path("odd.nrrd"));
+  refused({"contour", path("odd.nrrd"), "--iso", "0.2", "-o", ply, "--periodic", "z"},
+          "has 7 layers; expected an even");
+}
+
+TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
+  const auto json_of = [&](std::vector<std::string> arguments) { return run_json(std::move(arguments)); };
+  const std::string output = path("ball.ply");
+  for (const char* const name : {"ball.nrrd", "ball.nc"}) {
+    const std::string ball = path(name);
+    (void)json_of({"sample", "ball", "--lattice", "fcc", "--size", "14", "-o", ball});
+    EXPECT_EQ(json_of({"info", ball})["lattice"], "fcc");
+    EXPECT_THAT(run_tegl({"info", ball}).out, HasSubstr("fcc: odd layers are shifted"));
+    const nlohmann::json own = json_of({"contour", ball, "--iso", "0", "-o", output});
+    EXPECT_EQ(own["tiles"], json_of({"contour", ball, "--iso", "0", "--lattice", "fcc", "-o", output})["tiles"]);
+    const nlohmann::json cubic = json_of({"contour", ball, "--iso", "0", "--lattice", "cubic", "-o", output});
+    EXPECT_NE(own["tiles"], cubic["tiles"]);
+    EXPECT_NE(own["tiles"], json_of({"contour", ball, "--iso", "0", "--lattice", "bcc", "-o", output})["tiles"]);
+    // others that contour an image
+    EXPECT_EQ(json_of({"measure", ball, "--iso", "0"})["content"],
+              json_of({"measure", ball, "--iso", "0", "--lattice", "fcc"})["content"]);
+    EXPECT_NE(json_of({"measure", ball, "--iso", "0"})["content"],
+              json_of({"measure", ball, "--iso", "0", "--lattice", "cubic"})["content"]);
+    const nlohmann::json slice = json_of({"slice", ball, "--iso", "0", "--at", "z=0.05", "-o", output});
+    EXPECT_EQ(slice["simplices"],
+              json_of({"slice", ball, "--iso", "0", "--lattice", "fcc", "--at", "z=0.05", "-o", output})["simplices"]);
+    // and those that do not know lattices
+    const auto refused = [&](std::vector<std::string> arguments, const std::string& message) {
+      const RunResult run = run_tegl(arguments);
+      EXPECT_NE(run.exit, 0);
+      EXPECT_THAT(run.err, HasSubstr(message));
+    };
+    refused({"filter", ball, "--median", "1", "-o", path("f.nrrd")}, "is on the lattice fcc, which this command");
+    refused({"index", ball, "-o", path("i.tindex")}, "is on the lattice fcc, which this command");
+    refused({"scale-space", ball, "--sigmas", "1:2:3", "-o", path("s.nrrd")}, "lattice fcc");
+    refused({"elements", ball, "--iso", "0", "--per", "cell", "-o", path("e.txt")}, "--per cell on the lattice fcc");
+    for (const std::vector<std::string>& more :
+         std::vector<std::vector<std::string>>{{"--stream", "-o", path("s.vtkhdf")},
+                                               {"--facets", "-o", path("s.vtkhdf")},
+                                               {"--pick", "0,0,0", "-o", output},
+                                               {"--division", "kuhn", "-o", output},
+                                               {"--samples-are", "cells", "-o", output},
+                                               {"--positions", "gravitation", "-o", output},
+                                               {"--scale-space", "1:2:3", "-o", path("s.vtkhdf")}}) {
+      std::vector<std::string> arguments = {"contour", ball, "--iso", "0"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      refused(arguments, "is on the lattice fcc; expected it without this, or --lattice cubic");
+      if (more.front() == "--facets" || more.front() == "--stream") {
+        arguments.insert(arguments.end(), {"--lattice", "cubic"});
+        EXPECT_EQ(run_tegl(arguments).exit, 0) << more.front();
+      }
+    }
+  }
+}
+
+TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {
+  // a global grid: longitudes and latitudes by two indices; a spot around 180 degrees east
+  const std::string file = path("globe.nc");
+  write_curved_globe(file);
+  const std::string output = path("spot.vtkhdf");
+  EXPECT_EQ(run_json({"components", file, "--iso", "0"})["count"], 2);
+  for (const char* const axis : {"lon", "i", "i=360"}) {
+    const nlohmann::json report = run_json({"contour", file, "--iso", "0", "--periodic", axis, "-o", output});
+    EXPECT_EQ(report["components"], 1) << axis;
+    EXPECT_EQ(report["boundary_simplices"], 0) << axis;
+    EXPECT_EQ(run_json({"components", file, "--iso", "0", "--periodic", axis})["count"], 1);
+    EXPECT_EQ(run_json({"components", output})["count"], 1);
+  }
+  const nlohmann::json by_index =
+      run_json({"contour", file, "--iso", "0", "--index-grid", "--periodic", "i", "-o", output});
+  EXPECT_EQ(by_index["components"], 1);
+  expect_refused_of(file, {"--periodic", "depth", "-o", output}, "expected one of i or lon, j or lat");
+  expect_refused_of(file, {"--periodic", "lon", "--attribute", file, "-o", output}, "--periodic and a curved grid");
+  expect_refused_of(file, {"--periodic", "lon", "--lattice", "triangular", "-o", output}, "--lattice triangular with");
 }
 
 TEST_F(PeriodicCommand, CellsMayBeDivided) {

@@ -16,12 +16,14 @@
 #include "commands/append_mesh.hpp"
 #include "commands/facets.hpp"
 #include "commands/over_scales.hpp"
+#include "commands/picked_place.hpp"
 #include "commands/streaming.hpp"
 #include "input/attributes.hpp"
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
 #include "input/curved_images.hpp"
 #include "input/extraction.hpp"
+#include "input/lattice_attributes.hpp"
 #include "input/merging.hpp"
 #include "input/mesh_input.hpp"
 #include "input/point_arrays.hpp"
@@ -132,6 +134,7 @@ class ContourCommand final : public Command {
   }
 
  private:
+  [[nodiscard]] bool knows_lattices() const override { return true; }
   /// Checks the names of outputs and the other inputs.
   void require_files(const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
@@ -174,31 +177,32 @@ class ContourCommand final : public Command {
     require_output(result.output, files());
   }
 
-  /// Refuses --samples-are file with options that cells do not have, if the samples of FILE are cells.
-  void refuse_cells_of_file(bool samples_are_cells) const {
-    const auto refuse = [&](bool given, const char* with) {
-      if (given) options_.refuse_cells(samples_are_cells, file(), with);
-    };
-    refuse(is_streamed(), stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
-    refuse(!index_.empty(), "--index");
-    refuse(facets_, "--facets");
-    refuse(app().count("--pick") > 0, "--pick");
-    refuse(one_file_, "--one-file");
-    refuse(options_.polygon_triangulation().has_value(), "a triangulation of polygons");
-    refuse(attributes_.wanted(), "--attribute");
+  /// Calls refuse(with) for the options that know only cubic cells between samples.
+  template <class Refuse>
+  void for_plain_cells(const Refuse& refuse) const {
+    if (is_streamed()) refuse(stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
+    if (!index_.empty()) refuse("--index");
+    if (facets_) refuse("--facets");
+    if (app().count("--pick") > 0) refuse("--pick");
+    if (one_file_) refuse("--one-file");
+    if (options_.polygon_triangulation()) refuse("a triangulation of polygons");
+  }
+
+  /// Refuses options that cells and lattices do not have, if the samples of FILE are cells or on a lattice.
+  void refuse_tiling_of_file(const ImageInfo& info) const {
+    for_plain_cells([&](const char* with) {
+      options_.refuse_cells(info.samples_are_cells, file(), with);
+      options_.refuse_lattice(info, file(), with);
+    });
+    if (attributes_.wanted()) options_.refuse_cells(info.samples_are_cells, file(), "--attribute");
+    if (!positions_.are_linear()) options_.refuse_lattice(info, file(), "--positions");
   }
 
   void require_tiling_options() const {
     if (unroll_ && options_.tiling().periodic.empty())
       throw Error(ErrorCode::InvalidArgument, "--unroll without --periodic; expected both");
-    if (is_streamed()) options_.refuse_tiling(stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
-    if (!index_.empty()) options_.refuse_tiling("--index");
-    if (facets_) options_.refuse_tiling("--facets");
-    if (app().count("--pick") > 0) options_.refuse_tiling("--pick");
-    if (one_file_) options_.refuse_tiling("--one-file");
-    if (options_.polygon_triangulation()) options_.refuse_tiling("a triangulation of polygons");
-    if (const Tiling tiling = options_.tiling(); attributes_.wanted() && (tiling.lattice || tiling.of_cells))
-      options_.refuse_tiling("--attribute");
+    for_plain_cells([&](const char* with) { options_.refuse_tiling(with); });
+    if (attributes_.wanted() && options_.tiling().of_cells) options_.refuse_tiling("--attribute");
   }
 
   /// Whether no option is given that needs straight axes.
@@ -315,14 +319,19 @@ class ContourCommand final : public Command {
                           takes_stored_integers(options));
     remark(positions_.apply(any, results, options_.allows_empty()));
     if (is_named_by_image()) name_by_isovalue(results.front());
-    if (scales_.are_given()) scales_.apply(any, options_.threads(), bar.stage("scale space"));
+    if (scales_.are_given()) {
+      if (const auto* const image = std::get_if<ReadImageResult>(&any))
+        options_.refuse_lattice(image->info, file(), "--scale-space");
+      scales_.apply(any, options_.threads(), bar.stage("scale space"));
+    }
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       return contour_5d(*in_5d, options, watch, bar, results);
     ReadImageResult input = std::move(std::get<ReadImageResult>(any));
     tiling_ = options_.tiling();
     std::optional<std::uint64_t> folded_cells;
     remark(take_grid(input, file(), options_, tiling_, folded_cells));
-    refuse_cells_of_file(input.info.samples_are_cells);
+    refuse_tiling_of_file(input.info);
+    refuse_attributes_on_seams(attributes_, tiling_);
     require_output_holds(results.front().output, image_dim(input.image) - 1);
     for (ContourResult& result : results) {
       result.input = inputs();
@@ -428,6 +437,9 @@ class ContourCommand final : public Command {
     if (result.picked) return pick(image, options, bar, result);
     const auto finished = [&](auto extraction) {
       result.stats = extraction.stats;
+      if (tiling_.lattice)
+        sample_on_lattice(attributes_, extraction.contour, image, tiling_, result.isovalue_of_samples, options,
+                          image_options(), bar);
       return with_additions(std::move(extraction.contour), options.work.threads, bar, result);
     };
     const bool single_precision = options_.single_precision();
@@ -449,24 +461,28 @@ class ContourCommand final : public Command {
                    ContourResult& result) const {
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
       const Image<T, N> indexed = on_indices(owned, tiling_.curved);
+      const auto seams = seams_of(owned.grid, tiling_.curved, tiling_.periodic);
       const auto move = [&]<class Real>(Contour<N, Real> contour) {
         const Contour<N, Real> in_indices = attributes_.wanted() ? contour : Contour<N, Real>();
         auto moved = on_curved_grid<Real>(std::move(contour), owned.grid, tiling_.curved,
-                                          {options.work.threads, bar.stage("move")});
+                                          {options.work.threads, bar.stage("move")}, seams);
         attributes_.sample_to(moved, image_options(), options.work.threads, bar, {tiling_.curved, &in_indices, false});
         result.mesh = with_additions(std::move(moved), options.work.threads, bar, result);
       };
       const auto make = [&]<class Real>(Real) {
         if (result.picked) {
           auto found = extract_component<Real>(
-              indexed, *result.isovalue, nearest_sample<N>(owned.grid, tiling_.curved, picked_place<N>(*result.picked)),
-              options);
+              indexed, *result.isovalue,
+              nearest_sample<N>(owned.grid, tiling_.curved, picked_place<N>(*result.picked, pick_)), options);
           take_report(found.report, *result.picked);
           return move(std::move(found.contour));
         }
-        auto extraction = positions_.are_linear()
-                              ? extract_with_stats<Real>(indexed, *result.isovalue, options)
-                              : extract_placed_with_stats<Real>(indexed, *result.isovalue, placed_, options);
+        auto extraction =
+            !seams.empty()
+                ? extract_periodic_with_stats<Real>(indexed, index_periods<N>(owned.grid, tiling_.curved, seams),
+                                                    *result.isovalue, options)
+            : positions_.are_linear() ? extract_with_stats<Real>(indexed, *result.isovalue, options)
+                                      : extract_placed_with_stats<Real>(indexed, *result.isovalue, placed_, options);
         result.stats = extraction.stats;
         move(std::move(extraction.contour));
       };
@@ -503,23 +519,6 @@ class ContourCommand final : public Command {
     return parse_list("--pick", pick_);
   }
 
-  /// The point of --pick.
-  template <int N>
-  [[nodiscard]] std::array<double, N> picked_place(const Picked& picked) const {
-    if (picked.point.size() != N)
-      throw Error(ErrorCode::InvalidArgument, fmt::format("--pick {} has {} numbers; expected {}, one for each axis",
-                                                          pick_, picked.point.size(), N));
-    std::array<double, N> point;
-    std::copy_n(picked.point.begin(), N, point.begin());
-    return point;
-  }
-
-  template <int N>
-  static void take_report(const PickReport<N>& report, Picked& picked) {
-    const std::vector<std::size_t> tile(report.at.begin(), report.at.end());
-    picked = {picked.point, tile, report.distance, report.tiles, report.components};
-  }
-
   /// Extracts the component nearest to the point of --pick.
   void pick(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     Stopwatch watch;
@@ -528,7 +527,7 @@ class ContourCommand final : public Command {
       result.mesh = with_additions(std::move(found.contour), options.work.threads, bar, result);
     };
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
-      const std::array<double, N> point = picked_place<N>(*result.picked);
+      const std::array<double, N> point = picked_place<N>(*result.picked, pick_);
       if (options_.single_precision())
         keep(extract_component<float>(owned.view(), result.isovalue_of_samples, point, options));
       else
@@ -547,7 +546,7 @@ class ContourCommand final : public Command {
       MergeArguments::require_left(*result.merging, contour.simplices.size(), options_.allows_empty());
     }
     options_.add_shape_normals(contour);
-    if (tiling_.curved.empty())
+    if (tiling_.curved.empty() && !tiling_.lattice)
       attributes_.sample_to(contour, image_options(), threads, bar,
                             {{}, nullptr, images().index_grid(), are_cell_meshes(files(), images())});
     return to_mesh(unrolled_for(std::move(contour), output_, unroll_));
@@ -605,7 +604,7 @@ class ContourCommand final : public Command {
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
-    refuse_cells_of_file(input.info.samples_are_cells);
+    refuse_tiling_of_file(input.info);
     std::vector<FacetsResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
       FacetsResult& result = results[i];
@@ -636,6 +635,7 @@ class ContourCommand final : public Command {
   OpenLayersResult open_or_smooth(ReadImageResult& image, ProgressBar& bar) {
     if (!scales_.are_given()) return open();
     image = read(bar.stage("read"));
+    options_.refuse_lattice(image.info, file(), "--scale-space");
     return scales_.layers(image, options_.threads());
   }
 
@@ -653,7 +653,7 @@ class ContourCommand final : public Command {
     Stopwatch watch;
     OpenLayersResult input = with_option_to_4d("--stream", [&] { return open_or_smooth(image, bar); });
     const double read_seconds = watch.lap();
-    refuse_cells_of_file(input.info.samples_are_cells);
+    refuse_tiling_of_file(input.info);
     for (ContourResult& result : results) {
       result.input = inputs();
       result.variable = input.info.variable;

@@ -135,6 +135,7 @@ Json to_json(const Description& description, const InputFiles& input) {
   for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
   json["periodic"] = description.around;
   json["samples_are"] = info.samples_are_cells ? "cells" : "points";
+  json["lattice"] = info.lattice ? name_of(*info.lattice) : "cubic";
   Json& curved = json["curved"] = Json::array();
   for (const CurvedAxis& one : info.curved) curved.push_back(one.name);
   json["world_frame"] = info.world_frame;
@@ -271,6 +272,8 @@ std::string to_text(const Console& console, const Description& description, cons
   for (std::size_t i = 0; i < description.axes.size(); ++i) {
     text += report_line(i == 0 ? "axes" : "", axis_text(description, i));
   }
+  if (info.lattice)
+    text += report_line("lattice", fmt::format("{}: odd layers are shifted by half a step", name_of(*info.lattice)));
   if (!description.around.empty()) {
     const std::string names = fmt::format("{}", fmt::join(description.around, ","));
     text += report_line("periodic",
@@ -392,6 +395,7 @@ class InfoCommand final : public Command {
   }
 
  private:
+  [[nodiscard]] bool knows_lattices() const override { return true; }
   ExitCode describe_contour(const Streams& streams) {
     refuse_image_options(files(), {}, images(), "it without options for images");
     ProgressBar bar(streams.err, wants_progress());

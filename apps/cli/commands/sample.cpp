@@ -28,7 +28,7 @@ std::string field_help() {
       "  tegl sample merging --dim 4 --size 32 -o merging.nrrd\n"
       "  tegl sample metaballs --size 128 --set count=50 --seed 7 -o balls.nrrd\n"
       "  tegl sample orbital --size 80 --set n=3 --set l=2 -o orbital.nrrd\n"
-      "  tegl sample torus --lattice bcc --size 40 -o torus.nrrd   (then: tegl contour torus.nrrd --lattice bcc --iso "
+      "  tegl sample torus --lattice bcc --size 40 -o torus.nrrd   (then: tegl contour torus.nrrd --iso "
       "0 ...)\n"
       "  tegl sample 'max(ball(x-0.3, y, z, 0.5), box(x, 0.3, y, 0.2, z, 0.6))' --size 64 -o shape.nrrd\n"
       "Fields, with their dimensions and parameters (--set):\n";
@@ -42,8 +42,6 @@ std::string field_help() {
          "comparisons, ?:, sin, exp, sqrt, abs, min, max, _pi, and ball(x, y, z, radius), box(x, a, y, b, z, c),\n"
          "torus(x, y, z, ring, tube). Contours are at 0, except those of orbitals.";
 }
-
-constexpr std::array kLattices = {Lattice::triangular, Lattice::fcc, Lattice::bcc, Lattice::d4, Lattice::fcc_in_time};
 
 class SampleCommand final : public Command {
  public:
@@ -65,14 +63,12 @@ class SampleCommand final : public Command {
         .add_option("--range", range_, "coordinates of the first and the last sample along each axis")
         ->type_name("FIRST:LAST")
         ->capture_default_str();
-    std::vector<std::string> lattices = {"cubic"};
-    for (const Lattice lattice : kLattices) lattices.emplace_back(name_of(lattice));
     app()
         .add_option(
             "--lattice", lattice_,
             "lattice of the samples; with one number of --size, its last axis gets the regular step and as many "
             "layers as the range needs")
-        ->check(CLI::IsMember(lattices))
+        ->check(CLI::IsMember({"cubic", "triangular", "fcc", "bcc", "d4", "fcc_in_time"}))
         ->capture_default_str();
     app()
         .add_option("--set", parameters_, "a parameter of the field; may be given again")
@@ -90,9 +86,7 @@ class SampleCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     // validate options and files
-    std::optional<Lattice> lattice;
-    for (const Lattice one : kLattices)
-      if (name_of(one) == lattice_) lattice = one;
+    const std::optional<Lattice> lattice = parse_lattice(lattice_);
     const int dim = dim_option_->count() > 0 ? dim_ : lattice ? dimension(*lattice) : 3;
     if (lattice && dimension(*lattice) != dim)
       throw Error(ErrorCode::InvalidArgument,
@@ -179,7 +173,9 @@ class SampleCommand final : public Command {
   template <int N>
   void write(const Field& field, const std::optional<Lattice>& lattice, ProgressBar& bar, ImageResult& result) const {
     FieldLayers<N> layers(field, grid_of<N>(lattice), lattice, threads_);
-    stream_image_result(layers, {}, bar, result);
+    ImageInfo info;
+    info.lattice = lattice;
+    stream_image_result(layers, info, bar, result);
   }
 
   std::string field_, output_;

@@ -23,6 +23,7 @@
 #include "input/contour_input.hpp"
 #include "input/cuts.hpp"
 #include "input/extraction.hpp"
+#include "input/lattice_attributes.hpp"
 #include "input/layer_image.hpp"
 #include "input/mesh_input.hpp"
 #include "input/point_arrays.hpp"
@@ -309,6 +310,7 @@ class SliceCommand final : public Command {
   }
 
  private:
+  [[nodiscard]] bool knows_lattices() const override { return true; }
   /// One object for one cut, a list for several.
   static Json document(const std::vector<ContourResult>& results) {
     if (results.size() == 1) return to_json(results.front());
@@ -352,6 +354,7 @@ class SliceCommand final : public Command {
     } catch (const Error&) {
       return std::nullopt;  // not a format with layers, or reading reports the error
     }
+    if (options_.has_lattice(input.info)) return std::nullopt;  // cells of a lattice extend over more layers
     const auto of_layers = [&]<Value T, int N>(const std::unique_ptr<LayerReader<T, N>>& layers) {
       require_cuts(N, "image");
       if constexpr (N >= 3) {
@@ -446,9 +449,10 @@ class SliceCommand final : public Command {
       std::optional<std::uint64_t> folded_cells;
       attributes_.keep_sizes_of(input.image);
       remark(take_grid(input, file(), options_, tiling, folded_cells));
-      space = tiling.of_cells           ? space_of_cells(input.image, tiling.cell_faces)
-              : tiling.periodic.empty() ? space_of(input.image, tiling.curved)
-                                        : space_of_periods(input.image, tiling.periodic);
+      space = tiling.of_cells                                     ? space_of_cells(input.image, tiling.cell_faces)
+              : tiling.periodic.empty() || !tiling.curved.empty() ? space_of(input.image, tiling.curved)
+                                                                  : space_of_periods(input.image, tiling.periodic);
+      refuse_attributes_on_lattices(attributes_, tiling);
     } else {
       options_.require_to_5d();
     }

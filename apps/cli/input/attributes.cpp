@@ -145,6 +145,18 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions rea
             fmt::format("--attribute {}: the contour already has an attribute '{}'; expected each once", text, name));
     if (curved.by_index && !sizes_.empty() && sizes_of(input.image) != sizes_)
       throw_unrelated(from.file, input.image, sizes_, "expected the same sizes with --index-grid");
+    if (curved.on_lattice) {
+      Attribute& attribute = contour.vertex_attributes.emplace_back(curved.on_lattice(input, from.file));
+      attribute.name = name;
+      attribute.unit = input.info.value_unit;
+      continue;
+    }
+    if (input.info.lattice)
+      throw Error(
+          ErrorCode::UnsupportedData,
+          fmt::format("--attribute {}: an image on the lattice {}, and the contour is not; expected an image on "
+                      "a cubic grid",
+                      from.file, name_of(*input.info.lattice)));
     const bool is_curved = !curved.by_index && !input.info.curved.empty();
     if (is_curved) require_same_grid(from.file, input.info.curved, curved.axes);
     const auto sampling = [&](double fraction) { return progress(0.7 + 0.3 * fraction); };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,8 @@ struct CurvedContour {
   const Contour<N, Real>* in_indices = nullptr;  ///< the same vertices on index_grid
   bool by_index = false;                         ///< curved grids have their indices as coordinates (--index-grid)
   bool of_mesh = false;                          ///< of a mesh of cells: files that are meshes are left out
+  /// For a contour on a lattice, and an image of its dimension: the attribute without name and unit.
+  std::function<Attribute(const ReadImageResult& image, const std::string& file)> on_lattice = {};
 };
 
 class AttributeOptions {

@@ -63,6 +63,7 @@ ReadImageResult Command::read(const Progress& progress, CurvedGrids curved) {
   ReadSeriesResult result = images_.read(worked_on_, progress);
   take_order(result.files);
   settle_curved(result.info, curved);
+  settle_lattice(result.info);
   return {std::move(result.image), std::move(result.info)};
 }
 
@@ -76,6 +77,7 @@ std::variant<ReadImageResult, ReadImage5dResult> Command::read_to_5d(const Progr
   }
   auto& read = std::get<ReadSeriesResult>(any);
   settle_curved(read.info, curved);
+  settle_lattice(read.info);
   return ReadImageResult{std::move(read.image), std::move(read.info)};
 }
 
@@ -83,6 +85,7 @@ OpenLayersResult Command::open() {
   OpenSeriesResult result = images_.open(worked_on_);
   take_order(result.files);
   settle_curved(result.info, CurvedGrids::refused);
+  settle_lattice(result.info);
   return {std::move(result.layers), std::move(result.info)};
 }
 
@@ -100,6 +103,14 @@ void Command::settle_curved(ImageInfo& info, CurvedGrids curved) const {
       fmt::format("{} has a curved grid ({} in arrays of several dimensions), which this command or option does "
                   "not know; expected --index-grid, for indices as coordinates",
                   worked_on_.front(), fmt::join(names, ", ")));
+}
+
+void Command::settle_lattice(const ImageInfo& info) const {
+  if (!info.lattice || knows_lattices()) return;
+  throw Error(ErrorCode::UnsupportedData,
+              fmt::format("{} is on the lattice {}, which this command does not know: it takes samples as neighbours "
+                          "that are those of a cubic grid; expected an image on a cubic grid",
+                          worked_on_.front(), name_of(*info.lattice)));
 }
 
 void Command::take_order(const std::vector<std::filesystem::path>& files) {

@@ -114,6 +114,10 @@ class Command {
  private:
   void take_order(const std::vector<std::filesystem::path>& files);
   void settle_curved(ImageInfo& info, CurvedGrids curved) const;
+  /// Throws UnsupportedData for an image on a lattice, unless the command knows lattices.
+  void settle_lattice(const ImageInfo& info) const;
+  /// Whether the command takes the lattice of an image into account, or refuses it itself.
+  [[nodiscard]] virtual bool knows_lattices() const { return false; }
 
   CLI::App* app_;
   CLI::Option* json_option_;

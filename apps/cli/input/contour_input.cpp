@@ -15,6 +15,7 @@
 
 #include "base/empty_result.hpp"
 #include "base/numbers.hpp"
+#include "input/lattice_attributes.hpp"
 #include "input/mesh_input.hpp"
 #include "input/point_arrays.hpp"
 #include "input/repeated_image.hpp"
@@ -65,11 +66,14 @@ std::string take_grid(ReadImageResult& input, const std::string& file, const Ext
   options.refuse_cells_with_tiling(input.info.samples_are_cells, file);
   if (options.samples_are_as_in_file()) tiling.of_cells = input.info.samples_are_cells;
   if (tiling.of_cells) tiling.cell_faces = input.info.cell_faces;
+  options.take_lattice(input.info, file, tiling);
   if (input.info.curved.empty()) return "";
-  options.refuse_tiling("the curved grid of " + file);
+  options.refuse_lattice(input.info, file, "the curved grid of " + file);
+  options.refuse_other_tiling("the curved grid of " + file);
   tiling.curved = std::move(input.info.curved);
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
-    const GridFolds<N> folds = find_folds<N>(owned.grid, tiling.curved);
+    const GridFolds<N> folds =
+        find_folds<N>(owned.grid, tiling.curved, {}, seams_of(owned.grid, tiling.curved, tiling.periodic));
     folded_cells = folds.cells;
     if (folds.cells == 0) return "";
     return fmt::format(
@@ -340,6 +344,8 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue, allows_empty());
   result.is_curved = !tiling.curved.empty();
+  result.lattice = tiling.lattice;
+  if (attributes_of_meshes_ != nullptr) refuse_attributes_on_lattices(*attributes_of_meshes_, tiling);
   result.last_axis = space_of(input.image, tiling.curved).axes.back();
   result.ends = ends_of_last_axis(input.image);
   for (const CurvedAxis& one : tiling.curved)

@@ -75,9 +75,10 @@ struct ContourInput {
   /// World coordinates of the first and the last sample on the last axis, or the first and the last time of a mesh;
   /// none for a saved contour, and if an image's world map mixes the axis with others.
   std::pair<std::optional<double>, std::optional<double>> ends;
-  bool single_precision = false;  ///< all coordinates have single precision, from --precision float
-  bool is_curved = false;         ///< of an image on a curved grid
-  StageSeconds seconds;           ///< time of reading and contouring
+  bool single_precision = false;   ///< all coordinates have single precision, from --precision float
+  bool is_curved = false;          ///< of an image on a curved grid
+  std::optional<Lattice> lattice;  ///< of the image's samples
+  StageSeconds seconds;            ///< time of reading and contouring
 
   /// 2 to 5: the dimension of the space that the contour lies in.
   [[nodiscard]] int space_dim() const { return static_cast<int>(contour.index()) + 2; }
@@ -126,6 +127,8 @@ class ContourInputCommand : public Command {
   ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
                       Files files = Files::image);
 
+  /// `read_contour` takes lattices into account.
+  [[nodiscard]] bool knows_lattices() const override { return true; }
   /// Value of --threads: 0 for all of the machine.
   [[nodiscard]] unsigned threads() const { return options_.threads(); }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -80,8 +81,9 @@ void ExtractionOptions::add_tiling_to(CLI::App& app) {
                          ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "
-                                    "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D)")
-                         ->check(CLI::IsMember({"triangular", "fcc", "bcc", "d4", "fcc_in_time"})));
+                                    "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D); cubic: on "
+                                    "none; default: as the file says")
+                         ->check(CLI::IsMember({"cubic", "triangular", "fcc", "bcc", "d4", "fcc_in_time"})));
   options_.push_back(app.add_option("--division", division_,
                                     "divide cells into simplices: kuhn or symmetric, in 2D and 3D also alternating, or "
                                     "hybrid (ambiguous cells only)")
@@ -100,15 +102,35 @@ void ExtractionOptions::add_samples_are_to(CLI::App& app) {
 }
 
 Tiling ExtractionOptions::tiling() const {
-  if (samples_ == "cells") refuse_tiling_before_cells("--samples-are " + samples_);
-  if (!division_.empty()) refuse_tiling_before_division("--division " + division_);
-  if (!lattice_.empty()) refuse_periodic_with("--lattice " + lattice_);
+  if (samples_ == "cells") {
+    const std::string cells = "--samples-are " + samples_;
+    refuse_periodic_with(cells);
+    refuse_lattice_with(cells);
+    refuse_division_with(cells);
+  }
+  if (!division_.empty()) {
+    refuse_periodic_with("--division " + division_);
+    refuse_lattice_with("--division " + division_);
+  }
   Tiling tiling{periodic_, std::nullopt, std::nullopt, {}, samples_ == "cells"};
   for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid})
     if (name_of(division) == division_) tiling.division = division;
-  for (const Lattice lattice : {Lattice::triangular, Lattice::fcc, Lattice::bcc, Lattice::d4, Lattice::fcc_in_time})
-    if (name_of(lattice) == lattice_) tiling.lattice = lattice;
+  tiling.lattice = parse_lattice(lattice_);
   return tiling;
+}
+
+void ExtractionOptions::take_lattice(const ImageInfo& info, const std::string& file, Tiling& tiling) const {
+  if (tiling.division) refuse_lattice(info, file, "--division " + division_);
+  if (tiling.of_cells) refuse_lattice(info, file, "--samples-are " + samples_);
+  if (lattice_.empty()) tiling.lattice = info.lattice;
+}
+
+void ExtractionOptions::refuse_lattice(const ImageInfo& info, const std::string& file, const std::string& with) const {
+  if (!lattice_.empty() || !info.lattice) return;
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("{}: {} is on the lattice {}; expected it without this, or --lattice cubic to leave the "
+                          "lattice out of account",
+                          with, file, name_of(*info.lattice)));
 }
 
 void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
@@ -118,7 +140,13 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
 }
 
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
-  refuse_tiling_before_cells(with);
+  refuse_periodic_with(with);
+  refuse_other_tiling(with);
+}
+
+void ExtractionOptions::refuse_other_tiling(const std::string& with) const {
+  refuse_lattice_with(with);
+  refuse_division_with(with);
   if (samples_ == "cells")
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--samples-are {} with {}; expected one of the two", samples_, with));
@@ -134,22 +162,20 @@ void ExtractionOptions::refuse_cells(bool samples_are_cells, const std::string& 
 
 void ExtractionOptions::refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const {
   if (!division_.empty()) refuse_cells(samples_are_cells, file, "--division " + division_);
-  if (!lattice_.empty()) refuse_cells(samples_are_cells, file, "--lattice " + lattice_);
+  if (has_lattice()) refuse_cells(samples_are_cells, file, "--lattice " + lattice_);
   if (!periodic_.empty()) refuse_cells(samples_are_cells, file, "--periodic");
 }
 
-void ExtractionOptions::refuse_tiling_before_cells(const std::string& with) const {
-  refuse_tiling_before_division(with);
+void ExtractionOptions::refuse_division_with(const std::string& other) const {
   if (!division_.empty())
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--division {} with {}; expected one of the two", division_, with));
+                fmt::format("--division {} with {}; expected one of the two", division_, other));
 }
 
-void ExtractionOptions::refuse_tiling_before_division(const std::string& with) const {
-  refuse_periodic_with(with);
-  if (!lattice_.empty())
+void ExtractionOptions::refuse_lattice_with(const std::string& other) const {
+  if (has_lattice())
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--lattice {} with {}; expected one of the two", lattice_, with));
+                fmt::format("--lattice {} with {}; expected one of the two", lattice_, other));
 }
 
 std::vector<std::string> ExtractionOptions::given() const {
@@ -245,38 +271,109 @@ template void ExtractionOptions::add_shape_normals(Contour<3, double>&) const;
 template void ExtractionOptions::add_shape_normals(Contour<4, float>&) const;
 template void ExtractionOptions::add_shape_normals(Contour<4, double>&) const;
 
+namespace {
+
+/// An axis of --periodic, and its period, if one is given.
+struct NamedPeriod {
+  int axis;
+  std::optional<double> period;
+};
+
+/// The sum of the last coordinates along an axis less the first ones.
 template <int N>
-AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
-  AxisPeriods<N> periods{};
-  const AxisPeriods<N> longitudes = longitude_periods(grid);
-  const auto period_of = [&](int a) {
-    const auto axis = static_cast<std::size_t>(a);
-    return longitudes[axis] != 0.0 ? longitudes[axis] : sample_periods(grid, std::span(&a, 1))[axis];
-  };
+double growth_of(const Grid<N>& grid, const CurvedAxis& one) {
+  std::size_t row = 1;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(one.axis); ++a)
+    row *= (one.along >> a & 1u) != 0 ? grid.axes[a].size() : 1;
+  const std::size_t block = row * grid.axes[static_cast<std::size_t>(one.axis)].size();
+  double sum = 0.0;
+  for (std::size_t first = 0; first + block <= one.values.size(); first += block)
+    for (std::size_t i = first; i < first + row; ++i) {
+      const double step = one.values[i + block - row] - one.values[i];
+      if (std::isfinite(step)) sum += step;
+    }
+  return sum;
+}
+
+/// The axes that --periodic names. `labels`: the names of each axis.
+std::vector<NamedPeriod> named_periods(const std::vector<std::vector<std::string>>& labels,
+                                       const std::vector<std::string>& names) {
+  std::vector<NamedPeriod> found;
   for (const std::string& name : names) {
     const std::size_t equal = name.find('=');
+    const auto is_named = [&](const std::string& label) { return equal_ignoring_case(label, name.substr(0, equal)); };
     bool is_known = name == "all";
-    for (int a = 0; a < N; ++a) {
-      const auto axis = static_cast<std::size_t>(a);
-      if (name != "all" && !equal_ignoring_case(axis_label(grid.axes[axis].name, axis), name.substr(0, equal)))
-        continue;
+    for (std::size_t a = 0; a < labels.size(); ++a) {
+      const auto axis = static_cast<int>(a);
+      if (name != "all" && std::none_of(labels[a].begin(), labels[a].end(), is_named)) continue;
       is_known = true;
-      if (periods[axis] != 0.0)
+      if (std::any_of(found.begin(), found.end(), [&](const NamedPeriod& other) { return other.axis == axis; }))
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("--periodic names the axis {} twice; expected it once", name));
-      periods[axis] = equal == std::string::npos ? period_of(a) : parse_finite("--periodic", name.substr(equal + 1));
-      if (periods[axis] == 0.0)
+      NamedPeriod& one = found.emplace_back(NamedPeriod{axis, std::nullopt});
+      if (equal != std::string::npos) one.period = parse_finite("--periodic", name.substr(equal + 1));
+      if (one.period == 0.0)
         throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic {}; expected a positive period", name));
     }
     if (is_known) continue;
-    std::vector<std::string> labels;
-    for (std::size_t a = 0; a < N; ++a) labels.push_back(axis_label(grid.axes[a].name, a));
+    std::vector<std::string> all;
+    for (const auto& of_axis : labels) all.push_back(fmt::format("{}", fmt::join(of_axis, " or ")));
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--periodic {} names no axis; expected one of {}, or all", name, fmt::join(labels, ", ")));
+                fmt::format("--periodic {} names no axis; expected one of {}, or all", name, fmt::join(all, ", ")));
+  }
+  return found;
+}
+
+}  // namespace
+
+template <int N>
+AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
+  std::vector<std::vector<std::string>> labels;
+  for (std::size_t a = 0; a < N; ++a) labels.push_back({axis_label(grid.axes[a].name, a)});
+  AxisPeriods<N> periods{};
+  const AxisPeriods<N> longitudes = longitude_periods(grid);
+  for (const NamedPeriod& one : named_periods(labels, names)) {
+    const auto axis = static_cast<std::size_t>(one.axis);
+    periods[axis] = one.period                ? *one.period
+                    : longitudes[axis] != 0.0 ? longitudes[axis]
+                                              : sample_periods(grid, std::span(&one.axis, 1))[axis];
   }
   return periods;
 }
 
+template <int N>
+std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
+                                    const std::vector<std::string>& names) {
+  std::vector<std::vector<std::string>> labels;
+  for (std::size_t a = 0; a < N; ++a) labels.push_back({axis_label(grid.axes[a].name, a)});
+  for (const CurvedAxis& one : curved)
+    if (auto& of_axis = labels[static_cast<std::size_t>(one.axis)]; !one.name.empty() && one.name != of_axis.front())
+      of_axis.push_back(one.name);
+  std::vector<CurvedSeam<N>> seams;
+  for (const NamedPeriod& named : named_periods(labels, names)) {
+    CurvedSeam<N> seam = find_seams(grid, curved, std::span(&named.axis, 1)).front();
+    if (named.period) {
+      if (!(*named.period > 0.0))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--periodic with the period {}; expected a positive one", *named.period));
+      // in the direction in which the axis's coordinate grows
+      const auto a = static_cast<std::size_t>(named.axis);
+      double along = grid.axes[a].is_descending() ? -1.0 : 1.0;
+      for (const CurvedAxis& one : curved)
+        if (one.axis == named.axis) along = growth_of(grid, one);
+      seam.vector[a] = along < 0.0 ? -*named.period : *named.period;
+    }
+    seams.push_back(seam);
+  }
+  return seams;
+}
+
+template std::vector<CurvedSeam<2>> seams_of(const Grid<2>&, const std::vector<CurvedAxis>&,
+                                             const std::vector<std::string>&);
+template std::vector<CurvedSeam<3>> seams_of(const Grid<3>&, const std::vector<CurvedAxis>&,
+                                             const std::vector<std::string>&);
+template std::vector<CurvedSeam<4>> seams_of(const Grid<4>&, const std::vector<CurvedAxis>&,
+                                             const std::vector<std::string>&);
 template AxisPeriods<2> periods_of(const Grid<2>&, const std::vector<std::string>&);
 template AxisPeriods<3> periods_of(const Grid<3>&, const std::vector<std::string>&);
 template AxisPeriods<4> periods_of(const Grid<4>&, const std::vector<std::string>&);

@@ -33,7 +33,7 @@ namespace tegl::cli {
 /// cells.
 struct Tiling {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
-  std::optional<Lattice> lattice = {};     ///< of --lattice
+  std::optional<Lattice> lattice = {};     ///< of --lattice, or of the file
   std::optional<Division> division = {};   ///< of --division
   std::vector<CurvedAxis> curved = {};     ///< of the image's curved grid
   bool of_cells = false;                   ///< of --samples-are
@@ -60,12 +60,23 @@ class ExtractionOptions {
   /// Throws InvalidArgument with one of them. `with`: another option or a command. With --samples-are file it depends
   /// on the file: see refuse_cells.
   void refuse_tiling(const std::string& with) const;
+  /// As refuse_tiling, but allows --periodic.
+  void refuse_other_tiling(const std::string& with) const;
+  /// Takes the lattice that the file records to the tiling, unless --lattice is given. Throws InvalidArgument for
+  /// options that choose other cells.
+  void take_lattice(const ImageInfo& info, const std::string& file, Tiling& tiling) const;
+  /// Throws InvalidArgument if the file records a lattice and --lattice is not given. `with`: as refuse_tiling.
+  void refuse_lattice(const ImageInfo& info, const std::string& file, const std::string& with) const;
   /// Throws InvalidArgument if --samples-are file is given and the samples of FILE are cells. `with`: as refuse_tiling.
   void refuse_cells(bool samples_are_cells, const std::string& file, const std::string& with) const;
   /// As refuse_cells, for the options of other tilings.
   void refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const;
   /// Throws InvalidArgument with options that 5D contours do not have.
   void require_to_5d() const;
+  /// Whether the samples are on a lattice, of --lattice or of the file.
+  [[nodiscard]] bool has_lattice(const ImageInfo& info) const {
+    return lattice_.empty() ? info.lattice.has_value() : has_lattice();
+  }
   /// Whether the file decides if its samples are cells.
   [[nodiscard]] bool samples_are_as_in_file() const { return samples_ == "file"; }
   /// Whether samples are points, whatever the file.
@@ -99,11 +110,10 @@ class ExtractionOptions {
   void add_shape_normals(Contour<N, Real>& contour) const;
 
  private:
+  [[nodiscard]] bool has_lattice() const { return !lattice_.empty() && lattice_ != "cubic"; }
   void refuse_periodic_with(const std::string& other) const;
-  /// The same for --periodic, --lattice and --division.
-  void refuse_tiling_before_cells(const std::string& with) const;
-  /// The same for --periodic and --lattice.
-  void refuse_tiling_before_division(const std::string& with) const;
+  void refuse_lattice_with(const std::string& other) const;
+  void refuse_division_with(const std::string& other) const;
 
   std::vector<CLI::Option*> options_;
   std::vector<std::string> isos_;
@@ -153,6 +163,10 @@ std::string remark_without_contour(const Image& image, double isovalue) {
 /// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD. Throws InvalidArgument for other names.
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names);
+/// The seams that --periodic names on a curved grid: axes by their names or those of their coordinates, as periods_of.
+template <int N>
+std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
+                                    const std::vector<std::string>& names);
 
 /// A wrapped contour, unrolled if `unroll` is set or if only .vtkhdf could hold its periods. Vertices then have the
 /// attribute "original". Other contours are returned unchanged.
@@ -194,9 +208,10 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
                        const Use& use, const Tiling& tiling = {}) {
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> Result {
     if (!tiling.curved.empty()) {
+      const std::vector<CurvedSeam<N>> seams = seams_of(owned.grid, tiling.curved, tiling.periodic);
       if (single_precision)
-        return use(extract_curved_with_stats<float>(owned.view(), tiling.curved, isovalue, options));
-      return use(extract_curved_with_stats<double>(owned.view(), tiling.curved, isovalue, options));
+        return use(extract_curved_with_stats<float>(owned.view(), tiling.curved, isovalue, options, seams));
+      return use(extract_curved_with_stats<double>(owned.view(), tiling.curved, isovalue, options, seams));
     }
     if (tiling.of_cells) {
       if (single_precision)
@@ -204,9 +219,10 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
       return use(extract_cells_with_stats<double>(owned.view(), isovalue, {}, options, tiling.cell_faces));
     }
     if (tiling.lattice) {
+      const AxisPeriods<N> periods = periods_of(owned.grid, tiling.periodic);
       if (single_precision)
-        return use(extract_lattice_with_stats<float>(owned.view(), *tiling.lattice, isovalue, options));
-      return use(extract_lattice_with_stats<double>(owned.view(), *tiling.lattice, isovalue, options));
+        return use(extract_lattice_with_stats<float>(owned.view(), *tiling.lattice, isovalue, options, periods));
+      return use(extract_lattice_with_stats<double>(owned.view(), *tiling.lattice, isovalue, options, periods));
     }
     if (tiling.division) {
       const Complex<N> complex = divided_complex(owned.view(), *tiling.division, isovalue);
