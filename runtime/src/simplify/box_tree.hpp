@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "mesh/simplex_shapes.hpp"
-#include "simplify/curve_order.hpp"
 #include "simplify/simplex_corners.hpp"
 #include "tegl/contour.hpp"
 
@@ -54,22 +53,17 @@ struct Box {
   }
 };
 
-/// Bounding volume hierarchy of simplices with N corners each. What `SimplexCorners` refers to must outlive it.
+/// Bounding volume hierarchy of simplices with N corners each, in an order in which neighbours follow each other. What
+/// `SimplexCorners` refers to must outlive it.
 template <int N>
 class BoxTree {
  public:
   explicit BoxTree(const SimplexCorners<N>& simplices) : simplices_(simplices) {
-    boxes_.resize(simplices.size());
+    boxes_.assign(simplices.size(), Box<N>{});
     for (std::size_t s = 0; s < simplices.size(); ++s)
       for (const PointN<N>& corner : simplices_[s]) boxes_[s].add(corner);
-    order_ =
-        order_along_curve<N>(boxes_.size(), [&](std::size_t s) { return between(boxes_[s].low, boxes_[s].high, 0.5); });
-    std::vector<Box<N>> in_order;  // in the order of the leaves
-    in_order.reserve(boxes_.size());
-    for (const Index s : order_) in_order.push_back(boxes_[s]);
-    boxes_.swap(in_order);
     nodes_.reserve(boxes_.size());
-    if (!order_.empty()) build(0, static_cast<Index>(order_.size()));
+    if (!boxes_.empty()) build(0, static_cast<Index>(boxes_.size()));
   }
 
   /// Calls visit(simplex) for every simplex whose box is within `reach` of the box along every axis.
@@ -104,7 +98,7 @@ class BoxTree {
   static constexpr Index kLeafSize = 4;
   struct Node {
     Box<N> box;
-    Index first = 0, end = 0;  ///< simplices of a leaf in order_; 0, 0 for inner nodes
+    Index first = 0, end = 0;  ///< simplices of a leaf; 0, 0 for inner nodes
     Index right = 0;           ///< right child; the left child is the next node
   };
 
@@ -138,7 +132,7 @@ class BoxTree {
     const Node& node = nodes_[number];
     if (!node.box.meets(box, reach)) return;
     for (Index i = node.first; i < node.end; ++i)
-      if (boxes_[i].meets(box, reach)) visit(order_[i]);
+      if (boxes_[i].meets(box, reach)) visit(i);
     if (node.end != 0) return;
     visit_node(number + 1, box, reach, visit);
     visit_node(node.right, box, reach, visit);
@@ -150,7 +144,7 @@ class BoxTree {
     };
     const Node& node = nodes_[number];
     for (Index i = node.first; i < node.end; ++i)
-      if (is_nearer(boxes_[i].square_distance(p))) try_simplex(order_[i], p, best);
+      if (is_nearer(boxes_[i].square_distance(p))) try_simplex(i, p, best);
     if (node.end != 0) return;
     std::array<std::pair<double, Index>, 2> next = {{{nodes_[number + 1].box.square_distance(p), number + 1},
                                                      {nodes_[node.right].box.square_distance(p), node.right}}};
@@ -178,9 +172,8 @@ class BoxTree {
   }
 
   SimplexCorners<N> simplices_;
-  std::vector<Index> order_;
-  std::vector<Box<N>> boxes_;  ///< in the order of order_, after the build
-  std::vector<Node> nodes_;
+  Buffer<Box<N>> boxes_;
+  Buffer<Node> nodes_;
 };
 
 }  // namespace tegl::detail

@@ -60,10 +60,10 @@ std::vector<Index> order_along_curve(std::size_t count, const PointOf& point) {
 /// Vertices along the curve, and simplices by their first vertex on it.
 template <int N>
 struct CurveOrder {
-  std::vector<Index> vertices;             ///< the original numbers, along the curve
-  std::vector<Index> places;               ///< the place of each original vertex on the curve
-  std::vector<Index> simplices;            ///< the original numbers, in the new order
-  std::vector<std::array<Index, N>> rows;  ///< the simplices in that order, with places as vertices
+  std::vector<Index> vertices;        ///< the original numbers, along the curve
+  std::vector<Index> places;          ///< the place of each original vertex on the curve
+  std::vector<Index> simplices;       ///< the original numbers, in the new order
+  Buffer<std::array<Index, N>> rows;  ///< the simplices in that order, with places as vertices
 
   template <class PointOf>
   CurveOrder(std::span<const std::array<Index, N>> all, std::size_t vertex_count, const PointOf& point)

@@ -159,7 +159,7 @@ class BoundaryFaces {
 
   /// Identifies vertices of open faces at equal places. Returns false if there are none.
   bool unite(const ScaledSimplices<N>& contour) {
-    const std::vector<PointN<N>>& points = contour.points;
+    const Buffer<PointN<N>>& points = contour.points;
     std::vector<Index> open;
     for (const Ridge& ridge : ridges_) open.insert(open.end(), ridge.begin(), ridge.end());
     const auto before = [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; };
@@ -192,6 +192,7 @@ struct DeviationInput {
   const ScaledSimplices<N>& to;
   const BoxTree<N>& tree;
   const BoundaryFaces<N>& open;
+  const SimplexGradients<N>& gradients;  ///< of `to`
   const FacetNeighbours<N>& neighbours;  ///< of `to`
   const std::vector<NearPoint>& near;    ///< by vertex of `from`: a point of `to`, the nearest one if it matters
   double enough;                         ///< bounds below it are not refined
@@ -207,7 +208,7 @@ class SimplexDeviation {
   explicit SimplexDeviation(const DeviationInput<N>& measure)
       : m_(measure),
         walk_(measure.to.corners, measure.neighbours),
-        few_(measure.to.corners, measure.neighbours, &measure.tree) {}
+        few_(measure.gradients, measure.neighbours, &measure.tree) {}
 
   /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
@@ -623,7 +624,8 @@ void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, d
   const BoundaryFaces<N> open(to, neighbours, threads, part_of(progress, 0.05, 0.1));
   const BoxTree<N> tree(to.corners);
   // distances of vertices: exactly where they are needed
-  const SimplexWalk<N> walk(to.corners, neighbours);
+  const SimplexGradients<N> gradients(to.corners, threads, {});
+  const SimplexWalk<N> walk(gradients, neighbours);
   VertexDistances<N> vertices(from.simplices, from.points, tree, walk, threads);
   vertices.approach(part_of(progress, 0.1, 0.15));
   result.least = vertices.find_largest(part_of(progress, 0.15, 0.18));
@@ -631,7 +633,7 @@ void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, d
       largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.18, 0.22));
   enough = enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least;
   vertices.search_above(enough / kLooseness, part_of(progress, 0.22, 0.25));
-  const DeviationInput<N> measure{from, to, tree, open, neighbours, vertices.near(), enough, result.of_to};
+  const DeviationInput<N> measure{from, to, tree, open, gradients, neighbours, vertices.near(), enough, result.of_to};
   for_each_block(
       from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9),
       [&] { return SimplexDeviation<N>(measure); },

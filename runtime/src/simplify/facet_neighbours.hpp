@@ -13,6 +13,7 @@
 #include "base/workers.hpp"
 #include "mesh/faces_of_stars.hpp"
 #include "mesh/vertex_stars.hpp"
+#include "simplify/equal_keys.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/work.hpp"
 
@@ -32,8 +33,8 @@ class FacetNeighbours {
     const std::span<const Index> rows(simplices.empty() ? nullptr : simplices[0].data(), simplices.size() * N);
     const Stars stars = make_stars<N>(rows, vertex_count, threads, part_of(progress, 0.0, 0.3));
     for_each_block(
-        vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0), [] { return std::vector<Side>(); },
-        [&](std::size_t, std::size_t from, std::size_t to, std::vector<Side>& sides) {
+        vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0), [] { return Sides(); },
+        [&](std::size_t, std::size_t from, std::size_t to, Sides& sides) {
           for (std::size_t v = from; v < to; ++v) join_at(static_cast<Index>(v), stars.of(v), simplices, sides);
         });
   }
@@ -65,19 +66,22 @@ class FacetNeighbours {
     bool is_even;         ///< whether the simplex induces the ascending order of the vertices
   };
 
+  struct Sides {
+    std::vector<Side> all;
+    EqualKeys equal;
+  };
+
   /// Joins the simplices at the facets whose smallest vertex is v. Each facet is joined at one vertex, so no two
   /// threads write the same entry.
-  void join_at(Index v, std::span<const Index> star, std::span<const std::array<Index, N>> simplices,
-               std::vector<Side>& sides) {
-    sides.clear();
+  void join_at(Index v, std::span<const Index> star, std::span<const std::array<Index, N>> simplices, Sides& sides) {
+    sides.all.clear();
     for (const Index s : star)
-      for (int corner = 0; corner < N; ++corner) add_side(v, simplices[s], s, corner, sides);
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.others < b.others; });
-    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-      while (j < sides.size() && sides[j].others == sides[i].others) ++j;
-      if (j - i != 2 || sides[i].is_even == sides[i + 1].is_even) continue;
-      across_[sides[i].simplex][sides[i].corner] = sides[i + 1].simplex;
-      across_[sides[i + 1].simplex][sides[i + 1].corner] = sides[i].simplex;
+      for (int corner = 0; corner < N; ++corner) add_side(v, simplices[s], s, corner, sides.all);
+    for (const auto& group : sides.equal.groups(sides.all.size(), [&](auto i) { return sides.all[i].others; })) {
+      const Side &a = sides.all[group.first], &b = sides.all[group.second];
+      if (group.count != 2 || a.is_even == b.is_even) continue;
+      across_[a.simplex][a.corner] = b.simplex;
+      across_[b.simplex][b.corner] = a.simplex;
     }
   }
 
@@ -92,7 +96,7 @@ class FacetNeighbours {
     sides.push_back({others, s, static_cast<std::uint8_t>(corner), is_even});
   }
 
-  std::vector<std::array<Index, N>> across_;
+  Buffer<std::array<Index, N>> across_;
 };
 
 }  // namespace tegl::detail

@@ -21,7 +21,7 @@ template <int N>
 struct ScaledSimplices {
   CurveOrder<N> order;
   std::span<const std::array<Index, N>> simplices;
-  std::vector<PointN<N>> points;
+  Buffer<PointN<N>> points;
   SimplexCorners<N> corners;
 
   template <class Real>

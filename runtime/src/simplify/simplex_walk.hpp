@@ -23,94 +23,11 @@
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/box_tree.hpp"
 #include "simplify/facet_neighbours.hpp"
-#include "simplify/simplex_corners.hpp"
+#include "simplify/placed_simplex.hpp"
+#include "simplify/simplex_gradients.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
-
-/// Upper bounds of the distances of points from one simplex. The simplex must outlive it.
-template <int N>
-class PlacedSimplex {
- public:
-  static constexpr int D = N - 1;
-
-  explicit PlacedSimplex(const CornersN<N>& corners) : corners_(corners) {
-    // the inverse of the matrix of scalar products of the edges, by its cofactors
-    for (int i = 0; i < D; ++i) edges_[i] = minus(corners[i + 1], corners[0]);
-    std::array<std::array<double, D>, D> product;
-    double cube = 1.0;
-    for (int i = 0; i < D; ++i) {
-      for (int j = 0; j <= i; ++j) product[i][j] = product[j][i] = dot(edges_[i], edges_[j]);
-      cube *= product[i][i];
-    }
-    double content = 0.0;
-    if constexpr (D == 1) {
-      inverse_[0][0] = 1.0;
-      content = product[0][0];
-    } else if constexpr (D == 2) {
-      inverse_ = {{{product[1][1], -product[1][0]}, {-product[1][0], product[0][0]}}};
-      content = product[0][0] * product[1][1] - product[1][0] * product[1][0];
-    } else {
-      for (int i = 0; i < D; ++i)
-        for (int j = 0; j <= i; ++j) {
-          const int a = (i + 1) % D, b = (i + 2) % D, c = (j + 1) % D, d = (j + 2) % D;
-          inverse_[i][j] = inverse_[j][i] = product[a][c] * product[b][d] - product[a][d] * product[b][c];
-        }
-      for (int j = 0; j < D; ++j) content += product[0][j] * inverse_[0][j];
-    }
-    flat_ = !(content > kFlat * cube);
-    const double factor = 1.0 / content;
-    for (auto& row : inverse_)
-      for (double& x : row) x *= factor;
-  }
-
-  struct Place {
-    double distance;                  ///< of a point of the simplex; the nearest one if `inside`
-    bool inside;                      ///< whether the projection onto the hyperplane is inside
-    std::array<double, N> weights{};  ///< barycentric coordinates of the projection
-  };
-  /// The point of the simplex below p; else one near it, with the negative barycentric coordinates of p set to 0. The
-  /// distance is that of a point of the simplex, whatever the rounding errors of the weights.
-  [[nodiscard]] Place place(const PointN<N>& p) const {
-    Place result{};
-    if (flat_) {
-      result.distance = distance_to_simplex<N>(p, corners_, N);
-      result.inside = true;
-      return result;
-    }
-    PointN<N> rest = minus(p, corners_[0]);
-    std::array<double, D> along;
-    for (int i = 0; i < D; ++i) along[i] = dot(rest, edges_[i]);
-    auto& weights = result.weights;
-    weights[0] = 1.0;
-    for (int i = 0; i < D; ++i) {
-      weights[i + 1] = dot(inverse_[i], along);
-      weights[0] -= weights[i + 1];
-    }
-    double positive = 0.0;
-    result.inside = true;
-    for (const double weight : weights) {
-      positive += std::max(0.0, weight);
-      result.inside = result.inside && weight >= 0.0;
-    }
-    const double factor = result.inside ? 1.0 : 1.0 / positive;
-    for (int i = 0; i < D; ++i) {
-      const double share = std::max(0.0, weights[i + 1]) * factor;
-      for (int a = 0; a < N; ++a) rest[a] -= share * edges_[i][a];
-    }
-    result.distance = norm(rest);
-    return result;
-  }
-
- private:
-  /// Square of the relative content of simplices that count as flat. Weights of others have errors of about 1e-8.
-  static constexpr double kFlat = 1e-8;
-
-  const CornersN<N>& corners_;
-  std::array<PointN<N>, D> edges_;  ///< from corner 0
-  std::array<std::array<double, D>, D> inverse_;
-  bool flat_;
-};
 
 /// A point of a contour: its distance from another point, and its simplex.
 struct NearPoint {
@@ -123,31 +40,16 @@ template <int N>
 class SimplexWalk {
  public:
   /// `tree`: searched where a walk of `bound` ends too far away; null: not searched.
-  SimplexWalk(const SimplexCorners<N>& to, const FacetNeighbours<N>& neighbours, const BoxTree<N>* tree = nullptr)
+  SimplexWalk(const SimplexGradients<N>& to, const FacetNeighbours<N>& neighbours, const BoxTree<N>* tree = nullptr)
       : to_(to), neighbours_(neighbours), tree_(tree) {}
 
   /// A point of the contour near p: the nearest one that a walk from the simplex `start` finds. Each step crosses the
   /// facet beyond which p lies farthest.
-  /// `enough`: a distance at which the walk may end.
-  [[nodiscard]] NearPoint approach(const PointN<N>& p, Index start, double enough = 0.0) const {
-    NearPoint best;
-    Index at = start, before = FacetNeighbours<N>::kNone;
-    for (int step = 0; step < kMostSteps; ++step) {
-      const CornersN<N> corners = to_[at];
-      auto place = PlacedSimplex<N>(corners).place(p);
-      if (place.distance < best.distance) best = {place.distance, at};
-      if (place.inside || place.distance <= enough) break;
-      Index next = FacetNeighbours<N>::kNone;
-      for (int tried = 0; tried < N - 1 && (next == FacetNeighbours<N>::kNone || next == before); ++tried) {
-        const auto least = std::min_element(place.weights.begin(), place.weights.end());
-        if (!(*least < 0.0)) break;
-        *least = 0.0;
-        next = neighbours_.across(at, static_cast<int>(least - place.weights.begin()));
-      }
-      if (next == FacetNeighbours<N>::kNone || next == before) break;
-      before = std::exchange(at, next);
-    }
-    return best;
+  [[nodiscard]] NearPoint approach(const PointN<N>& p, Index start) const {
+    return end_of_walk(p, start, [&](Index s, const Weights&) {
+      const CornersN<N> corners = to_.corners(s);
+      return PlacedSimplex<N>(corners).place(p).distance;
+    });
   }
 
   /// A simplex, and points of the contour near its corners. `vertices`: the numbers of the corners in a contour that
@@ -172,7 +74,9 @@ class SimplexWalk {
     for (std::size_t made = 1; !parts_.empty();) {
       Part& next = parts_.back();
       const Balls balls(next.corners);
-      if (const double bound = farthest_of(next) + balls.radius; bound <= limit) {
+      const double farthest = farthest_of(next);
+      if (is_within(balls.square, limit - farthest)) {
+        const double bound = std::min(limit, farthest + std::sqrt(balls.square));
         for (const NearPoint& corner : next.near) take({bound, corner.simplex});
         parts_.pop_back();
         continue;
@@ -182,7 +86,11 @@ class SimplexWalk {
         parts_.pop_back();
         continue;
       }
-      NearPoint middle = approach_middle(next, balls, limit);
+      NearPoint middle = approach_middle(next, balls);
+      // the walk may have missed it: other walks, then a search
+      for (int i = 0; i < N && !(middle.distance <= limit); ++i)
+        if (const NearPoint other = approach_roughly(balls.middle, next.near[i].simplex); other.distance <= limit)
+          middle = other;
       if (!(middle.distance <= limit) && tree_ != nullptr) {
         const auto [distance, simplex] = tree_->nearest(balls.middle, middle.simplex);
         middle = {distance, simplex};
@@ -210,6 +118,47 @@ class SimplexWalk {
   /// Parts with a radius beyond this multiple of the limit are not compared with one simplex.
   static constexpr double kReach = 1.5;
 
+  using Weights = typename SimplexGradients<N>::Weights;
+
+  /// The end of a walk from `start` if p is above or below it, else the nearest simplex on the way.
+  /// `distance_from(simplex, weights of p)`: the distance of a point of the simplex.
+  template <class DistanceFrom>
+  [[nodiscard]] NearPoint end_of_walk(const PointN<N>& p, Index start, const DistanceFrom& distance_from) const {
+    const auto local = to_.local(p);
+    std::array<std::pair<Index, Weights>, kMostSteps> way;
+    std::size_t steps = 0;
+    for (Index at = start, before = kNone; at != kNone && steps < kMostSteps;) {
+      const Weights weights = to_.weights(at, local);
+      if (weights.inside) return {distance_from(at, weights), at};
+      way[steps++] = {at, weights};
+      const Index next = beyond(at, before, weights.of_corners);
+      if (next == before) break;
+      before = std::exchange(at, next);
+    }
+    NearPoint best;
+    for (std::size_t i = 0; i < steps; ++i)
+      if (const double distance = distance_from(way[i].first, way[i].second); distance < best.distance)
+        best = {distance, way[i].first};
+    return best;
+  }
+
+  /// The simplex across the facet beyond which a point of these weights lies farthest, if possible not `before`.
+  [[nodiscard]] Index beyond(Index at, Index before, std::array<float, N> weights) const {
+    Index next = kNone;
+    for (int tried = 0; tried < N - 1 && (next == kNone || next == before); ++tried) {
+      const auto least = std::min_element(weights.begin(), weights.end());
+      if (!(*least < 0.0f)) break;
+      *least = 0.0f;
+      next = neighbours_.across(at, static_cast<int>(least - weights.begin()));
+    }
+    return next;
+  }
+
+  /// As approach, with distances from points that are nearly the nearest ones of their simplices.
+  [[nodiscard]] NearPoint approach_roughly(const PointN<N>& p, Index start) const {
+    return end_of_walk(p, start, [&](Index s, const Weights& weights) { return to_.distance(s, p, weights); });
+  }
+
   static void move_corner(Part& part, int corner, const PointN<N>& to, const NearPoint& near) {
     part.corners[corner] = to;
     part.near[corner] = near;
@@ -231,34 +180,36 @@ class SimplexWalk {
       double largest = 0.0, least = std::numeric_limits<double>::infinity();
       for (int i = 0; i < N; ++i) {
         const PointN<N> way = minus(part[i], middle);
-        const double square = dot(way, way);
-        largest = std::max(largest, square);
-        if (square < least) nearest = i;
-        least = std::min(least, square);
+        const double apart = dot(way, way);
+        largest = std::max(largest, apart);
+        if (apart < least) nearest = i;
+        least = std::min(least, apart);
       }
       const PointN<N> edge = minus(part[first], part[second]);
-      radius_of_middle = std::sqrt(largest);
-      radius = std::sqrt(std::min(largest, dot(edge, edge) * (N - 1) / (2 * N)));
+      square_of_middle = largest;
+      square = std::min(largest, dot(edge, edge) * (N - 1) / (2 * N));
     }
     int first = 0, second = 1;  ///< the ends of the longest edge
     PointN<N> middle;           ///< of the longest edge
     int nearest = 0;            ///< the corner nearest to it
-    double radius_of_middle;    ///< of the ball around that
-    double radius;              ///< at least that of the smallest ball
+    double square_of_middle;    ///< of the radius of the ball around that
+    double square;              ///< of a radius, at least that of the smallest ball
   };
+  /// Whether the root of `square` is at most `room`.
+  static bool is_within(double square, double room) { return room >= 0.0 && square <= room * room; }
 
   /// A point near the middle of the longest edge. The edges of a contour are in several simplices: their middles are
   /// kept, and found in a way that depends on the edge only. So results do not depend on what is kept.
-  [[nodiscard]] NearPoint approach_middle(const Part& part, const Balls& balls, double limit) {
+  [[nodiscard]] NearPoint approach_middle(const Part& part, const Balls& balls) {
     int first = balls.first, second = balls.second;
     if (part.vertices[first] == kNone || part.vertices[second] == kNone)
-      return approach(balls.middle, part.near[balls.nearest].simplex, limit - balls.radius_of_middle);
+      return approach_roughly(balls.middle, part.near[balls.nearest].simplex);
     if (part.vertices[second] < part.vertices[first]) std::swap(first, second);
     const std::uint64_t key = std::uint64_t{part.vertices[first]} << 32 | part.vertices[second];
     if (middles_.empty()) middles_.resize(kKept);
     Middle& kept = middles_[key * kHash >> (64 - kKeptBits)];
     if (kept.edge != key)
-      kept = {key, approach(between(part.corners[first], part.corners[second], 0.5), part.near[first].simplex)};
+      kept = {key, approach_roughly(between(part.corners[first], part.corners[second], 0.5), part.near[first].simplex)};
     return kept.near;
   }
 
@@ -281,20 +232,22 @@ class SimplexWalk {
   /// The simplex near the middle of the longest edge, if the part is within `limit` of it, or else a distance above
   /// `limit`.
   [[nodiscard]] NearPoint match_of(const Part& part, const Balls& balls, const NearPoint& middle, double limit) const {
-    const double bound = middle.distance + balls.radius_of_middle;
-    if (bound <= limit) return {bound, middle.simplex};
-    if (balls.radius_of_middle > kReach * limit) return {kFailed, middle.simplex};
+    if (is_within(balls.square_of_middle, limit - middle.distance))
+      return {std::min(limit, middle.distance + std::sqrt(balls.square_of_middle)), middle.simplex};
+    if (!is_within(balls.square_of_middle, kReach * limit)) return {kFailed, middle.simplex};
     return {largest_distance(part, middle.simplex, limit), middle.simplex};
   }
 
   /// The largest distance of a corner from the simplex, or one above `limit`.
   [[nodiscard]] double largest_distance(const Part& part, Index simplex, double limit) const {
-    const CornersN<N> corners = to_[simplex];
-    const PlacedSimplex<N> placed(corners);
     double largest = 0.0;
-    for (int i = 0; i < N && largest <= limit; ++i)
-      largest = std::max(
-          largest, part.near[i].simplex == simplex ? part.near[i].distance : placed.place(part.corners[i]).distance);
+    for (int i = 0; i < N && largest <= limit; ++i) {
+      const PointN<N>& p = part.corners[i];
+      const double distance = part.near[i].simplex == simplex
+                                  ? part.near[i].distance
+                                  : to_.distance(simplex, p, to_.weights(simplex, to_.local(p)));
+      largest = std::max(largest, distance);
+    }
     return largest;
   }
 
@@ -303,11 +256,11 @@ class SimplexWalk {
     std::uint64_t edge = ~std::uint64_t{0};
     NearPoint near;
   };
-  static constexpr int kKeptBits = 16;
+  static constexpr int kKeptBits = 13;
   static constexpr std::size_t kKept = std::size_t{1} << kKeptBits;
   static constexpr std::uint64_t kHash = 0x9E3779B97F4A7C15u;
 
-  SimplexCorners<N> to_;
+  const SimplexGradients<N>& to_;
   const FacetNeighbours<N>& neighbours_;
   const BoxTree<N>* tree_;
   std::vector<Part> parts_;

@@ -27,7 +27,7 @@ class VertexDistances {
  public:
   using Simplices = std::span<const std::array<Index, N>>;
 
-  VertexDistances(Simplices simplices, const std::vector<PointN<N>>& points, const BoxTree<N>& tree,
+  VertexDistances(Simplices simplices, std::span<const PointN<N>> points, const BoxTree<N>& tree,
                   const SimplexWalk<N>& walk, unsigned threads)
       : points_(points), tree_(tree), walk_(walk), threads_(threads), near_(points.size()), exact_(points.size(), 0) {
     find_parents(simplices);
@@ -125,7 +125,7 @@ class VertexDistances {
   }
   static constexpr std::size_t kSearched = 128;
 
-  const std::vector<PointN<N>>& points_;
+  std::span<const PointN<N>> points_;
   const BoxTree<N>& tree_;
   const SimplexWalk<N>& walk_;
   unsigned threads_;

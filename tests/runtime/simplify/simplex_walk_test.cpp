@@ -83,11 +83,46 @@ TYPED_TEST(Walk, APlaceIsTheNearestPointInsideAndAnUpperBoundOutside) {
   EXPECT_GT(inside, 50);
 }
 
+/// In single precision, far from the origin and for flat simplices: an upper bound, and close to the nearest point
+/// where the projection is inside.
+TYPED_TEST(Walk, DistancesByGradientsAreUpperBounds) {
+  constexpr int N = TypeParam::value;
+  std::mt19937 random(17);
+  std::vector<PointN<N>> points;
+  std::vector<std::array<Index, N>> simplices;
+  for (Index trial = 0; trial < 500; ++trial) {
+    CornersN<N> corners = random_simplex<N>(random, 1.0);
+    if (trial % 10 == 0) corners[1] = corners[0];  // flat
+    for (int i = 0; i < N; ++i) {
+      for (double& x : corners[i]) x += 1e6;
+      points.push_back(corners[i]);
+      simplices.resize(trial + 1);
+      simplices[trial][i] = N * trial + static_cast<Index>(i);
+    }
+  }
+  const SimplexCorners<N> corners(simplices, points);
+  const SimplexGradients<N> gradients(corners, 1, {});
+  int inside = 0;
+  for (Index s = 0; s < simplices.size(); ++s) {
+    PointN<N> p = random_point<N>(random, 1.0);
+    for (double& x : p) x += 1e6;
+    const auto weights = gradients.weights(s, gradients.local(p));
+    const double found = gradients.distance(s, p, weights), exact = distance_to_simplex<N>(p, corners[s], N);
+    EXPECT_GE(found, exact - 1e-8) << s;
+    const bool flat = s % 10 == 0;
+    if (!flat && !weights.inside) continue;
+    EXPECT_NEAR(found, exact, flat ? 1e-8 : 1e-3) << s;
+    inside += !flat;
+  }
+  EXPECT_GT(inside, 10);
+}
+
 TYPED_TEST(Walk, EndsAtTheNearestPointOfASmoothContour) {
   constexpr int N = TypeParam::value;
   const WalkedBall<N> ball(N == 4 ? 6 : 20, 1.0);
   const FacetNeighbours<N> neighbours = ball.neighbours();
-  const SimplexWalk<N> walk(ball.corners(), neighbours);
+  const SimplexGradients<N> gradients(ball.corners(), 1, {});
+  const SimplexWalk<N> walk(gradients, neighbours);
   std::mt19937 random(3);
   std::normal_distribution<double> step(0.0, 0.05);
   int nearest = 0;
@@ -113,7 +148,8 @@ TYPED_TEST(Walk, BoundsDoNotDependOnTheOrderOfTheSimplices) {
   constexpr int N = TypeParam::value;
   const WalkedBall<N> ball(N == 4 ? 6 : 14, 1.0);
   const FacetNeighbours<N> neighbours = ball.neighbours();
-  const SimplexWalk<N> walk(ball.corners(), neighbours);
+  const SimplexGradients<N> gradients(ball.corners(), 1, {});
+  const SimplexWalk<N> walk(gradients, neighbours);
   std::mt19937 random(13);
   std::vector<PointN<N>> moved = ball.points;
   std::vector<NearPoint> near;
@@ -127,7 +163,7 @@ TYPED_TEST(Walk, BoundsDoNotDependOnTheOrderOfTheSimplices) {
     for (int i = 0; i < N; ++i) part.near[i] = near[part.vertices[i]];
     return one.bound(part, 0.15, 48);
   };
-  SimplexWalk<N> forward(ball.corners(), neighbours), backward(ball.corners(), neighbours);
+  SimplexWalk<N> forward(gradients, neighbours), backward(gradients, neighbours);
   std::vector<double> bounds(ball.simplices.size());
   for (std::size_t s = 0; s < bounds.size(); ++s) bounds[s] = bound_with(forward, s);
   for (std::size_t s = bounds.size(); s-- > 0;) ASSERT_EQ(bound_with(backward, s), bounds[s]) << s;
@@ -140,8 +176,9 @@ TYPED_TEST(Walk, BoundsAllPointsOfASimplex) {
   WalkedBall<N> ball(N == 4 ? 6 : 14, 1.0);
   std::erase_if(ball.simplices, [&](const auto& simplex) { return ball.points[simplex[0]][0] > 0.6; });  // the hole
   const FacetNeighbours<N> neighbours = ball.neighbours();
+  const SimplexGradients<N> gradients(ball.corners(), 1, {});
   const BoxTree<N> tree(ball.corners());
-  SimplexWalk<N> walk(ball.corners(), neighbours, &tree);
+  SimplexWalk<N> walk(gradients, neighbours, &tree);
   std::mt19937 random(11);
   std::exponential_distribution<double> share(1.0);
   int bounded = 0, failed = 0;
@@ -183,7 +220,8 @@ TYPED_TEST(Walk, FindsTheFarthestVertexExactly) {
   constexpr int N = TypeParam::value;
   const WalkedBall<N> ball(N == 4 ? 5 : 10, 1.0);
   const FacetNeighbours<N> neighbours = ball.neighbours();
-  const SimplexWalk<N> walk(ball.corners(), neighbours);
+  const SimplexGradients<N> gradients(ball.corners(), 1, {});
+  const SimplexWalk<N> walk(gradients, neighbours);
   const BoxTree<N> tree(ball.corners());
   std::mt19937 random(5);
   std::vector<PointN<N>> moved = ball.points;
