@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/progress.hpp"
+#include "simplify/equal_keys.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
 
@@ -34,7 +35,7 @@ CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, st
     : simplices_(simplices.begin(), simplices.end()),
       border_faces_(simplices.size(), 0),
       border_vertex_(vertex_count, false),
-      star_of_(vertex_count),
+      star_of_(vertex_count, Star{}),
       alive_(simplices.size()),
       in_u_(vertex_count + 1, 0),
       in_v_(vertex_count + 1, 0),
@@ -81,6 +82,7 @@ void CollapsibleComplex<N>::find_border(const Progress& progress) {
     int omitted;
   };
   std::vector<FaceOfSimplex> faces;
+  EqualKeys equal;
   const auto gather = [&](Index v) {
     faces.clear();
     for (const Index s : clean_star(v))
@@ -97,9 +99,6 @@ void CollapsibleComplex<N>::find_border(const Progress& progress) {
         }
         if (is_lowest) faces.push_back({low << 32 | high, s, omitted});
       }
-    std::sort(faces.begin(), faces.end(), [](const FaceOfSimplex& a, const FaceOfSimplex& b) {
-      return a.others != b.others ? a.others < b.others : a.simplex < b.simplex;
-    });
   };
   const auto mark_border = [&](const FaceOfSimplex& face) {
     border_faces_[face.simplex] |= static_cast<std::uint8_t>(1u << face.omitted);
@@ -109,13 +108,12 @@ void CollapsibleComplex<N>::find_border(const Progress& progress) {
   in_parts(star_of_.size(), progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t v = from; v < to; ++v) {
       gather(static_cast<Index>(v));
-      for (std::size_t i = 0, j = 0; i < faces.size(); i = j) {
-        while (j < faces.size() && faces[j].others == faces[i].others) ++j;
-        if (j - i > 2)
+      for (const auto& group : equal.groups(faces.size(), [&](auto i) { return faces[i].others; })) {
+        if (group.count > 2)
           throw Error(ErrorCode::UnsupportedData,
                       fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold",
-                                  faces[i].simplex, j - i));
-        if (j - i == 1) mark_border(faces[i]);
+                                  faces[group.first].simplex, group.count));
+        if (group.count == 1) mark_border(faces[group.first]);
       }
     }
   });

@@ -75,7 +75,7 @@ class CollapsibleComplex {
   /// Finds the simplex of `star` that shares with `s` the face opposite to `without`, and marks that face as border.
   void open_face(std::span<const Index> star, Index s, Index without);
 
-  std::vector<Simplex> simplices_;
+  Buffer<Simplex> simplices_;
   std::vector<std::uint8_t> border_faces_;
   std::vector<bool> border_vertex_;
   /// A part of stars_. The first `size` of `capacity` entries are used.
@@ -88,8 +88,8 @@ class CollapsibleComplex {
   [[nodiscard]] std::span<const Index> clean_star(Index v);
   void set_star(Index u, Index v, const Edge& edge);
 
-  std::vector<Star> star_of_;  ///< by vertex
-  std::vector<Index> stars_;   ///< simplices, vertex by vertex
+  Buffer<Star> star_of_;  ///< by vertex
+  Buffer<Index> stars_;   ///< simplices, vertex by vertex
   std::size_t alive_ = 0;
 
   // Scratch. A mark is the round in which it was set.

@@ -45,7 +45,7 @@ EdgeCollapse<N>::EdgeCollapse(CollapseInput<N> input)
       points_(std::move(input.points)),
       scaled_(points_.size()),
       scale_(input.scale),
-      quadrics_(points_.size()),
+      quadrics_(points_.size(), Quadric<N>{}),
       bound_(points_.size(), 0),
       tolerance_(std::move(input.tolerance)),
       version_(points_.size(), 0),
@@ -191,6 +191,31 @@ std::optional<CollapseTarget<N>> EdgeCollapse<N>::best_target(Index u, Index v) 
 }
 
 template <int N>
+void EdgeCollapse<N>::costs_around(Index u, std::span<const Index> others, std::vector<EdgeCost>& result) const {
+  const TargetInput<N> input{quadrics_[u],     scaled_[u], centre_, scale_, kFarthestPlace * kFarthestPlace,
+                             single_precision_};
+  TargetLanes<N> lanes;
+  result.clear();
+  for (std::size_t first = 0; first < others.size(); first += kEdgeLanes) {
+    for (std::size_t k = 0; k < kEdgeLanes; ++k) {
+      const Index v = others[std::min(first + k, others.size() - 1)];
+      lanes.set(k, quadrics_[v], scaled_[v], v < u);
+    }
+    find_target_lanes<N>(input, lanes);
+    for (std::size_t k = 0; k < kEdgeLanes && first + k < others.size(); ++k) {
+      const Index v = others[first + k];
+      EdgeCost edge{v, lanes.cost[k], lanes.square[k]};
+      if (lanes.is_far[k] != 0.0 || (bound_[u] | bound_[v]) != 0) {
+        const auto target = best_target(std::min(u, v), std::max(u, v));
+        if (!target) continue;
+        edge.cost = target->cost;
+      }
+      result.push_back(edge);
+    }
+  }
+}
+
+template <int N>
 CollapseTarget<N> EdgeCollapse<N>::target_at(Index u, Index v, const PointN<N>& at, double share) const {
   const PointN<N> scaled_at = to_scaled(at);
   return {at, share, quadrics_[u](scaled_at) + quadrics_[v](scaled_at)};
@@ -251,36 +276,34 @@ void EdgeCollapse<N>::load(Index u, Index v) {
   loaded_ = true;
   contractible_.reset();
   worst_shape_.reset();
-  around_.resize(edge_.only_u.size() + edge_.only_v.size() + edge_.both.size());
-  auto next = around_.begin();
-  for (const auto* part : {&edge_.only_u, &edge_.only_v, &edge_.both})
-    for (const Index s : *part) {
-      next->simplex = s;
-      next++->is_measured = false;
-    }
+  is_measured_.assign((size_around() + kEdgeLanes - 1) / kEdgeLanes, 0);
+  if (around_.size() < is_measured_.size()) around_.resize(is_measured_.size());
 }
 
-/// Measured only when they are used: many contractions fail at the first simplex.
+/// Measured only when they are used: many contractions fail at the first simplices.
 template <int N>
-auto EdgeCollapse<N>::around(std::size_t number) -> const Around& {
-  Around& one = around_[number];
-  if (one.is_measured) return one;
-  one.is_measured = true;
-  one.corners = corners(one.simplex);
-  one.normal = normal_of<N>(one.corners);
-  one.length = norm(one.normal);
-  one.shape = shape_of_simplex<N>(one.corners, one.length);
-  const Index end = number < edge_.only_u.size() ? edge_.u : edge_.v;
-  const auto& simplex = complex_.simplex(one.simplex);
-  one.moving = static_cast<int>(std::find(simplex.begin(), simplex.end(), end) - simplex.begin());
-  return one;
+auto EdgeCollapse<N>::around(std::size_t group) -> const SimplexLanes<N>& {
+  SimplexLanes<N>& lanes = around_[group];
+  if (is_measured_[group] != 0) return lanes;
+  is_measured_[group] = 1;
+  const std::size_t of_u = edge_.only_u.size(), of_v = edge_.only_v.size();
+  for (std::size_t k = 0; k < kEdgeLanes; ++k) {
+    const std::size_t i = std::min(group * kEdgeLanes + k, size_around() - 1);  // the last group repeats the last one
+    const Index s = i < of_u ? edge_.only_u[i] : i < of_u + of_v ? edge_.only_v[i - of_u] : edge_.both[i - of_u - of_v];
+    const auto& simplex = complex_.simplex(s);
+    const Index end = i < of_u ? edge_.u : edge_.v;
+    lanes.set(k, corners(s), static_cast<int>(std::find(simplex.begin(), simplex.end(), end) - simplex.begin()));
+  }
+  measure_lanes<N>(lanes);
+  return lanes;
 }
 
 template <int N>
 double EdgeCollapse<N>::worst_shape() {
   if (!worst_shape_) {
     worst_shape_ = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < around_.size(); ++i) worst_shape_ = std::min(*worst_shape_, around(i).shape);
+    for (std::size_t group = 0; group < is_measured_.size(); ++group)
+      for (const double shape : around(group).before.shape) worst_shape_ = std::min(*worst_shape_, shape);
   }
   return *worst_shape_;
 }
@@ -288,39 +311,44 @@ double EdgeCollapse<N>::worst_shape() {
 template <int N>
 PointN<N> EdgeCollapse<N>::normal_around() {
   PointN<N> sum{};
-  for (std::size_t i = 0; i < around_.size(); ++i)
-    for (int a = 0; a < N; ++a) sum[a] += around(i).normal[a];
+  for (std::size_t i = 0; i < size_around(); ++i)
+    for (int a = 0; a < N; ++a) sum[a] += around(i / kEdgeLanes).before.normal[a][i % kEdgeLanes];
   return sum;
 }
 
-/// Whether a simplex is neither flipped nor degraded when its vertex moves to `place`.
+/// Whether a simplex is neither flipped nor degraded when its vertex moves. `after`: its group after that.
 template <int N>
-bool EdgeCollapse<N>::keeps_shape(std::size_t number, const PointN<N>& place) {
-  const Around& before = around(number);
-  CornersN<N> after = before.corners;
-  after[before.moving] = place;
-  const PointN<N> normal = normal_of<N>(after);
-  const double length = norm(normal);
-  const double shape = shape_of_simplex<N>(after, length);
+bool EdgeCollapse<N>::keeps_shape(std::size_t number, const ShapeLanes<N>& after) {
+  const std::size_t k = number % kEdgeLanes;
+  const ShapeLanes<N>& before = around(number / kEdgeLanes).before;
   // a flat simplex may stay flat if it gets no flatter
-  const bool was_flat = before.shape <= kFlatShape;
-  if (shape <= kFlatShape) return was_flat && shape >= before.shape;
+  const bool was_flat = before.shape[k] <= kFlatShape;
+  if (after.shape[k] <= kFlatShape) return was_flat && after.shape[k] >= before.shape[k];
   // orientation: against the mean normal if it was flat, else against its own
+  const auto normal_of_lane = [&](const ShapeLanes<N>& lanes) {
+    PointN<N> normal;
+    for (int a = 0; a < N; ++a) normal[a] = lanes.normal[a][k];
+    return normal;
+  };
+  const PointN<N> normal = normal_of_lane(after);
   if (was_flat) {
     if (!(dot(normal, normal_around()) > 0.0)) return false;
-  } else if (!(dot(normal, before.normal) > kLeastCosine * before.length * length)) {
+  } else if (!(dot(normal, normal_of_lane(before)) > kLeastCosine * before.length[k] * after.length[k])) {
     return false;
   }
   // shape: good, or no worse than the worst one around the edge
-  return shape >= kGoodShape<N> || shape >= worst_shape();
+  return after.shape[k] >= kGoodShape<N> || after.shape[k] >= worst_shape();
 }
 
 template <int N>
 bool EdgeCollapse<N>::keeps_shapes(const PointN<N>& place) {
   const std::size_t of_u = edge_.only_u.size(), of_both = of_u + edge_.only_v.size();
   const auto keep = [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i)
-      if (!keeps_shape(i, place)) return false;
+    ShapeLanes<N> after;
+    for (std::size_t i = from; i < to; ++i) {
+      if (i == from || i % kEdgeLanes == 0) move_lanes<N>(around(i / kEdgeLanes), place, after);
+      if (!keeps_shape(i, after)) return false;
+    }
     return true;
   };
   return (place == scaled_[edge_.u] || keep(0, of_u)) && (place == scaled_[edge_.v] || keep(of_u, of_both));

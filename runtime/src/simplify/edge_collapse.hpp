@@ -13,6 +13,7 @@
 #include "intersect/moving_simplices.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/collapsible_complex.hpp"
+#include "simplify/edge_lanes.hpp"
 #include "simplify/quadric.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
@@ -55,7 +56,7 @@ class EdgeCollapse {
   /// Binds v to the hyperplane of this number, below 31.
   void bind(Index v, unsigned hyperplane) { bound_[v] |= std::uint32_t{1} << hyperplane; }
   [[nodiscard]] const std::vector<PointN<N>>& points() const noexcept { return points_; }
-  [[nodiscard]] const std::vector<PointN<N>>& scaled() const noexcept { return scaled_; }
+  [[nodiscard]] const Buffer<PointN<N>>& scaled() const noexcept { return scaled_; }
   [[nodiscard]] const Quadric<N>& quadric(Index v) const { return quadrics_[v]; }
   [[nodiscard]] std::span<const double> carried(Index v) const {
     return std::span(carried_).subspan(v * carried_width_, carried_width_);
@@ -67,6 +68,15 @@ class EdgeCollapse {
 
   /// The best target for contracting the edge u v; empty if borders and hyperplanes forbid it.
   [[nodiscard]] std::optional<CollapseTarget<N>> best_target(Index u, Index v) const;
+  /// Edges of one vertex, and the costs of their best targets.
+  struct EdgeCost {
+    Index other;
+    double cost;
+    double square;  ///< of the length
+  };
+  /// The edges of u to these vertices, without those that borders and hyperplanes keep. The edges are between the
+  /// vertices with the smaller and with the larger number.
+  void costs_around(Index u, std::span<const Index> others, std::vector<EdgeCost>& result) const;
   /// The target of u and v at a position chosen by the caller.
   [[nodiscard]] CollapseTarget<N> target_at(Index u, Index v, const PointN<N>& at, double share) const;
   /// Whether borders and hyperplanes allow moving v to the place of u.
@@ -98,19 +108,13 @@ class EdgeCollapse {
   [[nodiscard]] bool is_possible(const CollapseTarget<N>& target);
   [[nodiscard]] typename MovingSimplices<N>::Contraction contraction(const PointN<N>& at) const;
   [[nodiscard]] bool within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const;
-  /// A simplex around the loaded edge, before the contraction.
-  struct Around {
-    Index simplex;
-    bool is_measured;  ///< whether the other members are set
-    CornersN<N> corners;
-    PointN<N> normal;
-    double length;  ///< of the normal
-    double shape;
-    int moving;  ///< position of the end of the edge
-  };
   [[nodiscard]] bool keeps_shapes(const PointN<N>& place);
-  [[nodiscard]] bool keeps_shape(std::size_t number, const PointN<N>& place);
-  const Around& around(std::size_t number);
+  [[nodiscard]] bool keeps_shape(std::size_t number, const ShapeLanes<N>& after);
+  /// Simplices around the loaded edge before the contraction, kEdgeLanes in each group: only_u, only_v, both.
+  const SimplexLanes<N>& around(std::size_t group);
+  [[nodiscard]] std::size_t size_around() const {
+    return edge_.only_u.size() + edge_.only_v.size() + edge_.both.size();
+  }
   [[nodiscard]] double worst_shape();
   [[nodiscard]] PointN<N> normal_around();
   [[nodiscard]] PointN<N> to_scaled(const PointN<N>& point) const;
@@ -120,10 +124,10 @@ class EdgeCollapse {
 
   CollapsibleComplex<N> complex_;
   std::vector<PointN<N>> points_;
-  std::vector<PointN<N>> scaled_;  ///< relative to the centre, in units of the scale
+  Buffer<PointN<N>> scaled_;  ///< relative to the centre, in units of the scale
   PointN<N> centre_{};
   std::array<double, N> scale_{};
-  std::vector<Quadric<N>> quadrics_;
+  Buffer<Quadric<N>> quadrics_;
   std::vector<std::uint32_t> bound_;
   std::vector<double> tolerance_;
   std::vector<std::uint32_t> version_;
@@ -138,7 +142,8 @@ class EdgeCollapse {
   Edge edge_;
   bool loaded_ = false;
   std::optional<bool> contractible_;  ///< whether the topology allows the contraction, once known
-  std::vector<Around> around_;        ///< only_u, only_v, both; measured when they are used
+  std::vector<SimplexLanes<N>> around_;
+  std::vector<std::uint8_t> is_measured_;  ///< by group: whether around_ is set
   std::optional<double> worst_shape_;
 };
 

@@ -39,35 +39,39 @@ PointN<N> solve_positive(std::array<double, N*(N + 1) / 2> a, PointN<N> b) {
 template <int N>
 class Quadric {
  public:
+  static constexpr std::size_t kMatrix = N * (N + 1) / 2;
+  static constexpr std::size_t kValues = kMatrix + N + 2;
+  /// Weight of the squared distance from a given place, relative to the trace of the matrix.
+  static constexpr double kPull = 1e-3;
+
   void add_plane(const PointN<N>& normal, const PointN<N>& point, double weight) {
     const double offset = dot(normal, point);
     int k = 0;
     for (int i = 0; i < N; ++i) {
-      for (int j = 0; j <= i; ++j) matrix_[k++] += weight * normal[i] * normal[j];
-      vector_[i] += weight * offset * normal[i];
+      for (int j = 0; j <= i; ++j) values_[k++] += weight * normal[i] * normal[j];
+      values_[kMatrix + i] += weight * offset * normal[i];
     }
-    constant_ += weight * offset * offset;
-    weight_ += weight;
+    values_[kMatrix + N] += weight * offset * offset;
+    values_[kMatrix + N + 1] += weight;
   }
 
   Quadric& operator+=(const Quadric& other) {
-    for (std::size_t k = 0; k < matrix_.size(); ++k) matrix_[k] += other.matrix_[k];
-    for (int i = 0; i < N; ++i) vector_[i] += other.vector_[i];
-    constant_ += other.constant_;
-    weight_ += other.weight_;
+    for (std::size_t k = 0; k < kValues; ++k) values_[k] += other.values_[k];
     return *this;
   }
 
-  [[nodiscard]] double weight() const noexcept { return weight_; }
+  [[nodiscard]] double weight() const noexcept { return values_[kMatrix + N + 1]; }
+  /// The lower triangle of the matrix by rows, the vector, the constant and the weight.
+  [[nodiscard]] const std::array<double, kValues>& values() const noexcept { return values_; }
 
   /// The value at x; never negative, despite rounding.
   [[nodiscard]] double operator()(const PointN<N>& x) const {
-    double sum = constant_;
+    double sum = values_[kMatrix + N];
     int k = 0;
     for (int i = 0; i < N; ++i) {
-      double row = -2.0 * vector_[i];
-      for (int j = 0; j < i; ++j) row += 2.0 * matrix_[k++] * x[j];
-      row += matrix_[k++] * x[i];
+      double row = -2.0 * values_[kMatrix + i];
+      for (int j = 0; j < i; ++j) row += 2.0 * values_[k++] * x[j];
+      row += values_[k++] * x[i];
       sum += row * x[i];
     }
     return std::max(0.0, sum);
@@ -77,13 +81,14 @@ class Quadric {
   /// minimum unique where the surface is flat.
   [[nodiscard]] PointN<N> least_near(const PointN<N>& near) const {
     double trace = 0.0;
-    for (int i = 0; i < N; ++i) trace += matrix_[i * (i + 3) / 2];
+    for (int i = 0; i < N; ++i) trace += values_[i * (i + 3) / 2];
     const double pull = kPull * trace;
     if (!(pull > 0.0)) return near;
-    std::array<double, N*(N + 1) / 2> a = matrix_;
+    std::array<double, kMatrix> a;
+    std::copy_n(values_.begin(), kMatrix, a.begin());
     PointN<N> b;
     for (int i = 0; i < N; ++i) {
-      b[i] = vector_[i] + pull * near[i];
+      b[i] = values_[kMatrix + i] + pull * near[i];
       a[i * (i + 3) / 2] += pull;
     }
     return solve_positive<N>(a, b);
@@ -98,12 +103,7 @@ class Quadric {
   }
 
  private:
-  static constexpr double kPull = 1e-3;
-
-  std::array<double, N*(N + 1) / 2> matrix_{};
-  std::array<double, N> vector_{};
-  double constant_ = 0.0;
-  double weight_ = 0.0;
+  std::array<double, kValues> values_{};
 };
 
 }  // namespace tegl::detail

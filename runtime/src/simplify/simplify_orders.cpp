@@ -75,8 +75,8 @@ class QuadricOrder {
     for (Index v = 0; v < collapse_.points().size(); ++v) {
       reporter_.count_step(collapse_.complex().alive());
       collapse_.complex().neighbours(v, around_);
-      for (const Index a : around_)
-        if (a > v) push(v, a);
+      std::erase_if(around_, [&](Index a) { return a < v; });
+      push(v);
     }
   }
   void empty() {
@@ -87,7 +87,7 @@ class QuadricOrder {
       const auto [u, v, version] = *next;
       if (!contract(u, v)) continue;
       collapse_.complex().neighbours(u, around_);
-      for (const Index a : around_) push(std::min(u, a), std::max(u, a));
+      push(u);
     }
   }
 
@@ -106,13 +106,14 @@ class QuadricOrder {
     return false;
   }
   [[nodiscard]] std::uint32_t stamp(Index a, Index b) const { return collapse_.version(a) + collapse_.version(b); }
-  void push(Index a, Index b) {
-    const auto target = collapse_.best_target(a, b);
-    if (!target) return;
-    const PointN<N> edge = minus(collapse_.scaled()[a], collapse_.scaled()[b]);
-    const double weight = collapse_.quadric(a).weight() + collapse_.quadric(b).weight();
-    const double sum = target->cost + kLengthShare * weight * dot(edge, edge);
-    queue_.push(by_mean_ && weight > 0.0 ? sum / weight : sum, {a, b, stamp(a, b)});
+  /// The edges of u to the vertices in around_.
+  void push(Index u) {
+    collapse_.costs_around(u, around_, costs_);
+    for (const auto& [a, cost, square] : costs_) {
+      const double weight = collapse_.quadric(u).weight() + collapse_.quadric(a).weight();
+      const double sum = cost + kLengthShare * weight * square;
+      queue_.push(by_mean_ && weight > 0.0 ? sum / weight : sum, {std::min(u, a), std::max(u, a), stamp(u, a)});
+    }
   }
 
   EdgeCollapse<N>& collapse_;
@@ -120,6 +121,7 @@ class QuadricOrder {
   ProgressReporter reporter_;
   EdgeBuckets queue_;
   std::vector<Index> around_;
+  std::vector<typename EdgeCollapse<N>::EdgeCost> costs_;
 };
 
 // ---- facets by curvature ----
