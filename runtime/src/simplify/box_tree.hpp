@@ -59,11 +59,8 @@ template <int N>
 class BoxTree {
  public:
   explicit BoxTree(const SimplexCorners<N>& simplices) : simplices_(simplices) {
-    boxes_.assign(simplices.size(), Box<N>{});
-    for (std::size_t s = 0; s < simplices.size(); ++s)
-      for (const PointN<N>& corner : simplices_[s]) boxes_[s].add(corner);
-    nodes_.reserve(boxes_.size());
-    if (!boxes_.empty()) build(0, static_cast<Index>(boxes_.size()));
+    nodes_.reserve(simplices.size());
+    if (simplices.size() != 0) build(0, static_cast<Index>(simplices.size()));
   }
 
   /// Calls visit(simplex) for every simplex whose box is within `reach` of the box along every axis.
@@ -109,12 +106,18 @@ class BoxTree {
     double factor = 1.0;  ///< simplices that are not nearer by this factor are not searched
   };
 
+  [[nodiscard]] Box<N> box_of(Index s) const {
+    Box<N> box;
+    for (const PointN<N>& corner : simplices_[s]) box.add(corner);
+    return box;
+  }
+
   Index build(Index first, Index end) {
     const auto number = static_cast<Index>(nodes_.size());
     nodes_.emplace_back();
     if (end - first <= kLeafSize) {
       Box<N> box;
-      for (Index i = first; i < end; ++i) box.add(boxes_[i]);
+      for (Index i = first; i < end; ++i) box.add(box_of(i));
       nodes_[number] = {box, first, end, 0};
       return number;
     }
@@ -132,7 +135,7 @@ class BoxTree {
     const Node& node = nodes_[number];
     if (!node.box.meets(box, reach)) return;
     for (Index i = node.first; i < node.end; ++i)
-      if (boxes_[i].meets(box, reach)) visit(i);
+      if (box_of(i).meets(box, reach)) visit(i);
     if (node.end != 0) return;
     visit_node(number + 1, box, reach, visit);
     visit_node(node.right, box, reach, visit);
@@ -144,7 +147,7 @@ class BoxTree {
     };
     const Node& node = nodes_[number];
     for (Index i = node.first; i < node.end; ++i)
-      if (is_nearer(boxes_[i].square_distance(p))) try_simplex(i, p, best);
+      if (is_nearer(box_of(i).square_distance(p))) try_simplex(i, p, best);
     if (node.end != 0) return;
     std::array<std::pair<double, Index>, 2> next = {{{nodes_[number + 1].box.square_distance(p), number + 1},
                                                      {nodes_[node.right].box.square_distance(p), node.right}}};
@@ -172,7 +175,6 @@ class BoxTree {
   }
 
   SimplexCorners<N> simplices_;
-  Buffer<Box<N>> boxes_;
   Buffer<Node> nodes_;
 };
 
