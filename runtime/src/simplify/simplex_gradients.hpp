@@ -106,7 +106,7 @@ class SimplexGradients {
 
   SimplexCorners<N> corners_;
   PointN<N> origin_{};
-  Buffer<Row> rows_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace tegl::detail
