@@ -22,7 +22,7 @@
 #include "image/row_source.hpp"
 #include "kernel/memory_output.hpp"
 #include "lattice/lattice_gradients.hpp"
-#include "lattice/lattice_rows.hpp"
+#include "lattice/lattice_simplices.hpp"
 #include "lattice/periodic_lattice.hpp"
 #include "periodic/periods.hpp"
 #include "tegl/error.hpp"
@@ -89,29 +89,35 @@ class LatticeWriter {
     }
   }
 
-  void write_cells(std::size_t r) const {
+  /// `active`: working memory.
+  void write_cells(std::size_t r, std::vector<ActiveInRow>& active) const {
     const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
     const LatticeRows::Row& row = rows_.row(r);
     if (row.active == 0) return;
     Index own = row.first_own;
     auto* simplices = contour_.simplices.data() + row.first_simplex;
     for (const LatticeCell& cell : rows_.pattern(k).cells) {
-      // the streams of the cell's edges
       constexpr std::size_t kMostEdges = 12;
-      std::array<LatticeRows::Crossed, kMostEdges> streams{};
-      std::array<Index, kMostEdges> firsts{};
+      std::array<EdgeStream, kMostEdges> streams;
       for (std::size_t e = 0; e < cell.edges.size(); ++e) {
         if (!rows_.has_row(j, k, cell.edges[e].at)) continue;  // then there are no cells
         const std::size_t of = rows_.row_at(j, k, cell.edges[e].at);
-        streams[e] = rows_.crossed(of, cell.edges[e].kind);
-        firsts[e] = rows_.row(of).first;
+        streams[e] = {rows_.crossed(of, cell.edges[e].kind), rows_.row(of).first, cell.edges[e].at[0]};
+      }
+      if (row.own == 0) {
+        active.clear();
+        rows_.for_each_active(j, k, cell, [&](std::size_t i, unsigned signature) {
+          active.push_back({static_cast<std::uint32_t>(i), signature});
+        });
+        simplices = write_simplices(cell, streams.data(), active, simplices);
+        continue;
       }
       rows_.for_each_active(j, k, cell, [&](std::size_t i, unsigned signature) {
         const LatticeCell::Contour& contour = cell.contours[signature];
         std::array<Index, 32> vertices;
         for (std::uint32_t crossed = contour.crossed; crossed != 0; crossed &= crossed - 1) {
           const auto e = static_cast<unsigned>(std::countr_zero(crossed));
-          vertices[e] = firsts[e] + streams[e][i + static_cast<std::size_t>(cell.edges[e].at[0])];
+          vertices[e] = streams[e].first + streams[e].crossed[i + static_cast<std::size_t>(streams[e].at)];
         }
         for (std::size_t added = 0; added < contour.own; ++added, ++own) {
           vertices[cell.edges.size() + added] = own;
@@ -224,7 +230,10 @@ bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice latti
                                       result.contour);
   for_each_item(rows.row_count(), threads, part_of(progress, 0.5, 0.75),
                 [&](std::size_t r) { writer.write_edge_points(r); });
-  for_each_item(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t r) { writer.write_cells(r); });
+  for_each_part(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t from, std::size_t to) {
+    std::vector<ActiveInRow> active;
+    for (std::size_t r = from; r < to; ++r) writer.write_cells(r, active);
+  });
   watch.add_to(result.stats.generate_seconds);
   return true;
 }
