@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contours of tetrahedral meshes: tegl against VTK's vtkContour3DLinearGrid and vtkContourFilter.
 
-    bench/mesh_contours.py [--program PROGRAM] [--cubes N] [--turns N] [--threads N]
+    bench/mesh_contours.py [--program PROGRAM] [--cubes N] [--turns N] [--threads N] [--json FILE]
 
 All sides get the same mesh (N^3 cubes of 6 tetrahedra each, points moved at random) with the same float values, and take
 turns, so that what disturbs the machine meets all. tegl runs as a child process (mesh_contours.cpp) and measures itself.
 Prints medians of milliseconds as a table in Markdown: with one thread milliseconds of processor time, which other
 programs hardly influence. VTK: points merged, no normals, as tegl's vertices are shared, too;
-and with points not merged, its default. One thread: sequential processing; more: VTK's own number.
+and with points not merged, its default. One thread: sequential processing; more: VTK's own number. With --json, also
+runs lattice_bench and mixed_meshes beside PROGRAM, and writes all figures to FILE.
 """
 
 import argparse
+import json
 import os
 import pathlib
 import statistics
@@ -20,6 +22,8 @@ import tempfile
 import time
 
 import numpy as np
+
+import machine
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -127,7 +131,7 @@ class Tegl:
         os.unlink(self.path)
 
 
-def measure(options: argparse.Namespace, name: str, points: np.ndarray, cells: np.ndarray) -> None:
+def measure(options: argparse.Namespace, name: str, points: np.ndarray, cells: np.ndarray) -> dict:
     values = FIELDS[name](points).astype(np.float32)
     tegl = Tegl(options.program, points, cells, values, options.threads)
     vtk = vtk_sides(vtk_grid(points, cells, values), options.threads)
@@ -150,6 +154,16 @@ def measure(options: argparse.Namespace, name: str, points: np.ndarray, cells: n
         low, _, high = statistics.quantiles(of, n=4)
         print(f"| {label} | {median[label]:.2f} | {low:.2f} – {high:.2f} | {sizes[label][0]} | {sizes[label][1]} | "
               f"{median[label] / median['tegl']:.1f}x | {median[label] / median['tegl, edges known']:.1f}x |")
+    return {"field": name, "tetrahedra": len(cells), "threads": options.threads, "turns": options.turns,
+            "sides": [{"side": label, "ms": round(median[label], 3), "vertices": sizes[label][0],
+                       "triangles": sizes[label][1]} for label in sides]}
+
+
+def rows_of(program: pathlib.Path, *arguments: str) -> list:
+    """The table in Markdown that a program prints, as a list of rows by column."""
+    lines = subprocess.run([program, *arguments], check=True, capture_output=True, text=True).stdout.splitlines()
+    table = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+    return [dict(zip(table[0], row)) for row in table[2:]]
 
 
 def main() -> None:
@@ -158,12 +172,18 @@ def main() -> None:
     parser.add_argument("--cubes", type=int, default=60)
     parser.add_argument("--turns", type=int, default=11)
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--json", type=pathlib.Path)
     options = parser.parse_args()
     points, cells = kuhn(options.cubes)
     from vtkmodules.vtkCommonCore import vtkVersion
     print(f"VTK {vtkVersion.GetVTKVersion()}")
-    for name in FIELDS:
-        measure(options, name, points, cells)
+    meshes = [measure(options, name, points, cells) for name in FIELDS]
+    if options.json is None:
+        return
+    folder = pathlib.Path(options.program).resolve().parent
+    result = {"machine": machine.describe(folder.parent), "vtk": vtkVersion.GetVTKVersion(), "meshes": meshes,
+              "lattices": rows_of(folder / "lattice_bench", "160"), "types of cells": rows_of(folder / "mixed_meshes")}
+    options.json.write_text(json.dumps(result, indent=1) + "\n")
 
 
 if __name__ == "__main__":

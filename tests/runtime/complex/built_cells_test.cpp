@@ -133,8 +133,8 @@ std::vector<Complex<4>> noisy_complexes(std::size_t samples, std::uint64_t seed)
 
 // Minutes; with --gtest_also_run_disabled_tests.
 TEST(Compact4d, DISABLED_MovingMeshesOfAHundredThousandCells) {
-  for (Complex<4>& complex : noisy_complexes(32, 7)) {
-    EXPECT_GT(complex.cell_count(), complex.cell_count() < 150000 ? 89000u : 100000u);
+  for (Complex<4>& complex : noisy_complexes(35, 7)) {
+    EXPECT_GT(complex.cell_count(), 100000u);
     for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
       ExtractOptions options = compact_by(Ambiguity::low);
       options.triangulation = triangulation;

@@ -175,7 +175,7 @@ TEST(Delaunay, DISABLED_AHundredThousandCells) {
   expect_closed_noise<2>(grid<2>(226), "grid", kCells);
   expect_closed_noise<3>(grid<3>(28), "grid", kCells);
   expect_closed_noise<4>(grid<4>(10), "grid", kCells);
-  expect_closed_noise<2>(on_spheres<2>(160), "spheres", kCells);
+  expect_closed_noise<2>(on_spheres<2>(175), "spheres", kCells);
   expect_closed_noise<3>(on_spheres<3>(19), "spheres", kCells);
   expect_closed_noise<4>(on_spheres<4>(7), "spheres", kCells);
 }
