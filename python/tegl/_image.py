@@ -308,7 +308,7 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
 _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_units", "time_axis")
 
 
-def _lattice_of(array, lattice: str | None) -> str | None:
+def _lattice_of(array, lattice: _kinds.Lattice | typing.Literal["cubic"] | None) -> _kinds.Lattice | None:
     """The argument `lattice`, or the image's own."""
     if lattice is None:
         lattice = getattr(array, "lattice", None) if isinstance(array, Image) else None
