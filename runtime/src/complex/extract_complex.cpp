@@ -93,7 +93,7 @@ class ComplexWriter {
   void write_edge_points(const WorkOptions& work) {
     const EdgeEnds* const ends = numbers_.edge_ends().data();
     const std::size_t count = numbers_.edge_ends().size();
-    if (is_layered_ || gradients_ != nullptr) {
+    if (is_layered_ || gradients_ != nullptr || !periods_.empty()) {
       for_each_item(count, work.threads, work.progress, [&](std::size_t i) { write_edge_point(ends[i], i); });
       return;
     }
