@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tile/built_tiles.hpp"
@@ -131,6 +132,12 @@ class TilePlaces {
     }
   }
 
+  /// Insertion sort: for so few points, std::sort has code that cannot be reached, of which compilers warn.
+  static void sort_few(Point* points, std::size_t count) noexcept {
+    for (std::size_t i = 1; i < count; ++i)
+      for (std::size_t j = i; j > 0 && points[j] < points[j - 1]; --j) std::swap(points[j], points[j - 1]);
+  }
+
   Point barycentre(const BuiltTile::Vertex& vertex) noexcept {
     const std::size_t width = cube_.cells()[vertex.face].dim - 1u;
     // Tiles that share a face list its simplices in different orders, so they are sorted. For N <= 4 the tile itself is
@@ -145,7 +152,7 @@ class TilePlaces {
       for (std::size_t j = 0; j < width; ++j)
         corners[j] = (*this)(tile_->of[at + j] & static_cast<std::uint16_t>(~BuiltTile::kIsMiddle));
       const Point middle = corners[0];
-      if (is_shared || !has_middle) std::sort(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(width));
+      if (is_shared || !has_middle) sort_few(corners.data(), width);
       terms_.push_back({has_middle ? middle : simplex_barycentre<N>(simplex), simplex_measure<N>(simplex)});
     }
     if (is_shared)
