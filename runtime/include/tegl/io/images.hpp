@@ -50,7 +50,7 @@ struct ValueScaling {
   /// computed without the rounding of values. Takes at most 33 steps.
   [[nodiscard]] double stored_isovalue(double isovalue) const noexcept;
 
-  bool operator==(const ValueScaling&) const = default;
+  bool operator==(const ValueScaling&) const = default;  ///< member by member
 };
 
 /// Metadata of an image file besides values and grid.
