@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/common.hpp"
+#include "base/raw_image.hpp"
 #include "images/image_writer.hpp"
 
 namespace tegl::io_detail {
