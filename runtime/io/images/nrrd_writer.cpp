@@ -8,6 +8,7 @@
 
 #include "base/common.hpp"
 #include "base/output_file.hpp"
+#include "base/raw_image.hpp"
 #include "images/image_writer.hpp"
 
 namespace tegl::io_detail {
