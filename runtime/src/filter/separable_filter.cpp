@@ -53,6 +53,8 @@ class SeparableFilter final : public LayerFilter<Real> {
   void pass_along_rows(const std::vector<LayerJob<Real>>& jobs, std::size_t pass);
   void pass_across_rows(const std::vector<LayerJob<Real>>& jobs, std::size_t axis, std::size_t pass);
   [[nodiscard]] std::pair<const Real*, Real*> ends(const LayerJob<Real>& job, std::size_t pass) const noexcept;
+  /// Whether values are divided by the sum of the weights of the samples that are present.
+  [[nodiscard]] bool needs_sums_of_weights(std::size_t layer) const noexcept;
   void put_block(std::size_t layer, std::size_t at, std::size_t width, bool masked, Scratch& scratch, Real* out);
   /// The sums of weights in a layer in which nothing is missing.
   const std::vector<Real>& whole();
@@ -251,21 +253,32 @@ const std::vector<Real>& SeparableFilter<Real>::whole() {
 }
 
 template <class Real>
+bool SeparableFilter<Real>::needs_sums_of_weights(std::size_t layer) const noexcept {
+  if (!normalised_) return false;
+  if (shape().misses_border()) return true;
+  const auto radius = static_cast<std::ptrdiff_t>(shape().radii.back());
+  for (std::ptrdiff_t k = -radius; k <= radius; ++k) {
+    std::size_t at = 0;
+    if (in_ring(static_cast<std::ptrdiff_t>(layer) + k, at) && !ring_[at].present.empty()) return true;
+  }
+  return false;
+}
+
+template <class Real>
 void SeparableFilter<Real>::put(std::size_t first, std::size_t count, Real* out) {
   const std::size_t size = shape().layer_size();
-  // whether sums of weights are needed
-  const auto radius = static_cast<std::ptrdiff_t>(shape().radii.back());
-  bool masked = normalised_ && shape().misses_border();
-  for (std::ptrdiff_t k = -radius; k < static_cast<std::ptrdiff_t>(count) + radius && !masked; ++k) {
-    std::size_t at = 0;
-    masked = in_ring(static_cast<std::ptrdiff_t>(first) + k, at) && !ring_[at].present.empty();
+  // for each layer by itself, so that its samples do not depend on the others of the batch
+  std::vector<std::uint8_t> masked(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    masked[k] = needs_sums_of_weights(first + k) ? 1 : 0;
+    if (masked[k] != 0) whole();
   }
-  if (masked) whole();
   // sums along the last axis
   for_items(block_count(size, kBlock), 1, [&](std::size_t block, Scratch& scratch) {
     const std::size_t at = block * kBlock;
     const std::size_t width = std::min(kBlock, size - at);
-    for (std::size_t k = 0; k < count; ++k) put_block(first + k, at, width, masked, scratch, out + k * size + at);
+    for (std::size_t k = 0; k < count; ++k)
+      put_block(first + k, at, width, masked[k] != 0, scratch, out + k * size + at);
   });
 }
 

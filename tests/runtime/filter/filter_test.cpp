@@ -390,6 +390,30 @@ TEST(Filter, SameBytesForAnyNumberOfThreadsAndByLayers) {
     }
 }
 
+/// Layers without a missing neighbour must not depend on those in the same batch: one thread takes 4 layers of this
+/// size at once, three threads 12, and the source one.
+TEST(Filter, SameBytesForAnyBatchBesideACluster) {
+  constexpr std::size_t kLayer = 256 * 128, kLayers = 16;
+  auto image = noise_with_missing<float, 3>(Grid<3>::unit({256, 128, kLayers}), 5, 0.0);
+  for (std::size_t k = 3; k < 5; ++k)
+    for (std::size_t i = 60; i < 63; ++i)
+      image.values[k * kLayer + 40 * 256 + i] = std::numeric_limits<float>::quiet_NaN();
+  const SeparableConvolution gaussian{{gaussian_weights(1), gaussian_weights(1), gaussian_weights(0.5)}};
+  const auto one = filter_image(image.view(), gaussian, {{FilterBorder::extended}, false, {1, {}}});
+  const auto same = [&](const std::vector<float>& values) {
+    return std::memcmp(one.values.data(), values.data(), sizeof(float) * values.size()) == 0;
+  };
+  for (const unsigned threads : {2U, 3U, 5U})
+    EXPECT_TRUE(same(filter_image(image.view(), gaussian, {{FilterBorder::extended}, false, {threads, {}}}).values))
+        << threads;
+  FunctionLayers<float, 3> source(
+      image.grid, [&](std::size_t k, float* to) { std::copy_n(image.values.data() + k * kLayer, kLayer, to); });
+  const auto layers = filter_layers(source, gaussian);
+  std::vector<float> streamed(image.values.size());
+  for (std::size_t k = 0; k < kLayers; ++k) layers->read(k, streamed.data() + k * kLayer);
+  EXPECT_TRUE(same(streamed));
+}
+
 /// Mean distance of the contour's vertices from a point, in the world.
 template <int N>
 double mean_radius(const OwnedImage<double, N>& image, const std::array<double, N>& centre) {
