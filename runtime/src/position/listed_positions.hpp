@@ -63,12 +63,12 @@ class BlockPositions final : public ListedPositions<N, double> {
       : ListedPositions<N, double>(signs, work.threads),
         samples_(samples),
         isovalue_(samples.isovalue()),
-        ask_(positions.custom_of_many),
+        evaluate_(positions.custom_of_many),
         progress_(work.progress) {
     this->places_.resize(this->edges_.count());
     for (int axis = 0; axis < N; ++axis)
       for (std::size_t row = 0; row < signs.rows(); ++row) add_row(axis, row, signs.index_of(row));
-    ask_for_block();
+    evaluate_block();
   }
 
   void add_row(int axis, std::size_t row, SampleIndex<N> index) {
@@ -79,16 +79,16 @@ class BlockPositions final : public ListedPositions<N, double> {
       from_.push_back(samples_.value(at));
       at[axis] += 1;
       to_.push_back(samples_.value(at));
-      if (from_.size() == kBlock) ask_for_block();
+      if (from_.size() == kBlock) evaluate_block();
     }
   }
 
-  void ask_for_block() {
+  void evaluate_block() {
     const std::size_t count = from_.size(), all = this->places_.size();
     if (count == 0) return;
     tell(progress_, static_cast<double>(done_) / static_cast<double>(all));
     const std::span<double> places(this->places_.data() + done_, count);
-    call_apart([&] { ask_(from_, to_, isovalue_, places); });
+    call_apart([&] { evaluate_(from_, to_, isovalue_, places); });
     for (std::size_t i = 0; i < count; ++i)
       if (std::isnan(places[i])) throw Error(ErrorCode::InvalidArgument, nan_position(from_[i], to_[i], isovalue_));
     done_ += count;
@@ -98,7 +98,7 @@ class BlockPositions final : public ListedPositions<N, double> {
 
   const SampleSource<N>& samples_;
   double isovalue_;
-  const decltype(PositionOptions::custom_of_many)& ask_;
+  const decltype(PositionOptions::custom_of_many)& evaluate_;
   const Progress& progress_;
   std::size_t done_ = 0;  ///< edges with a position
   std::vector<double> from_, to_;
