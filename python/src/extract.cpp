@@ -197,11 +197,10 @@ auto custom_of_many(Call& call, const py::object& custom) {
   };
 }
 
-/// `values`: by sample, the image's axis 0 fastest; empty for other rules than "filtered". `custom`: for "custom", a
-/// function of the arrays of both samples and the level. `cells`: samples are cells, with these faces. `curved`: of a
-/// curved grid, or empty.
-std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule,
-                                               const py::array_t<float, py::array::c_style>& values,
+/// `values`: contiguous float or double, by sample, the image's axis 0 fastest; empty for other rules than "filtered".
+/// `custom`: for "custom", a function of the arrays of both samples and the level. `cells`: samples are cells, with
+/// these faces. `curved`: of a curved grid, or empty.
+std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std::string& rule, const py::array& values,
                                                const py::object& custom, double margin, double last_axis_weight,
                                                const std::optional<CellFaces>& cells, const CurvedAxes& curved,
                                                double level, bool is_double, const py::dict& arguments,
@@ -216,7 +215,11 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
                                      {"filtered", Positions::filtered},
                                      {"gravitation", Positions::gravitation},
                                      {"relaxed", Positions::relaxed}});
-  positions.filtered = std::span<const float>(values.data(), static_cast<std::size_t>(values.size()));
+  const auto count = static_cast<std::size_t>(values.size());
+  if (py::isinstance<py::array_t<double>>(values))
+    positions.filtered = std::span(static_cast<const double*>(values.data()), count);
+  else
+    positions.filtered = std::span(static_cast<const float*>(values.data()), count);
   if (!custom.is_none()) positions.custom_of_many = custom_of_many(call, custom);
   positions.margin = margin;
   positions.last_axis_weight = last_axis_weight;

@@ -608,7 +608,9 @@ def position_function(positions: object) -> Callable[[np.ndarray, np.ndarray, fl
 def position_values(positions: object, image: object, prepared: Prepared) -> np.ndarray:
     """The samples of the second image for "filtered", in the library's order; none for other rules."""
     kinds = typing.get_args(_kinds.Positions)
-    if not callable(positions) and as_text("positions", positions) not in kinds:
+    if not callable(positions) and not isinstance(positions, str):
+        raise TypeError(f"positions is {positions!r}; expected text or a function of the samples")
+    if not callable(positions) and positions not in kinds:
         raise ValueError(f"positions is {positions!r}; expected one of {', '.join(map(repr, kinds))}, or a function of the "
                          "samples")
     if positions != "filtered":
@@ -619,8 +621,9 @@ def position_values(positions: object, image: object, prepared: Prepared) -> np.
         raise ValueError("positions is 'filtered' without positions_image; expected the second image, an array")
     if hasattr(image, "__tegl_image__"):
         image = image.__tegl_image__()[-1]
-    values = np.ma.filled(np.ma.asarray(image).astype(np.float32), np.nan) if np.ma.isMaskedArray(image) else np.asarray(
-        image, np.float32)
+    array = image if np.ma.isMaskedArray(image) else np.asarray(image)
+    dtype = np.float32 if np.can_cast(array.dtype, np.float32) else np.float64
+    values = np.ma.filled(array.astype(dtype), np.nan) if np.ma.isMaskedArray(array) else np.asarray(array, dtype)
     shape = prepared.image.array.shape[::-1] if prepared.is_reversed else prepared.image.array.shape
     if values.shape != shape:
         raise ValueError(f"positions_image has the shape {values.shape}; expected {shape}, as the array")

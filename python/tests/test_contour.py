@@ -363,6 +363,12 @@ def test_cells_have_their_exact_volume(shape):
 def test_positions_of_masks():
     z, y, x = np.ogrid[-1:1:24j, -1:1:26j, -1:1:25j]
     mask = x**2 + y**2 + z**2 < 0.5
+    # differences that float32 rounds
+    ball = 10 - np.linalg.norm(np.indices((24, 24, 24)) - 11.4, axis=0)
+    for image, level in ((1e6 + 1e-3 * ball, 1e6), ((1e8 + 4 * ball).astype(np.int32), 1e8)):
+        for given in (image, np.ma.masked_array(image, False)):
+            filtered = tegl.contour(image, level, positions="filtered", positions_image=given, dtype=np.float64)
+            assert np.array_equal(filtered.vertices, tegl.contour(image, level, dtype=np.float64).vertices)
     linear = tegl.contour(mask, 0.5)
     relaxed = tegl.contour(mask, 0.5, positions="relaxed")
     assert np.array_equal(relaxed.simplices, linear.simplices)
@@ -371,7 +377,7 @@ def test_positions_of_masks():
     for time_axis in (0, -1):
         given = tegl.contour(mask, 0.5, positions="filtered", positions_image=values, dtype=np.float64, time_axis=time_axis)
         # at each vertex, both ends of its edge, clamped to their sides
-        high = np.where(mask, np.maximum(values.astype(np.float32), 0.5), np.minimum(values.astype(np.float32), 0.5))
+        high = np.where(mask, np.maximum(values, 0.5), np.minimum(values, 0.5))
         for vertex in given.vertices[::7]:
             start, end = np.floor(vertex).astype(int), np.ceil(vertex).astype(int)
             a, b = float(high[tuple(start)]), float(high[tuple(end)])
@@ -379,6 +385,8 @@ def test_positions_of_masks():
                 assert abs((vertex - start).sum() - (0.5 - a) / (b - a)) < 1e-6
     with pytest.raises(ValueError, match="expected one of 'linear', 'filtered', 'gravitation', 'relaxed'"):
         tegl.contour(mask, 0.5, positions="smooth")
+    with pytest.raises(TypeError, match="positions is 3; expected text or a function"):
+        tegl.contour(mask, 0.5, positions=3)
     with pytest.raises(ValueError, match="without positions_image"):
         tegl.contour(mask, 0.5, positions="filtered")
     with pytest.raises(ValueError, match=r"has the shape \(2, 2\); expected \(24, 26, 25\)"):

@@ -143,7 +143,8 @@ TEST_F(PositionsCommand, WrongOptionsAreRefused) {
   expect_refused({"--positions", "smooth", "-o", output}, "--positions");
   expect_refused({"--positions", "filtered", "-o", output}, "without --positions-image");
   expect_refused({"--positions-image", field_, "-o", output}, "expected --positions filtered");
-  expect_refused({"--positions", "filtered", "--positions-image", path("nowhere.nii"), "-o", output}, "nowhere.nii");
+  expect_refused({"--positions", "filtered", "--positions-image", path("nowhere.nii"), "-o", output},
+                 "--positions-image " + path("nowhere.nii"));
   expect_refused({"--positions", "relaxed", "--last-axis-weight=-1", "-o", output}, "--last-axis-weight is -1");
   expect_refused({"--last-axis-weight", "2", "-o", output}, "expected --positions relaxed");
   expect_refused({"--positions", "relaxed", "--stream", "-o", output}, "--positions relaxed with --stream");

@@ -371,7 +371,7 @@ class ContourCommand final : public Command {
   /// Options of this command that need an image.
   [[nodiscard]] std::vector<std::string> given_for_images() const {
     std::vector<std::string> given = {
-        "--facets",          "--stream",           "--index", "--pick",       "--positions",
+        "--facets",          "--stream",           "--index", "--pick",        "--positions",
         "--positions-image", "--last-axis-weight", "--label", "--scale-space"};
     std::erase_if(given, [&](const std::string& name) { return app().count(name) == 0; });
     return given;
@@ -672,7 +672,7 @@ class ContourCommand final : public Command {
   PositionArguments positions_;
   Tiling tiling_;  ///< with the image's curved grid
   PositionOptions placed_;
-  std::vector<float> position_values_;
+  PositionValues position_values_;
   AttributeOptions attributes_;
   CompressOption compress_;
   std::string output_;

@@ -169,7 +169,12 @@ void PositionArguments::require() const {
   if (rule_ != "relaxed" && parse_finite("--last-axis-weight", weight_) != 1)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--last-axis-weight with --positions {}; expected --positions relaxed", rule_));
-  if (!file_.empty()) require_input(parse_file_and_variable(file_).file, Folders::allowed);
+  if (file_.empty()) return;
+  try {
+    require_input(parse_file_and_variable(file_).file, Folders::allowed);
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("--positions-image {}", error.what()));
+  }
 }
 
 PositionOptions PositionArguments::without_image() const {
@@ -190,7 +195,7 @@ PositionOptions PositionArguments::library_options_5d() const {
 }
 
 PositionOptions PositionArguments::library_options(const AnyImage& image, ReadImageOptions reading,
-                                                   std::vector<float>& values) const {
+                                                   PositionValues& values) const {
   PositionOptions options = without_image();
   if (options.rule != Positions::filtered) return options;
   const FileAndVariable from = parse_file_and_variable(file_);
@@ -201,9 +206,12 @@ PositionOptions PositionArguments::library_options(const AnyImage& image, ReadIm
     throw Error(ErrorCode::UnsupportedData,
                 fmt::format("--positions-image {} has {} samples; expected {}, as the image", file_,
                             fmt::join(actual, " x "), fmt::join(expected, " x ")));
-  const auto copy = [&](const auto& owned) { values.assign(owned.values.begin(), owned.values.end()); };
+  const auto copy = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    // float holds all integers of 16 bits, but not those of 32
+    using Held = std::conditional_t<std::is_same_v<T, float> || sizeof(T) < sizeof(float), float, double>;
+    options.filtered = values.emplace<std::vector<Held>>(owned.values.begin(), owned.values.end());
+  };
   std::visit([&](const auto& typed) { std::visit(copy, typed); }, other.image);
-  options.filtered = values;
   return options;
 }
 

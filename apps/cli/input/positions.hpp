@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "base/progress.hpp"
 #include "input/commands.hpp"
@@ -16,6 +17,9 @@
 #include "tegl/positions.hpp"
 
 namespace tegl::cli {
+
+/// Samples of --positions-image: doubles where float would round them.
+using PositionValues = std::variant<std::vector<float>, std::vector<double>>;
 
 class PositionArguments {
  public:
@@ -51,7 +55,7 @@ class PositionArguments {
   /// Options of the library for an image. `values`: receives the samples of --positions-image, which the result refers
   /// to. `reading`: how the file is read. Throws UnsupportedData for an image of another size.
   [[nodiscard]] PositionOptions library_options(const AnyImage& image, ReadImageOptions reading,
-                                                std::vector<float>& values) const;
+                                                PositionValues& values) const;
 
   /// The same for an image of 5 axes. Throws InvalidArgument for other rules than linear and relaxed.
   [[nodiscard]] PositionOptions library_options_5d() const;

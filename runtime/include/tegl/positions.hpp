@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <span>
+#include <variant>
 
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
@@ -31,8 +32,8 @@ enum class Positions { linear, filtered, custom, gravitation, relaxed };
 struct PositionOptions {
   Positions rule = Positions::linear;  ///< the rule
   /// For `filtered`: a value for each sample of the image, axis 0 fastest, then axis 1, and so on. If a value is NaN,
-  /// the image's own value is used.
-  std::span<const float> filtered = {};
+  /// the image's own value is used. As doubles if float would round them, such as small differences of large values.
+  std::variant<std::span<const float>, std::span<const double>> filtered = {};
   /// For `custom`: the position between two samples as a number from 0 (at the first) to 1 (at the second); others are
   /// clamped. One of the samples is at or above the isovalue, the other is below. Called by several threads at once;
   /// an exception ends the extraction and is passed on.

@@ -20,13 +20,13 @@
 
 namespace tegl::detail {
 
-/// Linear interpolation of a second image, clamped to the sides of the samples.
-template <int N>
+/// Linear interpolation of a second image of floats or doubles, clamped to the sides of the samples.
+template <int N, class Second>
 class FilteredPositions final : public PositionsOnEdges<N> {
  public:
   /// `values`: axis 0 fastest. `epsilon`: as for `edge_alphas`.
   FilteredPositions(const SampleSource<N>& samples, StartsHigh starts_high, const Grid<N>& grid,
-                    std::span<const float> values, double epsilon)
+                    std::span<const Second> values, double epsilon)
       : samples_(samples),
         starts_high_(starts_high),
         values_(values),
@@ -44,8 +44,8 @@ class FilteredPositions final : public PositionsOnEdges<N> {
     constexpr std::size_t kMost = LayerEdges<N>::kMost;
     const std::size_t count = edges.edges.count, stride = strides_[edges.axis];
     // read both ends, which are seldom in the cache
-    const float* const layer = values_.data() + edges.k * edges.rows.size() * edges.rows.row_size();
-    std::array<const float*, kMost> at;
+    const Second* const layer = values_.data() + edges.k * edges.rows.size() * edges.rows.row_size();
+    std::array<const Second*, kMost> at;
     for (std::size_t i = 0; i < count; ++i) {
       at[i] = layer + static_cast<std::size_t>(edges.row[i]) * edges.rows.row_size() + edges.edges.at[i];
       __builtin_prefetch(at[i]);
@@ -83,7 +83,7 @@ class FilteredPositions final : public PositionsOnEdges<N> {
 
   const SampleSource<N>& samples_;
   StartsHigh starts_high_;
-  std::span<const float> values_;
+  std::span<const Second> values_;
   double isovalue_;
   double below_;  ///< the largest number below the isovalue
   double epsilon_;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -18,10 +20,11 @@
 namespace tegl::detail {
 
 void check_positions(const PositionOptions& positions, std::size_t samples, int dimensions) {
-  if (positions.rule == Positions::filtered && positions.filtered.size() != samples)
+  const std::size_t values = std::visit([](const auto& second) { return second.size(); }, positions.filtered);
+  if (positions.rule == Positions::filtered && values != samples)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("filtered positions with {} values; expected one for each of the image's {} samples",
-                            positions.filtered.size(), samples));
+                            values, samples));
   if (positions.rule == Positions::custom && !positions.custom && !positions.custom_of_many)
     throw Error(ErrorCode::InvalidArgument,
                 "custom positions without a function; expected one in PositionOptions::custom or custom_of_many");
@@ -91,9 +94,12 @@ Extraction<N, Real> extract_placed_from(SampleSource<N>& samples, StartsHigh sta
                                         const ExtractPlan& plan) {
   switch (positions.rule) {
     case Positions::filtered:
-      return extract_on_edges<N, Real>(
-          samples, grid, FilteredPositions<N>(samples, starts_high, grid, positions.filtered, options.epsilon), options,
-          plan);
+      return std::visit(
+          [&]<class Second>(std::span<const Second> values) {
+            const FilteredPositions<N, Second> rule(samples, starts_high, grid, values, options.epsilon);
+            return extract_on_edges<N, Real>(samples, grid, rule, options, plan);
+          },
+          positions.filtered);
     case Positions::custom:
       return extract_custom<N, Real>(samples, grid, positions, options, plan);
     case Positions::gravitation:

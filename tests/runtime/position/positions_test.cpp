@@ -263,6 +263,27 @@ TEST(Positions, FilteredByTheImageItselfAreLinear) {
   EXPECT_TRUE(same_bytes(extract_placed(image.view(), 40, by(Positions::filtered, missing)).vertices, linear.vertices));
 }
 
+/// Differences that are small beside the values, as float cannot hold them.
+template <Value T>
+void expect_linear_by_itself(double offset, double step) {
+  OwnedImage<T, 3> image{Grid<3>::unit({20, 20, 20}), std::vector<T>(8000)};
+  for_each_sample<3>(image.grid, [&](std::size_t i, const std::array<std::size_t, 3>& index) {
+    double square = 0;
+    for (const std::size_t x : index) square += (static_cast<double>(x) - 9.4) * (static_cast<double>(x) - 9.4);
+    image.values[i] = static_cast<T>(offset + step * (7 - std::sqrt(square)));
+  });
+  const std::vector<double> doubles(image.values.begin(), image.values.end());
+  PositionOptions options = by(Positions::filtered);
+  options.filtered = doubles;
+  EXPECT_TRUE(same_bytes(extract_placed<double>(image.view(), offset, options).vertices,
+                         extract<double>(image.view(), offset).vertices));
+}
+
+TEST(Positions, FilteredByDoublesWithALargeOffsetAreLinear) {
+  expect_linear_by_itself<double>(1e6, 1e-3);
+  expect_linear_by_itself<std::int32_t>(1e8, 4);
+}
+
 /// A kernel with a middle of 0.2, for which the condition 1 - a0 < T <= a0 does not hold: without clamping, samples
 /// would change sides.
 TEST(Positions, FilteredByAKernelAgainstTheConditionChangeNoSample) {
