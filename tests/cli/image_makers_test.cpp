@@ -91,6 +91,19 @@ TEST_F(ImageMakers, ContourOfAScaleSpaceNeedsNoFile) {
   ASSERT_EQ(from_file.coordinates.size(), direct.coordinates.size());
   for (std::size_t i = 0; i < direct.coordinates.size(); ++i)  // NRRD is in the frame LPS, NIfTI in RAS
     EXPECT_NEAR(std::abs(from_file.coordinates[i]), std::abs(direct.coordinates[i]), 1e-12);
+  // a scale by axis
+  ASSERT_EQ(
+      run_tegl({"scale-space", volume, "--sigmas", "0.5:2:3", "--factors", "1,0,2", "-o", path("f.nrrd"), "-q"}).exit,
+      0);
+  ASSERT_EQ(run_tegl({"contour", path("f.nrrd"), "--iso", "128", "-o", path("f.vtkhdf"), "-q"}).exit, 0);
+  ASSERT_EQ(run_tegl({"contour", volume, "--scale-space", "0.5:2:3", "--factors", "1,0,2", "--iso", "128", "-o",
+                      path("g.vtkhdf"), "-q"})
+                .exit,
+            0);
+  EXPECT_EQ(read_mesh(path("f.vtkhdf")).simplices, read_mesh(path("g.vtkhdf")).simplices);
+  EXPECT_NE(read_mesh(path("g.vtkhdf")).simplices, direct.simplices);
+  expect_refused({"contour", volume, "--iso", "128", "-o", path("c.vtkhdf"), "--factors", "1,0,2"},
+                 "--factors 1,0,2 without --scale-space", 2);
   for (const char* const one : {"1", ""})
     expect_refused({"contour", volume, "--iso", "128", "-o", path("c.vtkhdf"), "--scale-space", one}, "--scale-space",
                    2);
@@ -324,6 +337,10 @@ TEST_F(ImageMakers, NameWhatIsWrong) {
               AllOf(HasSubstr("out.nrrd"), Not(HasSubstr("a.nrrd"))));
   expect_refused({"sample", "cube", "-o", out}, "no field 'cube'; expected ball", 2);
   expect_refused({"sample", "ball", "--set", "size=3", "-o", out}, "has no parameter 'size'; expected radius", 2);
+  expect_refused({"sample", "ball", "--set", "radius=nan", "-o", out}, "--set radius is 'nan'", 2);
+  expect_refused({"sample", "ball", "--set", "radius=-1", "-o", out}, "radius is -1; expected a positive number", 2);
+  expect_refused({"sample", "orbital", "--set", "n=1.5", "-o", out}, "n is 1.5; expected a whole number from 1 to 12",
+                 2);
   expect_refused({"sample", "ball", "--set", "radius", "-o", out}, "--set is 'radius'; expected NAME=NUMBER", 2);
   expect_refused({"sample", "ball", "--size", "5,4", "-o", out}, "--size has 2 numbers; expected one", 2);
   expect_refused({"sample", "ball", "--size", "1", "-o", out}, "--size has 1; expected whole numbers from 2", 2);

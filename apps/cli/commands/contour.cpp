@@ -372,7 +372,7 @@ class ContourCommand final : public Command {
   [[nodiscard]] std::vector<std::string> given_for_images() const {
     std::vector<std::string> given = {
         "--facets",          "--stream",           "--index", "--pick",        "--positions",
-        "--positions-image", "--last-axis-weight", "--label", "--scale-space"};
+        "--positions-image", "--last-axis-weight", "--label", "--scale-space", "--factors"};
     std::erase_if(given, [&](const std::string& name) { return app().count(name) == 0; });
     return given;
   }

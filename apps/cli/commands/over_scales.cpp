@@ -20,6 +20,7 @@ void ScaleSpaceArguments::add_to(CLI::App& app) {
                            "scale-space': FIRST:LAST:COUNT or a list, in units of the axes; with --stream the image is "
                            "in memory, but not the scale space")
                 ->type_name("SIGMAS");
+  app.add_option("--factors", factors_, std::string("with --scale-space: ") + kFactorsHelp)->type_name("NUMBERS");
 }
 
 void ScaleSpaceArguments::refuse(bool given, const char* with) const {
@@ -28,6 +29,8 @@ void ScaleSpaceArguments::refuse(bool given, const char* with) const {
 }
 
 void ScaleSpaceArguments::require() {
+  if (!are_given() && !factors_.empty())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--factors {} without --scale-space; expected both", factors_));
   if (!are_given()) return;
   sigmas_ = parse_sigmas("--scale-space", text_);
   if (sigmas_.size() < 2)
@@ -40,9 +43,10 @@ void ScaleSpaceArguments::apply(std::variant<ReadImageResult, ReadImage5dResult>
   ScaleSpaceOptions options;
   options.filter.work = {threads, std::move(progress)};
   if (std::holds_alternative<ReadImage5dResult>(input))
-    throw Error(ErrorCode::InvalidArgument, "--scale-space with an image of 5 axes; expected 2 to 4");
+    throw Error(ErrorCode::InvalidArgument, "--scale-space with an image of 5 axes; expected 2 to 4 axes");
   ReadImageResult from = std::move(std::get<ReadImageResult>(input));
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    options.factors = parse_factors(factors_, N);
     auto scales = ScaleSpaceLayers<T, N>(owned.view(), sigmas_, options).all();
     if constexpr (N == 4)
       input = ReadImage5dResult{std::move(scales), std::move(from.info)};
@@ -63,6 +67,7 @@ OpenLayersResult ScaleSpaceArguments::layers(const ReadImageResult& input, unsig
                   "--scale-space and --stream with an image of 4 axes; expected 2 or 3: contours in 5D are made in "
                   "memory");
     } else {
+      options.factors = parse_factors(factors_, N);
       std::unique_ptr<LayerReader<FilteredValue<T>, N + 1>> layers =
           std::make_unique<ScaleSpaceLayers<T, N>>(owned.view(), sigmas_, options);
       result.layers = AnyLayersN<N + 1>(std::move(layers));

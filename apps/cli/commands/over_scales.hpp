@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The option --scale-space: contours of the image smoothed at several scales, with the scale as one more axis.
+// The options --scale-space and --factors: contours of the image smoothed at several scales, with the scale as one more
+// axis.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,7 +23,8 @@ class ScaleSpaceArguments {
   [[nodiscard]] bool are_given() const { return option_->count() > 0; }
   /// Throws InvalidArgument if the option is given, with another option that it does not go with.
   void refuse(bool given, const char* with) const;
-  /// Parses the scales. Throws InvalidArgument unless they are at least two, positive and ascending.
+  /// Parses the scales. Throws InvalidArgument unless they are at least two, positive and ascending, and
+  /// for --factors without them.
   void require();
 
   /// Replaces an image in 2 to 4 dimensions by its scale space.
@@ -33,7 +35,7 @@ class ScaleSpaceArguments {
 
  private:
   CLI::Option* option_ = nullptr;
-  std::string text_;
+  std::string text_, factors_;
   std::vector<double> sigmas_;
 };
 

@@ -2,9 +2,11 @@
 //
 // tegl sample: writes samples of an analytic field.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -116,7 +118,8 @@ class SampleCommand final : public Command {
       const std::size_t equals = text.find('=');
       if (equals == std::string::npos || equals == 0)
         throw Error(ErrorCode::InvalidArgument, fmt::format("--set is '{}'; expected NAME=NUMBER", text));
-      parameters.emplace_back(text.substr(0, equals), parse_finite("--set", std::string_view(text).substr(equals + 1)));
+      const std::string name = text.substr(0, equals);
+      parameters.emplace_back(name, parse_finite("--set " + name, std::string_view(text).substr(equals + 1)));
     }
     const bool is_name =
         std::all_of(field_.begin(), field_.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
@@ -172,10 +175,16 @@ class SampleCommand final : public Command {
 
   template <int N>
   void write(const Field& field, const std::optional<Lattice>& lattice, ProgressBar& bar, ImageResult& result) const {
-    FieldLayers<N> layers(field, grid_of<N>(lattice), lattice, threads_);
-    ImageInfo info;
-    info.lattice = lattice;
-    stream_image_result(layers, info, bar, result);
+    const Grid<N> grid = grid_of<N>(lattice);
+    try {
+      FieldLayers<N> layers(field, grid, lattice, threads_);
+      ImageInfo info;
+      info.lattice = lattice;
+      stream_image_result(layers, info, bar, result);
+    } catch (const std::bad_alloc&) {
+      throw Error(ErrorCode::TooLarge, fmt::format("out of memory for a layer of {} samples; expected a smaller --size",
+                                                   fmt::join(grid.sizes(), " x ")));
+    }
   }
 
   std::string field_, output_;

@@ -95,12 +95,7 @@ class ScaleSpaceCommand final : public Command {
         ->type_name("FILE")
         ->required();
     app().add_flag("--samples", samples_, "sigmas count samples, not units of the axes");
-    app()
-        .add_option(
-            "--factors", factors_,
-            "sigma along each axis as a multiple of the scale: as in 1,1,0.5; 0: the axis is not smoothed, such as "
-            "a time")
-        ->type_name("NUMBERS");
+    app().add_option("--factors", factors_, kFactorsHelp)->type_name("NUMBERS");
     app().add_flag(
         "--laplacian", laplacian_,
         "not the smoothed values but the scale-normalised Laplacian, which is greatest at blobs of this scale");
@@ -155,7 +150,7 @@ class ScaleSpaceCommand final : public Command {
     ScaleSpaceOptions options;
     options.quantity = laplacian_ ? ScaleQuantity::laplacian : ScaleQuantity::values;
     options.in_samples = samples_;
-    options.factors = factors(N);
+    options.factors = parse_factors(factors_, N);
     options.filter.borders = {border_ == "extended" ? FilterBorder::extended
                               : border_ == "cyclic" ? FilterBorder::cyclic
                                                     : FilterBorder::missing};
@@ -167,22 +162,6 @@ class ScaleSpaceCommand final : public Command {
     if (!of_scales.axis_directions.empty()) of_scales.axis_directions.push_back(AxisDirection::unknown);
     stream_image_result(measured, of_scales, bar, result);
     report(sigmas, measured.sizes(), result);
-  }
-
-  /// The numbers of --factors; empty without the option.
-  [[nodiscard]] std::vector<double> factors(std::size_t axes) const {
-    std::vector<double> numbers;
-    if (factors_.empty()) return numbers;
-    for (const std::string_view part : split(factors_, ',')) {
-      numbers.push_back(parse_finite("--factors", part));
-      if (numbers.back() < 0)
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("--factors is {}; expected numbers of 0 or more", factors_));
-    }
-    if (numbers.size() != axes)
-      throw Error(ErrorCode::InvalidArgument, fmt::format("--factors has {}; expected {}, one for each axis",
-                                                          counted(numbers.size(), "number", "numbers"), axes));
-    return numbers;
   }
 
   void report(const std::vector<double>& sigmas, const std::vector<double>& sizes, ImageResult& result) const {
@@ -228,6 +207,20 @@ std::vector<double> parse_sigmas(const char* option, const std::string& text) {
   for (const std::string_view part : split(text, ',')) sigmas.push_back(parse_finite(option, part));
   static_cast<void>(scale_axis(sigmas));
   return sigmas;
+}
+
+std::vector<double> parse_factors(const std::string& text, std::size_t axes) {
+  std::vector<double> numbers;
+  if (text.empty()) return numbers;
+  for (const std::string_view part : split(text, ',')) {
+    numbers.push_back(parse_finite("--factors", part));
+    if (numbers.back() < 0)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--factors is {}; expected numbers of 0 or more", text));
+  }
+  if (numbers.size() != axes)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--factors has {}; expected {}, one for each axis",
+                                                        counted(numbers.size(), "number", "numbers"), axes));
+  return numbers;
 }
 
 std::unique_ptr<Command> make_scale_space_command(CLI::App& program) {

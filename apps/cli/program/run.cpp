@@ -56,7 +56,7 @@ std::string with_file(const std::string& message, const Command& command) {
   };
   const tegl::cli::InputFiles input = command.inputs();
   const bool is_named = names_one_of(input.names) || names_one_of(command.other_inputs());
-  return is_named ? message : fmt::format("{}: {}", input.text(), message);
+  return is_named || input.names.empty() ? message : fmt::format("{}: {}", input.text(), message);
 }
 
 /// The message of an error of the library, with the input's name if it is about the input.
@@ -104,7 +104,9 @@ ExitCode run(Command& command, const Streams& streams) {
   } catch (const tegl::cli::EmptyResult& error) {
     return fail(ExitCode::Nothing, "EmptyResult", with_file(error.what(), command));
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: out of memory", command.inputs().text()));
+    return fail(
+        ExitCode::Internal, "OutOfMemory",
+        command.inputs().names.empty() ? "out of memory" : fmt::format("{}: out of memory", command.inputs().text()));
   } catch (const std::exception& error) {
     if (tegl::cli::is_of_threads(error)) return fail(ExitCode::Internal, "Threads", tegl::cli::thread_message());
     return fail(ExitCode::Internal, "Internal",

@@ -54,7 +54,7 @@ struct FieldRequest {
 };
 
 Field make_ball(const FieldRequest& of) {
-  const double radius = of.get("radius");
+  const double radius = of.positive("radius");
   return field_by_point(of.dim, [=, dim = of.dim](const FieldPoint& x) { return radius - length(x, 0, dim); });
 }
 
@@ -112,8 +112,8 @@ Field make_cosines(const FieldRequest& of, double sum_weight, double product_wei
 }
 
 Field make_torus(const FieldRequest& of) {
-  const double ring = of.get("ring");
-  const double tube = of.get("tube");
+  const double ring = of.positive("ring");
+  const double tube = of.positive("tube");
   return field_by_point(of.dim, [=, dim = of.dim](const FieldPoint& x) {
     return tube - std::hypot(length(x, 0, 2) - ring, length(x, 2, dim));
   });
@@ -123,7 +123,7 @@ Field make_torus(const FieldRequest& of) {
 Field make_knot(const FieldRequest& of) {
   const int p = of.whole("p", 1, 50);
   const int q = of.whole("q", 1, 50);
-  const double ring = of.get("ring"), inner = of.get("inner"), tube = of.get("tube");
+  const double ring = of.positive("ring"), inner = of.positive("inner"), tube = of.positive("tube");
   constexpr int kSegments = 600;
   std::vector<std::array<double, 3>> curve;
   for (int i = 0; i <= kSegments; ++i) {
@@ -150,7 +150,7 @@ Field make_knot(const FieldRequest& of) {
 }
 
 Field make_moving(const FieldRequest& of) {
-  const double radius = of.get("radius");
+  const double radius = of.positive("radius");
   const double travel = of.get("travel");
   return field_by_point(of.dim, [=, dim = of.dim](const FieldPoint& x) {
     return radius - std::hypot(x[0] - travel * x[static_cast<std::size_t>(dim - 1)], length(x, 1, dim - 1));
@@ -158,7 +158,7 @@ Field make_moving(const FieldRequest& of) {
 }
 
 Field make_merging(const FieldRequest& of) {
-  const double radius = of.get("radius"), start = of.get("start"), end = of.get("end");
+  const double radius = of.positive("radius"), start = of.get("start"), end = of.get("end");
   return field_by_point(of.dim, [=, dim = of.dim](const FieldPoint& x) {
     const double time = (x[static_cast<std::size_t>(dim - 1)] + 1) / 2;
     const double distance = start + time * (end - start);
@@ -168,7 +168,7 @@ Field make_merging(const FieldRequest& of) {
 
 /// A cube with rounded corners, without cylinders along all axes.
 Field make_csg(const FieldRequest& of) {
-  const double half = of.get("half"), radius = of.get("radius"), bore = of.get("bore");
+  const double half = of.positive("half"), radius = of.positive("radius"), bore = of.get("bore");
   return field_by_point(of.dim, [=, dim = static_cast<std::size_t>(of.dim)](const FieldPoint& x) {
     const double distance = length(x, 0, static_cast<int>(dim));
     double value = radius - distance;
@@ -192,9 +192,10 @@ Field make_noise(const FieldRequest& of) {
 }
 
 Field make_orbital_field(const FieldRequest& of) {
-  const auto number = [&](const char* name) { return of.whole(name, -12, 12); };
-  const detail::Orbital first{number("n"), number("l"), number("m")};
-  const detail::Orbital second{number("n2"), number("l2"), number("m2")};
+  const auto orbital = [&](const char* n, const char* l, const char* m) {
+    return detail::Orbital{of.whole(n, 1, 12), of.whole(l, 0, 11), of.whole(m, -11, 11)};
+  };
+  const detail::Orbital first = orbital("n", "l", "m"), second = orbital("n2", "l2", "m2");
   const int n = of.dim >= 4 ? std::max(first.n, second.n) : first.n;
   const double extent = of.get("extent") == 0 ? 2.0 * n * n + 4 : of.positive("extent");
   return detail::make_orbital(of.dim, first, second, extent);
