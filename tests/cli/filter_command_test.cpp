@@ -145,14 +145,19 @@ TEST_F(FilterCommand, NamesWhatIsWrong) {
       run_tegl({"filter", film(), "--gaussian", "1", "--time-sigma", "-2", "-o", path("a.nrrd")});
   EXPECT_EQ(negative.exit, 2);
   EXPECT_THAT(negative.err, HasSubstr("--time-sigma is -2; expected 0 or more"));
+  const RunResult twice =
+      run_tegl({"filter", film(), "--gaussian", ".2,.2,.2,.2", "--time-sigma", ".9", "-o", path("a.nrrd")});
+  EXPECT_EQ(twice.exit, 2);
+  EXPECT_THAT(twice.err, HasSubstr("--gaussian .2,.2,.2,.2 and --time-sigma .9 both give a sigma of the time"));
   refused({"--median", "0.5"}, "--median is 0.5; expected whole numbers", 2);
   refused({"--median", "1", "--samples"}, "--samples with --median, which has no sigma", 2);
   refused({"--median", "1", "--value-sigma", "1"}, "expected it with --bilateral", 2);
   refused({"--bilateral", "1"}, "--bilateral without --value-sigma", 2);
   refused({"--kernel", "1,2,1"}, "expected sizes and weights, as in 3x1:-0.5,0,0.5", 2);
-  refused({"--kernel", "2:1,1"}, "2 weights along axis 0; expected an odd number", 2);
-  refused({"--kernel", "3:1,1"}, "the kernel has 2 weights; expected 3", 2);
-  refused({"--kernel", "3:-1,0,1", "--normalize"}, "weights whose sum is 0", 2);
+  refused({"--kernel", "2x1x1:1,1"}, "2 weights along axis 0; expected an odd number", 2);
+  refused({"--kernel", "3x1x1:1,1"}, "the kernel has 2 weights; expected 3", 2);
+  refused({"--kernel", "3x3:1,2,1,2,4,2,1,2,1"}, "--kernel has 2 sizes; expected 3, one for each axis", 2);
+  refused({"--kernel", "3x1x1:-1,0,1", "--normalize"}, "weights whose sum is 0", 2);
   refused({"--median", "1", "--border", "round"}, "--border is 'round'; expected extended, cyclic or missing", 2);
   refused({"--median", "1", "--border", "cyclic,cyclic"}, "2 borders; expected one for each of 3 axes", 2);
   refused({"--median", "1", "-o", path("a.png")}, "the extension '.png' is not known; expected .nrrd", 6);

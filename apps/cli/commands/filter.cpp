@@ -110,7 +110,8 @@ class FilterCommand final : public Command {
        "sqrt(r^2 - 4 TIME) in 3D; details vanish first",
        "Curvature flow"},
       {"kernel", "SIZES:WEIGHTS",
-       "convolution with any kernel: its odd sizes, the fastest axis first, and its weights, as in 3x1:-0.5,0,0.5",
+       "convolution with any kernel: odd sizes, one for each axis, the fastest first, and its weights, as in "
+       "3x1:-0.5,0,0.5",
        "Convolution"},
   }};
 
@@ -191,13 +192,16 @@ class FilterCommand final : public Command {
     if (given.size() != 1 && given.size() != N && !without_time)
       throw Error(ErrorCode::InvalidArgument, fmt::format("{} has {}; expected one, or one for each of {} axes", name,
                                                           counted(given.size(), "number", "numbers"), N));
+    if (given.size() == N && times > 0 && time_option_->count() > 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} {} and --time-sigma {} both give a sigma of the time; expected one of the two", name,
+                              value_, time_sigma_));
     if (times == 0 && time_option_->count() > 0)
       throw Error(ErrorCode::InvalidArgument, "--time-sigma, but no axis is a time; expected an axis named t or time");
     for (std::size_t a = 0, next = 0; a < N; ++a) {
-      const bool from_time = is_time(grid.axes[a].name, a) && (given.size() != N || time_option_->count() > 0);
+      const bool from_time = is_time(grid.axes[a].name, a) && given.size() != N;
       if (from_time) {
         result[a] = time_option_->count() > 0 ? parse_finite("--time-sigma", time_sigma_) : 0.0;
-        if (given.size() == N) ++next;
       } else {
         result[a] = given.size() == 1 ? given[0] : given[next++];
       }
@@ -295,11 +299,9 @@ class FilterCommand final : public Command {
         throw Error(ErrorCode::InvalidArgument, fmt::format("--kernel has the size {}; expected odd numbers", part));
       filter.sizes.push_back(static_cast<std::size_t>(size));
     }
-    if (filter.sizes.size() > axes)
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("--kernel has {} sizes; expected at most {}, one for each axis", filter.sizes.size(), axes));
-    filter.sizes.resize(axes, 1);
+    if (filter.sizes.size() != axes)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--kernel has {}; expected {}, one for each axis",
+                                                          counted(filter.sizes.size(), "size", "sizes"), axes));
     filter.weights = numbers_of("--kernel", value_.substr(colon + 1));
     if (!normalize_) return filter;
     double sum = 0;
