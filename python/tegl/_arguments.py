@@ -172,6 +172,9 @@ def periodic_axes(periodic: object, prepared: Prepared) -> tuple[list[int], list
         periodic = [periodic]
     if isinstance(periodic, Mapping):
         given = [(axis, as_number(f"periodic[{axis!r}]", period)) for axis, period in periodic.items()]
+        for axis, period in given:
+            if not np.isfinite(period) or period == 0:
+                raise ValueError(f"periodic[{axis!r}] is {period}; expected a finite number other than 0")
     elif isinstance(periodic, (list, tuple)):
         given = [(axis, float("nan")) for axis in periodic]
     else:

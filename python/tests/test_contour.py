@@ -330,6 +330,14 @@ def test_count_has_the_size_of_the_contour():
         tegl.count(np.zeros((3, 3, 3, 3, 3)), 0.5, periodic=0)
 
 
+@pytest.mark.parametrize("period", [0, 0.0, float("nan"), float("inf")])
+def test_periods_are_finite_and_not_zero(period):
+    values = np.random.default_rng(1).random((6, 6)).astype(np.float32)
+    for function in (tegl.contour, tegl.count):
+        with pytest.raises(ValueError, match="expected a finite number other than 0"):
+            function(values, 0.5, periodic={0: period})
+
+
 def test_periodic_axes_by_name_number_and_period():
     image = np.add.outer(np.zeros(8), np.cos(2 * np.pi * np.arange(12) / 12))
     def edges(**arguments):

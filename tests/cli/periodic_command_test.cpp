@@ -380,6 +380,14 @@ TEST_F(PeriodicCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
           "has 7 layers; expected an even");
 }
 
+TEST_F(PeriodicCommand, FilesThatDoNotRecordTheLatticeAreRemarked) {
+  const RunResult run = run_tegl({"sample", "ball", "--lattice", "fcc", "--size", "6", "-o", path("ball.vti")});
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("does not record the lattice; contour it with --lattice fcc"));
+  EXPECT_EQ(run_tegl({"sample", "ball", "--lattice", "fcc", "--size", "6", "-o", path("ball.nrrd")}).err, "");
+  EXPECT_THAT(run_tegl({"info", path("ball.nrrd")}).out, HasSubstr("edges along the axes"));
+}
+
 TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
   const auto json_of = [&](std::vector<std::string> arguments) { return run_json(std::move(arguments)); };
   const std::string output = path("ball.ply");

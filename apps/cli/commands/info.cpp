@@ -255,8 +255,8 @@ std::string values_text(const Console& console, const Description& description) 
                 : "\nNo two neighbours differ (samples are missing between them): there is nothing to contour.\n");
   text += fmt::format("\n{}\n", console.bold("Suggested values"));
   for (const Suggestion& suggestion : values.suggestions) {
-    text += fmt::format("  {:>12} {:<14} {} edges\n", number(suggestion.value), suggestion.method,
-                        grouped(suggestion.critical_edges));
+    text += fmt::format("  {:>12} {:<14} {} edges{}\n", number(suggestion.value), suggestion.method,
+                        grouped(suggestion.critical_edges), description.info.lattice ? " along the axes" : "");
   }
   return text;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "base/numbers.hpp"
+#include "base/printable.hpp"
 #include "base/progress.hpp"
 #include "commands/image_makers.hpp"
 #include "output/image_result.hpp"
@@ -108,6 +110,9 @@ class SampleCommand final : public Command {
     if (dim == 5) write<5>(field, lattice, bar, result);
     bar.clear();
     result.report(streams.out, json(), quiet());
+    if (lattice && !quiet() && std::filesystem::path(output_).extension() == ".vti")
+      streams.err.write(fmt::format("tegl: {} does not record the lattice; contour it with --lattice {}\n",
+                                    printable(output_), lattice_));
     return ExitCode::Ok;
   }
 

@@ -15,6 +15,12 @@
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
 
+namespace tegl::detail {
+/// Whether the processor has GFNI. Highway's AVX3_DL does not include these instructions, but every processor with it
+/// has them. Defined below, among the code for all processors.
+extern const bool kHasGfni;
+}  // namespace tegl::detail
+
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
@@ -133,12 +139,6 @@ HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8
 }
 
 #if HWY_TARGET <= HWY_AVX3_DL
-
-/// Highway's AVX3_DL does not include these instructions, but every processor with it has them.
-const bool kHasGfni = [] {
-  __builtin_cpu_init();
-  return __builtin_cpu_supports("gfni") != 0;
-}();
 
 /// Transposes eight words, each with one corner of 64 tiles, to one byte per tile.
 HWY_INLINE __m512i corner_bytes(__m512i words) {
@@ -653,6 +653,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 
 namespace tegl::detail {
+
+#if HWY_ARCH_X86
+const bool kHasGfni = [] {
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("gfni") != 0;
+}();
+#endif
 
 #define TEGL_DISPATCH(N)                                                                                     \
   HWY_EXPORT(count##N);                                                                                      \

@@ -69,7 +69,8 @@ class SimplexGradients {
   /// nearest one.
   [[nodiscard]] double distance(Index s, const PointN<N>& p, const Weights& weights) const {
     const CornersN<N> at = corners_[s];
-    if (!(weights.of_corners[0] <= kLargest)) return distance_to_simplex<N>(p, at, N);  // flat, or very far away
+    for (const float weight : weights.of_corners)  // flat, or very far away
+      if (!(std::abs(weight) <= kLargest)) return distance_to_simplex<N>(p, at, N);
     double positive = 0.0;
     for (const float weight : weights.of_corners) positive += std::max(0.0f, weight);
     const double factor = 1.0 / positive;
