@@ -20,7 +20,7 @@ void ScaleSpaceArguments::add_to(CLI::App& app) {
                            "scale-space': FIRST:LAST:COUNT or a list, in units of the axes; with --stream the image is "
                            "in memory, but not the scale space")
                 ->type_name("SIGMAS");
-  app.add_option("--factors", factors_, std::string("with --scale-space: ") + kFactorsHelp)->type_name("NUMBERS");
+  app.add_option("--factors", factors_, kFactorsHelp)->type_name("NUMBERS");
 }
 
 void ScaleSpaceArguments::refuse(bool given, const char* with) const {
