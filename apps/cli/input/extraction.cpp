@@ -245,7 +245,9 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
 
 void ExtractionOptions::require_to_5d() const {
   constexpr const char* kWhat = "an image of 5 axes";
-  refuse_tiling_before_cells(kWhat);
+  refuse_periodic_with(kWhat);
+  refuse_lattice_with(kWhat);
+  refuse_division_with(kWhat);
   if (samples_ == "cells")
     throw Error(ErrorCode::InvalidArgument, fmt::format("--samples-are cells with {}; expected points", kWhat));
   if (wants_shape_normals())
