@@ -624,7 +624,7 @@ def position_values(positions: object, image: object, prepared: Prepared) -> np.
         raise ValueError("positions is 'filtered' without positions_image; expected the second image, an array")
     if hasattr(image, "__tegl_image__"):
         image = image.__tegl_image__()[-1]
-    array = image if np.ma.isMaskedArray(image) else np.asarray(image)
+    array: np.ndarray = typing.cast(np.ndarray, image) if np.ma.isMaskedArray(image) else np.asarray(image)
     dtype = np.float32 if np.can_cast(array.dtype, np.float32) else np.float64
     values = np.ma.filled(array.astype(dtype), np.nan) if np.ma.isMaskedArray(array) else np.asarray(array, dtype)
     shape = prepared.image.array.shape[::-1] if prepared.is_reversed else prepared.image.array.shape

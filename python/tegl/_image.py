@@ -312,7 +312,7 @@ def _lattice_of(array, lattice: _kinds.Lattice | typing.Literal["cubic"] | None)
     """The argument `lattice`, or the image's own."""
     if lattice is None:
         lattice = getattr(array, "lattice", None) if isinstance(array, Image) else None
-    return None if lattice == "cubic" else lattice
+    return None if lattice == "cubic" else typing.cast("_kinds.Lattice | None", lattice)
 
 
 def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
