@@ -84,6 +84,7 @@ class EdgeWriter {
     if (!fetches_) return;
     for (int axis = 0; axis < N; ++axis) {
       const LayerInMemory layer = source_.layer_in_memory(run(axis).layer);
+      if (layer.first == nullptr) continue;  // nor has any other layer
       ends_[axis] = {layer, axis == N - 1 ? source_.layer_in_memory(run(axis).layer + 1).first
                                           : layer.first + strides_[axis] * layer.sample_bytes};
     }
@@ -206,7 +207,7 @@ class EdgeWriter {
       fill(list.rows, list.size, filled, offset);
       for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, filled, placement_.sample(a, index[a]));
       if (axis > 0 && axis + 1 < N) fill(list.end, list.size, filled, placement_.sample(axis, index[axis] + 1));
-      fetch_samples(axis, list.at.data() + list.size, filled, offset);
+      if (!alone) fetch_samples(axis, list.at.data() + list.size, filled, offset);
       segments_.push_back({row, axis, static_cast<std::uint32_t>(list.size), count, firsts[axis]});
       list.size += count;
       longest = std::max(longest, list.size);
