@@ -631,7 +631,7 @@ class ContourCommand final : public Command {
     return tell(streams, results);
   }
 
-  /// The layers of FILE, or those of its scale space, which need FILE in memory: `image`.
+  /// The layers of FILE, or the layers of its scale space, which need FILE in memory as `image`.
   OpenLayersResult open_or_smooth(ReadImageResult& image, ProgressBar& bar) {
     if (!scales_.are_given()) return open();
     image = read(bar.stage("read"));

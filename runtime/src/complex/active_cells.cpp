@@ -68,7 +68,7 @@ void scan_blocks(const CellBlocks& blocks, const CellGroup& group, std::size_t f
   const auto scan_from = [&](std::size_t first) {
     scan(group, first, std::min(to, first + kCells), bits, scratch, block);
   };
-  std::size_t waiting = to;  // a block whose corners are on their way from memory
+  std::size_t waiting = to;  // a block whose corners have been requested
   for (std::size_t first = from; first < to; first += kCells) {
     if (blocks.is_uniform(first / kCells, bits.high.data())) continue;
     const Index* const corners = group.cell(first);

@@ -96,7 +96,7 @@ class Ownership {
         collector.add({std::min(p, q), std::max(p, q), level, both});
       }
       level = both;
-      // without branches: which of the two goes on is hard to predict
+      // without branches, which would be hard to predict
       of_a += of_a->end <= level ? 1 : 0;
       of_b += of_b->end <= level ? 1 : 0;
     }

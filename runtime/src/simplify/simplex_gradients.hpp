@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Barycentric coordinates of points by a contour's simplices, in single precision: one cache line for a tetrahedron in
-// 4-space. They tell a walk where to go next. Distances are those of points of the contour, in double precision, so
-// they are upper bounds whatever the errors of the coordinates.
+// 4-space. A walk chooses the next simplex by them. Distances are measured to points of the contour, in double
+// precision, so they are upper bounds whatever the errors of the coordinates.
 #pragma once
 
 #include <algorithm>
