@@ -34,6 +34,7 @@ class ContourNet {
     [[nodiscard]] Side side() const noexcept { return static_cast<Side>(bits >> 30); }
     [[nodiscard]] Number point() const noexcept { return bits & (CriticalEdges<N>::kMost - 1); }
   };
+  static_assert(sizeof(Link) == sizeof(std::uint32_t));
 
   /// `signs` and `edges` must be of the same samples; only `edges` must outlive this object.
   ContourNet(const SampleSigns<N>& signs, const CriticalEdges<N>& edges, JoinsHigh<N> joins_high, unsigned threads);
@@ -50,6 +51,8 @@ class ContourNet {
     return static_cast<std::size_t>(c) * size() + point;
   }
   [[nodiscard]] Link link(std::size_t place, unsigned side) const noexcept { return links_[place * 2 + side]; }
+  /// The bits of all links, by place and side.
+  [[nodiscard]] const std::uint32_t* link_bits() const noexcept { return &links_.data()->bits; }
   /// The other axis of curve c of a point on an edge along `axis`, and the inverse.
   static constexpr int other_axis(int axis, int c) noexcept { return c < axis ? c : c + 1; }
   static constexpr int curve_of(int axis, int other) noexcept { return other < axis ? other : other - 1; }

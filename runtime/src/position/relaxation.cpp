@@ -11,6 +11,7 @@
 
 #include "base/progress.hpp"
 #include "base/workers.hpp"
+#include "position/chords.hpp"
 #include "position/curve_lines.hpp"
 
 namespace tegl::detail {
@@ -74,6 +75,9 @@ class PlaneCurves {
       const std::size_t at = curves[of_axis] + p;
       fits_of_.push_back(at);
       __builtin_prefetch(fits_ + 2 * at, 1);
+      // The next cache lines are for a curve in the next plane, whose following waits for one link after the other.
+      __builtin_prefetch(net_.link_bits() + 2 * at + 16);
+      __builtin_prefetch(fits_ + 2 * at + 16, 1);
       // The curve crosses the edge along the other axis.
       lines_.push_back(static_cast<GridStep>(2 - 2 * to + 1 - of_axis));
       const auto link = net_.link(at, to);
@@ -116,33 +120,6 @@ void take_fits(const float* fits, const Limits& limits, unsigned threads, Buffer
   });
 }
 
-/// The distance of a point from the chord between its neighbours in a curve, along the point's edge. 0 if a neighbour
-/// is absent; then `weight` becomes 0.
-template <int N>
-[[gnu::always_inline]] inline float above_chord(const ContourNet<N>& net, const float* places, std::size_t p, int c,
-                                                float& weight) noexcept {
-  using Side = typename ContourNet<N>::Side;
-  // Position along the edge and distance across it: at + by * (place of the neighbour). By side, because branches would
-  // be hard to predict.
-  struct Linear {
-    float at, by;
-    [[nodiscard]] float operator()(float place) const noexcept { return at + by * place; }
-  };
-  constexpr std::array<Linear, 3> kAlong = {{{0, 1}, {0, 0}, {1, 0}}};
-  constexpr std::array<Linear, 3> kBefore = {{{1, 0}, {1, -1}, {1, -1}}}, kAfter = {{{1, 0}, {0, 1}, {0, 1}}};
-  const auto before = net.link(static_cast<std::uint32_t>(p), c, 0),
-             after = net.link(static_cast<std::uint32_t>(p), c, 1);
-  if (before.side() == Side::none || after.side() == Side::none) {
-    weight = 0;
-    return 0;
-  }
-  const auto side_0 = static_cast<std::size_t>(before.side()), side_1 = static_cast<std::size_t>(after.side());
-  const float other_0 = places[before.point()], other_1 = places[after.point()];
-  const float u_0 = kAlong[side_0](other_0), v_0 = kBefore[side_0](other_0);
-  const float u_1 = kAlong[side_1](other_1), v_1 = kAfter[side_1](other_1);
-  return places[p] - (u_0 * v_1 + u_1 * v_0) / (v_0 + v_1);
-}
-
 /// Moves all points towards the chords of their curves, or away from them if `factor` is negative.
 template <int N>
 void smooth(const ContourNet<N>& net, const float* places, float factor, const Limits& limits, float last_axis_weight,
@@ -153,16 +130,11 @@ void smooth(const ContourNet<N>& net, const float* places, float factor, const L
       std::array<float, ContourNet<N>::kCurves> weights;
       for (int c = 0; c < ContourNet<N>::kCurves; ++c)
         weights[c] = axis == N - 1 || ContourNet<N>::other_axis(axis, c) == N - 1 ? last_axis_weight : 1.0f;
+      const std::size_t first = std::max<std::size_t>(from, edges.first(axis));
       const std::size_t last = std::min<std::size_t>(end, edges.first(axis + 1));
-      for (std::size_t p = std::max<std::size_t>(from, edges.first(axis)); p < last; ++p) {
-        float sum = 0, all = 0;
-        for (int c = 0; c < ContourNet<N>::kCurves; ++c) {
-          float weight = weights[c];
-          sum += above_chord(net, places, p, c, weight) * weight;
-          all += weight;
-        }
-        next[p] = all > 0 ? limits.clamped(places[p] - factor * sum / all) : places[p];
-      }
+      const ChordMoves moves{net.link_bits(), net.size(), ContourNet<N>::kCurves, weights.data(), factor,
+                             limits.low,      limits.high};
+      if (first < last) move_to_chords(moves, places, first, last, next);
     }
   });
 }

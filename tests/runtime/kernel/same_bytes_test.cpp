@@ -2,8 +2,6 @@
 //
 // The result does not depend on the processor or the number of threads: equal bytes for each instruction set of this
 // machine, with 1 to 4 threads.
-#include <hwy/targets.h>
-
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -15,25 +13,11 @@
 
 #include "ambiguity/variants.hpp"
 #include "fields.hpp"
+#include "only_targets.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::test {
 namespace {
-
-/// During its lifetime, the library uses the best of the given instruction sets.
-class OnlyTargets {
- public:
-  explicit OnlyTargets(std::int64_t targets) { choose(targets); }
-  ~OnlyTargets() { choose(0); }
-  OnlyTargets(const OnlyTargets&) = delete;
-  OnlyTargets& operator=(const OnlyTargets&) = delete;
-
- private:
-  static void choose(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);  // 0: all again
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
 
 template <class Rows>
 bool equal_bytes(const Rows& a, const Rows& b) {
