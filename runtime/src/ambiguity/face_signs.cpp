@@ -187,37 +187,41 @@ HWY_INLINE void means_of(FaceBlock<N>& block, double isovalue) {
   look_again(block, !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), 0x1p36);
 }
 
-/// Decides squares by their saddles. `least`: smallest margin of a determinant over its possible error without kTiny.
+/// Decides squares by their saddles. `least`: smallest absolute determinant.
 struct Saddles {
   Highs highs;
   hn::Vec<D> least;
 
   HWY_INLINE Saddles() : least(hn::Set(D(), 0x1p1023)) {}
-  /// Arguments: corner 0, its two neighbours, and the opposite corner, each minus the isovalue.
+  /// Arguments: corner 0, its two neighbours, and the opposite corner, each minus the isovalue. None is -0.
   template <class V>
   HWY_INLINE void take(unsigned face, V first, V second, V third, V last) {
     const D d;
-    const auto one = hn::Mul(first, last), other = hn::Mul(second, third);
-    const auto determinant = hn::Sub(one, other);
-    const auto size = hn::Add(hn::Abs(one), hn::Abs(other));
-    // The difference of two zeros may be -0.
-    const auto of_high = hn::IfThenElse(hn::Lt(first, hn::Zero(d)), hn::Neg(determinant), determinant);
+    const auto determinant = hn::MulSub(first, last, hn::Mul(second, third));
+    const auto of_high = hn::Xor(determinant, hn::And(first, hn::SignBit(d)));  // -0, if it is zero, counts as zero
     highs.take(face, hn::Ge(of_high, hn::Zero(d)));
-    // The factor has room for the rounding of this line, fused or not.
-    least = hn::Min(least, hn::NegMulAdd(size, hn::Set(d, 0x1p-48), hn::Abs(determinant)));
+    least = hn::Min(least, hn::Abs(determinant));
   }
-  /// Where rounding cannot decide.
-  HWY_INLINE auto sure() const {
-    constexpr double kTiny = 0x1p-1006;  // of the products, if they are denormal
-    return hn::Gt(least, hn::Set(D(), kTiny));
+  /// Tiles of which rounding cannot decide a square. `largest`: greatest absolute value of their differences. The
+  /// rounding errors of a determinant, fused or not, are at most 2^-50 of its square, if no product is denormal.
+  HWY_INLINE auto sure(hn::Vec<D> largest) const {
+    const D d;
+    const auto in_range = hn::And(hn::Gt(largest, hn::Set(d, 0x1p-480)), hn::Lt(largest, hn::Set(d, 0x1p500)));
+    return hn::And(in_range, hn::Gt(least, hn::Mul(hn::Mul(largest, largest), hn::Set(d, 0x1p-47))));
   }
 };
 
+/// Returns the greatest absolute value of the corners minus the isovalue.
 template <int N>
-HWY_INLINE void take_saddles(const FaceBlock<N>& block, std::size_t at, double isovalue, Saddles& saddles) {
+HWY_INLINE auto take_saddles(const FaceBlock<N>& block, std::size_t at, double isovalue, Saddles& saddles) {
   static constexpr FaceNumbers<N> kNumbers;
+  // Adding 0 and not subtracting it makes 0 of -0.
+  const auto minus = hn::Set(D(), isovalue == 0.0 ? 0.0 : -isovalue);
   const auto difference = [&](std::size_t row, std::size_t to)
-                              HWY_ATTR { return hn::Sub(samples_at(block, row, to), hn::Set(D(), isovalue)); };
+                              HWY_ATTR { return hn::Add(samples_at(block, row, to), minus); };
+  auto largest = hn::Zero(D());
+  for (unsigned row = 0; row < block.kRows; ++row)
+    for (unsigned side = 0; side < 2; ++side) largest = hn::Max(largest, hn::Abs(difference(row, at + side)));
   for (unsigned a = 1; a < N; ++a)
     for (unsigned row = 0; row < block.kRows; ++row) {
       const unsigned up_a = 1u << (a - 1);
@@ -233,22 +237,18 @@ HWY_INLINE void take_saddles(const FaceBlock<N>& block, std::size_t at, double i
                        difference(row | up_a | up_b, at + side));
       }
     }
+  return largest;
 }
 
 template <int N>
 HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
   const D d;
   const Bits bits;
-  const auto large = hn::Set(d, 0x1p500);  // products of two are finite
   auto any_unsure = hn::Zero(bits);
   for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
     Saddles saddles;
-    take_saddles(block, i, isovalue, saddles);
-    auto sure = saddles.sure();
-    auto largest = hn::Zero(d);
-    for (std::size_t r = 0; r < block.kRows; ++r)
-      for (std::size_t to = i; to < i + 2; ++to) largest = hn::Max(largest, hn::Abs(samples_at(block, r, to)));
-    sure = hn::And(sure, hn::Lt(largest, large));
+    const auto largest = take_saddles(block, i, isovalue, saddles);
+    auto sure = saddles.sure(largest);
     if constexpr (N == 4) {
       Means means(isovalue);
       take_means_of_rows(block, i, false, means);
@@ -266,31 +266,16 @@ HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
   look_again(block, is_whole && !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), kMost);
 }
 
-/// Numbers computed in doubles, and the same with all signs positive; see Rounded in saddle.cpp.
-struct Rounded {
-  hn::Vec<D> value, size;
-};
-HWY_INLINE Rounded plus(const Rounded& x, const Rounded& y) {
-  return {hn::Add(x.value, y.value), hn::Add(x.size, y.size)};
-}
-HWY_INLINE Rounded minus(const Rounded& x, const Rounded& y) {
-  return {hn::Sub(x.value, y.value), hn::Add(x.size, y.size)};
-}
-HWY_INLINE Rounded times(const Rounded& x, const Rounded& y) {
-  return {hn::Mul(x.value, y.value), hn::Add(hn::Mul(x.size, y.size), hn::Set(D(), 0x1p-960))};
-}
-HWY_INLINE Rounded twice(const Rounded& x) { return plus(x, x); }
-
 /// Conditions that numbers are positive (or not negative): lanes where all hold for certain, and where one certainly
 /// fails.
 struct Conditions {
   hn::Mask<D> all, none;
 
   HWY_INLINE Conditions() : all(hn::Eq(hn::Zero(D()), hn::Zero(D()))), none(hn::Lt(hn::Zero(D()), hn::Zero(D()))) {}
-  HWY_INLINE void take(const Rounded& x) {
-    const auto error = hn::Mul(x.size, hn::Set(D(), 0x1p-48));
-    all = hn::And(all, hn::Gt(x.value, error));
-    none = hn::Or(none, hn::Lt(x.value, hn::Neg(error)));
+  /// `error`: of the number.
+  HWY_INLINE void take(hn::Vec<D> number, hn::Vec<D> error) {
+    all = hn::And(all, hn::Gt(number, error));
+    none = hn::Or(none, hn::Lt(number, hn::Neg(error)));
   }
 };
 
@@ -298,27 +283,42 @@ struct Conditions {
 HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size_t i) {
   const D d;
   const auto zero = hn::Zero(d);
+  auto largest = zero;
   const auto end = [&](std::size_t e) HWY_ATTR {
     const auto difference = hn::Sub(hn::LoadU(d, questions.ends[e].data() + i), hn::Set(d, isovalue));
-    return Rounded{difference, hn::Abs(difference)};
+    largest = hn::Max(largest, hn::Abs(difference));
+    return difference;
   };
+  const auto twice = [](hn::Vec<D> x) HWY_ATTR { return hn::Add(x, x); };
+  const auto sum_of_products = [](hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z, hn::Vec<D> w)
+                                   HWY_ATTR { return hn::Add(hn::Mul(x, y), hn::Mul(z, w)); };
+  const auto difference_of_products = [](hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z, hn::Vec<D> w)
+                                          HWY_ATTR { return hn::Sub(hn::Mul(x, y), hn::Mul(z, w)); };
   // the polynomials of PairQuestion
-  const Rounded a0 = end(0), a1 = end(1), c0 = end(2), c1 = end(3), b0 = end(4), b1 = end(5), d0 = end(6), d1 = end(7);
-  const Rounded q0 = minus(times(a0, c0), times(b0, d0)), q1 = minus(times(a1, c1), times(b1, d1));
-  const Rounded m = minus(minus(plus(times(a0, c1), times(a1, c0)), times(b0, d1)), times(b1, d0));
-  const Rounded u0 = minus(m, twice(q0)), u1 = minus(m, twice(q1));
-  const Rounded a = plus(times(a0, u1), times(a1, u0)), c = plus(times(c0, u1), times(c1, u0));
-  const Rounded hyperdeterminant = minus(times(m, m), twice(twice(times(q0, q1))));
+  const auto a0 = end(0), a1 = end(1), c0 = end(2), c1 = end(3), b0 = end(4), b1 = end(5), d0 = end(6), d1 = end(7);
+  const auto q0 = difference_of_products(a0, c0, b0, d0), q1 = difference_of_products(a1, c1, b1, d1);
+  const auto m = hn::Sub(sum_of_products(a0, c1, a1, c0), sum_of_products(b0, d1, b1, d0));
+  const auto u0 = hn::Sub(m, twice(q0)), u1 = hn::Sub(m, twice(q1));
+  const auto a = sum_of_products(a0, u1, a1, u0), c = sum_of_products(c0, u1, c1, u0);
+  const auto hyperdeterminant = hn::Sub(hn::Mul(m, m), twice(twice(hn::Mul(q0, q1))));
   const auto sign = hn::LoadU(d, questions.sign.data() + i);
-  // answers in rounded arithmetic
+  // Answers in rounded arithmetic. Bounds of the numbers by the largest difference M, with all signs positive: u: 8
+  // M^2; a, c: 16 M^3; the hyperdeterminant: 32 M^4. Each term is rounded less than 12 times; no power of M is
+  // denormal.
+  const auto square = hn::Mul(largest, largest);
+  const auto unit = hn::Set(d, 0x1p-48);
+  const auto error_of_u = hn::Mul(square, hn::Mul(unit, hn::Set(d, 8.0)));
+  const auto error_of_ends = hn::Mul(hn::Mul(error_of_u, largest), hn::Set(d, 2.0));
+  const auto infinite = hn::Set(d, HUGE_VAL);
+  const auto in_range = hn::And(hn::Gt(largest, hn::Set(d, 0x1p-230)), hn::Lt(largest, hn::Set(d, 0x1p230)));
   Conditions conditions;
-  conditions.take(u0);
-  conditions.take(u1);
-  conditions.take({hn::Mul(sign, a.value), a.size});
-  conditions.take({hn::Mul(sign, c.value), c.size});
-  conditions.take(hyperdeterminant);
+  conditions.take(u0, hn::IfThenElse(in_range, error_of_u, infinite));
+  conditions.take(u1, error_of_u);
+  conditions.take(hn::Mul(sign, a), error_of_ends);
+  conditions.take(hn::Mul(sign, c), error_of_ends);
+  conditions.take(hyperdeterminant, hn::Mul(hn::Mul(error_of_u, square), hn::Set(d, 4.0)));
   const auto used = hn::FirstN(d, questions.count - i);
-  auto is_yes = conditions.all, is_no = conditions.none;
+  auto is_yes = conditions.all, is_no = hn::And(in_range, conditions.none);
   if (!hn::AllFalse(d, hn::AndNot(hn::Or(is_yes, is_no), used))) {
     // Nothing was rounded if all values and the isovalue are multiples of 1/2 with 10 bits. A zero then counts as high.
     const auto is_short = [&](hn::Vec<D> value) HWY_ATTR {
@@ -328,10 +328,9 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
     auto is_whole = is_short(hn::Set(d, isovalue));
     for (const auto& values : questions.ends) is_whole = hn::And(is_whole, is_short(hn::LoadU(d, values.data() + i)));
     const auto least = hn::IfThenElse(hn::Gt(sign, zero), zero, hn::Set(d, 0x1p-60));  // below any such number
-    const auto is_so = [&](const Rounded& x) HWY_ATTR { return hn::Ge(hn::Mul(sign, x.value), least); };
-    const auto is_inside = hn::And(hn::Gt(u0.value, zero), hn::Gt(u1.value, zero));
-    const auto exactly =
-        hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant.value, least)), hn::And(is_so(a), is_so(c)));
+    const auto is_so = [&](hn::Vec<D> x) HWY_ATTR { return hn::Ge(hn::Mul(sign, x), least); };
+    const auto is_inside = hn::And(hn::Gt(u0, zero), hn::Gt(u1, zero));
+    const auto exactly = hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant, least)), hn::And(is_so(a), is_so(c)));
     is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, is_yes));
     is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, is_no));
   }
