@@ -224,46 +224,41 @@ std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, u
   return values;
 }
 
-/// Decides the centres of cubes by the trilinear interpolant, except of those in `unsure`. `entries`: of the table of
-/// resolved cubes. Returns those that rounding could decide.
-Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, Word unsure, double isovalue,
-          const RowTable& table, TilesOfWord& tiles) noexcept {
+/// Decides the centres of cubes by the trilinear interpolant. `entries`: of the table of resolved cubes. Returns those
+/// that rounding could decide.
+Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, double isovalue, const RowTable& table,
+          TilesOfWord& tiles) noexcept {
   const auto& joins = cube_joins();
-  Word with_one = 0, with_more = 0;  // pairs of edges
+  // list the cubes with one pair of edges, without branches
+  std::array<std::uint8_t, kWordBits> numbers, bits;
+  std::array<const tables::CubeJoin*, kWordBits> asked;
+  std::size_t count = 0;
+  Word with_more = 0;  // pairs of edges
   for (std::size_t j = 0; j < entries.size(); ++j) {
-    const unsigned pairs = joins[entries[j]].pairs;
-    with_one |= Word{pairs == 1} << j;
-    with_more |= Word{pairs > 1} << j;
+    const tables::CubeJoin& cube = joins[entries[j]];
+    numbers[count] = static_cast<std::uint8_t>(j);
+    bits[count] = tiles.bits[j];
+    asked[count] = &cube;
+    count += static_cast<std::size_t>(cube.pairs == 1);
+    with_more |= Word{cube.pairs > 1} << j;
   }
   const auto decide = [&](std::size_t j, tile::Choice centre) {
     tiles.variants[j] = table.variant(entries[j], static_cast<unsigned>(centre));
   };
-  for (Word rest = with_more & ~unsure; rest != 0; rest &= rest - 1) {
+  for (Word rest = with_more; rest != 0; rest &= rest - 1) {
     const auto j = static_cast<std::size_t>(std::countr_zero(rest));
     decide(j, detail::decide_centre(corners_of_cube<3, 7>(block, tiles.bits[j], 0), isovalue, entries[j]));
-  }
-  with_one &= ~unsure;
-  std::array<std::uint8_t, kWordBits> bits;
-  std::array<const tables::CubeJoin*, kWordBits> asked;
-  std::size_t count = 0;
-  for (Word rest = with_one; rest != 0; rest &= rest - 1, ++count) {
-    const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-    bits[count] = tiles.bits[j];
-    asked[count] = &joins[entries[j]];
   }
   JoinQuestions questions;
   ask(block, {bits.data(), count}, asked.data(), questions);
   answer(questions, isovalue);
-  Word still_unsure = 0;
-  std::size_t q = 0;
-  for (Word rest = with_one; rest != 0; rest &= rest - 1, ++q) {
-    const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-    // choices as numbers: separate, low, high
-    const unsigned joined = 1u + unsigned{joins[entries[j]].high};
-    decide(j, static_cast<tile::Choice>(joined * unsigned{questions.answers[q] == JoinQuestions::yes}));
-    still_unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << j;
+  Word unsure = 0;
+  for (std::size_t q = 0; q < count; ++q) {
+    const unsigned joined = 1u + unsigned{asked[q]->high};  // choices as numbers: separate, low, high
+    decide(numbers[q], static_cast<tile::Choice>(joined * unsigned{questions.answers[q] == JoinQuestions::yes}));
+    unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << numbers[q];
   }
-  return still_unsure;
+  return unsure;
 }
 
 }  // namespace
@@ -285,7 +280,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
     tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
     unsure |= Word{block.unsure[bit] != 0} << j;
   }
-  if (by_joins) unsure |= join(block, {entries.data(), tiles.count}, unsure, estimator.isovalue(), table, tiles);
+  if (by_joins) unsure |= join(block, {entries.data(), tiles.count}, estimator.isovalue(), table, tiles);
   for (; unsure != 0; unsure &= unsure - 1) tiles.variants[std::countr_zero(unsure)] = {};
 }
 

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <optional>
 #include <type_traits>
 
@@ -48,7 +50,7 @@ class CellVertices {
         add_mean(in_cubes_, mask >> 8, base, axes, first + j);
         continue;
       }
-      const auto kind = static_cast<unsigned>(std::popcount(mask)) / 2;  // 1, 2 or 4 corners
+      const unsigned kind = kRayKinds[mask & 0xffu];
       if (rays_[kind].count == kAtOnce) write_rays(kind);
       if (!heights) heights = source_.template heights<3>(base, axes);
       epsilon_ = heights->epsilon;
@@ -76,6 +78,14 @@ class CellVertices {
 
  private:
   static constexpr std::size_t kAtOnce = CubeRays::kMost;
+  /// Kind of a ray (write_rays) by its 1, 2 or 4 corners. A table: for std::popcount compilers call a function, unless
+  /// they compile for processors that have an instruction for it.
+  static constexpr auto kRayKinds = [] {
+    std::array<std::uint8_t, 256> kinds{};
+    for (unsigned corners = 0; corners < 256; ++corners)
+      kinds[corners] = static_cast<std::uint8_t>(std::popcount(corners) / 2);
+    return kinds;
+  }();
 
   struct Targets {
     std::array<Base, kAtOnce> bases;
