@@ -270,7 +270,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   const bool by_means = estimator.is_by_means() && !estimator.separates();
   const bool by_joins = estimator.is_by_saddles() && !estimator.separates();
   std::array<std::uint16_t, kWordBits> entries;
-  Word unsure = 0;  // sets of tiles, as bits: made without branches
+  Word unsure = 0;  // number in `tiles`
   for (std::size_t j = 0; j < tiles.count; ++j) {
     const unsigned bit = tiles.bits[j], signature = tiles.signatures[j];
     const auto high = static_cast<unsigned>(block.high[bit]);
@@ -278,8 +278,9 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
         resolved.first_entry[signature] + packed_squares(high, unsigned{resolved.ambiguous_squares[signature]});
     entries[j] = static_cast<std::uint16_t>(entry);
     tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
-    unsure |= Word{block.unsure[bit] != 0} << j;
   }
+  for (std::size_t j = 0; block.unsure != 0 && j < tiles.count; ++j)
+    unsure |= (block.unsure >> tiles.bits[j] & 1u) << j;
   if (by_joins) unsure |= join(block, {entries.data(), tiles.count}, estimator.isovalue(), table, tiles);
   for (; unsure != 0; unsure &= unsure - 1) tiles.variants[std::countr_zero(unsure)] = {};
 }

@@ -161,30 +161,41 @@ HWY_INLINE bool are_whole(const FaceBlock<N>& block, double limit) {
   return hn::AllTrue(d, so_far);
 }
 
-/// Clears `unsure` if nothing was rounded.
+/// The tiles from `at` on for which rounding may decide a face, as bits; those past the end of the row are not masked.
+HWY_INLINE std::uint64_t unsure_from(std::size_t at, hn::Mask<D> sure) {
+#if HWY_TARGET <= HWY_AVX3
+  const std::uint64_t bits = sure.raw;
+#else
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D(), sure, bytes);
+  const std::uint64_t bits = bytes[0];
+#endif
+  static_assert(hn::MaxLanes(D()) <= 8);
+  return (~bits & ((1u << hn::Lanes(D())) - 1)) << at;
+}
+
+/// Sets `unsure`, but to none if nothing was rounded: if the samples are multiples of 2^-10 and less than `limit`.
 template <int N>
-HWY_INLINE void look_again(FaceBlock<N>& block, bool any_unsure, double limit) {
-  if (any_unsure && are_whole(block, limit)) std::fill_n(block.unsure.data(), block.tiles, 0);
+HWY_INLINE void set_unsure(FaceBlock<N>& block, std::uint64_t unsure, bool may_be_exact, double limit) {
+  block.unsure = unsure & (~std::uint64_t{0} >> (kWordBits - block.tiles));
+  if (block.unsure != 0 && may_be_exact && are_whole(block, limit)) block.unsure = 0;
 }
 
 template <int N>
 HWY_INLINE void means_of(FaceBlock<N>& block, double isovalue) {
   const D d;
   const Bits bits;
-  auto any_unsure = hn::Zero(bits);
+  std::uint64_t unsure = 0;
   for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
     Means means(isovalue);
     take_means_across(block, i, means);
     take_means_along(block, i, means);
     if constexpr (N == 4) take_means_of_rows(block, i, true, means);
-    const auto sure = hn::RebindMask(bits, hn::Gt(means.least, error_of_means(block, i, isovalue)));
-    const auto unsure = hn::IfThenZeroElse(sure, hn::Set(bits, 1));
+    unsure |= unsure_from(i, hn::Gt(means.least, error_of_means(block, i, isovalue)));
     hn::Store(means.highs.bits, bits, block.high.data() + i);
-    hn::Store(unsure, bits, block.unsure.data() + i);
-    any_unsure = hn::Or(any_unsure, unsure);
   }
   // Sums of 16 are then exact.
-  look_again(block, !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), 0x1p36);
+  set_unsure(block, unsure, true, 0x1p36);
 }
 
 /// Decides squares by their saddles. `least`: smallest absolute determinant.
@@ -244,7 +255,7 @@ template <int N>
 HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
   const D d;
   const Bits bits;
-  auto any_unsure = hn::Zero(bits);
+  std::uint64_t unsure = 0;
   for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
     Saddles saddles;
     const auto largest = take_saddles(block, i, isovalue, saddles);
@@ -255,15 +266,13 @@ HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
       saddles.highs.bits = hn::Or(saddles.highs.bits, means.highs.bits);
       sure = hn::And(sure, hn::Gt(means.least, error_of_means(block, i, isovalue)));
     }
-    const auto unsure = hn::IfThenZeroElse(hn::RebindMask(bits, sure), hn::Set(bits, 1));
+    unsure |= unsure_from(i, sure);
     hn::Store(saddles.highs.bits, bits, block.high.data() + i);
-    hn::Store(unsure, bits, block.unsure.data() + i);
-    any_unsure = hn::Or(any_unsure, unsure);
   }
   // Differences then have 25 bits, and products 50.
   constexpr double kMost = 0x1p14;
   const bool is_whole = std::abs(isovalue) < kMost && std::nearbyint(0x1p10 * isovalue) == 0x1p10 * isovalue;
-  look_again(block, is_whole && !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), kMost);
+  set_unsure(block, unsure, is_whole, kMost);
 }
 
 /// Conditions that numbers are positive (or not negative): lanes where all hold for certain, and where one certainly

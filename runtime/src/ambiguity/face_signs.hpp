@@ -33,8 +33,8 @@ struct FaceBlock {
   std::size_t tiles = 0;
   /// By tile: bit f is set if face f is high. Undefined for unambiguous faces.
   alignas(64) std::array<std::uint64_t, kPitch> high;
-  /// By tile: not 0 if rounding could decide one of its faces.
-  alignas(64) std::array<std::uint64_t, kPitch> unsure;
+  /// By tile: bit i is set if rounding could decide a face of tile i. No others are.
+  std::uint64_t unsure = 0;
 };
 
 /// Decides all faces by the means of their corners.

@@ -164,7 +164,7 @@ class WordResolver {
     for (std::size_t j = 0; j < of_.count; ++j) {
       const unsigned bit = of_.bits[j], signature = of_.signatures[j];
       const std::uint64_t high = block_.high[bit];
-      of_.unsure |= std::uint64_t{block_.unsure[bit] != 0} << j;
+      of_.unsure |= (block_.unsure >> bit & 1u) << j;
       ResolvedKey& key = of_.tiles[j].key;
       key.signature = static_cast<std::uint16_t>(signature);
       key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;

@@ -25,6 +25,11 @@ Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const R
     }
   quick_ = rows_ != nullptr && !has_cubes_ && shape_.size(0) <= kMostListed;
   has_cubes_ = has_cubes_ || lists_cubes_;
+  if (N < 4 && rows_ != nullptr) {
+    owns_vertices_ = false;
+    for (unsigned s = 0; s < 1u << (1u << std::min(N, 3)); ++s)
+      owns_vertices_ = owns_vertices_ || rows_->own_vertices(s) != 0;
+  }
 }
 
 template <int N>
@@ -224,6 +229,7 @@ template <int N>
 TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const {
   TileRow tiles = tile_row(shape_, view, *view.slab, row);
   tiles.sizes = !lists_cubes_;  // else resolve_tesseracts counts them
+  tiles.own_vertices = owns_vertices_;
   TileCount count = count_tile_row<N>(tiles, *rows_, room);
   if (N < 4 && estimator_ != nullptr) resolve_tiles(view, row, room, count);
   return count;

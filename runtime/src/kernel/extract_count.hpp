@@ -177,6 +177,7 @@ class Counter {
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
   bool lists_cubes_ = false;
+  bool owns_vertices_ = true;  ///< N < 4: whether the tile of any signature does
 };
 
 }  // namespace tegl::detail

@@ -313,7 +313,7 @@ HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, cons
     }
   }
   count.simplices = simplices.total();
-  if (table.has_own_vertices() && row.sizes)
+  if (row.own_vertices && row.sizes && table.has_own_vertices())
     for (std::uint32_t i = 0; i < count.active; ++i) count.own_vertices += table.own_vertices(room.signatures[i]);
   // sums over the row
   const Word* const upper = row.corners[1u << (N - 2)];

@@ -31,6 +31,7 @@ struct TileRow {
   const Word* valid;                   ///< null: all tiles are valid
   /// N = 4: whether simplices and own vertices are counted. The entries of the table are seldom in a cache.
   bool sizes = true;
+  bool own_vertices = true;  ///< with `sizes`: false if no signature has own vertices, as opposed to keys of variants
 };
 
 /// Output of counting a row of tiles.

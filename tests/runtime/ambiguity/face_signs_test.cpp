@@ -110,9 +110,10 @@ void compare_means(const Kind& kind) {
   for (const std::size_t tiles : {64, 64, 1, 7, 8, 9, 63}) {
     FaceBlock<N> block = random_block<N>(kind, tiles, random);
     decide_by_means(block, kind.isovalue);
+    EXPECT_EQ(block.unsure >> (tiles - 1) >> 1, 0u) << "of tiles that there are not";
     for (std::size_t bit = 0; bit < tiles; ++bit) {
-      EXPECT_TRUE(!kind.is_sure || block.unsure[bit] == 0) << kind.name;
-      if (block.unsure[bit] != 0) continue;
+      EXPECT_TRUE(!kind.is_sure || (block.unsure >> bit & 1u) == 0) << kind.name;
+      if ((block.unsure >> bit & 1u) != 0) continue;
       for_all_faces<N>([&](unsigned axes, unsigned base, unsigned number) {
         const auto values = face_values(block, bit, axes, base);
         ASSERT_EQ((block.high[bit] >> number & 1u) != 0, is_mean_high(values, kind.isovalue))
@@ -128,9 +129,10 @@ void compare_saddles(const Kind& kind) {
   for (const std::size_t tiles : {64, 64, 64, 1, 7, 8, 9, 63}) {
     FaceBlock<N> block = random_block<N>(kind, tiles, random);
     decide_by_saddles(block, kind.isovalue);
+    EXPECT_EQ(block.unsure >> (tiles - 1) >> 1, 0u) << "of tiles that there are not";
     for (std::size_t bit = 0; bit < tiles; ++bit) {
-      EXPECT_TRUE(!kind.is_sure || block.unsure[bit] == 0) << kind.name;
-      if (block.unsure[bit] != 0) continue;
+      EXPECT_TRUE(!kind.is_sure || (block.unsure >> bit & 1u) == 0) << kind.name;
+      if ((block.unsure >> bit & 1u) != 0) continue;
       for_all_faces<N>([&](unsigned axes, unsigned base, unsigned number) {
         const auto values = face_values(block, bit, axes, base);
         const bool is_high = (block.high[bit] >> number & 1u) != 0;
