@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Edges of cells, sorted and without duplicates: by ranges of their smaller ends, then by smaller ends.
+// Edges of cells without duplicates: those of a block of cells in a hash table, those of all cells sorted by ranges of
+// their smaller ends, then by smaller ends.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,6 +23,68 @@ namespace tegl::detail {
 
 /// The ends of an edge: the smaller number of a point first.
 using EdgeEnds = std::array<Index, 2>;
+
+/// Distinct edges in the order of their first occurrence. A hash table with open addressing: small, as it only has the
+/// edges of one block, so that it stays in the nearest caches.
+class EdgeSet {
+ public:
+  /// Removes all edges. `edges`: how many will be added, equal ones included.
+  void clear(std::size_t edges) {
+    size_ = 0;
+    // in a tetrahedral mesh five cells share an edge on average
+    resize(std::bit_ceil(std::max<std::size_t>(64, edges)));
+  }
+
+  /// The number of an edge, which is added if it is new.
+  Index add(Index p, Index q) {
+    const std::uint64_t edge = std::uint64_t{std::min(p, q)} << 32 | std::max(p, q);
+    if (size_ == edges_.size()) grow();
+    // A free slot has a larger number than all edges. The edge at size_ is the new one, so that one comparison finds
+    // both an old edge and a free slot: which of the two it is cannot be predicted.
+    edges_[size_] = edge;
+    for (std::size_t slot = slot_of(edge);; slot = (slot + 1) & (slots_.size() - 1)) {
+      const Index number = std::min(slots_[slot], static_cast<Index>(size_));
+      if (edges_[number] != edge) continue;
+      slots_[slot] = number;
+      size_ += number == size_ ? 1 : 0;
+      return number;
+    }
+  }
+
+  /// The edges by number.
+  [[nodiscard]] std::vector<EdgeEnds> edges() const {
+    std::vector<EdgeEnds> ends(size_);
+    for (std::size_t i = 0; i < size_; ++i)
+      ends[i] = {static_cast<Index>(edges_[i] >> 32), static_cast<Index>(edges_[i])};
+    return ends;
+  }
+
+ private:
+  static constexpr Index kFree = std::numeric_limits<Index>::max();
+  static constexpr std::size_t kSlotsPerEdge = 4;  // at least
+
+  [[nodiscard]] std::size_t slot_of(std::uint64_t edge) const noexcept {
+    return static_cast<std::size_t>((edge * 0x9e3779b97f4a7c15u) >> shift_);
+  }
+  void resize(std::size_t slots) {
+    slots_.assign(slots, kFree);
+    shift_ = 64 - static_cast<unsigned>(std::countr_zero(slots));
+    edges_.resize(slots / kSlotsPerEdge);
+  }
+  void grow() {
+    resize(2 * slots_.size());
+    for (std::size_t i = 0; i < size_; ++i) {
+      std::size_t slot = slot_of(edges_[i]);
+      while (slots_[slot] != kFree) slot = (slot + 1) & (slots_.size() - 1);
+      slots_[slot] = static_cast<Index>(i);
+    }
+  }
+
+  std::vector<Index> slots_;  ///< numbers of edges; a power of two
+  unsigned shift_ = 0;
+  std::vector<std::uint64_t> edges_;  ///< the first size_, and free ones; the smaller end is in the upper half
+  std::size_t size_ = 0;
+};
 
 /// Edges in ascending order.
 class SortedEdges {

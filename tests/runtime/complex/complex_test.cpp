@@ -163,6 +163,30 @@ TEST(Complex, ResultsAreTheSameBytesWithAnyThreadsAndWithKnownEdges) {
   }
 }
 
+/// Cells without common points: no two have an edge in common, so that all crossed edges are distinct.
+TEST(Complex, CellsWithoutCommonPointsHaveTheSameContourWithKnownEdges) {
+  constexpr std::size_t kCells = 3000;
+  std::vector<std::array<double, 3>> points;
+  std::vector<Index> corners;
+  std::vector<double> values;
+  for (std::size_t c = 0; c < kCells; ++c)
+    for (std::size_t v = 0; v < 4; ++v) {
+      std::array<double, 3> point{static_cast<double>(2 * c), 0, 0};
+      if (v > 0) point[v - 1] += 1;
+      corners.push_back(static_cast<Index>(points.size()));
+      points.push_back(point);
+      values.push_back(v == c % 4 ? 1.0 : 0.0);
+    }
+  Complex<3> complex(std::move(points), CellType::tetrahedron, corners);
+  complex.set_values(values);
+  Complex<3> known = complex;
+  known.find_edges();
+  const auto one = extract(complex, 0.5), other = extract(known, 0.5);
+  EXPECT_EQ(3 * kCells, one.vertices.size());
+  EXPECT_TRUE(one.vertices == other.vertices);
+  EXPECT_TRUE(one.simplices == other.simplices);
+}
+
 TEST(Complex, EdgesAreThoseOfAllCellsOnce) {
   for (const auto& [name, mesh] : meshes(8)) {
     Complex<3> complex = mesh.complex();
