@@ -281,7 +281,7 @@ StoredImage open_member(const fs::path& path, const ZipMember& member) {
   return image;
 }
 
-/// The text of an array of one text, such as numpy.array("fcc"): UCS-4, padded by zeros.
+/// The text of an array of one text, such as numpy.array("fcc") (UCS-4) or numpy.bytes_("fcc"): padded by zeros.
 std::string text_of(const fs::path& path, const ZipMember& member) {
   constexpr std::uint64_t kMost = 4096;  // a header and a name
   const std::string label = fmt::format("array {}: ", shown(*array_name(member)));
@@ -292,21 +292,29 @@ std::string text_of(const fs::path& path, const ZipMember& member) {
   } else if (member.bytes <= kMost) {
     bytes = read_bytes(path, member.offset, static_cast<std::size_t>(member.bytes));
   }
-  const auto fail_text = [&] {
-    fail(ErrorCode::MalformedFile, path, "{}expected one text, the name of a lattice", label);
+  const auto fail_text = [&](const std::string& what) {
+    fail(ErrorCode::MalformedFile, path, "{}{}; expected one text, the name of a lattice", label, what);
   };
-  if (bytes.size() != member.bytes || bytes.empty()) fail_text();
+  if (member.bytes > kMost) fail_text(fmt::format("{} bytes", member.bytes));
+  if (bytes.size() != member.bytes || bytes.empty())
+    fail_text(fmt::format("{} of {} bytes", bytes.size(), member.bytes));
   const std::uint64_t start = header_bytes(bytes, path, label);
   const auto before = static_cast<std::size_t>(bytes[6] == 1 ? 10 : 12);
-  if (start > bytes.size() || start < before) fail_text();
+  if (start > bytes.size() || start < before)
+    fail_text(fmt::format("a header of {} bytes in {} bytes", start, bytes.size()));
   const std::string_view header(reinterpret_cast<const char*>(bytes.data()) + before,
                                 static_cast<std::size_t>(start) - before);
   const NpyFields fields = Literal(header, path, label).fields();
-  if (!fields.shape.empty() || !fields.descr.starts_with("<U")) fail_text();
+  const bool is_bytes = fields.descr.starts_with("|S") || fields.descr.starts_with("S");
+  if (!fields.shape.empty() || !(is_bytes || fields.descr.starts_with("<U")))
+    fail_text(fmt::format("the type {} and the shape ({})", shown(fields.descr), fmt::join(fields.shape, ", ")));
+  const std::size_t width = is_bytes ? 1 : 4;
   std::string text;
-  for (std::size_t at = static_cast<std::size_t>(start); at + 4 <= bytes.size(); at += 4) {
-    if (bytes[at] == 0) break;
-    text += bytes[at + 1] == 0 && bytes[at + 2] == 0 && bytes[at + 3] == 0 ? static_cast<char>(bytes[at]) : '?';
+  for (std::size_t at = static_cast<std::size_t>(start); at + width <= bytes.size(); at += width) {
+    const auto* const next = bytes.data() + at;
+    if (std::all_of(next, next + width, [](unsigned char byte) { return byte == 0; })) break;
+    text += std::all_of(next + 1, next + width, [](unsigned char byte) { return byte == 0; }) ? static_cast<char>(*next)
+                                                                                              : '?';
   }
   return text;
 }

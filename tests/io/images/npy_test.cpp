@@ -241,12 +241,17 @@ TEST(Npz, AnArrayOfOneTextNamesTheLattice) {
   };
   EXPECT_EQ(lattice(text("triangular", "<U10")), Lattice::triangular);
   EXPECT_EQ(lattice(text("cubic", "<U5")), std::nullopt);
+  EXPECT_EQ(lattice(npy("|S10", "", "triangular")), Lattice::triangular);
+  EXPECT_EQ(lattice(npy("|S12", "", std::string("triangular\0\0", 12))), Lattice::triangular);
+  EXPECT_EQ(lattice(npy("S5", "", "cubic")), std::nullopt);
   const auto refused = [&](const std::string& array, const char* message) {
     expect_error(ErrorCode::MalformedFile, {message}, [&] { (void)lattice(array); });
   };
   refused(text("cube", "<U4"), "sample_lattice is 'cube'; expected cubic, triangular");
-  refused(text("ab", "<U1", "2,"), "array 'sample_lattice': expected one text");
-  refused(npy("<i4", "", little(3, 4)), "array 'sample_lattice': expected one text");
+  refused(text("ab", "<U1", "2,"), "array 'sample_lattice': the type '<U1' and the shape (2); expected one text");
+  refused(npy("<i4", "", little(3, 4)), "array 'sample_lattice': the type '<i4' and the shape (); expected one text");
+  refused(npy("|S2000", "", std::string(5000, 'a')), "bytes; expected one text, the name of a lattice");
+  refused(npy("|S4", "", "cube"), "sample_lattice is 'cube'; expected cubic, triangular");
   refused("\x93NUMPY", "sample_lattice");
 }
 
