@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
@@ -19,6 +18,7 @@
 #include "commands/image_makers.hpp"
 #include "output/image_result.hpp"
 #include "tegl/field.hpp"
+#include "tegl/io/image_writer.hpp"
 
 namespace tegl::cli {
 
@@ -110,7 +110,7 @@ class SampleCommand final : public Command {
     if (dim == 5) write<5>(field, lattice, bar, result);
     bar.clear();
     result.report(streams.out, json(), quiet());
-    if (lattice && !quiet() && std::filesystem::path(output_).extension() == ".vti")
+    if (lattice && !quiet() && !records_lattice(output_))
       streams.err.write(fmt::format("tegl: {} does not record the lattice; contour it with --lattice {}\n",
                                     printable(output_), lattice_));
     return ExitCode::Ok;

@@ -60,6 +60,10 @@ bool is_image_output(const std::filesystem::path& path) {
   return extension == ".nrrd" || extension == ".vti" || io_detail::is_netcdf_name(path);
 }
 
+bool records_lattice(const std::filesystem::path& path) {
+  return is_image_output(path) && io_detail::extension_of(path) != ".vti";
+}
+
 namespace detail {
 
 struct ImageFile::Parts {

@@ -240,6 +240,20 @@ TEST_F(ImageWriter, LatticesAreRecorded) {
                [&] { (void)read_series(files); });
 }
 
+TEST_F(ImageWriter, FormatsThatRecordLatticesGiveThemBack) {
+  Grid<3> grid;
+  for (Axis& axis : grid.axes) axis = Axis::uniform(4, 0.0, 1.0);
+  const OwnedImage<float, 3> image{grid, Values<float>(64)};
+  ImageInfo info;
+  info.lattice = Lattice::bcc;
+  for (const char* const name : {"a.nrrd", "a.nc", "a.cdf", "a.vti"}) {
+    write_image(image.view(), path(name), info);
+    EXPECT_EQ(read_image(path(name)).info.lattice.has_value(), records_lattice(path(name))) << name;
+  }
+  EXPECT_FALSE(records_lattice(path("a.vti")));
+  EXPECT_FALSE(records_lattice(path("a.png")));
+}
+
 TEST_F(ImageWriter, WrongLatticesAreErrors) {
   const auto nrrd = [&](const std::string& key) {
     write_file(path("a.nrrd"), "NRRD0004\ntype: uint8\ndimension: 2\nsizes: 2 2\nencoding: raw\n" + key + "\n\nabcd");

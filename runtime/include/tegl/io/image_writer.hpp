@@ -20,6 +20,9 @@ namespace tegl {
 /// Whether the extension is one of write_image: .nrrd, .nc (or .cdf), .vti.
 [[nodiscard]] bool is_image_output(const std::filesystem::path& path);
 
+/// Whether write_image records ImageInfo::lattice in a file with this extension: .nrrd, .nc (or .cdf), not .vti.
+[[nodiscard]] bool records_lattice(const std::filesystem::path& path);
+
 namespace detail {
 
 /// The grid of an image in any dimension.
@@ -55,9 +58,9 @@ StoredGrid stored_grid(const Grid<N>& grid) {
 }  // namespace detail
 
 /// Writes an image layer by layer, for images larger than memory. The file appears when it is complete. Of `info`,
-/// value_unit, value_name, world_frame, variable, axis_directions, samples_are_cells (.nrrd, .vti) and lattice (.nrrd,
-/// .nc, .cdf) are written if the format has them. read_image (in 5D read_series_to_5d, .nrrd only) gives the same
-/// values, coordinates, names and units back; coordinates of cells in .vti up to rounding.
+/// value_unit, value_name, world_frame, variable, axis_directions, samples_are_cells (.nrrd, .vti) and lattice
+/// (records_lattice) are written if the format has them. read_image (in 5D read_series_to_5d, .nrrd only) gives the
+/// same values, coordinates, names and units back; coordinates of cells in .vti up to rounding.
 ///
 /// .nrrd: NRRD0005 with raw values. Axes must be uniform. The world map becomes space directions; of more than four
 /// axes, those after the third must be separate from the others then. The frames LPS, LAS and RAS are named in the file
