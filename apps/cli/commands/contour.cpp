@@ -585,7 +585,7 @@ class ContourCommand final : public Command {
           ErrorCode::InvalidArgument,
           fmt::format(
               "--facets with {}; expected one of the two: facets need the image in memory and are not triangulated",
-              is_streamed() ? "--stream" : "--triangulation"));
+              is_streamed() ? "--stream" : "--triangulation " + options_.triangulation()));
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}, which is for simplices; expected {}",

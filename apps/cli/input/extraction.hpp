@@ -101,6 +101,8 @@ class ExtractionOptions {
   /// The library's options, without progress. Throws InvalidArgument for an epsilon outside of [0, 0.5), and for a
   /// triangulation of polygons unless `knows_polygons`: then the caller triangulates them.
   [[nodiscard]] ExtractOptions library_options(bool knows_polygons = false) const;
+  /// Value of --triangulation.
+  [[nodiscard]] const std::string& triangulation() const { return triangulation_; }
   /// Value of --normals; empty: none.
   [[nodiscard]] const std::string& normals() const { return normals_; }
   /// Whether --normals requests normals computed from the contour's shape.

@@ -34,7 +34,8 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
   };
   if (options.normals != Normals::none && options.normals != Normals::differences)
     fail("--normals " + extraction.normals(), "--normals gradient, geometric or flat");
-  if (extraction.polygon_triangulation()) fail("--triangulation of polygons", "compact or barycentric");
+  if (extraction.polygon_triangulation())
+    fail("--triangulation " + extraction.triangulation(), "compact or barycentric");
 }
 
 MeshInput read_cells(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress) {

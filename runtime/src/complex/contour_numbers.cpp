@@ -7,12 +7,15 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "ambiguity/face_estimator.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "kernel/contour_output.hpp"
 #include "tegl/error.hpp"
 #include "tegl/generated/cells.hpp"
+#include "tegl/normals.hpp"
 
 namespace tegl::detail {
 
@@ -69,9 +72,9 @@ void check_complex_options(int dim, double isovalue, const ExtractOptions& optio
         "ambiguity resolved from the data, the compact triangulation and close; expected the barycentric one in "
         "4D for meshes, lattices and divided cells");
   if (options.normals != Normals::none && options.normals != Normals::differences)
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "normals by a kernel, by context or to one side; expected differences for meshes, lattices and divided cells");
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("normals are {}; expected gradient (differences) for meshes, lattices and divided cells",
+                            name_of(options.normals)));
 }
 
 ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values,

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
@@ -27,6 +29,7 @@
 #include "periodic/periods.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
+#include "tegl/normals.hpp"
 
 namespace tegl {
 namespace detail {
@@ -242,7 +245,7 @@ template <int N>
 void check_lattice_options(double isovalue, ExtractOptions options) {
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
-                "normals on a lattice by a kernel, by context or to one side; expected differences");
+                fmt::format("normals on a lattice are {}; expected gradient (differences)", name_of(options.normals)));
   if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
     throw Error(ErrorCode::InvalidArgument,
                 "ambiguity resolved from the data; expected low or high for the contour of a lattice");

@@ -19,8 +19,10 @@ namespace tegl::detail {
 /// Throws InvalidArgument for a lattice of other dimensions.
 inline void check_dimension(Lattice lattice, int dim) {
   if (dimension(lattice) != dim)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("lattice {} of a {}D image; expected {} dimensions",
-                                                        name_of(lattice), dim, dimension(lattice)));
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("lattice {} of a {}D image; expected {} dimensions{}", name_of(lattice), dim, dimension(lattice),
+                    lattice == Lattice::fcc && dim == 4 ? ", or the lattice fcc_in_time for fcc over time" : ""));
 }
 
 /// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are two layers.

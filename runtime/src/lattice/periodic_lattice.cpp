@@ -62,6 +62,7 @@ Complex<N> periodic_lattice_complex(const Image<T, N>& image, Lattice lattice, c
     margin[a] = kMargin;
     longer.axes[a] = wrapped_axis(image.grid().axes[a], periods[a], kMargin, kMargin);
   }
+  (void)count_samples(longer, "a lattice with its margins");  // before anything of its size is allocated
   const LatticeCells cells = cells_of_lattice(lattice, four_sizes(longer), margin);
   std::vector<Index> number;
   for_each_sample<N>(longer.sizes(), [&](std::array<std::size_t, N> index) {

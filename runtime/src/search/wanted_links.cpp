@@ -46,6 +46,7 @@ template <class Key>
 HWY_INLINE void find_in_row(const Key* least, const Key* greatest, std::size_t count, Ahead ahead,
                             std::uint64_t* wanted) {
   const std::size_t lanes = hn::Lanes(hn::CappedTag<Key, kReadBeyond>());
+  static_assert(64 % kReadBeyond == 0, "the bits of the last vector of 64 tiles are shifted into one word");
   const std::uint64_t all = ~std::uint64_t{0} >> (64 - count);
   for (std::size_t a = 0; a < ahead.size(); ++a) {
     std::uint64_t bits = 0;

@@ -419,7 +419,7 @@ TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {
     o.ambiguity = Ambiguity::custom;
     o.estimator.choose = [](const AmbiguousFace&) { return tile::Choice::low; };
   });
-  refuse(complex, "expected differences", [](ExtractOptions& o) { o.normals = Normals::sobel; });
+  refuse(complex, "normals are sobel; expected gradient", [](ExtractOptions& o) { o.normals = Normals::sobel; });
   const Complex<4> swept = in_time(complex, std::vector<double>{0.0, 1.0}, std::vector<double>(2 * mesh.points.size()));
   refuse(swept, "expected the barycentric one in 4D for meshes, lattices and divided cells", [](ExtractOptions& o) {
     o.ambiguity = Ambiguity::squares;

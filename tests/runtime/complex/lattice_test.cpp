@@ -322,13 +322,17 @@ TEST(Lattice, BadGridsAreRefused) {
   auto image = lattice_image<3>(Lattice::fcc, 6, [](const auto&, const auto&, const auto&) { return 0.0; });
   expect_error(ErrorCode::InvalidArgument, "lattice d4 of a 3D image; expected 4 dimensions",
                [&] { (void)lattice_complex(image.view(), Lattice::d4); });
+  const auto moving =
+      lattice_image<4>(Lattice::fcc_in_time, 4, [](const auto&, const auto&, const auto&) { return 0.0; });
+  expect_error(ErrorCode::InvalidArgument,
+               "lattice fcc of a 4D image; expected 3 dimensions, or the lattice fcc_in_time for fcc over time",
+               [&] { (void)extract_lattice(moving.view(), Lattice::fcc, 0.0); });
   image.grid.axes[0] = Axis::rectilinear({0.0, 1.0, 2.0, 4.0, 5.0, 6.0});
   expect_error(ErrorCode::InvalidArgument, "axis 0 has a step of",
                [&] { (void)lattice_complex(image.view(), Lattice::fcc); });
   ExtractOptions options;
   options.normals = Normals::sobel;
-  expect_error(ErrorCode::InvalidArgument,
-               "normals on a lattice by a kernel, by context or to one side; expected differences",
+  expect_error(ErrorCode::InvalidArgument, "normals on a lattice are sobel; expected gradient",
                [&] { (void)extract_lattice(image.view(), Lattice::fcc, 0.5, options); });
   EXPECT_EQ(name_of(Lattice::bcc), "bcc");
 }
