@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -325,7 +326,8 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   expect_refused({"--lattice", "hexagonal", "-o", output}, "hexagonal");
   expect_refused({"--lattice", "bcc", "--periodic", "y=19", "-o", output}, "the period of axis 1 is 19; expected 20");
   expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
-  expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output}, "normals on a lattice by a kernel");
+  expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output},
+                 "normals on a lattice are sobel; expected gradient");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});
   EXPECT_FALSE(read_mesh(output).normals.empty());
 }
@@ -386,6 +388,30 @@ TEST_F(PeriodicCommand, FilesThatDoNotRecordTheLatticeAreRemarked) {
   EXPECT_THAT(run.err, HasSubstr("does not record the lattice; contour it with --lattice fcc"));
   EXPECT_EQ(run_tegl({"sample", "ball", "--lattice", "fcc", "--size", "6", "-o", path("ball.nrrd")}).err, "");
   EXPECT_THAT(run_tegl({"info", path("ball.nrrd")}).out, HasSubstr("edges along the axes"));
+}
+
+TEST_F(PeriodicCommand, LatticeCubicReadsFilesWhoseAxesCannotHaveTheirLattice) {
+  const std::string moving = path("moving.nc"), flat = path("flat.nrrd"), output = path("cut.ply");
+  (void)run_json({"sample", "ball", "--lattice", "fcc_in_time", "--size", "9", "-o", moving});
+  const auto cubic_only = [&](std::vector<std::string> arguments, const std::string& message) {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+    arguments.insert(arguments.end(), {"--lattice", "cubic"});
+    return run_json(arguments);
+  };
+  const std::string one_index = "one index of a dimension of samples on the lattice fcc_in_time";
+  EXPECT_EQ(cubic_only({"info", moving, "--fix", "z=4"}, one_index)["lattice"], "cubic");
+  EXPECT_GT(cubic_only({"contour", moving, "--fix", "z=4", "--iso", "0", "-o", output}, one_index)["vertices"], 0);
+  EXPECT_GT(cubic_only({"measure", moving, "--fix", "z=4", "--iso", "0"}, one_index)["size"], 0);
+  // a flat file, whose lattice has more axes
+  std::ofstream(flat) << "NRRD0005\ntype: uchar\ndimension: 2\nsizes: 3 3\nencoding: ascii\n"
+                         "sample_lattice:=fcc\n\n0 0 0 0 9 0 0 0 0\n";
+  const std::string axes = "has the lattice fcc, and is read as an image of 2 axes; expected 3";
+  EXPECT_EQ(cubic_only({"info", flat}, axes)["lattice"], "cubic");
+  EXPECT_EQ(cubic_only({"contour", flat, "--iso", "5", "-o", path("flat.vtkhdf")}, axes)["vertices"], 4);
+  EXPECT_THAT(run_tegl({"info", path("flat.vtkhdf"), "--lattice", "cubic"}).err,
+              HasSubstr("which is a contour; expected it with an image"));
 }
 
 TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {

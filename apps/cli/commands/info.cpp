@@ -346,6 +346,11 @@ class InfoCommand final : public Command {
             "...) or an index (.tindex)",
             Files::image) {
     add_image_options();
+    lattice_option_ = app()
+                          .add_option("--lattice", lattice_,
+                                      "cubic: leave the lattice that the file records out of "
+                                      "account, also one that its axes cannot have")
+                          ->check(CLI::IsMember({"cubic"}));
     app().footer(kInfoExamples);
   }
 
@@ -353,6 +358,7 @@ class InfoCommand final : public Command {
     require_inputs();
     // an index file
     if (is_index_file(file())) {
+      refuse_lattice("an index");
       if (const auto given = images().given(); !given.empty() || files().size() > 1)
         throw Error(ErrorCode::InvalidArgument, fmt::format("{} is an index, not an image; expected it without {}",
                                                             file(), given.empty() ? "other files" : given.front()));
@@ -396,7 +402,13 @@ class InfoCommand final : public Command {
 
  private:
   [[nodiscard]] bool knows_lattices() const override { return true; }
+  void refuse_lattice(const char* kind) const {
+    if (lattice_option_->count() > 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--lattice {} with {}, which is {}; expected it with an image", lattice_, file(), kind));
+  }
   ExitCode describe_contour(const Streams& streams) {
+    refuse_lattice("a contour");
     refuse_image_options(files(), {}, images(), "it without options for images");
     ProgressBar bar(streams.err, wants_progress());
     const Mesh mesh = read_finite_mesh(file(), mesh_options(bar.stage("read")));
@@ -406,6 +418,7 @@ class InfoCommand final : public Command {
   }
 
   ExitCode describe_mesh(const Streams& streams) {
+    refuse_lattice("a mesh");
     if (const auto given = images().given(); !given.empty() || files().size() > 1)
       throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a mesh; expected it without {}", file(),
                                                           given.empty() ? "other files" : given.front()));
@@ -415,6 +428,9 @@ class InfoCommand final : public Command {
     streams.out.write(json() ? dump(mesh_json(info, inputs())) : mesh_text(streams.out, info, file()));
     return ExitCode::Ok;
   }
+
+  std::string lattice_;
+  CLI::Option* lattice_option_ = nullptr;
 };
 
 }  // namespace

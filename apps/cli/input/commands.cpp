@@ -60,6 +60,7 @@ unsigned Command::threads_wanted() const {
 }
 
 ReadImageResult Command::read(const Progress& progress, CurvedGrids curved) {
+  take_cubic();
   ReadSeriesResult result = images_.read(worked_on_, progress);
   take_order(result.files);
   settle_curved(result.info, curved);
@@ -69,6 +70,7 @@ ReadImageResult Command::read(const Progress& progress, CurvedGrids curved) {
 
 std::variant<ReadImageResult, ReadImage5dResult> Command::read_to_5d(const Progress& progress, CurvedGrids curved,
                                                                      bool keep_stored) {
+  take_cubic();
   auto any = images_.read_to_5d(worked_on_, progress, keep_stored);
   std::visit([&](const auto& read) { take_order(read.files); }, any);
   if (auto* const read = std::get_if<ReadSeries5dResult>(&any)) {
@@ -82,6 +84,7 @@ std::variant<ReadImageResult, ReadImage5dResult> Command::read_to_5d(const Progr
 }
 
 OpenLayersResult Command::open() {
+  take_cubic();
   OpenSeriesResult result = images_.open(worked_on_);
   take_order(result.files);
   settle_curved(result.info, CurvedGrids::refused);
@@ -103,6 +106,11 @@ void Command::settle_curved(ImageInfo& info, CurvedGrids curved) const {
       fmt::format("{} has a curved grid ({} in arrays of several dimensions), which this command or option does "
                   "not know; expected --index-grid, for indices as coordinates",
                   worked_on_.front(), fmt::join(names, ", ")));
+}
+
+void Command::take_cubic() {
+  const CLI::Option* const option = app_->get_option_no_throw("--lattice");
+  if (option != nullptr && option->count() > 0 && option->as<std::string>() == "cubic") images_.read_as_cubic();
 }
 
 void Command::settle_lattice(const ImageInfo& info) const {

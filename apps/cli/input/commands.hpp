@@ -114,6 +114,8 @@ class Command {
  private:
   void take_order(const std::vector<std::filesystem::path>& files);
   void settle_curved(ImageInfo& info, CurvedGrids curved) const;
+  /// Leaves lattices of files out of account if the command has --lattice and it is cubic.
+  void take_cubic();
   /// Throws UnsupportedData for an image on a lattice, unless the command knows lattices.
   void settle_lattice(const ImageInfo& info) const;
   /// Whether the command takes the lattice of an image into account, or refuses it itself.

@@ -252,6 +252,7 @@ auto ImageOptions::read_by(const Function& function, const std::vector<std::stri
   options.work.progress = progress;
   options.separate_process = separate_process();
   options.keep_stored = keep_stored;
+  options.as_cubic = as_cubic_;
   return with_hint(variable(), files, options, [&] { return function(paths_of(files), options); });
 }
 

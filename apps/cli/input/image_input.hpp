@@ -46,6 +46,9 @@ class ImageOptions {
   [[nodiscard]] bool& allow_outside_paths() { return allow_outside_paths_; }
   [[nodiscard]] bool allow_outside_paths() const { return allow_outside_paths_; }
 
+  /// Leaves the lattices of the files read from now on out of account (ReadImageOptions::as_cubic).
+  void read_as_cubic() { as_cubic_ = true; }
+
   /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that conflict with each
   /// other or the files, and for files in the order of a shell.
   [[nodiscard]] ReadSeriesResult read(const std::vector<std::string>& files, const Progress& progress) const;
@@ -102,6 +105,7 @@ class ImageOptions {
   bool in_process_ = false;
   bool cells_to_points_ = false;
   bool index_grid_ = false;
+  bool as_cubic_ = false;
   std::vector<std::string> fixed_;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;

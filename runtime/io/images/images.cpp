@@ -195,6 +195,7 @@ RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImag
                        ? read_netcdf(path, extent, options)
                        : read_stored(open_stored(path, format, options), extent, options.work.progress);
   drop_trailing_axes(image.grid, image.info);
+  if (options.as_cubic) image.info.lattice.reset();
   settle_lattice(image.grid, image.info, path);
   return image;
 }
@@ -205,6 +206,7 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   const Format format = format_of(path);
   if (format == Format::NetCdf) {
     RawLayers layers = open_netcdf_layers(path, options);
+    if (options.as_cubic) layers.info.lattice.reset();
     settle_lattice(layers.grid, layers.info, path);
     return layers;
   }
@@ -214,6 +216,7 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   converted.keep_stored = false;
   StoredImage stored = open_stored(path, format, converted);
   drop_trailing_axes(stored.grid, stored.info);
+  if (options.as_cubic) stored.info.lattice.reset();
   settle_lattice(stored.grid, stored.info, path);
   return open_stored_layers(std::move(stored), path);
 }

@@ -509,7 +509,7 @@ Found find_variable(const NcFile& file, const ReadImageOptions& options) {
   if (info.value_name.empty()) info.value_name = file.text(variable, "standard_name");
   info.stored_type = parse_value_type(nc_type_name(variable.type));
   info.lattice = lattice_of_text(file.text(variable, kLatticeKey), file.path());
-  if (info.lattice) require_whole_lattice(file, *info.lattice, slab);
+  if (info.lattice && !options.as_cubic) require_whole_lattice(file, *info.lattice, slab);
   return {variable, slab, info};
 }
 

@@ -33,7 +33,8 @@ ReadImageOptions member_options(const SeriesOptions& options, const Progress& pr
           .work = {.progress = progress},
           .fixed = options.fixed,
           .allow_outside_paths = options.allow_outside_paths,
-          .keep_stored = options.keep_stored};
+          .keep_stored = options.keep_stored,
+          .as_cubic = options.as_cubic};
 }
 
 RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {

@@ -120,6 +120,9 @@ struct ReadImageOptions {
   /// and if float (of 32 bits: double) has not four numbers between the values of neighbouring integers. Integers of
   /// DICOM whose values are integers of the same size are always converted: they take no more memory.
   bool keep_stored = false;
+  /// Leaves the lattice that the file records out of account: ImageInfo::lattice is none, and axes that the lattice
+  /// could not have are no error.
+  bool as_cubic = false;
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage

@@ -39,6 +39,7 @@ struct SeriesOptions {
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
   bool keep_stored = false;                ///< as in ReadImageOptions; not in open_series
+  bool as_cubic = false;                   ///< as in ReadImageOptions, for every file
 };
 
 /// An image read from several files, and the list of files.
