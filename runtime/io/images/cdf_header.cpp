@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,16 @@ class HeaderWalk {
     attributes();
     variables();
     return check_extents();
+  }
+
+  /// After run(): the first byte of each variable whose values lie in one piece.
+  [[nodiscard]] std::vector<std::optional<std::uint64_t>> begins() const {
+    std::vector<std::optional<std::uint64_t>> result;
+    const std::uint64_t record_bytes = bytes_of_record();
+    for (const Variable& variable : variables_)
+      result.push_back(!variable.record || variable.bytes == record_bytes ? std::optional(variable.begin)
+                                                                          : std::nullopt);
+    return result;
   }
 
  private:
@@ -161,9 +172,8 @@ class HeaderWalk {
     }
   }
 
-  /// Throws unless all variables lie after the header and within the file. Returns the end of the last one.
-  [[nodiscard]] std::uint64_t check_extents() const {
-    // size of a record
+  /// Size of a record of all record variables.
+  [[nodiscard]] std::uint64_t bytes_of_record() const {
     std::uint64_t record_bytes = 0;
     const auto count = std::count_if(variables_.begin(), variables_.end(), [](const Variable& v) { return v.record; });
     // A single record variable is not padded to 4 bytes.
@@ -174,7 +184,12 @@ class HeaderWalk {
         fail(ErrorCode::MalformedFile, path_, "records up to variable '{}' take more than 2^64 bytes; expected fewer",
              variable.name);
     }
-    // extent of each variable
+    return record_bytes;
+  }
+
+  /// Throws unless all variables lie after the header and within the file. Returns the end of the last one.
+  [[nodiscard]] std::uint64_t check_extents() const {
+    const std::uint64_t record_bytes = bytes_of_record();
     std::uint64_t last = at_;
     for (const Variable& variable : variables_) {
       std::uint64_t end = variable.bytes;
@@ -221,12 +236,18 @@ std::uint64_t bytes_of_classic_netcdf(std::span<const unsigned char> bytes, std:
   }
 }
 
-void check_classic_netcdf(const fs::path& path) {
+std::vector<std::optional<std::uint64_t>> check_classic_netcdf(const fs::path& path) {
   const std::uint64_t size = size_of_file(path);
   // Most headers are some kilobytes; a longer one is read again with a larger block.
   for (std::size_t piece = std::size_t{1} << 16;; piece *= 16) {
     const std::vector<unsigned char> bytes = read_bytes(path, 0, piece);
-    if (bytes_of_classic_netcdf(bytes, size, path) != 0) return;
+    try {
+      HeaderWalk walk(bytes, size, path);
+      walk.run();
+      return walk.begins();
+    } catch (const EndOfBytes&) {
+      // read more
+    }
     if (bytes.size() < piece)
       fail(ErrorCode::MalformedFile, path, "ends within its header, after {} bytes; expected a whole file",
            bytes.size());

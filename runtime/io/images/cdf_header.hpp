@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace tegl::io_detail {
 
@@ -14,8 +16,9 @@ namespace tegl::io_detail {
 bool is_classic_netcdf(std::span<const unsigned char> prefix);
 
 /// Throws MalformedFile unless the header of the classic file at `path` is valid and all its variables lie within the
-/// file.
-void check_classic_netcdf(const std::filesystem::path& path);
+/// file. Returns the first byte of each variable, in the order of their ids; nullopt for those whose records lie apart,
+/// with records of other variables between them.
+std::vector<std::optional<std::uint64_t>> check_classic_netcdf(const std::filesystem::path& path);
 
 /// Size in bytes of a classic file's header and variables; 0 if the header is longer than `bytes`, the start of the
 /// file. `most`: an upper bound of the file size. Errors: those of check_classic_netcdf, naming `path`.

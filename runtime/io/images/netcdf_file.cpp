@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 #include <netcdf_filter.h>
@@ -17,6 +18,7 @@
 #include "base/hdf5_links.hpp"
 #include "base/inflate.hpp"
 #include "base/reading_process.hpp"
+#include "base/sample_reader.hpp"
 #include "images/cdf_header.hpp"
 
 namespace tegl::io_detail {
@@ -130,7 +132,7 @@ NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outsid
   const auto all = std::span<const unsigned char>(content_.empty() ? start : content_);
   const auto prefix = all.first(std::min<std::size_t>(all.size(), 8));
   if (is_classic_netcdf(prefix)) {
-    if (content_.empty()) check_classic_netcdf(path);
+    if (content_.empty()) begins_ = check_classic_netcdf(path);
   } else if (!is_hdf5(prefix)) {
     fail(ErrorCode::MalformedFile, path, "starts with {}; expected netCDF: 'CDF' and 1, 2 or 5, or '\\x89HDF'",
          shown(prefix));
@@ -138,9 +140,12 @@ NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outsid
   bytes_ = is_hdf5(prefix)    ? check_hdf5_links(path, content_, Hdf5Reader::netcdf, allow_outside_paths)
            : content_.empty() ? size_of_file(path)
                               : content_.size();
+  // The library reads classic files through a buffer of this size, by default 4 KiB, with a call to the system for
+  // each. A larger one would read too much for a time of each record.
+  std::size_t buffer = std::size_t{1} << 16;
   // An absolute path is never taken for a server's URL.
   const int status = content_.empty()
-                         ? nc_open(fs::absolute(path).c_str(), NC_NOWRITE, &id_)
+                         ? nc__open(fs::absolute(path).c_str(), NC_NOWRITE, &buffer, &id_)
                          : nc_open_mem(path.filename().c_str(), NC_NOWRITE, content_.size(), content_.data(), &id_);
   check(status, "opening it");
 }
@@ -252,6 +257,27 @@ std::optional<double> NcFile::number(const NcVariable& variable, const char* att
   const auto values = numbers(variable, attribute);
   if (values.empty()) return std::nullopt;
   return values[0];
+}
+
+std::optional<ValueArray> NcFile::read_piece(const NcVariable& variable, const NcSlab& slab, const ValueArray& type,
+                                             const Progress& progress) const {
+  const auto id = static_cast<std::size_t>(variable.id);
+  if (id >= begins_.size() || !begins_[id]) return std::nullopt;
+  StoredSamples samples;
+  samples.path = path_;
+  samples.offset = *begins_[id];
+  samples.type = type_name(type);
+  samples.swapped = std::endian::native == std::endian::little;
+  std::uint64_t first = 0;
+  std::uint64_t count = 1;
+  for (std::size_t d = 0; d < slab.count.size(); ++d) {
+    // In one piece: more than one index of a dimension only with all indices of the faster ones.
+    if (count > 1 && slab.count[d] != variable.sizes[d]) return std::nullopt;
+    first = first * variable.sizes[d] + slab.start[d];
+    count *= slab.count[d];
+  }
+  samples.sizes.assign(variable.sizes.rbegin(), variable.sizes.rend());
+  return SampleReader(std::move(samples)).read(first, count, progress);
 }
 
 void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
@@ -371,8 +397,13 @@ ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const 
         const std::uint64_t bytes = checked_bytes(sizes, sizeof(T), path_);
         expect_step(std::max(bytes, bytes == 0 ? 0 : chunk_bytes(variable, sizeof(T))));
         expect_memory(kBytesPerValue * (bytes / sizeof(T)));
+        if (bytes == 0) return;
+        if (std::optional<ValueArray> piece = read_piece(variable, slab, result, progress)) {
+          values = std::move(std::get<ValueVector<T>>(*piece));
+          return;
+        }
         values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
-        if (!values.empty()) read_blocks(variable, slab, sizeof(T), values.data(), progress);
+        read_blocks(variable, slab, sizeof(T), values.data(), progress);
       },
       result);
   return result;

@@ -72,12 +72,17 @@ class NcFile {
   [[nodiscard]] NcVariable describe(int group, int id, const std::string& prefix) const;
   [[nodiscard]] ValueArray numeric_array(const NcVariable& variable) const;
   void require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const;
+  /// The values of a slab that lies in one piece in a classic file, read without the library; nullopt for others.
+  [[nodiscard]] std::optional<ValueArray> read_piece(const NcVariable& variable, const NcSlab& slab,
+                                                     const ValueArray& type, const Progress& progress) const;
   void read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
                    const Progress& progress) const;
 
   std::filesystem::path path_;
   std::vector<unsigned char> content_;  ///< content of a compressed file; the library reads from it
-  std::uint64_t bytes_ = 0;             ///< size of the file and those that it refers to
+  /// Of a classic file that is not compressed: the first bytes of the variables that lie in one piece, by id.
+  std::vector<std::optional<std::uint64_t>> begins_;
+  std::uint64_t bytes_ = 0;  ///< size of the file and those that it refers to
   int id_ = -1;
 };
 
