@@ -349,7 +349,7 @@ std::vector<Complex<4>> noisy_complexes(std::size_t samples, std::uint64_t seed)
   return complexes;
 }
 
-// Minutes; with --gtest_also_run_disabled_tests.
+// Minutes; run by the test long_complex.
 TEST(Compact4d, DISABLED_MovingMeshesOfAHundredThousandCells) {
   for (Complex<4>& complex : noisy_complexes(35, 7)) {
     EXPECT_GT(complex.cell_count(), 100000u);

@@ -166,7 +166,7 @@ TEST(Delaunay, PointsOnCommonSpheresAreTriangulated) {
   expect_closed_noise<4>(on_spheres<4>(4), "spheres");
 }
 
-// Minutes; with --gtest_also_run_disabled_tests.
+// Minutes; run by the test long_complex.
 TEST(Delaunay, DISABLED_AHundredThousandCells) {
   constexpr std::size_t kCells = 100000;
   expect_closed_noise<2>(random_points<2>(51000, 1), "random", kCells);
