@@ -117,6 +117,8 @@ int hex_digit(char c) {
 
 class SampleReader::Source {
  public:
+  using Finish = std::function<void(std::size_t first, std::size_t count)>;
+
   explicit Source(StoredSamples samples) : samples_(std::move(samples)), item_(bytes_of_type(samples_.type)) {
     const std::uint64_t bytes = checked_bytes(samples_.sizes, item_, samples_.path);
     total_ = bytes / item_;
@@ -146,12 +148,18 @@ class SampleReader::Source {
   [[nodiscard]] const StoredSamples& samples() const noexcept { return samples_; }
 
   template <class T>
-  void read(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
+  void read(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress,
+            const Finish& finish) {
     if (count == 0) return;
     const bool in_order = is_open() && first >= next_;
     if (samples_.encoding != Encoding::raw && !in_order) restart();
     try {
-      read_encoded(first, count, values, progress);
+      if (samples_.encoding == Encoding::raw) {
+        read_raw(first, count, values, progress, finish);
+      } else {
+        read_encoded(first, count, values, progress);
+        finish(0, values.size());
+      }
     } catch (...) {  // the stream position is undefined after an error
       inflater_.reset();
       text_.reset();
@@ -167,8 +175,6 @@ class SampleReader::Source {
   template <class T>
   void read_encoded(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
     switch (samples_.encoding) {
-      case Encoding::raw:
-        return read_raw(first, count, values, progress);
       case Encoding::deflate:
         return read_deflated(first, count, values, progress);
       case Encoding::text:
@@ -194,7 +200,8 @@ class SampleReader::Source {
   }
 
   template <class T>
-  void read_raw(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
+  void read_raw(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress,
+                const Finish& finish) {
     values.resize(static_cast<std::size_t>(count));
     constexpr std::size_t kBlock = std::size_t{1} << 19;  // fits in the processor's cache
     const auto to = as_bytes(values, 0);
@@ -204,8 +211,9 @@ class SampleReader::Source {
              "{} bytes from byte {} on cannot be read; expected {} values of "
              "type {}",
              to.size(), samples_.offset + first * item_, count, samples_.type);
-      if (samples_.swapped)
-        swap_bytes(std::span(values).subspan(at / sizeof(T), std::min(kBlock, to.size() - at) / sizeof(T)));
+      const std::size_t size = std::min(kBlock, to.size() - at) / sizeof(T);
+      if (samples_.swapped) swap_bytes(std::span(values).subspan(at / sizeof(T), size));
+      finish(at / sizeof(T), size);
       tell(progress, at, to.size());
     }
   }
@@ -318,9 +326,13 @@ SampleReader& SampleReader::operator=(SampleReader&&) noexcept = default;
 
 const StoredSamples& SampleReader::samples() const noexcept { return source_->samples(); }
 
-ValueArray SampleReader::read(std::uint64_t first, std::uint64_t count, const Progress& progress) {
+ValueArray SampleReader::read(std::uint64_t first, std::uint64_t count, const Progress& progress,
+                              const OnBlock& on_block) {
   ValueArray result = array_of_type(samples().type);
-  std::visit([&](auto& values) { source_->read(first, count, values, progress); }, result);
+  const auto finish = [&](std::size_t from, std::size_t size) {
+    if (on_block) on_block(result, from, size);
+  };
+  std::visit([&](auto& values) { source_->read(first, count, values, progress, finish); }, result);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -50,11 +51,15 @@ class SampleReader {
   SampleReader(SampleReader&&) noexcept;
   SampleReader& operator=(SampleReader&&) noexcept;
 
+  /// Changes values that were just read, [first, first + count) of all that are read, while they are in the cache.
+  using OnBlock = std::function<void(ValueArray& values, std::size_t first, std::size_t count)>;
+
   /// Reads the samples [first, first + count). Encodings other than raw need one pass over the file if samples are read
   /// in ascending order; other orders start a new pass. After the last sample the end is checked: the checksum of a
   /// compressed stream, or that no further number follows in text. Errors: MalformedFile for missing samples, damaged
   /// compressed data, and words that are not numbers in the type's range; Cancelled; std::bad_alloc if memory runs out.
-  ValueArray read(std::uint64_t first, std::uint64_t count, const Progress& progress);
+  /// `on_block` is called for each block of raw samples, and once for all others.
+  ValueArray read(std::uint64_t first, std::uint64_t count, const Progress& progress, const OnBlock& on_block = {});
 
   /// Location and encoding, as given to the constructor.
   [[nodiscard]] const StoredSamples& samples() const noexcept;

@@ -532,6 +532,10 @@ ValueArray unpacked_values(const NcFile& file, const NcVariable& variable, const
   const std::size_t layers = slab.count.empty() ? 0 : slab.count[along];
   if (layers * layer <= CollectedValues::kBlock || (!is_real && !packing.any_attribute))
     return unpack(file.values(variable, slab, progress), packing);
+  if (is_real && file.is_one_piece(variable, slab))
+    return file.values(variable, slab, progress, [&](ValueArray& values, std::size_t first, std::size_t count) {
+      unpack_reals(values, first, count, packing);
+    });
   file.require_stored(variable, slab);
   expect_memory(kBytesPerValue * layers * layer);                // of all blocks: they are collected in one array
   const std::size_t chunk = file.block_length(variable, along);  // no chunk is read twice

@@ -18,7 +18,6 @@
 #include "base/hdf5_links.hpp"
 #include "base/inflate.hpp"
 #include "base/reading_process.hpp"
-#include "base/sample_reader.hpp"
 #include "images/cdf_header.hpp"
 
 namespace tegl::io_detail {
@@ -259,25 +258,33 @@ std::optional<double> NcFile::number(const NcVariable& variable, const char* att
   return values[0];
 }
 
-std::optional<ValueArray> NcFile::read_piece(const NcVariable& variable, const NcSlab& slab, const ValueArray& type,
-                                             const Progress& progress) const {
+bool NcFile::is_one_piece(const NcVariable& variable, const NcSlab& slab) const {
   const auto id = static_cast<std::size_t>(variable.id);
-  if (id >= begins_.size() || !begins_[id]) return std::nullopt;
+  if (id >= begins_.size() || !begins_[id]) return false;
+  // More than one index of a dimension only with all indices of the faster ones.
+  bool any = false;
+  for (std::size_t d = 0; d < slab.count.size(); ++d) {
+    if (any && slab.count[d] != variable.sizes[d]) return false;
+    any = any || slab.count[d] > 1;
+  }
+  return true;
+}
+
+ValueArray NcFile::read_piece(const NcVariable& variable, const NcSlab& slab, const ValueArray& type,
+                              const Progress& progress, const SampleReader::OnBlock& on_block) const {
   StoredSamples samples;
   samples.path = path_;
-  samples.offset = *begins_[id];
+  samples.offset = *begins_[static_cast<std::size_t>(variable.id)];
   samples.type = type_name(type);
   samples.swapped = std::endian::native == std::endian::little;
+  samples.sizes.assign(variable.sizes.rbegin(), variable.sizes.rend());
   std::uint64_t first = 0;
   std::uint64_t count = 1;
   for (std::size_t d = 0; d < slab.count.size(); ++d) {
-    // In one piece: more than one index of a dimension only with all indices of the faster ones.
-    if (count > 1 && slab.count[d] != variable.sizes[d]) return std::nullopt;
     first = first * variable.sizes[d] + slab.start[d];
     count *= slab.count[d];
   }
-  samples.sizes.assign(variable.sizes.rbegin(), variable.sizes.rend());
-  return SampleReader(std::move(samples)).read(first, count, progress);
+  return SampleReader(std::move(samples)).read(first, count, progress, on_block);
 }
 
 void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
@@ -388,7 +395,8 @@ void NcFile::require_stored(const NcVariable& variable, const NcSlab& slab) cons
              numeric_array(variable));
 }
 
-ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const Progress& progress) const {
+ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const Progress& progress,
+                          const SampleReader::OnBlock& on_block) const {
   ValueArray result = numeric_array(variable);
   const std::vector<std::uint64_t> sizes(slab.count.begin(), slab.count.end());
   std::visit(
@@ -398,12 +406,13 @@ ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const 
         expect_step(std::max(bytes, bytes == 0 ? 0 : chunk_bytes(variable, sizeof(T))));
         expect_memory(kBytesPerValue * (bytes / sizeof(T)));
         if (bytes == 0) return;
-        if (std::optional<ValueArray> piece = read_piece(variable, slab, result, progress)) {
-          values = std::move(std::get<ValueVector<T>>(*piece));
+        if (is_one_piece(variable, slab)) {
+          values = std::move(std::get<ValueVector<T>>(read_piece(variable, slab, result, progress, on_block)));
           return;
         }
         values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
         read_blocks(variable, slab, sizeof(T), values.data(), progress);
+        if (on_block) on_block(result, 0, values.size());
       },
       result);
   return result;

@@ -13,6 +13,7 @@
 #include <netcdf.h>
 
 #include "base/raw_image.hpp"
+#include "base/sample_reader.hpp"
 
 namespace tegl::io_detail {
 
@@ -57,7 +58,14 @@ class NcFile {
 
   /// Values in the file's order; attribute _Unsigned is applied. UnsupportedData unless numeric, MalformedFile for a
   /// variable too large for the file.
-  [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress = {}) const;
+  [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress = {}) const {
+    return values(variable, slab, progress, {});
+  }
+  /// As above; `on_block` as in SampleReader: in blocks if the slab is in one piece.
+  [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress,
+                                  const SampleReader::OnBlock& on_block) const;
+  /// Whether a slab lies in one piece in a classic file.
+  [[nodiscard]] bool is_one_piece(const NcVariable& variable, const NcSlab& slab) const;
   /// Throws MalformedFile if the values of a slab, which may be read in parts, are too large for the file.
   void require_stored(const NcVariable& variable, const NcSlab& slab) const;
   /// Number of indices of a dimension in one chunk; 1 if the variable has no chunks.
@@ -72,9 +80,9 @@ class NcFile {
   [[nodiscard]] NcVariable describe(int group, int id, const std::string& prefix) const;
   [[nodiscard]] ValueArray numeric_array(const NcVariable& variable) const;
   void require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const;
-  /// The values of a slab that lies in one piece in a classic file, read without the library; nullopt for others.
-  [[nodiscard]] std::optional<ValueArray> read_piece(const NcVariable& variable, const NcSlab& slab,
-                                                     const ValueArray& type, const Progress& progress) const;
+  /// The values of a slab in one piece, read without the library.
+  [[nodiscard]] ValueArray read_piece(const NcVariable& variable, const NcSlab& slab, const ValueArray& type,
+                                      const Progress& progress, const SampleReader::OnBlock& on_block) const;
   void read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
                    const Progress& progress) const;
 

@@ -21,17 +21,11 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// Unpacks values in simple loops, which the compiler vectorizes.
+/// Replaces missing values by NaN. `to` may be the memory of `stored`.
 template <class Real, class T>
-void unpack_block(std::span<const T> stored, const Packing& packing, Real* to) {
+void mark_missing(std::span<const T> stored, const Packing& packing, Real* to) {
   constexpr Real kMissing = std::numeric_limits<Real>::quiet_NaN();
   const std::size_t count = stored.size();
-  if (packing.scaled) {
-    for (std::size_t i = 0; i < count; ++i)
-      to[i] = static_cast<Real>(static_cast<double>(stored[i]) * packing.scale + packing.offset);
-  } else {
-    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<Real>(stored[i]);
-  }
   // Attributes are compared in the variable's own type: as a float, a fill value of -1e34 is another number.
   for (const double value : packing.missing) {
     const T missing = static_cast<T>(value);
@@ -42,6 +36,19 @@ void unpack_block(std::span<const T> stored, const Packing& packing, Real* to) {
     const auto value = static_cast<double>(stored[i]);
     to[i] = value < packing.least || value > packing.greatest ? kMissing : to[i];
   }
+}
+
+/// Unpacks values in simple loops, which the compiler vectorizes.
+template <class Real, class T>
+void unpack_block(std::span<const T> stored, const Packing& packing, Real* to) {
+  const std::size_t count = stored.size();
+  if (packing.scaled) {
+    for (std::size_t i = 0; i < count; ++i)
+      to[i] = static_cast<Real>(static_cast<double>(stored[i]) * packing.scale + packing.offset);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<Real>(stored[i]);
+  }
+  mark_missing<Real, T>(stored, packing, to);
 }
 
 /// Unpacks values to `to`, which may be the same memory: in blocks that stay in the cache.
@@ -123,6 +130,21 @@ ValueArray unpack(ValueArray&& values, Packing packing) {
           if (!packing.any_attribute) return std::move(stored);
           if constexpr (sizeof(T) <= 2) return unpacked<float>(stored, packing);
           return unpacked<double>(stored, packing);
+        }
+      },
+      values);
+}
+
+void unpack_reals(ValueArray& values, std::size_t first, std::size_t count, Packing packing) {
+  std::visit(
+      [&]<class T>(ValueVector<T>& all) {
+        if constexpr (std::is_floating_point_v<T>) {
+          packing.missing = possible_values<T>(packing.missing);
+          const auto stored = std::span<const T>(all).subspan(first, count);
+          if (packing.scaled)
+            unpack_all<T, T>(stored, packing, all.data() + first);
+          else
+            mark_missing<T, T>(stored, packing, all.data() + first);
         }
       },
       values);

@@ -32,6 +32,8 @@ Packing read_packing(const NcFile& file, const NcVariable& variable);
 
 /// Unpacks to float if it is exact, including integers of up to 16 bits; else to double.
 ValueArray unpack(ValueArray&& values, Packing packing);
+/// Unpacks the values [first, first + count) of an array of float or double in place.
+void unpack_reals(ValueArray& values, std::size_t first, std::size_t count, Packing packing);
 
 /// The scaling of stored values, if the image can have them in place of unpacked ones: see
 /// ReadImageOptions::keep_stored.
