@@ -143,6 +143,9 @@ TEST_F(PositionsCommand, WrongOptionsAreRefused) {
   expect_refused({"--positions", "smooth", "-o", output}, "--positions");
   expect_refused({"--positions", "filtered", "-o", output}, "without --positions-image");
   expect_refused({"--positions-image", field_, "-o", output}, "expected --positions filtered");
+  ASSERT_EQ(run_tegl({"sample", "ball", "--lattice", "fcc", "--size", "8", "-o", path("fcc.nrrd")}).exit, 0);
+  expect_refused({"--positions", "filtered", "--positions-image", path("fcc.nrrd"), "-o", output},
+                 "fcc.nrrd is on the lattice fcc; expected an image on a cubic grid");
   expect_refused({"--positions", "filtered", "--positions-image", path("nowhere.nii"), "-o", output},
                  "--positions-image " + path("nowhere.nii"));
   expect_refused({"--positions", "relaxed", "--last-axis-weight=-1", "-o", output}, "--last-axis-weight is -1");

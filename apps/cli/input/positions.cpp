@@ -201,6 +201,10 @@ PositionOptions PositionArguments::library_options(const AnyImage& image, ReadIm
   const FileAndVariable from = parse_file_and_variable(file_);
   reading.variable = from.variable;
   const ReadImageResult other = read_other_image(from.file, reading);
+  if (other.info.lattice)  // its samples lie at other places than those of an image on a cubic grid
+    throw Error(ErrorCode::UnsupportedData,
+                fmt::format("--positions-image {} is on the lattice {}; expected an image on a cubic grid", file_,
+                            name_of(*other.info.lattice)));
   const auto expected = sizes_of(image), actual = sizes_of(other.image);
   if (actual != expected)
     throw Error(ErrorCode::UnsupportedData,
