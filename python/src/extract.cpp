@@ -277,10 +277,7 @@ std::unique_ptr<AnyContour> extract_periodic_any(const AnyImage& image, const st
 template <int N>
 std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
                                     const std::vector<int>& axes, const std::vector<double>& periods) {
-  std::vector<CurvedSeam<N>> seams = find_seams(grid, curved, axes);
-  for (std::size_t i = 0; i < seams.size(); ++i)
-    if (!std::isnan(periods[i])) seams[i].vector[axes[i]] = periods[i];
-  return seams;
+  return find_seams<N>(grid, curved, axes, periods);
 }
 
 template <class Real>

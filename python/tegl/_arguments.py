@@ -173,8 +173,8 @@ def periodic_axes(periodic: object, prepared: Prepared) -> tuple[list[int], list
     if isinstance(periodic, Mapping):
         given = [(axis, as_number(f"periodic[{axis!r}]", period)) for axis, period in periodic.items()]
         for axis, period in given:
-            if not np.isfinite(period) or period == 0:
-                raise ValueError(f"periodic[{axis!r}] is {period}; expected a finite number other than 0")
+            if not np.isfinite(period) or period <= 0:
+                raise ValueError(f"periodic[{axis!r}] is {period}; expected a positive number")
     elif isinstance(periodic, (list, tuple)):
         given = [(axis, float("nan")) for axis in periodic]
     else:
@@ -623,6 +623,8 @@ def position_values(positions: object, image: object, prepared: Prepared) -> np.
     if image is None:
         raise ValueError("positions is 'filtered' without positions_image; expected the second image, an array")
     if hasattr(image, "__tegl_image__"):
+        if lattice := getattr(image, "lattice", None):
+            raise ValueError(f"positions_image is on the lattice {lattice}; expected an image on a cubic grid")
         image = image.__tegl_image__()[-1]
     array: np.ndarray = typing.cast(np.ndarray, image) if np.ma.isMaskedArray(image) else np.asarray(image)
     dtype = np.float32 if np.can_cast(array.dtype, np.float32) else np.float64

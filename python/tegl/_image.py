@@ -85,7 +85,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
         across the seam, and `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis
         are connected to the first ones: at their own places (O-grids), 360 further along longitudes, or by a given period
-        along the axis's own coordinate (negative, if that descends). See docs/other-tilings.md.
+        along the axis's own coordinate, in the direction in which that grows. See docs/other-tilings.md.
 
     lattice
         Samples on a staggered lattice: the odd layers of the last library axis (of C-ordered arrays, the first axis) are

@@ -488,6 +488,8 @@ def test_lattices_are_periodic_closed_and_recorded_in_files(tmp_path):
     assert len(cubic.vertices) == len(tegl.contour(gyroid, 0.01).vertices)
     with pytest.raises(ValueError, match="on the lattice fcc, which only tegl.contour and tegl.count know"):
         tegl.filter(image, median=1)
+    with pytest.raises(ValueError, match="positions_image is on the lattice fcc; expected an image on a cubic grid"):
+        tegl.contour(gyroid, 0.01, positions="filtered", positions_image=image)
 
 
 def test_curved_grids_are_periodic():
@@ -508,6 +510,13 @@ def test_curved_grids_are_periodic():
         flat = around.unroll()[0]
         segments = flat.vertices[flat.simplices]
         assert abs(segments[:, 0] - segments[:, 1]).max() < 20
+
+    # longitudes that descend
+    for periodic in ("lon", {"lon": 360.0}):
+        back = tegl.contour(spot[:, ::-1], 0.0, curved={"lon": lon[:, ::-1], "lat": lat}, periodic=periodic,
+                            axis_names=("lat", "lon"), axis_units=("degrees_north", "degrees_east"), dtype=np.float64)
+        assert back.check().is_closed and back.check().components == 1
+        assert abs(back.measure().content) == pytest.approx(abs(around.measure().content))
 
 
 def test_count_has_the_size_of_contours_of_meshes_lattices_and_divisions():

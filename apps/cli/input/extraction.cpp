@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -283,22 +284,6 @@ struct NamedPeriod {
   std::optional<double> period;
 };
 
-/// The sum of the last coordinates along an axis less the first ones.
-template <int N>
-double growth_of(const Grid<N>& grid, const CurvedAxis& one) {
-  std::size_t row = 1;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(one.axis); ++a)
-    row *= (one.along >> a & 1u) != 0 ? grid.axes[a].size() : 1;
-  const std::size_t block = row * grid.axes[static_cast<std::size_t>(one.axis)].size();
-  double sum = 0.0;
-  for (std::size_t first = 0; first + block <= one.values.size(); first += block)
-    for (std::size_t i = first; i < first + row; ++i) {
-      const double step = one.values[i + block - row] - one.values[i];
-      if (std::isfinite(step)) sum += step;
-    }
-  return sum;
-}
-
 /// The axes that --periodic names. `labels`: the names of each axis.
 std::vector<NamedPeriod> named_periods(const std::vector<std::vector<std::string>>& labels,
                                        const std::vector<std::string>& names) {
@@ -353,23 +338,16 @@ std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<Curve
   for (const CurvedAxis& one : curved)
     if (auto& of_axis = labels[static_cast<std::size_t>(one.axis)]; !one.name.empty() && one.name != of_axis.front())
       of_axis.push_back(one.name);
-  std::vector<CurvedSeam<N>> seams;
+  std::vector<int> axes;
+  std::vector<double> periods;
   for (const NamedPeriod& named : named_periods(labels, names)) {
-    CurvedSeam<N> seam = find_seams(grid, curved, std::span(&named.axis, 1)).front();
-    if (named.period) {
-      if (!(*named.period > 0.0))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("--periodic with the period {}; expected a positive one", *named.period));
-      // in the direction in which the axis's coordinate grows
-      const auto a = static_cast<std::size_t>(named.axis);
-      double along = grid.axes[a].is_descending() ? -1.0 : 1.0;
-      for (const CurvedAxis& one : curved)
-        if (one.axis == named.axis) along = growth_of(grid, one);
-      seam.vector[a] = along < 0.0 ? -*named.period : *named.period;
-    }
-    seams.push_back(seam);
+    if (named.period && !(*named.period > 0.0))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--periodic with the period {}; expected a positive one", *named.period));
+    axes.push_back(named.axis);
+    periods.push_back(named.period.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
-  return seams;
+  return find_seams<N>(grid, curved, axes, periods);
 }
 
 template std::vector<CurvedSeam<2>> seams_of(const Grid<2>&, const std::vector<CurvedAxis>&,

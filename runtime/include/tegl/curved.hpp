@@ -35,12 +35,14 @@ using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
 
 /// The seams of these axes. Vectors are 360 for coordinates with a unit of degrees_east (or another as in
 /// `longitude_periods`) that the seam continues, and the periods of `longitude_periods` or `sample_periods` for axes
-/// that are not curved; otherwise 0. Errors: InvalidGrid (as `extract_curved`, and an axis that the grid does not
-/// have).
+/// that are not curved; otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along
+/// the axis's own coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid
+/// (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (another number of periods, or one
+/// that is not positive and finite).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
-                                                    std::span<const int> axes);
+                                                    std::span<const int> axes, std::span<const double> periods = {});
 
 /// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as
 /// `extract_curved`).

@@ -45,7 +45,8 @@ void require_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved, std:
     for (int c = 0; c < N; ++c) {
       const double x = seam.vector[c];
       const bool is_straight = !is_axis_curved(curved, c);
-      if (!std::isfinite(x)) fail(fmt::format("the seam of axis {} has the vector component {}", seam.axis, x));
+      if (!std::isfinite(x))
+        fail(fmt::format("the seam of axis {} has the vector component {}; expected a finite number", seam.axis, x));
       if (is_straight && c == seam.axis && x == 0.0)
         fail(fmt::format("the seam of axis {}, which is not curved, has the period 0; expected another", c));
       bool may_differ = is_straight && c == seam.axis;
@@ -136,11 +137,46 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> index_periods(const Grid<N>& g
   return periods;
 }
 
+namespace {
+
+/// The mean of the last coordinates along axis `a` less the first ones; NaN if none are known.
+template <int N>
+double mean_growth(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
+  double sum = 0.0, count = 0.0;
+  for (std::size_t first = 0; first < one.values.size(); first += block)
+    for (std::size_t i = 0; i < row; ++i) {
+      const double step = one.values[first + block - row + i] - one.values[first + i];
+      if (!std::isfinite(step)) continue;
+      sum += step;
+      ++count;
+    }
+  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// A length along an axis's own coordinate, in the direction in which that grows.
+template <int N>
+double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
+  if (!std::isfinite(length) || length <= 0.0)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the seam of axis {} has the period {}; expected a positive number", a, length));
+  double growth = grid.axes[a].is_descending() ? -1.0 : 1.0;
+  for (const CurvedAxis& one : curved)
+    if (one.axis == a && (one.along >> a & 1u) != 0) growth = mean_growth(grid, one, a);
+  return growth < 0.0 ? -length : length;
+}
+
+}  // namespace
+
 template <int N>
 requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid,
                                                                          std::span<const CurvedAxis> curved,
-                                                                         std::span<const int> axes) {
+                                                                         std::span<const int> axes,
+                                                                         std::span<const double> periods) {
   detail::require_curved<N>(grid, curved);
+  if (!periods.empty() && periods.size() != axes.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} periods of seams; expected one for each of {} axes", periods.size(), axes.size()));
   std::vector<CurvedSeam<N>> seams;
   for (const int a : axes) {
     if (a < 0 || a >= N)
@@ -153,32 +189,26 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
     }
     for (const CurvedAxis& one : curved) {
       if ((one.along >> a & 1u) == 0 || !detail::is_longitude_unit(one.unit)) continue;
-      // the mean distance from the last samples to the first ones
-      const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
-      double sum = 0.0, count = 0.0;
-      for (std::size_t first = 0; first < one.values.size(); first += block)
-        for (std::size_t i = 0; i < row; ++i) {
-          const double step = one.values[first + block - row + i] - one.values[first + i];
-          if (!std::isfinite(step)) continue;
-          sum += step;
-          ++count;
-        }
       constexpr double kTurn = 360.0;
-      if (count > 0.0) seam.vector[one.axis] = kTurn * std::round(sum / count / kTurn);
+      if (const double growth = mean_growth(grid, one, a); std::isfinite(growth))
+        seam.vector[one.axis] = kTurn * std::round(growth / kTurn);
     }
+    if (!periods.empty() && !std::isnan(periods[seams.size() - 1]))
+      seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
   }
   return seams;
 }
 
-#define TEGL_INSTANTIATE_SEAMS(N)                                                                               \
-  namespace detail {                                                                                            \
-  template LongerCurved<N> longer_curved<N>(const Grid<N>&, std::span<const CurvedAxis>,                        \
-                                            std::span<const CurvedSeam<N>>);                                    \
-  template std::vector<Period<N>> periods_of_seams<N>(const Grid<N>&, std::span<const CurvedAxis>,              \
-                                                      std::span<const CurvedSeam<N>>);                          \
-  }                                                                                                             \
-  template AxisPeriods<N> index_periods<N>(const Grid<N>&, std::span<const CurvedAxis>, const CurvedSeams<N>&); \
-  template std::vector<CurvedSeam<N>> find_seams<N>(const Grid<N>&, std::span<const CurvedAxis>, std::span<const int>);
+#define TEGL_INSTANTIATE_SEAMS(N)                                                                                      \
+  namespace detail {                                                                                                   \
+  template LongerCurved<N> longer_curved<N>(const Grid<N>&, std::span<const CurvedAxis>,                               \
+                                            std::span<const CurvedSeam<N>>);                                           \
+  template std::vector<Period<N>> periods_of_seams<N>(const Grid<N>&, std::span<const CurvedAxis>,                     \
+                                                      std::span<const CurvedSeam<N>>);                                 \
+  }                                                                                                                    \
+  template AxisPeriods<N> index_periods<N>(const Grid<N>&, std::span<const CurvedAxis>, const CurvedSeams<N>&);        \
+  template std::vector<CurvedSeam<N>> find_seams<N>(const Grid<N>&, std::span<const CurvedAxis>, std::span<const int>, \
+                                                    std::span<const double>);
 TEGL_INSTANTIATE_SEAMS(2)
 TEGL_INSTANTIATE_SEAMS(3)
 TEGL_INSTANTIATE_SEAMS(4)

@@ -383,6 +383,30 @@ TEST(CurvedSeams, AStraightAxisBesideACurvedOneIsPeriodic) {
   EXPECT_NEAR(measure(contour).size, 360.0, 0.1);
 }
 
+TEST(CurvedSeams, GivenPeriodsFollowTheCoordinateThatGrowsOrDescends) {
+  for (const bool descends : {false, true}) {
+    std::vector<CurvedAxis> curved;
+    const auto image = globe(0.0, curved);
+    for (CurvedAxis& one : curved) {
+      one.unit.clear();  // otherwise the seam is found
+      if (one.axis == 0 && descends)
+        for (double& x : one.values) x = -x;
+    }
+    const std::array axes{0};
+    const auto seams = find_seams(image.grid, curved, axes, std::array{360.0});
+    ASSERT_EQ(seams.size(), 1u);
+    EXPECT_EQ(seams[0].vector, (Vector<2>{descends ? -360.0 : 360.0, 0.0}));
+    EXPECT_EQ(find_folds<2>(image.grid, curved, {}, seams).cells, 0u);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(find_seams(image.grid, curved, axes, std::array{nan})[0].vector, (Vector<2>{0.0, 0.0}));
+    expect_error(ErrorCode::InvalidArgument, "the seam of axis 0 has the period -360; expected a positive number",
+                 [&] { (void)find_seams(image.grid, curved, axes, std::array{-360.0}); });
+    expect_error(ErrorCode::InvalidArgument, "2 periods of seams; expected one for each of 1 axes", [&] {
+      (void)find_seams(image.grid, curved, axes, std::array{360.0, 180.0});
+    });
+  }
+}
+
 TEST(CurvedSeams, WrongSeamsAreErrors) {
   std::vector<CurvedAxis> curved;
   const auto image = globe(0.0, curved);
@@ -391,7 +415,7 @@ TEST(CurvedSeams, WrongSeamsAreErrors) {
   };
   refused({{2, {}}}, "a seam of axis 2; expected an axis from 0 to 1");
   refused({{0, {}}, {0, {}}}, "two seams of axis 0");
-  refused({{0, {std::nan(""), 0.0}}}, "the vector component nan");
+  refused({{0, {std::nan(""), 0.0}}}, "the vector component nan; expected a finite number");
   refused({{0, {360.0, 0.0}}, {1, {360.0, 0.0}}}, "the vectors of the seams are dependent");
   curved.pop_back();
   refused({{0, {360.0, 1.0}}}, "along coordinate 1, which does not differ along it");
