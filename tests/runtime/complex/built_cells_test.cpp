@@ -62,6 +62,21 @@ MeshData<N> renumbered(MeshData<N> mesh, std::vector<double>& values, std::uint6
   return mesh;
 }
 
+/// Adds a cell with the reference corners of its shape, numbered at random. Returns the number of each corner.
+template <int N>
+std::vector<Index> add_corners(const detail::CellKind& kind, std::mt19937_64& random,
+                               std::vector<std::array<double, N>>& points, std::vector<Index>& cells) {
+  const tables::CellTable& table = detail::table_of(kind.shape);
+  std::vector<Index> number(table.corner_count);
+  std::iota(number.begin(), number.end(), static_cast<Index>(points.size()));
+  std::shuffle(number.begin(), number.end(), random);
+  points.resize(points.size() + number.size());
+  for (std::size_t v = 0; v < number.size(); ++v)
+    for (std::size_t a = 0; a < N; ++a) points[number[v]][a] = table.corners[N * v + a];
+  for (std::size_t i = 0; i < number.size(); ++i) cells.push_back(number[detail::table_corner(kind, i)]);
+  return number;
+}
+
 /// Cells that do not touch, one for each `step`-th signature, with their corners numbered at random.
 Complex<4> cells_by_signature(CellType type, unsigned step, std::uint64_t seed) {
   const detail::CellKind& kind = *detail::find_kind(type);
@@ -72,19 +87,14 @@ Complex<4> cells_by_signature(CellType type, unsigned step, std::uint64_t seed) 
   std::vector<double> values;
   std::vector<Index> cells;
   for (unsigned signature = 0; signature < 1u << corners; signature += step) {
-    std::vector<Index> number(corners);
-    std::iota(number.begin(), number.end(), static_cast<Index>(points.size()));
-    std::shuffle(number.begin(), number.end(), random);
-    points.resize(points.size() + corners);
+    const std::vector<Index> number = add_corners<4>(kind, random, points, cells);
     values.resize(points.size());
     for (std::size_t i = 0; i < corners; ++i) {
       const std::size_t v = detail::table_corner(kind, i);
-      for (std::size_t a = 0; a < 4; ++a) points[number[v]][a] = table.corners[4 * v + a];
       points[number[v]][0] += 3.0 * (signature % 256);
       points[number[v]][1] += 3.0 * (signature / 256);
       const double size = 0.05 + 0.9 * static_cast<double>(random() >> 11) * 0x1p-53;
       values[number[v]] = (signature >> v & 1u) != 0 ? size : -size;
-      cells.push_back(number[v]);
     }
   }
   Complex<4> complex(points, type, cells);
@@ -200,17 +210,11 @@ struct RandomCells {
     std::vector<Index> cells;
     for (std::size_t c = 0; c < count; ++c) {
       signatures.push_back(random() % (tile::Signature{1} << corners));
-      std::vector<Index> number(corners);
-      std::iota(number.begin(), number.end(), static_cast<Index>(points.size()));
-      std::shuffle(number.begin(), number.end(), random);
-      points.resize(points.size() + corners);
+      const std::vector<Index> number = add_corners<N>(kind, random, points, cells);
       values.resize(points.size());
-      for (std::size_t i = 0; i < corners; ++i) {
-        const std::size_t v = detail::table_corner(kind, i);
-        for (std::size_t a = 0; a < N; ++a) points[number[v]][a] = table.corners[N * v + a];
+      for (std::size_t v = 0; v < corners; ++v) {
         points[number[v]][0] += kApart * static_cast<double>(c);
         values[number[v]] = (signatures[c] >> v & 1u) != 0 ? 1.0 : -1.0;
-        cells.push_back(number[v]);
       }
     }
     complex = Complex<N>(points, kind.type, cells);
