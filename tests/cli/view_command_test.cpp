@@ -196,6 +196,32 @@ TEST_F(View, WorldsAreThoseOfTheFileOrTheOption) {
   EXPECT_THAT(files(), Not(testing::Contains("wrong.html")));
 }
 
+TEST_F(View, OfACurvedGridHasItsCoordinatesLikeTheSavedContour) {
+  const std::string model = TEGL_SOURCE_DIR "/tests/io/seeds/netcdf_curved.nc";
+  const auto page_of = [&](const std::vector<std::string>& input) {
+    std::vector<std::string> arguments = {"view", "-o", path("page.html"), "--json"};
+    arguments.insert(arguments.end(), input.begin(), input.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return std::pair{run.json()["files"][0], scene(path("page.html"))["layers"][0]};
+  };
+  // a circle of radius 1.5 around 179.5 degrees east, 37 degrees north, not the indices 0 to 6
+  const auto [report, layer] = page_of({model, "--iso", "1.5"});
+  EXPECT_EQ(report["folded_cells"], 0);
+  EXPECT_EQ(layer["axes"][0]["name"], "lon");
+  EXPECT_EQ(layer["axes"][1]["unit"], "degrees_north");
+  EXPECT_NEAR(layer["axes"][0]["lowest"].get<double>(), 178, 0.15);
+  EXPECT_NEAR(layer["axes"][1]["highest"].get<double>(), 38.5, 0.15);
+  ASSERT_EQ(run_tegl({"contour", model, "--iso", "1.5", "-o", path("o.vtkhdf"), "-q"}).exit, 0);
+  const nlohmann::json saved = page_of({path("o.vtkhdf")}).second;
+  for (const char* const key : {"axes", "center", "vertices", "simplices", "components", "arrays"})
+    EXPECT_EQ(layer[key], saved[key]) << key;
+  // by the indices
+  const nlohmann::json indices = page_of({model, "--iso", "1.5", "--index-grid"}).second;
+  EXPECT_EQ(indices["simplices"], layer["simplices"]);
+  EXPECT_LE(indices["axes"][0]["highest"], 6);
+}
+
 TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {
   const auto view = [&](const std::string& input, const std::string& output) {
     return run_tegl({"view", input, "--iso", "0", "-o", output});
