@@ -30,7 +30,7 @@ class RowSource : public SampleSource<N> {
   void corner_values(const Index& base, unsigned axes, double* out) const noexcept final;
   void corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept final;
   [[nodiscard]] LayerInMemory layer_in_memory(std::size_t k) const noexcept final {
-    return {reinterpret_cast<const std::byte*>(layer(k)), sizeof(T)};
+    return {reinterpret_cast<const std::byte*>(layer(k)), sizeof(T), strides()[0] * std::ptrdiff_t{sizeof(T)}};
   }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;

@@ -96,10 +96,11 @@ struct EdgesInRows {
   std::size_t count;
 };
 
-/// The memory of a layer of samples.
+/// The memory of a layer of samples, or of other values from which the interpolation parameters are computed.
 struct LayerInMemory {
   const std::byte* first = nullptr;  ///< the sample of index 0; null: unknown
-  std::ptrdiff_t sample_bytes = 0;
+  std::ptrdiff_t step_bytes = 0;     ///< in which the offsets of rows are counted (EdgeCrossings::strides)
+  std::ptrdiff_t sample_bytes = 0;   ///< from a sample to the next one of its row
 };
 
 /// Some cells of K axes, and edges of each (bit masks).

@@ -86,7 +86,7 @@ class EdgeWriter {
       const LayerInMemory layer = source_.layer_in_memory(run(axis).layer);
       if (layer.first == nullptr) continue;  // nor has any other layer
       ends_[axis] = {layer, axis == N - 1 ? source_.layer_in_memory(run(axis).layer + 1).first
-                                          : layer.first + strides_[axis] * layer.sample_bytes};
+                                          : layer.first + strides_[axis] * layer.step_bytes};
     }
   }
   void finish() noexcept { flush(); }
@@ -221,7 +221,7 @@ class EdgeWriter {
     const Ends& ends = ends_[axis];
     if (ends.layer.first == nullptr) return;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto offset = (row + static_cast<std::ptrdiff_t>(at[i]) * strides_[0]) * ends.layer.sample_bytes;
+      const auto offset = row * ends.layer.step_bytes + static_cast<std::ptrdiff_t>(at[i]) * ends.layer.sample_bytes;
       hwy::Prefetch(ends.layer.first + offset);
       if (axis != 0) hwy::Prefetch(ends.next + offset);  // along the row, both are in the same cache line or adjacent
     }

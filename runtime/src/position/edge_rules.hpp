@@ -31,7 +31,7 @@ class FilteredPositions final : public PositionsOnEdges<N> {
         starts_high_(starts_high),
         values_(values),
         isovalue_(samples.isovalue()),
-        below_(std::nextafter(isovalue_, -std::numeric_limits<double>::infinity())),
+        sides_{{{-kInfinity, std::nextafter(isovalue_, -kInfinity)}, {isovalue_, kInfinity}}},
         epsilon_(epsilon) {
     std::size_t stride = 1;
     for (int a = 0; a < N; ++a) {
@@ -52,32 +52,41 @@ class FilteredPositions final : public PositionsOnEdges<N> {
       if (edges.axis != 0) __builtin_prefetch(at[i] + stride);
     }
     std::array<double, kMost> from, to;
+    const Word high = starts_high_(edges.k, edges.edges);
     bool any_nan = false;
     for (std::size_t i = 0; i < count; ++i) {
-      from[i] = at[i][0];
-      to[i] = at[i][stride];
-      any_nan |= std::isnan(from[i] + to[i]);
+      const double first = at[i][0], second = at[i][stride];
+      any_nan |= std::isnan(first + second);
+      const Word is_high = high >> i & 1u;
+      from[i] = sides_[is_high].clamped(first);
+      to[i] = sides_[is_high ^ 1u].clamped(second);
     }
-    if (any_nan) replace_nans(edges, from.data(), to.data());
-    // clamp: the first end to the side of the higher or of the lower values, the second end to the other side
-    const Word high = starts_high_(edges.k, edges.edges);
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool is_high = (high >> i & 1u) != 0;
-      const double first = from[i], second = to[i];
-      from[i] = is_high ? std::max(first, isovalue_) : std::min(first, below_);
-      to[i] = is_high ? std::min(second, below_) : std::max(second, isovalue_);
-    }
+    if (any_nan) replace_nans(edges, at.data(), high, from.data(), to.data());
     alphas_between(from.data(), to.data(), count, isovalue_, epsilon_, out);
+  }
+  [[nodiscard]] LayerInMemory layer_in_memory(std::size_t k) const noexcept override {
+    constexpr std::ptrdiff_t kBytes = sizeof(Second);
+    return {reinterpret_cast<const std::byte*>(values_.data() + k * strides_[N - 1]),
+            static_cast<std::ptrdiff_t>(strides_[1]) * kBytes, kBytes};
   }
 
  private:
-  /// Replaces values that are NaN by the image's own.
-  void replace_nans(const LayerEdges<N>& edges, double* from, double* to) const noexcept {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  /// The values of the low or of the high side. Without branches, as sides are hard to predict.
+  struct Side {
+    double least, most;
+    [[nodiscard]] double clamped(double value) const noexcept { return std::min(std::max(value, least), most); }
+  };
+
+  /// Replaces the ends of edges whose values are NaN by the image's own.
+  void replace_nans(const LayerEdges<N>& edges, const Second* const* at, Word high, double* from,
+                    double* to) const noexcept {
     for (std::size_t i = 0; i < edges.edges.count; ++i) {
       SampleIndex<N> index = edges.start(i);
-      if (std::isnan(from[i])) from[i] = samples_.value(index);
+      const Word is_high = high >> i & 1u;
+      if (std::isnan(at[i][0])) from[i] = sides_[is_high].clamped(samples_.value(index));
       index[edges.axis] += 1;
-      if (std::isnan(to[i])) to[i] = samples_.value(index);
+      if (std::isnan(at[i][strides_[edges.axis]])) to[i] = sides_[is_high ^ 1u].clamped(samples_.value(index));
     }
   }
 
@@ -85,7 +94,7 @@ class FilteredPositions final : public PositionsOnEdges<N> {
   StartsHigh starts_high_;
   std::span<const Second> values_;
   double isovalue_;
-  double below_;  ///< the largest number below the isovalue
+  std::array<Side, 2> sides_;  ///< low, high
   double epsilon_;
   std::array<std::size_t, N> strides_{};
 };

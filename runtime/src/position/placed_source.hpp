@@ -100,6 +100,8 @@ class PositionsOnEdges {
  public:
   /// The interpolation parameters of critical edges: 0 at the start, 1 at the other end. Called by several threads.
   virtual void find(const LayerEdges<N>& edges, double* out) const noexcept = 0;
+  /// Where the values of layer k are that `find` reads, as of EdgeCrossings, with offsets in numbers of rows.
+  [[nodiscard]] virtual LayerInMemory layer_in_memory(std::size_t /*k*/) const noexcept { return {}; }
 
  protected:
   ~PositionsOnEdges() = default;
@@ -119,6 +121,9 @@ class PlacedSource : public SampleSource<N> {
         positions_(positions),
         epsilon_(epsilon) {}
 
+  [[nodiscard]] LayerInMemory layer_in_memory(std::size_t k) const noexcept override {
+    return positions_.layer_in_memory(k);
+  }
   /// The steps of this source are numbers of rows, so that the offset of a row is its number in its layer.
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept override {
     for (std::size_t first = 0; first < edges.count; first += kAtOnce)
