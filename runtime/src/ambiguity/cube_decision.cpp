@@ -231,7 +231,7 @@ Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, dou
   const auto& joins = cube_joins();
   // list the cubes with one pair of edges, without branches
   std::array<std::uint8_t, kWordBits> numbers, bits;
-  std::array<const tables::CubeJoin*, kWordBits> asked;
+  std::array<const tables::CubeJoin*, kWordBits> asked{};
   std::size_t count = 0;
   Word with_more = 0;  // pairs of edges
   for (std::size_t j = 0; j < entries.size(); ++j) {
