@@ -214,6 +214,16 @@ class Viewer(Pages):
             browser.element("#unclip").click()
         self.assertEqual(self.drawn(self.picture()), whole)
 
+    def test_what_is_not_clipped_has_no_gaps(self):
+        # a prism of ten sides, with two edges on the sides of the box
+        write_nrrd(self.folder / "prism.nrrd", (5, 5, 2), lambda x, y, z: 1.3 - ((x - 2.1)**2 + (y - 1.9)**2)**0.5)
+        browser = self.view("prism", self.folder / "prism.nrrd", "--iso", 0)
+        clipped_at_the_box = self.picture()
+        browser.run("for (const { uniforms } of tegl.app.stage.layers) {"
+                    " uniforms.uLower.value.setScalar(-1e6); uniforms.uUpper.value.setScalar(1e6); } tegl.app.stage.redraw()")
+        self.assertGreater(self.drawn(clipped_at_the_box), 2000)
+        self.assertEqual(self.different(clipped_at_the_box, self.picture()), 0)
+
     def test_the_mouse_turns_zooms_and_moves(self):
         browser = self.open()
         seen = [self.picture()]

@@ -36,7 +36,8 @@ uniform float uWidth;
 #endif
 out vec3 vView;
 out vec3 vNormal;
-out vec3 vPlace;
+// At a pixel that a simplex covers in part, the place is one inside it: beyond its edge, clipping would leave gaps.
+centroid out vec3 vPlace;
 out float vValue;
 
 ivec2 texel(int i) { return ivec2(i % ${ROW}, i / ${ROW}); }
@@ -132,7 +133,7 @@ uniform bool uSmooth;
 uniform float uFront;
 in vec3 vView;
 in vec3 vNormal;
-in vec3 vPlace;
+centroid in vec3 vPlace;
 in float vValue;
 out vec4 color;
 
