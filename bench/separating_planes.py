@@ -8,7 +8,8 @@ Prints CSV. The plane is y = p x + r z + q in 96^3 samples, with the coordinates
 is a linear inequality of (p, r, q), so the planes with the same samples are a convex polyhedron. Distances are root
 mean squares over the columns of the inner part, as of the vertices in positions.cpp. Half of the largest distance of
 two of these planes bounds every rule: wherever it places the vertices, one of both planes is at least that far away.
-The normal and offset are those of docs/positions.md, changed by less than half of their last digit. Debian:
+The normal and offset are in docs/positions.md; here they are changed by less than half of the
+last digit given there. Debian:
 python3-scipy.
 """
 
@@ -31,7 +32,7 @@ def separating(normal, offset):
     places = np.arange(SIZE) - SIZE / 2
     x, z = np.meshgrid(places, places, indexing="ij")
     heights = normal[0] * x[..., None] + normal[1] * places + normal[2] * z[..., None] - offset
-    high = (heights >= 0).sum(-1)  # in each column, those of the largest y
+    high = (heights >= 0).sum(-1)  # in each column, the samples of the largest y
     crossed = (high > 0) & (high < SIZE)
     x, z, lowest_high = x[crossed], z[crossed], (SIZE - high[crossed]) - SIZE / 2
     # the plane is at or below the high samples and above the low ones: only those on their convex hulls count

@@ -16,8 +16,8 @@ namespace tegl::io_detail {
 bool is_classic_netcdf(std::span<const unsigned char> prefix);
 
 /// Throws MalformedFile unless the header of the classic file at `path` is valid and all its variables lie within the
-/// file. Returns the first byte of each variable, in the order of their ids; nullopt for those whose records lie apart,
-/// with records of other variables between them.
+/// file. Returns the first byte of each variable, in the order of their ids; nullopt for variables whose records lie
+/// apart, with records of other variables between them.
 std::vector<std::optional<std::uint64_t>> check_classic_netcdf(const std::filesystem::path& path);
 
 /// Size in bytes of a classic file's header and variables; 0 if the header is longer than `bytes`, the start of the

@@ -14,7 +14,7 @@ namespace tegl::detail {
 
 /// Points are numbered in the order of their edges: by the smaller end, then by the larger. If the edges of the complex
 /// are known, each crossed edge has a bit and its number is a count of bits; otherwise the crossed edges of each block
-/// of active cells are collected, and those of all blocks sorted. Both give the same numbers.
+/// of active cells are collected, and the edges of all blocks sorted. Both give the same numbers.
 class CrossingNumbers {
  public:
   /// The arguments must outlive this object. `edges`: null if not known. Errors: TooLarge (2^32 points or more),

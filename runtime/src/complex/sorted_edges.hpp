@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Edges of cells without duplicates: those of a block of cells in a hash table, those of all cells sorted by ranges of
+// Edges of cells without duplicates: of a block of cells in a hash table, of all cells sorted by ranges of
 // their smaller ends, then by smaller ends.
 #pragma once
 

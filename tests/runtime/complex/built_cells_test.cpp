@@ -102,7 +102,7 @@ Complex<4> cells_by_signature(CellType type, unsigned step, std::uint64_t seed) 
   return complex;
 }
 
-/// The facets of a shape as sets of corners: those of its convex hull, found by trying all hyperplanes through corners.
+/// The facets of a shape's convex hull as sets of corners, found by trying all hyperplanes through corners.
 template <int N>
 std::vector<tile::Signature> hull_facets(const tables::CellTable& table) {
   using Vector = Eigen::Matrix<double, N, 1>;
@@ -256,7 +256,7 @@ std::vector<CellPieces<N>> pieces_of(const Contour<N, double>& contour, const ta
   return of_cell;
 }
 
-/// The contours of random cells that do not touch, and that of each by the general engine.
+/// The contours of random cells that do not touch, and of each cell by the general engine.
 template <int N>
 void expect_contours_of_the_engine(CellType type, std::size_t count, std::uint64_t seed) {
   SCOPED_TRACE(name_of(type));
