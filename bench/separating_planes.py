@@ -9,8 +9,7 @@ is a linear inequality of (p, r, q), so the planes with the same samples are a c
 mean squares over the columns of the inner part, as of the vertices in positions.cpp. Half of the largest distance of
 two of these planes bounds every rule: wherever it places the vertices, one of both planes is at least that far away.
 The normal and offset are in docs/positions.md; here they are changed by less than half of the
-last digit given there. Debian:
-python3-scipy.
+last digit given there. Debian: python3-scipy.
 """
 
 import itertools

@@ -181,6 +181,13 @@ RawImage all_layers(RawLayers&& layers, Extent extent) {
   return {std::move(layers.grid), std::move(values), std::move(layers.info)};
 }
 
+/// The lattice that the file records, unless it is to be read as cubic.
+void settle_recorded_lattice(const RawGrid& grid, ImageInfo& info, const fs::path& path,
+                             const ReadImageOptions& options) {
+  if (options.as_cubic) info.lattice.reset();
+  io_detail::settle_lattice(grid, info, path);
+}
+
 }  // namespace
 
 RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImageOptions& options) {
@@ -195,8 +202,7 @@ RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImag
                        ? read_netcdf(path, extent, options)
                        : read_stored(open_stored(path, format, options), extent, options.work.progress);
   drop_trailing_axes(image.grid, image.info);
-  if (options.as_cubic) image.info.lattice.reset();
-  settle_lattice(image.grid, image.info, path);
+  settle_recorded_lattice(image.grid, image.info, path, options);
   return image;
 }
 
@@ -206,8 +212,7 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   const Format format = format_of(path);
   if (format == Format::NetCdf) {
     RawLayers layers = open_netcdf_layers(path, options);
-    if (options.as_cubic) layers.info.lattice.reset();
-    settle_lattice(layers.grid, layers.info, path);
+    settle_recorded_lattice(layers.grid, layers.info, path, options);
     return layers;
   }
   if (format == Format::Vtk) return open_vtk_layers(path, options);
@@ -216,8 +221,7 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
   converted.keep_stored = false;
   StoredImage stored = open_stored(path, format, converted);
   drop_trailing_axes(stored.grid, stored.info);
-  if (options.as_cubic) stored.info.lattice.reset();
-  settle_lattice(stored.grid, stored.info, path);
+  settle_recorded_lattice(stored.grid, stored.info, path, options);
   return open_stored_layers(std::move(stored), path);
 }
 
