@@ -40,6 +40,12 @@ inline void write_bytes(std::string& text, const char* name, const std::string& 
   text += values.empty() ? " \"\";\n" : "\";\n";
 }
 
+/// Simplices of lists, followed by what registers read past the last one (RowTable::simplices).
+inline std::vector<std::uint8_t> readable_by_registers(std::vector<std::uint8_t> simplices) {
+  simplices.resize(simplices.size() + tables::RowTable::kReadAtOnce, 0);
+  return simplices;
+}
+
 /// Writes `const TYPE NAME[] = {...};` with one element as `write` formats it, several in a line.
 template <class T, class Write>
 void write_records(std::string& text, const char* type, const char* name, const char* comment,

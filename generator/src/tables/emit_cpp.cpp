@@ -46,8 +46,8 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table, const std::s
               table.permutations);
   write_array(text, "std::uint8_t", "kReverses", "group element -> does it reverse the orientation", table.reverses);
   lists(text, table.lists);
-  write_bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
-              static_cast<std::size_t>(table.dim) * 8);
+  write_bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim),
+              readable_by_registers(table.simplices), static_cast<std::size_t>(table.dim) * 8);
   write_array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
   std::string rows;
   for (const NamedRows& named : row_tables) {

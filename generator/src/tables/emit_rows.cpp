@@ -22,7 +22,8 @@ void variants(std::string& text, const VariantTables& table, std::string& defini
                   return fmt::format("{{{},{},{},{},{}}}", l.first_simplex, l.simplex_count, l.cone_vertices,
                                      l.side_vertices, l.first_side);
                 });
-  write_array(text, "std::uint8_t", ("kSimplices" + suffix).c_str(), "local vertices", tile.simplices);
+  write_array(text, "std::uint8_t", ("kSimplices" + suffix).c_str(), "local vertices",
+              readable_by_registers(tile.simplices));
   write_array(text, "std::uint64_t", ("kSideMasks" + suffix).c_str(), "side vertex -> corners and edges",
               tile.side_masks);
   row_arrays(text, table.rows, suffix);

@@ -458,11 +458,12 @@ template <int N, bool Flip, bool Variants>
 HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
   constexpr std::uint32_t kNext = next_edges<N>();
   constexpr unsigned kAtOnce = 16 / N;  // simplices
-  constexpr auto kAllLocal = static_cast<__mmask16>((1u << (kAtOnce * N)) - 1);
   const std::uint32_t* const entries = table.entries;
   const std::uint8_t* const simplices = table.simplices;
   Lanes<N> lanes(row.first);
   auto* out = row.out;
+  // Whole registers are stored where the next tiles, of at least one simplex each, overwrite what is too much.
+  const std::size_t roomy = row.active - std::min<std::size_t>(row.active, kAtOnce);
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
     if constexpr (N == 4) hwy::Prefetch(entries + row.signatures[i + kAhead]);
@@ -486,13 +487,17 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
       for (unsigned k = 0; k < Lanes<N>::kCount; ++k) _mm512_store_si512(stored + 16 * k, ids[k]);
       if constexpr (N != 3) out = own.write(own.self, signature, i, stored, out);
     } else {
-      for (unsigned q = 0; q < count; q += kAtOnce, local += kAtOnce * N, out += kAtOnce) {
-        const unsigned rest = count - q;
-        const auto mask = rest >= kAtOnce ? kAllLocal : static_cast<__mmask16>((1u << (rest * N)) - 1);
-        const __m512i numbers = looked_up<N, Flip>(_mm_maskz_loadu_epi8(mask, local), ids);
-        _mm512_mask_storeu_epi32(out->data(), mask, numbers);
+      auto* to = out;
+      out += count;
+      for (; to < out; to += kAtOnce, local += kAtOnce * N) {
+        const __m512i numbers = looked_up<N, Flip>(_mm_loadu_si128(reinterpret_cast<const __m128i*>(local)), ids);
+        if (i < roomy) {
+          _mm512_storeu_si512(to->data(), numbers);
+          continue;
+        }
+        const auto rest = std::min<std::size_t>(static_cast<std::size_t>(out - to), kAtOnce);
+        _mm512_mask_storeu_epi32(to->data(), static_cast<__mmask16>((1u << (rest * N)) - 1), numbers);
       }
-      out -= (kAtOnce - count % kAtOnce) % kAtOnce;
     }
     // advance the streams
     const std::uint32_t advance = (edges & ~kNext) | moved;

@@ -178,9 +178,12 @@ struct RowTable {
   static constexpr std::uint32_t kOwnFlag = 1u << kCountBits;          ///< set if the tile has own vertices
   static constexpr unsigned kFirstShift = kCountBits + 1;              ///< lowest bit of the first simplex
 
+  /// Bytes of `simplices` that may be read from the first byte of any simplex on, also of the last one.
+  static constexpr std::size_t kReadAtOnce = 16;
+
   const TileTable* table;               ///< the lists; by key if there are variants
   const std::uint32_t* entries;         ///< by signature; n = 2: by key; n = 3 with variants: by place_of(key)
-  const std::uint8_t* simplices;        ///< as TileTable::simplices
+  const std::uint8_t* simplices;        ///< as TileTable::simplices, then kReadAtOnce bytes
   const std::uint8_t* counts;           ///< n = 2, 3: number of simplices by signature, 256; n = 4: null
   const std::uint8_t* shuffles;         ///< n = 2: 2 x 32 x 16 bytes (see segment_bytes); else null
   const std::uint16_t* variant_places;  ///< n = 3 with variants: first entry of each signature's variants; else null
