@@ -21,9 +21,13 @@
 #include "complex/edge_alpha.hpp"
 #include "complex/image_points.hpp"
 #include "complex/point_gradients.hpp"
+#include "image/edge_alphas.hpp"
 #include "image/row_source.hpp"
+#include "kernel/extract_points.hpp"
 #include "kernel/memory_output.hpp"
 #include "lattice/lattice_gradients.hpp"
+#include "lattice/lattice_points.hpp"
+#include "lattice/lattice_rows.hpp"
 #include "lattice/lattice_simplices.hpp"
 #include "lattice/periodic_lattice.hpp"
 #include "periodic/periods.hpp"
@@ -57,83 +61,101 @@ class LatticeWriter {
   using Vertex = std::array<Real, N>;
   using Sample = std::array<std::size_t, N>;
 
-  /// `places`: of samples, in place of those on the grid; null: none.
-  LatticeWriter(const SampleSource<N>& source, const Grid<N>& grid, const LatticeRows& rows,
+  /// Working memory of a thread.
+  struct Scratch {
+    std::vector<ActiveInRow> active;
+    // by edge of a row
+    std::vector<std::uint32_t> at;
+    std::vector<double> from, to, alphas;
+  };
+
+  /// `read`: for the samples' type. `places`: of samples, in place of those on the grid; null: none.
+  LatticeWriter(const SampleSource<N>& source, ReadSamples read, const Grid<N>& grid, const LatticeRows& rows,
                 const LatticeGradients<N>* gradients, const std::vector<std::array<double, N>>* places,
                 const ExtractOptions& options, Contour<N, Real>& contour)
       : source_(source),
+        read_(read),
         grid_(grid),
         rows_(rows),
         gradients_(gradients),
         places_(places),
         rows_in_layer_(N == 3 ? grid.axes[1].size() : 1),
         epsilon_(options.epsilon),
-        is_mapped_(grid.has_world_map()),
         contour_(contour) {
-    for (int a = 0; a < N; ++a)
-      for (std::size_t i = 0; i < grid.axes[a].size(); ++i) coordinates_[a].push_back(grid.axes[a][i]);
-    for (int a = 0; a + 1 < N; ++a) half_steps_[a] = 0.5 * grid.axes[a].step();
+    const Axis& along = grid.axes[0];
+    if (along.is_uniform()) return;
+    // with an entry more at both ends, for positions that are read but not used
+    along_.resize(along.size() + 2);
+    for (std::size_t i = 0; i < along.size(); ++i) along_[i + 1] = along[i];
   }
 
-  void write_edge_points(std::size_t r) const {
+  void write_edge_points(std::size_t r, Scratch& scratch) const {
     const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
+    const std::size_t count = rows_.row(r).first_own - rows_.row(r).first;
+    if (count == 0) return;
+    for (std::vector<double>* list : {&scratch.from, &scratch.to, &scratch.alphas})
+      if (list->size() < count + kMargin) list->resize(count + kMargin);
+    if (scratch.at.size() < count + kMargin) scratch.at.resize(count + kMargin);
+    // the samples at both ends
     const std::vector<EdgeKind>& kinds = rows_.pattern(k).edges;
-    Index next = rows_.row(r).first;
+    std::array<std::size_t, kMostKinds + 1> first{};
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const std::size_t at = first[kind];
+      first[kind + 1] = at;
       if (!rows_.has_row(j, k, kinds[kind].to)) continue;
-      const auto crossed = rows_.crossed(r, kind);
-      const std::array<std::ptrdiff_t, 3>& to = kinds[kind].to;
-      const RowPlaces from_row(*this, sample(0, j, k, {})), to_row(*this, sample(0, j, k, to));
-      for (std::size_t w = 0; w < rows_.words(); ++w)
-        for (Word rest = crossed.bits[w]; rest != 0; rest &= rest - 1) {
-          const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-          write_edge_point(sample(i, j, k, {}), sample(i, j, k, to), from_row, to_row, next++);
-        }
+      std::uint32_t* const list = scratch.at.data() + at;
+      const std::size_t more = list_bits(rows_.crossed(r, kind).bits, rows_.words(), list);
+      first[kind + 1] += more;
+      read_(row_of(j, k, {}), list, more, scratch.from.data() + at);
+      read_(row_of(j, k, kinds[kind].to), list, more, scratch.to.data() + at);
+    }
+    alphas_between(scratch.from.data(), scratch.to.data(), count, source_.isovalue(), epsilon_, scratch.alphas.data());
+    // vertices
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const std::size_t at = first[kind], more = first[kind + 1] - at;
+      if (more == 0) continue;
+      LatticePoints<N, Real> edges{};
+      edges.at = scratch.at.data() + at;
+      edges.alphas = scratch.alphas.data() + at;
+      edges.count = more;
+      edges.out = contour_.vertices.data() + rows_.row(r).first + at;
+      edges.end = contour_.vertices.data() + rows_.row(r).first_own;
+      write_row(edges, sample(0, j, k, {}), sample(0, j, k, kinds[kind].to));
     }
   }
 
-  /// `active`: working memory.
-  void write_cells(std::size_t r, std::vector<ActiveInRow>& active) const {
+  void write_cells(std::size_t r, Scratch& scratch) const {
     const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
     const LatticeRows::Row& row = rows_.row(r);
     if (row.active == 0) return;
     Index own = row.first_own;
     auto* simplices = contour_.simplices.data() + row.first_simplex;
     for (const LatticeCell& cell : rows_.pattern(k).cells) {
-      constexpr std::size_t kMostEdges = 12;
+      if (!rows_.applies(j, k, cell)) continue;
       std::array<EdgeStream, kMostEdges> streams;
       for (std::size_t e = 0; e < cell.edges.size(); ++e) {
-        if (!rows_.has_row(j, k, cell.edges[e].at)) continue;  // then there are no cells
         const std::size_t of = rows_.row_at(j, k, cell.edges[e].at);
-        streams[e] = {rows_.crossed(of, cell.edges[e].kind), rows_.row(of).first, cell.edges[e].at[0]};
+        const LatticeRows::Crossed crossed = rows_.crossed(of, cell.edges[e].kind);
+        streams[e] = EdgeStream{crossed.bits, crossed.before, rows_.row(of).first, cell.edges[e].at[0]};
       }
-      if (row.own == 0) {
-        active.clear();
-        rows_.for_each_active(j, k, cell, [&](std::size_t i, unsigned signature) {
-          active.push_back({static_cast<std::uint32_t>(i), signature});
-        });
-        simplices = write_simplices(cell, streams.data(), active, simplices);
+      const LatticeCellRow cells = rows_.cells_of_row(j, k, cell);
+      if (cell.has_lists) {
+        auto* const end = contour_.simplices.data() + row.first_simplex + row.simplices;
+        simplices = write_simplices(cells, streams.data(), simplices, end);
         continue;
       }
-      rows_.for_each_active(j, k, cell, [&](std::size_t i, unsigned signature) {
-        const LatticeCell::Contour& contour = cell.contours[signature];
-        std::array<Index, 32> vertices;
-        for (std::uint32_t crossed = contour.crossed; crossed != 0; crossed &= crossed - 1) {
-          const auto e = static_cast<unsigned>(std::countr_zero(crossed));
-          vertices[e] = streams[e].first + streams[e].crossed[i + static_cast<std::size_t>(streams[e].at)];
-        }
-        for (std::size_t added = 0; added < contour.own; ++added, ++own) {
-          vertices[cell.edges.size() + added] = own;
-          write_own_point(contour.centres[added], vertices.data(), own);
-        }
-        const std::uint8_t* local = contour.vertices.data();
-        for (std::uint32_t s = 0; s < contour.simplices; ++s, ++simplices, local += N)
-          for (std::size_t v = 0; v < N; ++v) (*simplices)[v] = vertices[local[v]];
-      });
+      scratch.active.resize(rows_.words() * kWordBits);
+      const std::size_t count = list_cells(cells, scratch.active.data());
+      for (std::size_t c = 0; c < count; ++c)
+        simplices = write_cell(cell, streams.data(), scratch.active[c], own, simplices);
     }
   }
 
  private:
+  static constexpr std::size_t kMostEdges = 12;  ///< of a cell
+  static constexpr std::size_t kMostKinds = 16;  ///< of edges of a sample
+  static constexpr std::size_t kMargin = LatticePoints<N, Real>::kMargin;
+
   static Sample sample(std::size_t i, std::size_t j, std::size_t k, const std::array<std::ptrdiff_t, 3>& to) {
     Sample index{};
     index[0] = i + static_cast<std::size_t>(to[0]);
@@ -141,41 +163,68 @@ class LatticeWriter {
     index[N - 1] = k + static_cast<std::size_t>(to[2]);
     return index;
   }
-  /// The places of a row's samples.
-  class RowPlaces {
-   public:
-    /// `in_row`: a sample of the row.
-    RowPlaces(const LatticeWriter& writer, const Sample& in_row) : writer_(writer), in_row_(in_row) {
-      if (writer.places_ != nullptr) return;
-      const auto shift = [&](int a) { return in_row[N - 1] % 2 == 1 ? writer.half_steps_[a] : 0.0; };
-      for (int a = 1; a < N; ++a) place_[a] = writer.coordinates_[a][in_row[a]] + shift(a);
-      shift_ = shift(0);
-    }
-    [[nodiscard]] std::array<double, N> operator[](std::size_t i) const noexcept {
-      if (writer_.places_ != nullptr) return given(i);
-      std::array<double, N> x = place_;
-      x[0] = writer_.coordinates_[0][i] + shift_;
-      return writer_.is_mapped_ ? place_in_world<N>(writer_.grid_, x) : x;
-    }
 
-   private:
-    [[nodiscard]] std::array<double, N> given(std::size_t i) const noexcept {
-      Sample index = in_row_;
-      index[0] = i;
-      return (*writer_.places_)[number_of<N>(writer_.grid_, index)];
+  /// The samples at these differences from those of row j of layer k.
+  [[nodiscard]] RowOfSamples row_of(std::size_t j, std::size_t k,
+                                    const std::array<std::ptrdiff_t, 3>& to) const noexcept {
+    const Sample at = sample(0, j, k, to);
+    const LayerInMemory layer = source_.layer_in_memory(at[N - 1]);
+    const std::ptrdiff_t rows = N == 3 ? static_cast<std::ptrdiff_t>(at[1]) * source_.strides()[1] : 0;
+    return {layer.first + rows * layer.step_bytes + to[0] * layer.sample_bytes, layer.sample_bytes};
+  }
+
+  /// Sets the coordinates of the samples from `first` on, which is on the grid modulo 2^64 along axis 0.
+  [[nodiscard]] PlacesInRow<N> places_in_row(const Sample& first) const noexcept {
+    const auto shift = [&](int a) { return first[N - 1] % 2 == 1 ? 0.5 * grid_.axes[a].step() : 0.0; };
+    PlacesInRow<N> places{shift(0), static_cast<std::ptrdiff_t>(first[0])};
+    for (int a = 1; a < N; ++a) places.others[a] = grid_.axes[a][first[a]] + (a + 1 < N ? shift(a) : 0.0);
+    return places;
+  }
+
+  /// Writes the vertices and normals on edges from samples of one row to those of another. `from`, `to`: the ends of
+  /// the edge of the row's first sample.
+  void write_row(LatticePoints<N, Real>& edges, const Sample& from, const Sample& to) const noexcept {
+    if (places_ == nullptr) {
+      edges.from = places_in_row(from);
+      edges.to = places_in_row(to);
+      edges.along = along_.empty() ? nullptr : along_.data() + 1;
+      edges.origin = grid_.axes[0].origin();
+      edges.step = grid_.axes[0].step();
+      edges.mapped = grid_.has_world_map() ? &grid_ : nullptr;
+      write_points(edges);
     }
+    if (places_ == nullptr && gradients_ == nullptr) return;
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      Sample a = from, b = to;
+      a[0] += edges.at[i];
+      b[0] += edges.at[i];
+      if (places_ != nullptr)
+        edges.out[i] = point_on_edge<Real>((*places_)[number_of<N>(grid_, a)], (*places_)[number_of<N>(grid_, b)],
+                                           edges.alphas[i]);
+      if (gradients_ == nullptr) continue;
+      const auto number = static_cast<std::size_t>(edges.out - contour_.vertices.data()) + i;
+      contour_.normals[number] = gradients_->template normal<Real>(a, b, edges.alphas[i]);
+    }
+  }
 
-    const LatticeWriter& writer_;
-    Sample in_row_;
-    std::array<double, N> place_{};
-    double shift_ = 0.0;
-  };
-
-  void write_edge_point(const Sample& from, const Sample& to, const RowPlaces& from_row, const RowPlaces& to_row,
-                        Index number) const {
-    const double alpha = alpha_of(source_.value(from), source_.value(to), source_.isovalue(), epsilon_);
-    contour_.vertices[number] = point_on_edge<Real>(from_row[from[0]], to_row[to[0]], alpha);
-    if (gradients_ != nullptr) contour_.normals[number] = gradients_->template normal<Real>(from, to, alpha);
+  /// Writes the simplices of a cell that may have own vertices, and these, from `own` on; returns the end.
+  auto* write_cell(const LatticeCell& cell, const EdgeStream* streams, const ActiveInRow& active, Index& own,
+                   std::array<Index, N>* simplices) const noexcept {
+    const LatticeCell::Contour& contour = cell.contours[active.signature];
+    std::array<Index, 32> vertices;
+    for (std::uint32_t crossed = contour.crossed; crossed != 0; crossed &= crossed - 1) {
+      const auto e = static_cast<unsigned>(std::countr_zero(crossed));
+      const LatticeRows::Crossed of{streams[e].bits, streams[e].before};
+      vertices[e] = streams[e].first + of[active.at + static_cast<std::size_t>(streams[e].at)];
+    }
+    for (std::size_t added = 0; added < contour.own; ++added, ++own) {
+      vertices[cell.edges.size() + added] = own;
+      write_own_point(contour.centres[added], vertices.data(), own);
+    }
+    const std::uint8_t* local = contour.vertices.data();
+    for (std::uint32_t s = 0; s < contour.simplices; ++s, ++simplices, local += N)
+      for (std::size_t v = 0; v < N; ++v) (*simplices)[v] = vertices[local[v]];
+    return simplices;
   }
 
   /// The barycentre of points on edges.
@@ -194,22 +243,23 @@ class LatticeWriter {
   }
 
   const SampleSource<N>& source_;
+  ReadSamples read_;
   const Grid<N>& grid_;
   const LatticeRows& rows_;
   const LatticeGradients<N>* gradients_;
   const std::vector<std::array<double, N>>* places_;
   std::size_t rows_in_layer_;
   double epsilon_;
-  bool is_mapped_;
-  std::array<std::vector<double>, N> coordinates_;
-  std::array<double, N> half_steps_{};
+  std::vector<double> along_;  ///< coordinates along the row; empty: uniform
   Contour<N, Real>& contour_;
 };
 
-/// Extracts by rows of bits. Returns false, and nothing else, if samples are missing. `places`: as in LatticeWriter.
+/// Extracts by rows of bits. Returns false, and nothing else, if samples are missing. `read`, `places`: as in
+/// LatticeWriter.
 template <int N, class Real>
-bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice lattice, const ExtractOptions& options,
-                     const std::vector<std::array<double, N>>* places, Extraction<N, Real>& result) {
+bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& grid, Lattice lattice,
+                     const ExtractOptions& options, const std::vector<std::array<double, N>>* places,
+                     Extraction<N, Real>& result) {
   const Progress& progress = options.work.progress;
   const unsigned threads = options.work.threads;
   const std::array<LayerPattern, 2> patterns = make_patterns<N>(lattice, grid, options);
@@ -229,13 +279,15 @@ bool extract_by_rows(SampleSource<N>& source, const Grid<N>& grid, Lattice latti
     gradients.emplace(source, grid, lattice, options.direction);
     result.contour.normals.resize(rows.vertices());
   }
-  const LatticeWriter<N, Real> writer(source, grid, rows, gradients ? &*gradients : nullptr, places, options,
+  const LatticeWriter<N, Real> writer(source, read, grid, rows, gradients ? &*gradients : nullptr, places, options,
                                       result.contour);
-  for_each_item(rows.row_count(), threads, part_of(progress, 0.5, 0.75),
-                [&](std::size_t r) { writer.write_edge_points(r); });
+  for_each_part(rows.row_count(), threads, part_of(progress, 0.5, 0.75), [&](std::size_t from, std::size_t to) {
+    typename LatticeWriter<N, Real>::Scratch scratch;
+    for (std::size_t r = from; r < to; ++r) writer.write_edge_points(r, scratch);
+  });
   for_each_part(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t from, std::size_t to) {
-    std::vector<ActiveInRow> active;
-    for (std::size_t r = from; r < to; ++r) writer.write_cells(r, active);
+    typename LatticeWriter<N, Real>::Scratch scratch;
+    for (std::size_t r = from; r < to; ++r) writer.write_cells(r, scratch);
   });
   watch.add_to(result.stats.generate_seconds);
   return true;
@@ -273,7 +325,7 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
       check_grid(grid, lattice, N - 1);
       (void)count_samples(grid, "a lattice");
       ImageSource<T, N> samples(image, isovalue, options.epsilon);
-      if (extract_by_rows<N, Real>(samples, grid, lattice, options, places, result)) {
+      if (extract_by_rows<N, Real>(samples, &read_samples<T>, grid, lattice, options, places, result)) {
         describe(grid, options, result.contour);
         return result;
       }

@@ -70,6 +70,18 @@ std::vector<LatticeCell::Contour> contours_of(const tables::CellTable& table, bo
   return contours;
 }
 
+void make_lists(LatticeCell& cell) {
+  cell.has_lists = std::all_of(cell.contours.begin(), cell.contours.end(), [](const LatticeCell::Contour& contour) {
+    return contour.own == 0 && contour.vertices.size() <= LatticeCell::kList;
+  });
+  for (const LatticeCell::Contour& contour : cell.contours) {
+    if (!cell.has_lists) break;
+    cell.sizes.push_back(static_cast<std::uint8_t>(contour.simplices));
+    cell.lists.insert(cell.lists.end(), contour.vertices.begin(), contour.vertices.end());
+    cell.lists.resize(cell.sizes.size() * LatticeCell::kList);
+  }
+}
+
 }  // namespace
 
 template <int N>
@@ -81,13 +93,15 @@ std::array<LayerPattern, 2> make_patterns(Lattice lattice, const Grid<N>& grid, 
     LatticeCell made{cell.at_ends};
     const bool against = is_inverted<N>(cell, kind, grid) != (options.direction == GradientDirection::descent);
     made.contours = contours_of(table, options.ambiguity == Ambiguity::high, against);
+    make_lists(made);
     made.corners.resize(cell.corners.size());
     for (std::size_t i = 0; i < cell.corners.size(); ++i)
       made.corners[table_corner(kind, i)] = offset_of(cell.corners[i], N);
-    for (const Offset& corner : made.corners) {
-      made.least = std::min(made.least, corner[0]);
-      made.most = std::max(made.most, corner[0]);
-    }
+    for (const Offset& corner : made.corners)
+      for (std::size_t a = 0; a < 3; ++a) {
+        made.least[a] = std::min(made.least[a], corner[a]);
+        made.most[a] = std::max(made.most[a], corner[a]);
+      }
     const auto of = static_cast<std::size_t>(cell.parity);
     for (std::uint32_t e = 0; e < table.edge_count; ++e) {
       Offset from = made.corners[table.edges[2 * e]], to = made.corners[table.edges[2 * e + 1]];

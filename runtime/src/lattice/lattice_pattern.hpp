@@ -40,11 +40,16 @@ struct LatticeCell {
     std::vector<std::uint8_t> vertices = {};
     std::vector<std::uint32_t> centres = {};  ///< by own vertex: the edges whose points it is the mean of
   };
+  static constexpr std::size_t kList = 32;  ///< entries of a list
   bool at_ends;
-  std::ptrdiff_t least = 0, most = 0;                       ///< differences of corners along the row
+  std::array<std::ptrdiff_t, 3> least{}, most{};            ///< differences of corners
   std::vector<std::array<std::ptrdiff_t, 3>> corners = {};  ///< in the order of the table
   std::vector<Edge> edges = {};                             ///< in the order of the table
   std::vector<Contour> contours = {};                       ///< by signature
+  // The contours in brief, unless a signature has own vertices or more entries than a list.
+  bool has_lists = false;
+  std::vector<std::uint8_t> sizes = {};  ///< by signature: number of simplices
+  std::vector<std::uint8_t> lists = {};  ///< by signature: kList entries, the vertices of all simplices, then 0
 };
 
 /// Everything of samples in layers of one parity.

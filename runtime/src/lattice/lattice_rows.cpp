@@ -16,7 +16,7 @@ LatticeRows::LatticeRows(const std::array<std::size_t, 3>& size, const std::arra
       patterns_(patterns),
       words_((size[0] + kWordBits - 1) / kWordBits),
       kinds_(std::max(patterns[0].edges.size(), patterns[1].edges.size())),
-      high_(row_count() * (words_ + 1), 0),
+      high_(1 + row_count() * (words_ + 1), 0),
       crossed_(row_count() * kinds_ * words_),
       before_(crossed_.size()),
       rows_(row_count()) {}
@@ -30,7 +30,7 @@ bool LatticeRows::classify(const SampleClassifier<N>& samples, const WorkOptions
       SampleIndex<N> start{};
       start[N - 1] = k;
       if constexpr (N == 3) start[1] = j;
-      Word* const to = high_.data() + (k * size_[1] + j) * (words_ + 1);
+      Word* const to = high_.data() + 1 + (k * size_[1] + j) * (words_ + 1);
       if (samples.classify(start, std::min(kWordBits, size_[1] - j), {to, words_ + 1}, {missing.data(), words_}) != 0)
         any_missing.store(true, std::memory_order_relaxed);
     }
@@ -42,8 +42,13 @@ template bool LatticeRows::classify<3>(const SampleClassifier<3>&, const WorkOpt
 
 bool LatticeRows::applies(std::size_t j, std::size_t k, const LatticeCell& cell) const noexcept {
   if (cell.at_ends && k != 0 && k + 1 != size_[2]) return false;
-  return std::all_of(cell.corners.begin(), cell.corners.end(),
-                     [&](const auto& corner) { return has_row(j, k, corner); });
+  return has_row(j, k, cell.least) && has_row(j, k, cell.most);
+}
+
+LatticeCellRow LatticeRows::cells_of_row(std::size_t j, std::size_t k, const LatticeCell& cell) const noexcept {
+  LatticeCellRow row{&cell, {}, words_, -cell.least[0], last(cell)};
+  for (std::size_t c = 0; c < cell.corners.size(); ++c) row.corners[c] = high(row_at(j, k, cell.corners[c]));
+  return row;
 }
 
 void LatticeRows::find_ranges(std::size_t j, std::size_t k, const EdgeKind& kind, std::vector<Range>& ranges) const {
@@ -54,7 +59,7 @@ void LatticeRows::find_ranges(std::size_t j, std::size_t k, const EdgeKind& kind
     if (!has_row(j, k, back) ||
         !applies(j + static_cast<std::size_t>(back[1]), k + static_cast<std::size_t>(back[2]), cell))
       continue;
-    const Range range = {use.at[0] - cell.least, use.at[0] + last(cell)};
+    const Range range = {use.at[0] - cell.least[0], use.at[0] + last(cell)};
     if (range[0] < range[1] && std::find(ranges.begin(), ranges.end(), range) == ranges.end()) ranges.push_back(range);
   }
 }
@@ -88,16 +93,25 @@ void LatticeRows::find_crossed(std::size_t j, std::size_t k, const std::vector<s
   row.first_own = next;  // relative until rows are numbered
 }
 
-void LatticeRows::count_cells(std::size_t j, std::size_t k, Row& row) const {
+void LatticeRows::count_row(std::size_t j, std::size_t k, std::vector<ActiveInRow>& active, Row& row) const {
   for (const LatticeCell& cell : pattern(k).cells) {
     if (!applies(j, k, cell)) continue;
-    row.cells += static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(0, last(cell) + cell.least));
-    for_each_active(j, k, cell, [&](std::size_t, unsigned signature) {
-      const LatticeCell::Contour& contour = cell.contours[signature];
+    row.cells += static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(0, last(cell) + cell.least[0]));
+    const LatticeCellRow cells = cells_of_row(j, k, cell);
+    if (cell.has_lists) {
+      const LatticeCellCount count = count_cells(cells);
+      row.active += count.active;
+      row.simplices += count.simplices;
+      continue;
+    }
+    active.resize(words_ * kWordBits);
+    const std::size_t count = list_cells(cells, active.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const LatticeCell::Contour& contour = cell.contours[active[i].signature];
       row.simplices += contour.simplices;
       row.own += contour.own;
-      ++row.active;
-    });
+    }
+    row.active += static_cast<std::uint32_t>(count);
   }
 }
 
@@ -105,6 +119,7 @@ void LatticeRows::count(const WorkOptions& work) {
   for_each_block(size_[2], 1, work.threads, work.progress, [&](std::size_t k, std::size_t, std::size_t) {
     const std::vector<EdgeKind>& kinds = pattern(k).edges;
     std::vector<std::vector<Range>> used(kinds.size());
+    std::vector<ActiveInRow> active;
     for (std::size_t j = 0; j < size_[1]; ++j) {
       Row& row = rows_[k * size_[1] + j];
       // the same for all rows that are not near the border
@@ -112,7 +127,7 @@ void LatticeRows::count(const WorkOptions& work) {
       if (j <= kNear || j + kNear >= size_[1])
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) find_ranges(j, k, kinds[kind], used[kind]);
       find_crossed(j, k, used, row);
-      count_cells(j, k, row);
+      count_row(j, k, active, row);
     }
   });
   for (Row& row : rows_) {

@@ -16,6 +16,7 @@
 
 #include "image/sample_source.hpp"
 #include "lattice/lattice_pattern.hpp"
+#include "lattice/lattice_simplices.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
@@ -80,9 +81,10 @@ class LatticeRows {
     return (k + static_cast<std::size_t>(to[2])) * size_[1] + j + static_cast<std::size_t>(to[1]);
   }
 
-  /// Calls visit(cell, position along the row, signature) for the active cells of row j of layer k, in order.
-  template <class Visit>
-  void for_each_active(std::size_t j, std::size_t k, const LatticeCell& cell, const Visit& visit) const;
+  /// Whether row j of layer k has cells like this one.
+  [[nodiscard]] bool applies(std::size_t j, std::size_t k, const LatticeCell& cell) const noexcept;
+  /// The cells of such a row.
+  [[nodiscard]] LatticeCellRow cells_of_row(std::size_t j, std::size_t k, const LatticeCell& cell) const noexcept;
 
  private:
   /// The bits of word w for the samples `first` ... `end` - 1.
@@ -97,7 +99,7 @@ class LatticeRows {
   }
   /// One past the last sample of a row that may have this cell.
   [[nodiscard]] std::ptrdiff_t last(const LatticeCell& cell) const noexcept {
-    return static_cast<std::ptrdiff_t>(size_[0]) - cell.most;
+    return static_cast<std::ptrdiff_t>(size_[0]) - cell.most[0];
   }
   /// The bits of word w of a row, of the samples `along` further.
   [[nodiscard]] Word shifted(const Word* row, std::size_t w, std::ptrdiff_t along) const noexcept {
@@ -105,48 +107,24 @@ class LatticeRows {
     if (along > 0) return row[w] >> 1 | row[w + 1] << (kWordBits - 1);
     return row[w] << 1 | (w == 0 ? 0 : row[w - 1] >> (kWordBits - 1));
   }
-  [[nodiscard]] const Word* high(std::size_t r) const noexcept { return high_.data() + r * (words_ + 1); }
-  [[nodiscard]] bool applies(std::size_t j, std::size_t k, const LatticeCell& cell) const noexcept;
+  [[nodiscard]] const Word* high(std::size_t r) const noexcept { return high_.data() + 1 + r * (words_ + 1); }
   /// The first and one past the last sample of a range.
   using Range = std::array<std::ptrdiff_t, 2>;
   /// The samples whose edge belongs to a cell, by each use that applies to the row.
   void find_ranges(std::size_t j, std::size_t k, const EdgeKind& kind, std::vector<Range>& ranges) const;
   /// `used`: by kind.
   void find_crossed(std::size_t j, std::size_t k, const std::vector<std::vector<Range>>& used, Row& row);
-  void count_cells(std::size_t j, std::size_t k, Row& row) const;
+  /// `active`: working memory.
+  void count_row(std::size_t j, std::size_t k, std::vector<ActiveInRow>& active, Row& row) const;
 
   std::array<std::size_t, 3> size_;
   const std::array<LayerPattern, 2>& patterns_;
   std::size_t words_, kinds_;
-  std::vector<Word> high_;  ///< rows x (words + 1); the last one is 0
+  std::vector<Word> high_;  ///< 0, then rows x (words + 1), the last one of which is 0
   std::vector<Word> crossed_;
   std::vector<std::uint32_t> before_;
   std::vector<Row> rows_;
   std::uint64_t vertices_ = 0, simplices_ = 0, cells_ = 0, active_cells_ = 0;
 };
-
-template <class Visit>
-void LatticeRows::for_each_active(std::size_t j, std::size_t k, const LatticeCell& cell, const Visit& visit) const {
-  if (!applies(j, k, cell)) return;
-  constexpr std::size_t kMost = 8;
-  const std::size_t corners = cell.corners.size();
-  std::array<const Word*, kMost> rows;
-  for (std::size_t c = 0; c < corners; ++c) rows[c] = high(row_at(j, k, cell.corners[c]));
-  for (std::size_t w = 0; w < words_; ++w) {
-    std::array<Word, kMost> bits;
-    Word any = 0, all = ~Word{0};
-    for (std::size_t c = 0; c < corners; ++c) {
-      bits[c] = shifted(rows[c], w, cell.corners[c][0]);
-      any |= bits[c];
-      all &= bits[c];
-    }
-    for (Word rest = any & ~all & range(w, -cell.least, last(cell)); rest != 0; rest &= rest - 1) {
-      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      unsigned signature = 0;
-      for (std::size_t c = 0; c < corners; ++c) signature |= static_cast<unsigned>(bits[c] >> bit & 1u) << c;
-      visit(w * kWordBits + bit, signature);
-    }
-  }
-}
 
 }  // namespace tegl::detail

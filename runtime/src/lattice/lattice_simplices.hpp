@@ -1,23 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Simplices of a row's active cells, compiled for several instruction sets: without the processor's instruction,
-// counting bits takes most of the time.
+// Active cells of a row of samples on a lattice and their simplices, compiled for several instruction sets.
+//
+// 64 cells are compared at a time. A cell's signature is one bit of each of its corners' words, and the numbers of its
+// vertices are sums over the words of its edges' crossings. So registers with a lane per corner or edge give them
+// without branches: which edges of a cell are crossed is hard to predict.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
-#include "lattice/lattice_rows.hpp"
+#include "image/bitplanes.hpp"
+#include "lattice/lattice_pattern.hpp"
+#include "tegl/contour.hpp"
 
 namespace tegl::detail {
 
-/// The streams of bits in which the numbers of vertices on one edge of a cell are found.
+/// The cells of one kind of a row of samples.
+struct LatticeCellRow {
+  static constexpr std::size_t kMostCorners = 8;
+  const LatticeCell* cell;
+  /// By corner: the row of bits in which it is. The words before the first and after the last one are 0.
+  std::array<const Word*, kMostCorners> corners;
+  std::size_t words;
+  std::ptrdiff_t first, end;  ///< the samples that have the cell: from `first` on, before `end`
+};
+
+/// How many cells of a row are active, and how many simplices they have.
+struct LatticeCellCount {
+  std::uint32_t active = 0, simplices = 0;
+};
+
+/// The stream of bits in which the numbers of vertices on one edge of a cell are found.
 struct EdgeStream {
-  LatticeRows::Crossed crossed{};
-  Index first = 0;        ///< number of the row's first vertex
-  std::ptrdiff_t at = 0;  ///< of the edge's sample, relative to the cell's
+  const Word* bits = nullptr;             ///< the crossed edges of the samples of a row
+  const std::uint32_t* before = nullptr;  ///< by word: number of the first vertex, relative to the row's
+  Index first = 0;                        ///< number of the row's first vertex
+  std::ptrdiff_t at = 0;                  ///< of the edge's sample, relative to the cell's: -1, 0 or 1
 };
 
 /// An active cell of a row.
@@ -26,10 +46,17 @@ struct ActiveInRow {
   std::uint32_t signature;
 };
 
-/// Writes the simplices of active cells without own vertices; returns the end.
-std::array<Index, 2>* write_simplices(const LatticeCell& cell, const EdgeStream* streams,
-                                      std::span<const ActiveInRow> active, std::array<Index, 2>* simplices) noexcept;
-std::array<Index, 3>* write_simplices(const LatticeCell& cell, const EdgeStream* streams,
-                                      std::span<const ActiveInRow> active, std::array<Index, 3>* simplices) noexcept;
+/// Lists the active cells in order: at most 64 for each word. Returns their number.
+std::size_t list_cells(const LatticeCellRow& row, ActiveInRow* out) noexcept;
+
+/// Counts active cells, which have lists (LatticeCell::has_lists).
+LatticeCellCount count_cells(const LatticeCellRow& row) noexcept;
+
+/// Writes the simplices of active cells, which have lists, from `out` on; returns the end. `streams`: by edge. Up to 15
+/// numbers after the end are overwritten, but none from `end` on.
+std::array<Index, 2>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 2>* out,
+                                      std::array<Index, 2>* end) noexcept;
+std::array<Index, 3>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 3>* out,
+                                      std::array<Index, 3>* end) noexcept;
 
 }  // namespace tegl::detail
