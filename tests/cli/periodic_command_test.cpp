@@ -131,10 +131,35 @@ TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
   expect_refused({"--periodic", "x,x", "-o", output}, "twice");
   expect_refused({"--periodic", "x=20", "-o", output}, "expected more than 29");
   expect_refused({"--periodic", "x=much", "-o", output}, "--periodic");
-  expect_refused({"--periodic", "x", "--stream", "-o", output}, "--periodic x with --stream");
+  expect_refused({"--periodic", "x", "--stream", "--unroll", "-o", output}, "--unroll with --stream");
+  expect_refused({"--periodic", "w", "--stream", "-o", output}, "--periodic w names no axis");
+  expect_refused({"--periodic", "x=20", "--stream", "-o", output}, "expected more than 29");
   expect_refused({"--periodic", "x", "--facets", "-o", output}, "--periodic x with --facets");
   expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");
   expect_refused({"--unroll", "-o", output}, "--unroll without --periodic");
+}
+
+TEST_F(PeriodicCommand, StreamedContoursAreThoseInMemory) {
+  for (const char* const axes : {"x", "z", "x,y,z"}) {
+    const std::string streamed = path("streamed.vtkhdf"), in_memory = path("memory.vtkhdf");
+    const std::vector<std::string> options = {"contour", file_,     "--iso",     "-4",      "--periodic",
+                                              axes,      "--close", "--normals", "gradient"};
+    auto stream = options, memory = options;
+    stream.insert(stream.end(), {"--stream", "-o", streamed});
+    memory.insert(memory.end(), {"-o", in_memory});
+    const nlohmann::json report = run_json(stream);
+    (void)run_json(memory);
+    const Mesh one = read_mesh(streamed), other = read_mesh(in_memory);
+    EXPECT_EQ(report["vertices"].get<std::size_t>(), other.coordinates.size() / 3) << axes;
+    EXPECT_EQ(one.periods, other.periods);
+    EXPECT_EQ(one.coordinates.size(), other.coordinates.size());
+    EXPECT_EQ(one.normals.size(), other.normals.size());
+    const auto contour = to_contour<3>(one);
+    EXPECT_EQ(check(contour).boundary_simplices, 0u);
+    EXPECT_EQ(check(contour).euler, check(to_contour<3>(other)).euler);
+    EXPECT_NEAR(measure(contour).size, measure(to_contour<3>(other)).size, 1e-9);
+    EXPECT_EQ(run_json({"components", streamed})["components"], run_json({"components", in_memory})["components"]);
+  }
 }
 
 TEST_F(PeriodicCommand, SlicesOfASavedContourAreWrappedToo) {

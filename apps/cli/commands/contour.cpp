@@ -201,7 +201,11 @@ class ContourCommand final : public Command {
   void require_tiling_options() const {
     if (unroll_ && options_.tiling().periodic.empty())
       throw Error(ErrorCode::InvalidArgument, "--unroll without --periodic; expected both");
-    for_plain_cells([&](const char* with) { options_.refuse_tiling(with); });
+    if (unroll_ && is_streamed())
+      throw Error(ErrorCode::InvalidArgument, "--unroll with --stream; expected one of the two");
+    for_plain_cells([&](const char* with) {
+      is_streamed() ? options_.refuse_other_tiling(with) : options_.refuse_tiling(with);
+    });
     if (attributes_.wanted() && options_.tiling().of_cells) options_.refuse_tiling("--attribute");
   }
 
@@ -504,7 +508,9 @@ class ContourCommand final : public Command {
     if (stream_ || !images().raw()) return stream_;
     const auto sizes = app().get_option("--raw")->as<std::string>();
     if (std::count(sizes.begin(), sizes.end(), 'x') >= 4) return false;  // 5D contours are made in memory
-    const bool needs_memory = !options_.tiling().is_plain() || !index_.empty() || facets_ || one_file_ ||
+    Tiling tiling = options_.tiling();
+    if (!unroll_) tiling.periodic.clear();  // periodic axes are streamed
+    const bool needs_memory = !tiling.is_plain() || !index_.empty() || facets_ || one_file_ ||
                               app().count("--pick") > 0 || !positions_.are_linear() || merging_.are_given() ||
                               scales_.are_given() || options_.wants_shape_normals() || attributes_.wanted() ||
                               options_.polygon_triangulation();
@@ -660,7 +666,7 @@ class ContourCommand final : public Command {
     }
     options.work.progress = bar.stage("stream");
     const StreamOptions streaming{options, options_.single_precision(), options_.allows_empty(),
-                                  compress_.compression()};
+                                  compress_.compression(), options_.tiling().periodic};
     for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));
     results.front().seconds.read += read_seconds;
     for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);

@@ -31,7 +31,8 @@ template <int N, class Real>
 class StreamedFiles {
  public:
   /// Opens the output of each result. Throws EmptyResult if the image has no tiles.
-  StreamedFiles(const Grid<N>& grid, const StreamOptions& options, std::vector<ContourResult>& results)
+  StreamedFiles(const Grid<N>& grid, const AxisPeriods<N>& periods, const StreamOptions& options,
+                std::vector<ContourResult>& results)
       : options_(options), results_(results) {
     for (int a = 0; a < N; ++a)
       if (grid.axes[a].size() < 2)
@@ -39,7 +40,7 @@ class StreamedFiles {
                                       axis_label(grid.axes[a].name, static_cast<std::size_t>(a))));
     for (const ContourResult& result : results) {
       files_.push_back(std::make_unique<PendingContour<N, Real>>(written_.stage(result.output), grid, result.isovalue,
-                                                                 options.compression));
+                                                                 options.compression, periods));
       contours_.push_back({*result.isovalue, files_.back().get()});
     }
   }
@@ -90,10 +91,11 @@ std::pair<double, double> isovalue_range(const std::vector<ContourResult>& resul
 template <class Real, class T, int N>
 std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
                                       std::vector<ContourResult>& results) {
-  StreamedFiles<N, Real> files(source.grid(), options, results);
+  const AxisPeriods<N> periods = periods_of(source.grid(), options.periodic);
+  StreamedFiles<N, Real> files(source.grid(), periods, options, results);
   const auto [least, most] = isovalue_range(results);
   RangedLayers<T, N> layers(source, least, most);
-  const auto extracted = extract_streamed_several<Real>(layers, files.contours(), options.extract);
+  const auto extracted = extract_streamed_several<Real>(layers, files.contours(), options.extract, periods);
   return files.finish(extracted, layers.range(), unit);
 }
 

@@ -27,6 +27,7 @@ struct StreamOptions {
   bool single_precision = false;
   bool allow_empty = false;
   Compression compression = Compression::none;
+  std::vector<std::string> periodic = {};  ///< the axes of --periodic
 };
 
 /// Streams the contours at result.isovalue of each result to its output, in one pass; sets their sizes, counts and

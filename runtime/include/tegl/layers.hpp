@@ -26,8 +26,8 @@ class LayerReader {
   [[nodiscard]] virtual const Grid<N>& grid() const noexcept = 0;
 
   /// Writes layer `k` to `to`: dense, axis 0 fastest, the product of the other axes' sizes in values. NaN is a missing
-  /// value. The extraction requests each layer once, in ascending order, from the thread that called it. Exceptions end
-  /// the extraction and reach its caller.
+  /// value. The extraction requests each layer once, in ascending order, from the thread that called it; with normals
+  /// along a periodic last axis, the last layer comes first. Exceptions end the extraction and reach its caller.
   virtual void read(std::size_t k, T* to) = 0;
 };
 

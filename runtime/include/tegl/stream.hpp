@@ -12,6 +12,7 @@
 
 #include "tegl/extract.hpp"
 #include "tegl/layers.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl {
 
@@ -47,10 +48,17 @@ class ContourSink {
 /// with the same numbers, but numbered by 64 bits. Memory: three layers of samples (four with normals, more if layers
 /// are small), the contour between two layers, and the data to separate sheets at missing values or to close the
 /// contour at the image border. Errors: those of `extract` except TooLarge, and exceptions of the reader and the sink.
+///
+/// With periods that are not all 0, as `extract_periodic`: the same simplices in the same order, but vertices are
+/// numbered by first appearance, and copies at missing values may be others. contour_periods gives the periods of the
+/// contour. If the last axis is periodic, two more layers of samples and the numbers of the vertices in the first layer
+/// stay in memory; with normals, the reader's last layer is requested first and stays, too. Errors: also those of
+/// `extract_periodic`.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
                                                                   ContourSink<N, Real>& sink,
-                                                                  const ExtractOptions& options = {});
+                                                                  const ExtractOptions& options = {},
+                                                                  const AxisPeriods<N>& periods = {});
 
 /// One of the contours of extract_streamed_several: its isovalue and the sink that receives it.
 template <int N, Coordinate Real>
@@ -70,6 +78,11 @@ struct StreamedContour {
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_several(
     LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
-    const ExtractOptions& options = {});
+    const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {});
+
+/// Contour::periods of the contours of an image on `grid` with periodic axes; empty if there are none.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::vector<Period<N>> contour_periods(const Grid<N>& grid, const AxisPeriods<N>& periods);
 
 }  // namespace tegl

@@ -29,7 +29,7 @@ void require_vtkhdf(const fs::path& path) {
 
 template <int N>
 VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue, bool single_precision,
-                       Compression compression) {
+                       Compression compression, const AxisPeriods<N>& periods) {
   require_vtkhdf(path);
   VtkhdfLayout layout;
   layout.dim = N - 1;
@@ -41,6 +41,7 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<
     layout.axis_names.push_back(axis.name);
     layout.axis_units.push_back(axis.unit);
   }
+  layout.periods = period_numbers(contour_periods(grid, periods));
   return layout;
 }
 
@@ -49,8 +50,9 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 struct PendingContour<N, Real>::Parts {
-  Parts(const PendingPath& file, const Grid<N>& grid, std::optional<double> isovalue, Compression compression)
-      : writer(file, layout_of(file.target(), grid, isovalue, std::is_same_v<Real, float>, compression)) {}
+  Parts(const PendingPath& file, const Grid<N>& grid, std::optional<double> isovalue, Compression compression,
+        const AxisPeriods<N>& periods)
+      : writer(file, layout_of(file.target(), grid, isovalue, std::is_same_v<Real, float>, compression, periods)) {}
 
   using Vertex = typename ContourSink<N, Real>::Vertex;
   /// Converts rows to double and passes them on in blocks.
@@ -71,8 +73,9 @@ struct PendingContour<N, Real>::Parts {
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> PendingContour<N, Real>::PendingContour(const PendingPath& file, const Grid<N>& grid,
                                                                            std::optional<double> isovalue,
-                                                                           Compression compression)
-    : parts_(std::make_unique<Parts>(file, grid, isovalue, compression)) {}
+                                                                           Compression compression,
+                                                                           const AxisPeriods<N>& periods)
+    : parts_(std::make_unique<Parts>(file, grid, isovalue, compression, periods)) {}
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> PendingContour<N, Real>::~PendingContour() = default;
@@ -109,8 +112,9 @@ void PendingContour<N, Real>::close() { parts_->writer.close(); }
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 struct ContourFile<N, Real>::Parts {
-  Parts(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue, Compression compression)
-      : file(path), contour(file, grid, isovalue, compression) {}
+  Parts(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue, Compression compression,
+        const AxisPeriods<N>& periods)
+      : file(path), contour(file, grid, isovalue, compression, periods) {}
 
   PendingPath file;
   PendingContour<N, Real> contour;
@@ -119,8 +123,9 @@ struct ContourFile<N, Real>::Parts {
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid,
                                                                      std::optional<double> isovalue,
-                                                                     Compression compression)
-    : parts_((require_vtkhdf(path), std::make_unique<Parts>(path, grid, isovalue, compression))) {}
+                                                                     Compression compression,
+                                                                     const AxisPeriods<N>& periods)
+    : parts_((require_vtkhdf(path), std::make_unique<Parts>(path, grid, isovalue, compression, periods))) {}
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> ContourFile<N, Real>::~ContourFile() = default;

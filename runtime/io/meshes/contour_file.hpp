@@ -23,7 +23,8 @@ class PendingContour final : public ContourSink<N, Real> {
  public:
   using typename ContourSink<N, Real>::Vertex;
   using typename ContourSink<N, Real>::Simplex;
-  PendingContour(const PendingPath& file, const Grid<N>& grid, std::optional<double> isovalue, Compression compression);
+  PendingContour(const PendingPath& file, const Grid<N>& grid, std::optional<double> isovalue, Compression compression,
+                 const AxisPeriods<N>& periods);
   ~PendingContour() override;
   void add_vertices(std::span<const Vertex> vertices) override;
   void add_normals(std::span<const Vertex> normals) override;

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 #include "base/workers.hpp"
-#include "kernel/stream.hpp"
+#include "extract/streamed_image.hpp"
 
 namespace tegl {
 
@@ -50,32 +49,28 @@ class SinkInTurn final : public ContourSink<N, Real> {
 /// One of the extractions, with the objects that it refers to.
 template <int N, class Real>
 struct OneOfSeveral {
-  OneOfSeveral(std::unique_ptr<detail::SampleSource<N>> its_source, const Grid<N>& grid, ContourSink<N, Real>& its_sink,
+  OneOfSeveral(detail::StreamedImage<N, Real>& image, const StreamedContour<N, Real>& contour,
                ExtractOptions its_options, std::mutex& calls)
       : options(std::move(its_options)),
-        source(std::move(its_source)),
-        sink(its_sink, calls),
-        output(sink, options.normals != Normals::none),
-        extraction(detail::make_extraction<N, Real>(*source, grid, detail::generated_tables<N>(options), options,
-                                                    detail::streaming_plan(grid), output)) {}
+        source(image.samples(contour.isovalue)),
+        sink(*contour.sink, calls),
+        output(image.output(sink)),
+        extraction(detail::make_extraction<N, Real>(*source, image.grid(), detail::generated_tables<N>(options),
+                                                    options, image.plan(), *output)) {}
 
   ExtractOptions options;
   std::unique_ptr<detail::SampleSource<N>> source;
   SinkInTurn<N, Real> sink;
-  detail::StreamOutput<N, Real> output;
+  std::unique_ptr<detail::StreamOutput<N, Real>> output;
   std::unique_ptr<detail::SteppedExtraction<N, Real>> extraction;  ///< null if the image has no tiles
   std::exception_ptr error;
 };
-
-/// Makes the samples of one of the extractions, with its isovalue.
-template <int N>
-using SourceMaker = std::function<std::unique_ptr<detail::SampleSource<N>>(double isovalue)>;
 
 /// All extractions, processing the same batch in parallel. Compiled once for all value types.
 template <int N, class Real>
 class SideBySide {
  public:
-  SideBySide(const SourceMaker<N>& make_source, const Grid<N>& grid, std::span<const StreamedContour<N, Real>> contours,
+  SideBySide(detail::StreamedImage<N, Real>& image, std::span<const StreamedContour<N, Real>> contours,
              const ExtractOptions& options)
       : progress_(options.work.progress),
         threads_(options.work.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.work.threads),
@@ -85,7 +80,7 @@ class SideBySide {
       ExtractOptions own = options;
       own.work.threads = threads_ / at_once_;
       if (progress_) own.work.progress = [this](double share) { return tell(share); };
-      all_.push_back(std::make_unique<One>(make_source(contour.isovalue), grid, *contour.sink, std::move(own), calls_));
+      all_.push_back(std::make_unique<One>(image, contour, std::move(own), calls_));
     }
   }
 
@@ -103,7 +98,7 @@ class SideBySide {
   [[nodiscard]] std::vector<ExtractedSize> results() const {
     std::vector<ExtractedSize> results;
     for (const auto& one : all_)
-      results.push_back({one->output.size(), one->extraction ? one->extraction->stats() : ExtractStats{}});
+      results.push_back({one->output->size(), one->extraction ? one->extraction->stats() : ExtractStats{}});
     return results;
   }
 
@@ -149,24 +144,21 @@ class SideBySide {
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_several(
     LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
-    const ExtractOptions& options) {
+    const ExtractOptions& options, const AxisPeriods<N>& periods) {
   for (const auto& contour : contours) {
     if (contour.sink == nullptr) throw Error(ErrorCode::InvalidArgument, "a contour without a sink; expected one each");
     detail::check_arguments(contour.isovalue, options);
   }
   if (contours.empty()) return {};
-  detail::LayerRing<T, N> ring(layers);
-  const SourceMaker<N> make_source = [&](double isovalue) {
-    return std::make_unique<detail::LayerSource<T, N>>(ring, isovalue, options.epsilon);
-  };
-  SideBySide<N, Real> all(make_source, layers.grid(), contours, options);
+  detail::StreamedLayers<T, N, Real> image(layers, periods, options);
+  SideBySide<N, Real> all(image, contours, options);
   all.run();
   return all.results();
 }
 
 #define TEGL_INSTANTIATE_REALS(T, N, Real)                                  \
   template std::vector<ExtractedSize> extract_streamed_several<Real, T, N>( \
-      LayerReader<T, N>&, std::span<const StreamedContour<N, Real>>, const ExtractOptions&);
+      LayerReader<T, N>&, std::span<const StreamedContour<N, Real>>, const ExtractOptions&, const AxisPeriods<N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

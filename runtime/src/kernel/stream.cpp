@@ -18,6 +18,7 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
     return static_cast<Index>(std::lower_bound(numbers.begin(), numbers.end(), v) - numbers.begin());
   };
   Contour<N, Real> around;
+  around.periods = periods_;
   for (const std::uint64_t v : numbers) {
     const auto found = places_.find(v);
     const Place place = found == places_.end() ? Place{} : found->second;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -81,9 +82,10 @@ class LayerSource final : public RowSource<T, N> {
   LayerRing<T, N>& ring_;
 };
 
-/// Passes parts to a sink. Keeps the simplices around candidates for splitting at the end.
+/// Passes parts to a sink. Keeps the simplices around candidates for splitting at the end. Vertices are passed with the
+/// kernel's numbers; a subclass may pass fewer of them.
 template <int N, class Real>
-class StreamOutput final : public ContourOutput<N, Real> {
+class StreamOutput : public ContourOutput<N, Real> {
  public:
   using typename ContourOutput<N, Real>::Vertex;
   using typename ContourOutput<N, Real>::Simplex;
@@ -96,6 +98,8 @@ class StreamOutput final : public ContourOutput<N, Real> {
     before_normals_.swap(normals_);
     before_first_ = first_;
     first_ = part.first_vertex;
+    kernel_before_ = kernel_first_;
+    kernel_first_ = part.first_vertex;
     vertices_.resize(part.end_vertex - part.first_vertex);
     if (with_normals_) normals_.resize(vertices_.size());
     simplices_.resize(part.end_simplex - part.first_simplex);
@@ -106,22 +110,28 @@ class StreamOutput final : public ContourOutput<N, Real> {
     wide_.resize(simplices_.size());
     for (std::size_t s = 0; s < simplices_.size(); ++s)
       for (int j = 0; j < N; ++j)
-        wide_[s][j] = before_first_ + static_cast<Index>(simplices_[s][j] - static_cast<Index>(before_first_));
+        wide_[s][j] = kernel_before_ + static_cast<Index>(simplices_[s][j] - static_cast<Index>(kernel_before_));
+    renumber(part);
     add_vertices(vertices_, normals_);
     sink_.add_simplices(wide_);
-    if (nonmanifold.any_missing()) remember(part, nonmanifold.vertices());
-    size_ = {part.end_vertex, part.end_simplex};
+    keep_simplices(part, nonmanifold);
+    size_ = {first_ + vertices_.size(), part.end_simplex};
   }
 
   void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
     std::vector<std::uint64_t> candidates = nonmanifold.vertices();
-    if (caps != nullptr) add_caps(*caps, all, nonmanifold.any_missing(), candidates);
+    if (caps != nullptr) {
+      wide_.assign(caps->simplices().begin(), caps->simplices().end());
+      for (WideSimplex& simplex : wide_)
+        for (std::uint64_t& v : simplex) v = caps->number(v, all.end_vertex);
+      add_caps(caps->vertices(), caps->normals(), nonmanifold.any_missing(), candidates);
+    }
     if (nonmanifold.any_missing()) separate(candidates);
   }
 
   [[nodiscard]] const ContourSize& size() const noexcept { return size_; }
 
- private:
+ protected:
   using WideSimplex = typename ContourSink<N, Real>::Simplex;
 
   /// A vertex with its normal, if normals are requested.
@@ -129,6 +139,66 @@ class StreamOutput final : public ContourOutput<N, Real> {
     Vertex vertex{};
     Vertex normal{};
   };
+
+  /// May remove vertices of the part from vertices_ and normals_. Then changes the numbers in wide_ and `first_` to
+  /// those of the vertices that are passed.
+  virtual void renumber(const ContourPart& /*part*/) {}
+  /// Remembers the part's simplices that are needed at the end.
+  virtual void keep_simplices(const ContourPart& part, const NonmanifoldCandidates& nonmanifold) {
+    if (!nonmanifold.any_missing()) return;
+    const std::vector<std::uint64_t>& all = nonmanifold.vertices();
+    const auto from = std::lower_bound(all.begin(), all.end(), before_first_);
+    remember_around(part, std::span(from, all.end()));
+  }
+
+  /// Keeps the part's simplices around candidates, with their vertices.
+  void remember_around(const ContourPart& part, std::span<const std::uint64_t> candidates) {
+    const auto is_candidate = [&](std::uint64_t v) {
+      return std::binary_search(candidates.begin(), candidates.end(), v);
+    };
+    for (std::size_t s = 0; s < wide_.size(); ++s) {
+      if (std::none_of(wide_[s].begin(), wide_[s].end(), is_candidate)) continue;
+      remember(part.first_simplex + s, wide_[s]);
+      remember_places(wide_[s]);
+    }
+  }
+  void remember(std::uint64_t number, const WideSimplex& simplex) {
+    kept_.push_back(simplex);
+    kept_numbers_.push_back(number);
+  }
+  /// Remembers the vertices of a simplex of the current part, unless they are remembered.
+  void remember_places(const WideSimplex& simplex) {
+    for (const std::uint64_t v : simplex)
+      if (const auto [at, is_new] = places_.try_emplace(v); is_new) at->second = place(v);
+  }
+
+  /// Passes the vertices of caps and their simplices, which are in wide_.
+  void add_caps(std::span<const Vertex> vertices, std::span<const Vertex> normals, bool any_missing,
+                std::vector<std::uint64_t>& candidates) {
+    const ContourSize before = size_;
+    add_vertices(vertices, normals);
+    sink_.add_simplices(wide_);
+    size_.vertices += vertices.size();
+    size_.simplices += wide_.size();
+    if (!any_missing) return;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      candidates.push_back(before.vertices + i);
+      places_.emplace(before.vertices + i, Place{vertices[i], with_normals_ ? normals[i] : Vertex{}});
+    }
+    for (std::size_t s = 0; s < wide_.size(); ++s) remember(before.simplices + s, wide_[s]);
+  }
+
+  /// Splits the kept simplices as if they were the contour, after renumbering their vertices in the same order.
+  void separate(const std::vector<std::uint64_t>& candidates);
+
+  std::uint64_t first_ = 0, before_first_ = 0;          ///< numbers of the first vertices of vertices_ and before_
+  std::uint64_t kernel_first_ = 0, kernel_before_ = 0;  ///< the kernel's numbers of the first vertices of the parts
+  Buffer<Vertex> vertices_, before_;                    ///< of the current part and of the previous one
+  Buffer<Vertex> normals_, before_normals_;
+  std::vector<WideSimplex> wide_;
+  std::vector<Period<N>> periods_;  ///< of the contour
+
+ private:
   [[nodiscard]] Place place(std::uint64_t v) const {
     const bool last = v >= first_;
     const std::uint64_t i = v - (last ? first_ : before_first_);
@@ -142,50 +212,10 @@ class StreamOutput final : public ContourOutput<N, Real> {
     if (with_normals_) sink_.add_normals(normals);
   }
 
-  void remember(std::uint64_t number, const WideSimplex& simplex) {
-    kept_.push_back(simplex);
-    kept_numbers_.push_back(number);
-  }
-
-  /// Keeps the part's simplices around candidates, with their vertices.
-  void remember(const ContourPart& part, const std::vector<std::uint64_t>& candidates) {
-    const auto from = std::lower_bound(candidates.begin(), candidates.end(), before_first_);
-    const auto is_candidate = [&](std::uint64_t v) { return std::binary_search(from, candidates.end(), v); };
-    for (std::size_t s = 0; s < wide_.size(); ++s) {
-      if (std::none_of(wide_[s].begin(), wide_[s].end(), is_candidate)) continue;
-      remember(part.first_simplex + s, wide_[s]);
-      for (const std::uint64_t v : wide_[s]) places_.try_emplace(v, place(v));
-    }
-  }
-
-  void add_caps(const Caps<N, Real>& caps, const ContourPart& all, bool any_missing,
-                std::vector<std::uint64_t>& candidates) {
-    wide_.assign(caps.simplices().begin(), caps.simplices().end());
-    for (WideSimplex& simplex : wide_)
-      for (std::uint64_t& v : simplex) v = caps.number(v, all.end_vertex);
-    add_vertices(caps.vertices(), caps.normals());
-    sink_.add_simplices(wide_);
-    size_.vertices += caps.vertices().size();
-    size_.simplices += wide_.size();
-    if (!any_missing) return;
-    for (std::size_t i = 0; i < caps.vertices().size(); ++i) {
-      candidates.push_back(all.end_vertex + i);
-      places_.emplace(all.end_vertex + i, Place{caps.vertices()[i], with_normals_ ? caps.normals()[i] : Vertex{}});
-    }
-    for (std::size_t s = 0; s < wide_.size(); ++s) remember(all.end_simplex + s, wide_[s]);
-  }
-
-  /// Splits the kept simplices as if they were the contour, after renumbering their vertices in the same order.
-  void separate(const std::vector<std::uint64_t>& candidates);
-
   ContourSink<N, Real>& sink_;
   bool with_normals_;
   ContourSize size_;
-  std::uint64_t first_ = 0, before_first_ = 0;
-  Buffer<Vertex> vertices_, before_;  ///< of the current part and of the previous one
-  Buffer<Vertex> normals_, before_normals_;
   Buffer<Simplex> simplices_;
-  std::vector<WideSimplex> wide_;
   std::vector<WideSimplex> kept_;
   std::vector<std::uint64_t> kept_numbers_;
   std::unordered_map<std::uint64_t, Place> places_;

@@ -47,29 +47,31 @@ class PeriodicRows : public RowSource<T, N> {
  public:
   [[nodiscard]] AxisSteps steps(int axis, const Axis& here) const override {
     if (!is_periodic(axis)) return AxisSteps(here);
-    return AxisSteps(wrapped_axis(image_.grid().axes[axis], periods_[axis], 1, 2), 1);
+    return AxisSteps(wrapped_axis(grid_.axes[axis], periods_[axis], 1, 2), 1);
   }
 
  protected:
   using typename RowSource<T, N>::Strides;
-  PeriodicRows(const Image<T, N>& image, const AxisPeriods<N>& periods, const Grid<N>& longer, const Strides& strides,
+  /// `grid`: of the image.
+  PeriodicRows(const Grid<N>& grid, const AxisPeriods<N>& periods, const Grid<N>& longer, const Strides& strides,
                double isovalue, double epsilon, bool in_memory)
       : RowSource<T, N>(strides, longer.axes[0].size(), isovalue, epsilon, longer.axes[N - 1], 0, in_memory),
-        image_(image),
+        grid_(grid),
         periods_(periods) {}
 
-  [[nodiscard]] const Image<T, N>& image() const noexcept { return image_; }
   [[nodiscard]] bool is_periodic(int axis) const noexcept { return periods_[axis] != 0.0; }
-  /// First sample of the image's layer at k, which may be one before the first one or up to two behind the last one.
-  [[nodiscard]] const T* image_layer(std::size_t k) const noexcept {
-    const std::size_t layers = image_.size(N - 1);
-    return image_.data() + static_cast<std::ptrdiff_t>((k + layers) % layers) * image_.strides()[N - 1];
-  }
 
  private:
-  const Image<T, N>& image_;
+  const Grid<N>& grid_;
   AxisPeriods<N> periods_;
 };
+
+/// First sample of the image's layer at k, which may be one before the first one or up to two behind the last one.
+template <Value T, int N>
+const T* repeated_layer(const Image<T, N>& image, std::size_t k) noexcept {
+  const std::size_t layers = image.size(N - 1);
+  return image.data() + static_cast<std::ptrdiff_t>((k + layers) % layers) * image.strides()[N - 1];
+}
 
 /// Source for an image of which only the last axis is periodic. Nothing is copied.
 template <Value T, int N>
@@ -77,10 +79,70 @@ class RepeatedSource final : public PeriodicRows<T, N> {
  public:
   RepeatedSource(const Image<T, N>& image, const AxisPeriods<N>& periods, const Grid<N>& longer,
                  const ExtractOptions& options, double isovalue)
-      : PeriodicRows<T, N>(image, periods, longer, image.strides(), isovalue, options.epsilon, true) {}
+      : PeriodicRows<T, N>(image.grid(), periods, longer, image.strides(), isovalue, options.epsilon, true),
+        image_(image) {}
 
  private:
-  [[nodiscard]] const T* layer(std::size_t k) const noexcept override { return this->image_layer(k); }
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept override { return repeated_layer(image_, k); }
+
+  const Image<T, N>& image_;
+};
+
+/// Layers that are longer along their periodic axes: where their samples are, and how they are copied. With normals,
+/// there is one more sample at both ends.
+template <int N>
+class LongerLayers {
+ public:
+  using Strides = std::array<std::ptrdiff_t, N>;  ///< of a layer; that of the last axis is not used
+
+  LongerLayers(const Grid<N>& grid, const AxisPeriods<N>& periods, bool normals) : of_image_(grid.sizes()) {
+    for (int a = 0; a < N - 1; ++a) {
+      before_[a] = periods[a] != 0.0 && normals ? 1 : 0;
+      strides_[a] = static_cast<std::ptrdiff_t>(size_);
+      first_ += before_[a] * size_;
+      sizes_[a] = of_image_[a] + (periods[a] != 0.0 ? 1 : 0) + 2 * before_[a];
+      size_ *= sizes_[a];
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }  ///< samples of a copied layer
+  [[nodiscard]] const Strides& strides() const noexcept { return strides_; }
+  /// Place of the first sample of the image's layer.
+  [[nodiscard]] std::size_t first() const noexcept { return first_; }
+
+  /// Copies a layer of the image.
+  template <class T>
+  void copy(const T* samples, const Strides& strides, T* to) const {
+    const std::size_t row = sizes_[0];
+    for (std::size_t r = 0; r < size_ / row; ++r) {
+      const T* from = samples;
+      std::size_t rest = r;
+      for (int a = 1; a < N - 1; ++a) {
+        const std::size_t i = (rest % sizes_[a] + of_image_[a] - before_[a]) % of_image_[a];
+        rest /= sizes_[a];
+        from += static_cast<std::ptrdiff_t>(i) * strides[a];
+      }
+      copy_row(from, strides[0], to + r * row);
+    }
+  }
+
+ private:
+  template <class T>
+  void copy_row(const T* from, std::ptrdiff_t step, T* to) const {
+    const std::size_t size = of_image_[0], before = before_[0];
+    const auto at = [&](std::size_t i) { return from[static_cast<std::ptrdiff_t>(i) * step]; };
+    for (std::size_t i = 0; i < before; ++i) to[i] = at(size - before + i);
+    if (step == 1)
+      std::copy_n(from, size, to + before);
+    else
+      for (std::size_t i = 0; i < size; ++i) to[before + i] = at(i);
+    for (std::size_t i = before + size; i < sizes_[0]; ++i) to[i] = at(i - before - size);
+  }
+
+  std::array<std::size_t, N> of_image_;
+  std::size_t size_ = 1, first_ = 0;
+  Strides strides_{};
+  std::array<std::size_t, N> sizes_{}, before_{};
 };
 
 /// Source for an image with any periodic axes. The layers in use are copied, longer along their periodic axes.
@@ -89,74 +151,38 @@ class CopiedSource final : public PeriodicRows<T, N> {
  public:
   CopiedSource(const Image<T, N>& image, const AxisPeriods<N>& periods, const Grid<N>& longer,
                const ExtractOptions& options, double isovalue)
-      : CopiedSource(image, periods, longer, Layout(longer, periods, options.normals != Normals::none), options,
-                     isovalue) {}
+      : CopiedSource(image, periods, longer, LongerLayers<N>(image.grid(), periods, options.normals != Normals::none),
+                     options, isovalue) {}
 
   void keep(std::size_t layers) override { ring_.resize(layers + 3); }
   void prepare(std::size_t k) override {
-    const bool wraps = layout_.margin != 0 && this->is_periodic(N - 1);
+    const bool wraps = normals_ && this->is_periodic(N - 1);
     if (k == 0 && wraps) copy(k - 1);
     copy(k);
     if (k + 1 == layers_ && wraps) copy(k + 1);
   }
 
  private:
-  using typename PeriodicRows<T, N>::Strides;
-  /// Where the samples of a copied layer are. With normals, there is one more sample at both ends.
-  struct Layout {
-    Layout(const Grid<N>& longer, const AxisPeriods<N>& periods, bool normals) : margin(normals ? 1 : 0) {
-      for (int a = 0; a < N - 1; ++a) {
-        before[a] = periods[a] != 0.0 ? margin : 0;
-        strides[a] = static_cast<std::ptrdiff_t>(size);
-        first += before[a] * size;
-        sizes[a] = longer.axes[a].size() + 2 * before[a];
-        size *= sizes[a];
-      }
-    }
-    std::size_t margin, size = 1, first = 0;
-    Strides strides{};
-    std::array<std::size_t, N> sizes{}, before{};
-  };
-
-  CopiedSource(const Image<T, N>& image, const AxisPeriods<N>& periods, const Grid<N>& longer, const Layout& layout,
-               const ExtractOptions& options, double isovalue)
-      : PeriodicRows<T, N>(image, periods, longer, layout.strides, isovalue, options.epsilon, false),
+  CopiedSource(const Image<T, N>& image, const AxisPeriods<N>& periods, const Grid<N>& longer,
+               const LongerLayers<N>& layout, const ExtractOptions& options, double isovalue)
+      : PeriodicRows<T, N>(image.grid(), periods, longer, layout.strides(), isovalue, options.epsilon, false),
+        image_(image),
         layout_(layout),
+        normals_(options.normals != Normals::none),
         layers_(longer.axes[N - 1].size()) {}
 
   [[nodiscard]] const T* layer(std::size_t k) const noexcept override {
-    return ring_[(k + 1) % ring_.size()].data() + layout_.first;
+    return ring_[(k + 1) % ring_.size()].data() + layout_.first();
   }
   void copy(std::size_t k) {
     Buffer<T>& layer = ring_[(k + 1) % ring_.size()];
-    layer.resize(layout_.size);
-    const T* const samples = this->image_layer(k);
-    const std::size_t row = layout_.sizes[0];
-    for (std::size_t r = 0; r < layout_.size / row; ++r) {
-      const T* from = samples;
-      std::size_t rest = r;
-      for (int a = 1; a < N - 1; ++a) {
-        const std::size_t size = this->image().size(a);
-        const std::size_t i = (rest % layout_.sizes[a] + size - layout_.before[a]) % size;
-        rest /= layout_.sizes[a];
-        from += static_cast<std::ptrdiff_t>(i) * this->image().strides()[a];
-      }
-      copy_row(from, layer.data() + r * row);
-    }
-  }
-  void copy_row(const T* from, T* to) const {
-    const std::size_t size = this->image().size(0), before = layout_.before[0];
-    const std::ptrdiff_t step = this->image().strides()[0];
-    const auto at = [&](std::size_t i) { return from[static_cast<std::ptrdiff_t>(i) * step]; };
-    for (std::size_t i = 0; i < before; ++i) to[i] = at(size - before + i);
-    if (step == 1)
-      std::copy_n(from, size, to + before);
-    else
-      for (std::size_t i = 0; i < size; ++i) to[before + i] = at(i);
-    for (std::size_t i = before + size; i < layout_.sizes[0]; ++i) to[i] = at(i - before - size);
+    layer.resize(layout_.size());
+    layout_.copy(repeated_layer(image_, k), image_.strides(), layer.data());
   }
 
-  Layout layout_;
+  const Image<T, N>& image_;
+  LongerLayers<N> layout_;
+  bool normals_;
   std::size_t layers_;
   std::vector<Buffer<T>> ring_;
 };

@@ -15,6 +15,7 @@
 #include "base/periods.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/error.hpp"
+#include "tegl/stream.hpp"
 
 namespace tegl {
 namespace {
@@ -125,8 +126,15 @@ TEGL_INSTANTIATE_PERIODS(4)
 
 }  // namespace detail
 
-#define TEGL_INSTANTIATE_PERIODS(N)                                                \
-  template AxisPeriods<N> sample_periods<N>(const Grid<N>&, std::span<const int>); \
+template <int N>
+requires DimensionBetween<N, 2, 4> std::vector<Period<N>> contour_periods(const Grid<N>& grid,
+                                                                          const AxisPeriods<N>& periods) {
+  return detail::world_periods(grid, periods);
+}
+
+#define TEGL_INSTANTIATE_PERIODS(N)                                                          \
+  template std::vector<Period<N>> contour_periods<N>(const Grid<N>&, const AxisPeriods<N>&); \
+  template AxisPeriods<N> sample_periods<N>(const Grid<N>&, std::span<const int>);           \
   template AxisPeriods<N> longitude_periods<N>(const Grid<N>&);
 TEGL_INSTANTIATE_PERIODS(2)
 TEGL_INSTANTIATE_PERIODS(3)

@@ -91,6 +91,7 @@ void SeamCells<N>::add_layer(std::size_t k, const RowShape<N>& shape, const Laye
   if constexpr (N == 4)
     if (!layer.cubes.count.empty()) add_plane(layer.cubes, 7u, shape, lists_cubes);
   if (!is_periodic(N - 1) || (k != 0 && k + 1 != shape.layers())) return;
+  const std::size_t before = pairs_.size();
   const auto add_kind = [&](const auto& plane, int kind, bool lists) {
     if (k == 0) return list_layer(plane, shape, lists, of_first_[kind]);
     Cells cells;
@@ -100,6 +101,7 @@ void SeamCells<N>::add_layer(std::size_t k, const RowShape<N>& shape, const Laye
   for (int a = 0; a < N - 1; ++a) add_kind(layer.edges[a], a, false);
   if constexpr (N == 4)
     if (!layer.cubes.count.empty()) add_kind(layer.cubes, N - 1, lists_cubes);
+  pairs_with_layer_0_ = pairs_.size() - before;
 }
 
 template <int N>

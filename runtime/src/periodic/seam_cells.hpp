@@ -26,6 +26,8 @@ class SeamCells {
 
   /// Pairs (vertex in a last layer, the same vertex in the first layer); the first number is the larger one.
   [[nodiscard]] std::vector<std::pair<Index, Index>>& pairs() noexcept { return pairs_; }
+  /// Number of the last pairs that connect the last layer along the last axis with layer 0.
+  [[nodiscard]] std::size_t pairs_with_layer_0() const noexcept { return pairs_with_layer_0_; }
 
  private:
   /// A cell with vertices.
@@ -51,6 +53,7 @@ class SeamCells {
   Cells lower_, upper_;            ///< of one row each
   std::array<Cells, N> of_first_;  ///< of layer 0, by kind, if the last axis is periodic
   std::vector<std::pair<Index, Index>> pairs_;
+  std::size_t pairs_with_layer_0_ = 0;
 };
 
 }  // namespace tegl::detail

@@ -12,6 +12,7 @@
 #include "counted_memory.hpp"
 #include "fields.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/stream.hpp"
 
 namespace tegl::test {
 namespace {
@@ -78,6 +79,44 @@ TEST(Memory, DoesNotGrowWithTheContour) {
     const std::size_t few = bytes_beside(image, 0.9999, options);
     EXPECT_LE(bytes_beside(image, 0.98, options), few + 4096);
   }
+}
+
+/// A sink that keeps nothing.
+class Nowhere final : public ContourSink<3, float> {
+ public:
+  void add_vertices(std::span<const Vertex> vertices) override { count += vertices.size(); }
+  void add_normals(std::span<const Vertex> /*normals*/) override {}
+  void add_simplices(std::span<const Simplex> /*simplices*/) override {}
+  void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
+  std::size_t count = 0;
+};
+
+/// A streamed contour with periodic axes keeps some layers and the seam between them; a longer image needs no more.
+TEST(Memory, OfAStreamWithPeriodicAxesDoesNotGrowWithTheLayers) {
+  constexpr std::size_t kSize = 96, kLayer = kSize * kSize, kDifferent = 8;
+  const auto image = noise<float, 3>({kSize, kSize, kDifferent}, 11);
+  std::size_t vertices = 0;
+  const auto peak = [&](std::size_t length, const AxisPeriods<3>& periods, Normals normals) {
+    FunctionLayers<float, 3> layers(Grid<3>::unit({kSize, kSize, length}), [&](std::size_t k, float* to) {
+      std::copy_n(image.values.begin() + static_cast<std::ptrdiff_t>(k % kDifferent * kLayer), kLayer, to);
+    });
+    Nowhere sink;
+    ExtractOptions options;
+    options.normals = normals;
+    options.work.threads = 1;
+    const std::size_t before = counted_memory::live_bytes;
+    counted_memory::peak_bytes = before;
+    extract_streamed<float>(layers, 0.9, sink, options, periods);
+    vertices = sink.count;
+    return counted_memory::peak_bytes - before;
+  };
+  for (const Normals normals : {Normals::none, Normals::differences})
+    for (const double last : {0.0, 1.0}) {
+      const auto periods = [&](double length) { return AxisPeriods<3>{double{kSize}, double{kSize}, last * length}; };
+      const std::size_t of_few = peak(48, periods(48), normals);
+      EXPECT_LE(peak(480, periods(480), normals), of_few + 4096);
+      EXPECT_GT(12 * vertices, 2 * of_few) << "the vertices alone are more than all that is kept";
+    }
 }
 
 }  // namespace

@@ -26,9 +26,10 @@ class ContourFile final : public ContourSink<N, Real> {
  public:
   using typename ContourSink<N, Real>::Vertex;
   using typename ContourSink<N, Real>::Simplex;
-  /// `grid` gives names and units of the axes; the isovalue is stored as in Mesh.
+  /// `grid` gives names and units of the axes; the isovalue is stored as in Mesh. `periods`: those of the extraction,
+  /// stored as Mesh::periods.
   ContourFile(const std::filesystem::path& path, const Grid<N>& grid, std::optional<double> isovalue = {},
-              Compression compression = Compression::none);
+              Compression compression = Compression::none, const AxisPeriods<N>& periods = {});
   ~ContourFile() override;
   void add_vertices(std::span<const Vertex> vertices) override;
   void add_normals(std::span<const Vertex> normals) override;
