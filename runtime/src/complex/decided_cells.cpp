@@ -455,28 +455,23 @@ class DecidedCells::Filler {
     }
   }
 
-  /// Fills the space between two triangulations of the same polygons: a ball, coned, between any two diagonals that
-  /// both have.
+  /// Fills the space between two triangulations of the same polygons. Each is a fan from a corner, the middle one of
+  /// three, so they differ in single diagonals of four vertices, which are the corners of a tetrahedron. It lies in the
+  /// hyperplane between the copies of both facets, whichever diagonal is nearer to the centre.
   void join_fans(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
-    std::vector<Triangle> different;
-    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(different));
-    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(different));
-    std::map<std::array<Local, 2>, std::vector<Index>> at_edge;
-    for (std::size_t i = 0; i < different.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        at_edge[sorted(std::array{different[i][k], different[i][(k + 1) % 3]})].push_back(static_cast<Index>(i));
-    DisjointSets sets(different.size());
-    for (const auto& [edge, triangles] : at_edge)
-      if (triangles.size() == 2) sets.join(triangles[0], triangles[1]);  // four at a diagonal of both
-    std::map<Index, std::vector<Triangle>> balls;
-    for (std::size_t i = 0; i < different.size(); ++i) balls[sets.find(static_cast<Index>(i))].push_back(different[i]);
-    for (const auto& [root, triangles] : balls) {
-      std::uint64_t mask = 0;
-      for (const Triangle& t : triangles)
-        for (const Local v : t) mask |= bit_of(v);
-      const Local apex = add_centre(mask);
-      for (const Triangle& t : triangles) regions_.push_back({t[0], t[1], t[2], apex});
-    }
+    std::vector<Triangle> of_a, of_b;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(of_a));
+    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(of_b));
+    for (std::size_t i = 0; i < of_a.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k) {
+        const Triangle &t = of_a[i], &u = of_a[k];
+        const Local* const fourth = std::find_if(u.begin(), u.end(), [&](Local v) { return !has(t, v); });
+        const Tetrahedron both = {t[0], t[1], t[2], *fourth};
+        const auto is_face = [&](const Triangle& face) {
+          return std::all_of(face.begin(), face.end(), [&](Local v) { return v == *fourth || has(t, v); });
+        };
+        if (is_face(u) && std::count_if(of_b.begin(), of_b.end(), is_face) == 2) regions_.push_back(both);
+      }
   }
 
   /// The regions of a facet in which all polygons are discs.

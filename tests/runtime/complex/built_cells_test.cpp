@@ -13,6 +13,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -539,6 +540,45 @@ TEST(Decided4d, CellsInAnyOrderOfTheirCornersHaveAClosedContour) {
       EXPECT_GT(contour.simplices.size(), 1000u);
       expect_closed_manifold(contour);
     }
+}
+
+/// Cells that do not touch, with random signatures. Half of them have uniform distances from the isovalue, half
+/// log-uniform ones.
+Complex<4> random_cells(CellType type, std::size_t count, std::uint64_t seed) {
+  const detail::CellKind& kind = *detail::find_kind(type);
+  std::mt19937_64 random(seed);
+  std::vector<std::array<double, 4>> points;
+  std::vector<double> values;
+  std::vector<Index> cells;
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::vector<Index> number = add_corners<4>(kind, random, points, cells);
+    const bool is_uniform = random() % 2 == 0;
+    for (const Index p : number) {
+      points[p][0] += 4.0 * static_cast<double>(c % 64);
+      points[p][1] += 4.0 * static_cast<double>(c / 64);
+      const double u = static_cast<double>(random() >> 11) * 0x1p-53;
+      const double size = is_uniform ? 0.001 + 0.999 * u : std::pow(10.0, -3.0 * u);
+      values.push_back(random() % 2 == 0 ? size : -size);
+    }
+  }
+  Complex<4> complex(points, type, cells);
+  complex.set_values(values);
+  return complex;
+}
+
+TEST(Decided4d, RandomCellsDoNotIntersectThemselves) {
+  const std::tuple<CellType, Ambiguity, std::size_t> runs[] = {{CellType::hexahedron_prism, Ambiguity::mean, 2000},
+                                                               {CellType::hexahedron_prism, Ambiguity::saddle, 3000},
+                                                               {CellType::wedge_prism, Ambiguity::mean, 10000}};
+  for (const auto& [type, rule, count] : runs) {
+    const Complex<4> complex = random_cells(type, count, 17);
+    for (const Triangulation triangulation : kOfEach) {
+      SCOPED_TRACE(testing::Message() << name_of(type) << " " << static_cast<int>(rule));
+      const auto found = find_intersections(extract<double>(complex, 0.0, decided_by(rule, triangulation)));
+      EXPECT_TRUE(found.is_embedded()) << found.pair_count << " pairs";
+      EXPECT_GT(found.simplices, 10 * count);
+    }
+  }
 }
 
 /// Cells that share no facet have a contour with a boundary, which is a manifold if that of each cell is one.
