@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Complexes of cells (meshes with a value at each point), and their contours. Cells may be mixed: triangles and
-// quadrilaterals; tetrahedra, wedges, pyramids and hexahedra; 4-simplices and the prisms that 3D cells are over an
-// interval of time.
+// quadrilaterals and other polygons; tetrahedra, wedges, pyramids, hexahedra and other polyhedra; 4-simplices and the
+// prisms that 3D cells are over an interval of time.
 #pragma once
 
 #include <array>
@@ -27,6 +27,7 @@ namespace tegl {
 /// either orientation.
 enum class CellType : std::uint8_t {
   triangle = 5,             ///< 3 corners
+  polygon = 7,              ///< up to 64 corners, around the border (CellLists)
   pixel = 8,                ///< 4 corners, coordinate 0 fastest
   quadrilateral = 9,        ///< 4 corners, around the border
   tetrahedron = 10,         ///< 4 corners
@@ -34,6 +35,7 @@ enum class CellType : std::uint8_t {
   hexahedron = 12,          ///< 8 corners: the bottom quadrilateral around its border, then the top one
   wedge = 13,               ///< 6 corners: two triangles
   pyramid = 14,             ///< 5 corners: the base around its border, then the apex
+  polyhedron = 42,          ///< up to 64 corners, given by its faces (CellLists)
   simplex4 = 100,           ///< 4D: 5 corners
   octahedron = 101,         ///< 3D: 6 corners, three pairs of opposite ones (not in VTK)
   cell16 = 102,             ///< 4D: the 16-cell; 8 corners, four pairs of opposite ones
@@ -47,7 +49,7 @@ enum class CellType : std::uint8_t {
 
 /// The name of a type, such as "tetrahedron"; "unknown" for another number.
 [[nodiscard]] std::string_view name_of(CellType type) noexcept;
-/// Number of corners of a type. Errors: InvalidArgument for another number.
+/// Number of corners of a type. Errors: InvalidArgument for another number, for polygons and for polyhedra.
 [[nodiscard]] std::size_t corner_count(CellType type);
 /// Dimension of a type: 2, 3 or 4. Errors: InvalidArgument for another number.
 [[nodiscard]] int dimension(CellType type);
@@ -59,6 +61,22 @@ struct ComplexEdges;
 struct ComplexAccess;
 using CellSigns = std::vector<std::vector<std::uint64_t>>;
 }  // namespace detail
+
+/// Cells of several types, polygons and polyhedra among them. `ends` and the like ascend; the last is the size of the
+/// list that they refer to.
+///
+/// A polyhedron is given by its faces, each with its corners around it in either direction. Its faces must be as those
+/// of a convex polyhedron: a closed sphere, and two faces have nothing, a corner or an edge in common. They need not be
+/// plane. A polyhedron whose faces are those of a tetrahedron, a pyramid, a wedge, a hexahedron or an octahedron is
+/// such a cell, and a polygon of three or four corners a triangle or a quadrilateral.
+struct CellLists {
+  std::vector<CellType> types = {};                 ///< #C
+  std::vector<Index> corners = {};                  ///< of all cells; polyhedra may have none here
+  std::vector<std::uint64_t> ends = {};             ///< #C: the end of each cell in `corners`
+  std::vector<Index> face_corners = {};             ///< the corners of all faces of polyhedra
+  std::vector<std::uint64_t> face_ends = {};        ///< by face: its end in `face_corners`
+  std::vector<std::uint64_t> face_lists_ends = {};  ///< #C, or empty: the end of each cell's faces in `face_ends`
+};
 
 /// A complex of cells in N = 2, 3 or 4 dimensions with one value at each point. Owns its data; copies share the cells
 /// and the edges, which do not change.
@@ -83,6 +101,10 @@ class Complex {
   /// Cells of several types. `types`: one per cell; `corners`: the corners of all cells, one cell after the other.
   /// Errors: as the other constructor.
   Complex(std::vector<Point> points, std::span<const CellType> types, std::span<const Index> corners);
+
+  /// Cells of several types, with polygons (N = 2) and polyhedra (N = 3). Errors: as the other constructors;
+  /// InvalidArgument also for lists whose ends do not ascend, and for polygons and polyhedra that CellLists excludes.
+  Complex(std::vector<Point> points, const CellLists& cells);
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }   ///< #P x N
   [[nodiscard]] const std::vector<double>& values() const noexcept { return values_; }  ///< #P, NaN: missing

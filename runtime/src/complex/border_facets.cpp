@@ -157,6 +157,11 @@ struct FacetUse {
   std::uint64_t place;
 };
 
+/// The facets of a polytope: the edges of a polygon, the faces of a polyhedron.
+std::size_t facet_count(const PolytopeShape& shape) noexcept {
+  return shape.face_count() == 1 ? shape.corner_count() : shape.face_count();
+}
+
 template <std::size_t kCorners>
 BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const WorkOptions& work) {
   std::vector<std::uint64_t> first{0};  // by group
@@ -164,6 +169,11 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
     first.push_back(first.back() + std::uint64_t{group.size()} * facets_of(group.shape).size());
   // list
   std::vector<FacetUse<kCorners>> uses(first.back());
+  const auto set_key = [](FacetUse<kCorners>& use, const auto& point_of, std::size_t count) {
+    use.key.fill(std::numeric_limits<Index>::max());
+    for (std::size_t i = 0; i < count; ++i) use.key[i] = point_of(i);
+    std::sort(use.key.begin(), use.key.end());
+  };
   const std::vector<CellRange> ranges = ranges_of(cells);
   for_each_item(ranges.size(), work.threads, part_of(work.progress, 0.0, 0.3), [&](std::size_t r) {
     const auto [g, from, to] = ranges[r];
@@ -172,12 +182,24 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
     for (std::size_t c = from; c < to; ++c)
       for (const CellFacet& facet : facets) {
         FacetUse<kCorners>& use = uses[place];
-        use.key.fill(std::numeric_limits<Index>::max());
-        for (std::size_t i = 0; i < facet.corner_count; ++i) use.key[i] = cells.groups[g].cell(c)[facet.corners[i]];
-        std::sort(use.key.begin(), use.key.end());
+        const Index* const corners = cells.groups[g].cell(c);
+        set_key(
+            use, [&](std::size_t i) { return corners[facet.corners[i]]; }, facet.corner_count);
         use.place = place++;
       }
   });
+  // Of a face of a polyhedron, the four smallest corners: different faces share two at most.
+  std::uint64_t of_polytopes = first.back();
+  std::vector<Index> points_of;
+  for (std::size_t c = 0; c < cells.polytopes.size(); ++c)
+    for (std::size_t f = 0; f < facet_count(cells.polytopes.shape(c)); ++f) {
+      points_of = facet_points(cells.polytopes, c, f);
+      std::sort(points_of.begin(), points_of.end());
+      FacetUse<kCorners>& use = uses.emplace_back();
+      set_key(
+          use, [&](std::size_t i) { return points_of[i]; }, std::min(points_of.size(), kCorners));
+      use.place = of_polytopes++;
+    }
   // sort by the first corner, then those of each corner
   const auto bits = static_cast<unsigned>(std::bit_width(points));
   sort_by_bits(
@@ -197,8 +219,16 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
   tell(work.progress, 1.0);
   BorderFacets border;
   std::uint32_t g = 0;
+  const auto groups = static_cast<std::uint32_t>(cells.groups.size());
+  std::uint64_t before = first.back();  // facets before polytope c
+  std::size_t c = 0;
   for (const std::uint64_t place : single) {
-    while (place >= first[g + 1]) ++g;
+    while (g < groups && place >= first[g + 1]) ++g;
+    if (g == groups) {
+      while (place - before >= facet_count(cells.polytopes.shape(c))) before += facet_count(cells.polytopes.shape(c++));
+      border.push_back({g, static_cast<Index>(c), static_cast<std::uint8_t>(place - before)});
+      continue;
+    }
     const std::size_t count = facets_of(cells.groups[g].shape).size();
     border.push_back(
         {g, static_cast<Index>((place - first[g]) / count), static_cast<std::uint8_t>((place - first[g]) % count)});
@@ -207,6 +237,15 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
 }
 
 }  // namespace
+
+std::vector<Index> facet_points(const Polytopes& polytopes, std::size_t cell, std::size_t facet) {
+  const PolytopeShape& shape = polytopes.shape(cell);
+  const Index* const corners = polytopes.cell(cell);
+  if (shape.face_count() == 1) return {corners[facet], corners[(facet + 1) % shape.corner_count()]};
+  std::vector<Index> points;
+  for (const std::uint8_t v : shape.ring(facet)) points.push_back(corners[v]);
+  return points;
+}
 
 std::span<const CellFacet> facets_of(CellShape shape) {
   static const auto kFacets = [] {
@@ -220,8 +259,9 @@ std::span<const CellFacet> facets_of(CellShape shape) {
 }
 
 BorderFacets find_border(std::size_t points, const CellGroups& cells, const WorkOptions& work) {
-  if (cells.groups.empty()) return {};
-  switch (table_of(cells.groups.front().shape).dim) {
+  const bool is_empty = cells.groups.empty();
+  if (is_empty && cells.polytopes.size() == 0) return {};
+  switch (is_empty ? static_cast<unsigned>(cells.polytopes.dim()) : table_of(cells.groups.front().shape).dim) {
     case 2:
       return find_border_of<2>(points, cells, work);
     case 3:

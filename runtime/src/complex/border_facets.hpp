@@ -26,11 +26,14 @@ struct CellFacet {
 /// The facets of a shape.
 [[nodiscard]] std::span<const CellFacet> facets_of(tables::CellShape shape);
 
+/// The points of a facet of a polygon (its edge) or polyhedron (around the face), in the direction of its ring.
+[[nodiscard]] std::vector<Index> facet_points(const Polytopes& polytopes, std::size_t cell, std::size_t facet);
+
 /// A facet of a cell.
 struct BorderFacet {
-  std::uint32_t group;
-  Index cell;          ///< in its group
-  std::uint8_t facet;  ///< number in facets_of
+  std::uint32_t group;  ///< or the number of groups: of the polytopes
+  Index cell;           ///< in its group
+  std::uint8_t facet;   ///< number in facets_of, or facet_points
 };
 using BorderFacets = std::vector<BorderFacet>;
 

@@ -14,6 +14,7 @@
 #include <Eigen/LU>
 
 #include "base/workers.hpp"
+#include "polytope/recognised_polyhedron.hpp"
 #include "tegl/error.hpp"
 #include "tegl/generated/cells.hpp"
 
@@ -47,7 +48,8 @@ const CellKind& kind_of(CellType type) {
   const CellKind* const kind = find_kind(type);
   if (kind == nullptr)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115", static_cast<int>(type)));
+                fmt::format("cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7 and 42: no fixed corners)",
+                            static_cast<int>(type)));
   return *kind;
 }
 
@@ -62,11 +64,9 @@ const CellKind& kind_in(int dim, CellType type, std::size_t cell) {
                                                       static_cast<int>(type), name_of(type), dim, expected));
 }
 
-/// Appends a cell's corners in the order of the table, checked.
-void add_cell(const CellKind& kind, std::size_t cell, std::size_t points, const Index* corners, CellGroup& group) {
-  const std::size_t count = group.corner_count, first = group.corners.size();
-  group.corners.resize(first + count);
-  for (std::size_t i = 0; i < count; ++i) {
+/// Checks that corners are different points.
+void check_corners(std::size_t cell, std::size_t points, std::span<const Index> corners) {
+  for (std::size_t i = 0; i < corners.size(); ++i) {
     if (corners[i] >= points)
       throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: corner {} is point {}; expected a number below {}",
                                                           cell, i, corners[i], points));
@@ -75,8 +75,15 @@ void add_cell(const CellKind& kind, std::size_t cell, std::size_t points, const 
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("cell {}: corners {} and {} are both point {}; expected different points", cell, j, i,
                                 corners[i]));
-    group.corners[first + table_corner(kind, i)] = corners[i];
   }
+}
+
+/// Appends a cell's corners in the order of the table, checked.
+void add_cell(const CellKind& kind, std::size_t cell, std::size_t points, const Index* corners, CellGroup& group) {
+  const std::size_t count = group.corner_count, first = group.corners.size();
+  check_corners(cell, points, {corners, count});
+  group.corners.resize(first + count);
+  for (std::size_t i = 0; i < count; ++i) group.corners[first + table_corner(kind, i)] = corners[i];
 }
 
 void require_cells(std::size_t cells) {
@@ -216,6 +223,120 @@ CellGroups group_cells(int dim, std::size_t points, std::span<const CellType> ty
   return {std::move(groups), types.size()};
 }
 
+namespace {
+
+void check_lists(const CellLists& cells) {
+  const auto check = [](const char* what, const std::vector<std::uint64_t>& ends, std::size_t size) {
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      if (const std::uint64_t begin = i == 0 ? 0 : ends[i - 1]; ends[i] < begin || ends[i] > size)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("end {} of {}: {} after {}; expected ascending numbers up to {}", i, what, ends[i],
+                                begin, size));
+    if (const std::uint64_t last = ends.empty() ? 0 : ends.back(); last != size)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("the last end of {} is {}; expected {}", what, last, size));
+  };
+  if (cells.ends.size() != cells.types.size())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} ends of corners; expected one for each of the {} cells",
+                                                        cells.ends.size(), cells.types.size()));
+  if (cells.face_lists_ends.size() != cells.types.size() && !cells.face_lists_ends.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} ends of lists of faces; expected one for each of the {} cells, or none",
+                            cells.face_lists_ends.size(), cells.types.size()));
+  check("corners", cells.ends, cells.corners.size());
+  check("faces", cells.face_ends, cells.face_corners.size());
+  check("lists of faces", cells.face_lists_ends, cells.face_ends.size());
+}
+
+/// Appends cells that may be polygons and polyhedra.
+class ListedCells {
+ public:
+  ListedCells(int dim, std::size_t points, const CellLists& cells) : dim_(dim), points_(points), cells_(cells) {
+    for (unsigned s = 0; s < tables::kCellShapes; ++s) groups_.push_back(empty_group(static_cast<CellShape>(s)));
+  }
+
+  void add(std::size_t c) {
+    const std::uint64_t begin = c == 0 ? 0 : cells_.ends[c - 1];
+    const std::span<const Index> corners(cells_.corners.data() + begin, cells_.ends[c] - begin);
+    const CellType type = cells_.types[c];
+    if (type == CellType::polygon && dim_ == 2) return add_polygon(c, corners);
+    if (type == CellType::polyhedron && dim_ == 3) return add_polyhedron(c, corners);
+    const CellKind& kind = kind_in(dim_, type, c);
+    CellGroup& group = groups_[static_cast<std::size_t>(kind.shape)];
+    if (corners.size() != group.corner_count)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: {} corners; expected {}, of a {}", c,
+                                                          corners.size(), group.corner_count, kind.name));
+    add_cell(kind, c, points_, corners.data(), group);
+  }
+
+  CellGroups take() {
+    std::erase_if(groups_, [](const CellGroup& group) { return group.corners.empty(); });
+    return {std::move(groups_), cells_.types.size(), std::move(polytopes_)};
+  }
+
+ private:
+  void add_known(CellType type, std::size_t c, std::span<const Index> corners) {
+    const CellKind& kind = kind_of(type);
+    add_cell(kind, c, points_, corners.data(), groups_[static_cast<std::size_t>(kind.shape)]);
+  }
+
+  void add_polygon(std::size_t c, std::span<const Index> corners) {
+    if (corners.size() < 3 || corners.size() > kPolytopeCorners)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: a polygon of {} corners; expected 3 to {}", c,
+                                                          corners.size(), kPolytopeCorners));
+    if (corners.size() < 5)
+      return add_known(corners.size() == 3 ? CellType::triangle : CellType::quadrilateral, c, corners);
+    check_corners(c, points_, corners);
+    polytopes_.add_polygon(corners);
+  }
+
+  void add_polyhedron(std::size_t c, std::span<const Index> corners) {
+    const std::uint64_t first = c == 0 || cells_.face_lists_ends.empty() ? 0 : cells_.face_lists_ends[c - 1];
+    const std::uint64_t last = cells_.face_lists_ends.empty() ? 0 : cells_.face_lists_ends[c];
+    const std::uint64_t begin = first == 0 ? 0 : cells_.face_ends[first - 1];
+    ends_.clear();
+    for (std::uint64_t f = first; f < last; ++f) ends_.push_back(cells_.face_ends[f] - begin);
+    const std::span<const Index> faces(cells_.face_corners.data() + begin, ends_.empty() ? 0 : ends_.back());
+    RecognisedPolyhedron found = recognise_polyhedron(c, points_, faces, ends_);
+    if (!corners.empty()) require_same_corners(c, corners, found.corners);
+    static constexpr CellType kTypes[] = {CellType::tetrahedron, CellType::pyramid, CellType::wedge,
+                                          CellType::hexahedron, CellType::octahedron};
+    if (found.shape != PolyhedronShape::other)
+      return add_known(kTypes[static_cast<std::size_t>(found.shape)], c, found.corners);
+    polytopes_.add_polyhedron(found.corners, std::move(found.rings), std::move(found.ends));
+  }
+
+  void require_same_corners(std::size_t c, std::span<const Index> corners, const std::vector<Index>& of_faces) const {
+    check_corners(c, points_, corners);
+    std::vector<Index> given(corners.begin(), corners.end()), found(of_faces);
+    std::sort(given.begin(), given.end());
+    std::sort(found.begin(), found.end());
+    if (given == found) return;
+    const auto [at, other] = std::mismatch(given.begin(), given.end(), found.begin(), found.end());
+    const bool is_given = other == found.end() || (at != given.end() && *at < *other);
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("cell {}: point {} is {}; expected the points of the faces as corners", c, is_given ? *at : *other,
+                    is_given ? "a corner and in no face" : "in a face and not among the corners"));
+  }
+
+  int dim_;
+  std::size_t points_;
+  const CellLists& cells_;
+  std::vector<CellGroup> groups_;
+  Polytopes polytopes_;
+  std::vector<std::uint64_t> ends_;
+};
+
+}  // namespace
+
+CellGroups group_cells(int dim, std::size_t points, const CellLists& cells) {
+  require_cells(cells.types.size());
+  check_lists(cells);
+  ListedCells listed(dim, points, cells);
+  for (std::size_t c = 0; c < cells.types.size(); ++c) listed.add(c);
+  return listed.take();
+}
+
 template <int N>
 CellSigns find_cell_signs(const CellGroups& cells, const std::vector<std::array<double, N>>& points) {
   CellSigns signs;
@@ -239,6 +360,7 @@ CellSigns find_cell_signs(const CellGroups& cells, const std::vector<std::array<
     if (any_inverted && !any_kept)
       for (std::size_t w = 0; w < inverted.size(); ++w) inverted[w] |= unknown[w];
   }
+  signs.push_back(find_polytope_signs<N>(cells.polytopes, points));
   return signs;
 }
 template CellSigns find_cell_signs<2>(const CellGroups&, const std::vector<std::array<double, 2>>&);
@@ -250,12 +372,18 @@ template CellSigns find_cell_signs<4>(const CellGroups&, const std::vector<std::
 namespace tegl {
 
 std::string_view name_of(CellType type) noexcept {
+  if (type == CellType::polygon) return "polygon";
+  if (type == CellType::polyhedron) return "polyhedron";
   const detail::CellKind* const kind = detail::find_kind(type);
   return kind == nullptr ? "unknown" : kind->name;
 }
 
 std::size_t corner_count(CellType type) { return detail::table_of(detail::kind_of(type).shape).corner_count; }
 
-int dimension(CellType type) { return static_cast<int>(detail::table_of(detail::kind_of(type).shape).dim); }
+int dimension(CellType type) {
+  if (type == CellType::polygon) return 2;
+  if (type == CellType::polyhedron) return 3;
+  return static_cast<int>(detail::table_of(detail::kind_of(type).shape).dim);
+}
 
 }  // namespace tegl

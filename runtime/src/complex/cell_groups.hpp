@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "polytope/polytopes.hpp"
 #include "tegl/cell_contract.hpp"
 #include "tegl/complex.hpp"
 
@@ -43,10 +44,12 @@ struct CellGroup {
   [[nodiscard]] const Index* cell(std::size_t i) const noexcept { return corners.data() + i * corner_count; }
 };
 
-/// The cells of a complex. Groups are ordered by shape and not empty.
+/// The cells of a complex. Groups are ordered by shape and not empty. Polygons and polyhedra are numbered after the
+/// cells of all groups; those with a shape of the tables are in the groups.
 struct CellGroups {
   std::vector<CellGroup> groups;
   std::size_t cell_count = 0;
+  Polytopes polytopes = {};
 };
 
 /// Consecutive cells of a group.
@@ -58,7 +61,7 @@ struct CellRange {
 
 /// Whether each cell is oriented against the reference corners: the sign of the best affine map between the two. Cells
 /// that are flat up to rounding have the sign that all others of their shape have; if those differ, or for lack of
-/// others, they are not inverted. By group: bit c % 64 of word c / 64.
+/// others, they are not inverted. By group, then of the polytopes: bit c % 64 of word c / 64.
 template <int N>
 [[nodiscard]] CellSigns find_cell_signs(const CellGroups& cells, const std::vector<std::array<double, N>>& points);
 
@@ -67,6 +70,8 @@ template <int N>
                                      std::span<const Index> corners);
 /// The same for cells of one type.
 [[nodiscard]] CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<const Index> corners);
+/// The same with polygons and polyhedra.
+[[nodiscard]] CellGroups group_cells(int dim, std::size_t points, const CellLists& cells);
 
 /// Access to the private data of complexes.
 struct ComplexAccess {

@@ -30,22 +30,26 @@ CellIndex::CellIndex(const Complex<N>& complex, const WorkOptions& work)
   std::vector<Range> ranges;
   Index cell = 0;
   const std::vector<double>& values = complex.values();
+  const auto add = [&](std::span<const Index> corners, Index number) {
+    double low = values[corners[0]], high = low;
+    bool is_missing = std::isnan(low);
+    for (const Index corner : corners.subspan(1)) {
+      const double value = values[corner];
+      is_missing = is_missing || std::isnan(value);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    has_missing_ = has_missing_ || is_missing;
+    if (!is_missing && low < high) ranges.push_back({rounded_down(low), rounded_up(high), number});
+  };
   for (const detail::CellGroup& group : detail::ComplexAccess::cells(complex).groups)
     for (std::size_t i = 0; i < group.size(); ++i, ++cell) {
       if (i % 65536 == 0)
         detail::tell(work.progress, 0.3 * static_cast<double>(cell) / static_cast<double>(all_cells_));
-      const Index* const corners = group.cell(i);
-      double low = values[corners[0]], high = low;
-      bool is_missing = std::isnan(low);
-      for (std::size_t c = 1; c < group.corner_count; ++c) {
-        const double value = values[corners[c]];
-        is_missing = is_missing || std::isnan(value);
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-      has_missing_ = has_missing_ || is_missing;
-      if (!is_missing && low < high) ranges.push_back({rounded_down(low), rounded_up(high), cell});
+      add({group.cell(i), group.corner_count}, cell);
     }
+  const detail::Polytopes& polytopes = detail::ComplexAccess::cells(complex).polytopes;
+  for (std::size_t i = 0; i < polytopes.size(); ++i, ++cell) add(polytopes.points_of(i), cell);
   cells_ = ranges.size();
   lows_.reserve(cells_);
   highs_.reserve(cells_);

@@ -92,6 +92,7 @@ Complex<N> ComplexAccess::identified(const Complex<N>& complex, std::vector<std:
   CellGroups cells = *complex.cells_;
   for (CellGroup& group : cells.groups)
     for (Index& corner : group.corners) corner = number[corner];
+  cells.polytopes.renumber(number);
   result.cells_ = std::make_shared<const CellGroups>(std::move(cells));
   result.signs_ = complex.signs_;
   result.values_ = std::move(values);
@@ -133,6 +134,14 @@ requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points
     : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
   largest_coordinate_ = detail::check_points<N>(points_);
   cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), types, corners));
+  signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Complex<N>::Complex(std::vector<Point> points, const CellLists& cells)
+    : points_(std::move(points)), values_(detail::missing_values(points_.size())) {
+  largest_coordinate_ = detail::check_points<N>(points_);
+  cells_ = std::make_shared<const detail::CellGroups>(detail::group_cells(N, points_.size(), cells));
   signs_ = std::make_shared<const detail::CellSigns>(detail::find_cell_signs<N>(*cells_, points_));
 }
 

@@ -48,6 +48,14 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
   for (std::size_t i = 0; i < border.size(); ++i) {
     const auto& [g, cell, number] = border[i];
     if (i % kStep == 0) tell(progress, static_cast<double>(i) / static_cast<double>(border.size()));
+    if (g == cells.groups.size()) {
+      const std::span<const Index> points = cells.polytopes.points_of(cell);
+      if (std::any_of(points.begin(), points.end(), [&](Index p) { return std::isnan(values[p]); })) continue;
+      const bool is_inverted = (signs[g][cell >> 6] >> (cell & 63u) & 1u) != 0;
+      // seen from outside, rings are counterclockwise; edges of polygons have the polygon on their left
+      add_face(facet_points(cells.polytopes, cell, number), (is_inverted != descends) != (N == 3));
+      continue;
+    }
     const CellGroup& group = cells.groups[g];
     const Index* const corners = group.cell(cell);
     if (std::any_of(corners, corners + group.corner_count, [&](Index p) { return std::isnan(values[p]); })) continue;
@@ -97,6 +105,44 @@ void ComplexCaps<N>::add_facet(const Facet& facet) {
         add_simplex({vertex(facet, part[0]), vertex(facet, part[i - 1]), vertex(facet, part[i])}, facet.flip);
   } else {
     add_regions(facet);
+  }
+}
+
+template <int N>
+void ComplexCaps<N>::add_face(const std::vector<Index>& points, bool flip) {
+  const std::size_t count = points.size();
+  const auto is_high = [&](std::size_t i) { return values_[points[i % count]] >= isovalue_; };
+  for (const Index p : points)
+    if (values_[p] >= isovalue_) corners_.push_back(p);
+  if constexpr (N == 2) {
+    const auto at = [&](std::size_t i) {
+      return is_high(i) ? CapVertex::corner(points[i]) : on_edge(points[0], points[1]);
+    };
+    if (is_high(0) || is_high(1)) add_simplex({at(0), at(1)}, flip);
+  } else if constexpr (N == 3) {
+    // runs of high corners with the points of the contour beside them: one part, or one for each run
+    std::size_t start = 0;
+    while (start < count && (is_high(start) || !is_high(start + 1))) ++start;
+    std::vector<std::vector<CapVertex>> runs(start == count ? 1 : 0);  // all are high, or none
+    for (std::size_t i = start % count, end = i + count; i < end; ++i) {
+      if (is_high(i)) runs.back().push_back(CapVertex::corner(points[i % count]));
+      if (is_high(i) == is_high(i + 1)) continue;
+      if (!is_high(i)) runs.emplace_back();
+      runs.back().push_back(on_edge(points[i % count], points[(i + 1) % count]));
+    }
+    std::vector<double> at;
+    for (const Index p : points) at.push_back(values_[p]);
+    const PolytopeRules rules = rules_of(options_, isovalue_);
+    if (runs.size() > 1 && is_face_high(rules, at)) {
+      for (std::size_t r = 1; r < runs.size(); ++r) runs[0].insert(runs[0].end(), runs[r].begin(), runs[r].end());
+      runs.resize(1);
+    }
+    for (auto& run : runs) {  // fans from a corner: other sides than those of the part are in this face alone
+      const auto corner = std::find_if(run.begin(), run.end(), [](CapVertex v) { return v.is_corner(); });
+      if (corner == run.end()) continue;
+      std::rotate(run.begin(), corner, run.end());
+      for (std::size_t i = 2; i < run.size(); ++i) add_simplex({run[0], run[i - 1], run[i]}, flip);
+    }
   }
 }
 

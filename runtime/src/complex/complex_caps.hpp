@@ -79,6 +79,8 @@ class ComplexCaps {
   };
 
   void add_facet(const Facet& facet);
+  /// Adds the high part of an edge or a face of a polytope.
+  void add_face(const std::vector<Index>& points, bool flip);
   void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
   /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.

@@ -58,7 +58,32 @@ WorkOptions work_of(const ExtractOptions& options, const Progress& progress) {
   return {options.work.threads, progress};
 }
 
+/// The contours of polygons and polyhedra: of all, or of those in a list of cells.
+std::vector<PolytopeBlock> polytope_blocks(const CellGroups& cells, std::span<const double> values, double isovalue,
+                                           const ExtractOptions& options, const std::vector<Index>* active,
+                                           const Progress& progress) {
+  if (cells.polytopes.size() == 0) return {};
+  const PolytopeRules rules = rules_of(options, isovalue);
+  std::vector<Index> listed;
+  if (active != nullptr) {
+    const auto first = static_cast<Index>(cells.cell_count - cells.polytopes.size());
+    for (auto at = std::lower_bound(active->begin(), active->end(), first); at != active->end(); ++at)
+      listed.push_back(*at - first);
+  }
+  return build_polytope_contours(cells.polytopes, values, rules, active == nullptr ? nullptr : &listed,
+                                 work_of(options, progress));
+}
+
 }  // namespace
+
+PolytopeRules rules_of(const ExtractOptions& options, double isovalue) {
+  PolytopeRules rules;
+  rules.is_compact = options.triangulation == Triangulation::compact;
+  rules.joins_high = options.ambiguity == Ambiguity::high;
+  if (is_estimated(options.ambiguity)) rules.rule = face_rule(options.ambiguity);
+  rules.isovalue = isovalue;
+  return rules;
+}
 
 void check_complex_options(int dim, double isovalue, const ExtractOptions& options) {
   check_arguments(isovalue, options);
@@ -89,16 +114,25 @@ ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edge
         return bits;
       }()),
       blocks_(active == nullptr ? find_active_cells(cells, tables_, bits_, edges, values,
-                                                    work_of(options, part_of(progress, 0.2, 0.5)))
+                                                    work_of(options, part_of(progress, 0.2, 0.4)))
                                 : blocks_of_cells(cells, tables_, *active, values, isovalue,
-                                                  work_of(options, part_of(progress, 0.2, 0.5)))),
-      crossings_(cells, tables_, blocks_, edges, values.size(), work_of(options, part_of(progress, 0.5, 0.8))),
+                                                  work_of(options, part_of(progress, 0.2, 0.4)))),
+      polytopes_(polytope_blocks(cells, values, isovalue, options, active, part_of(progress, 0.4, 0.5))),
+      crossings_(cells, tables_, blocks_, polytopes_, edges, values.size(),
+                 work_of(options, part_of(progress, 0.5, 0.8))),
       shared_(number_shared_points(cells, tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
       first_shared_(sums_before(blocks_, &ActiveBlock::shared)),
       first_own_(sums_before(blocks_, &ActiveBlock::own)),
       first_simplex_(sums_before(blocks_, &ActiveBlock::simplices)),
       own_base_(crossings_.ends().size() + shared_.keys.size()),
-      vertex_count_(own_base_ + first_own_.back()) {
+      vertex_count_(own_base_ + first_own_.back()),
+      simplex_count_(first_simplex_.back()) {
+  separate_diagonals(polytopes_);
+  for (const PolytopeBlock& block : polytopes_) {
+    polytope_own_.push_back(std::exchange(vertex_count_, vertex_count_ + block.own));
+    polytope_simplex_.push_back(std::exchange(simplex_count_, simplex_count_ + block.simplices));
+    stats.active_tiles += block.active;
+  }
   require_numbers(vertex_count_);
   stats.tiles = cells.cell_count;
   for (const ActiveBlock& block : blocks_) stats.active_tiles += block.cells.size();
@@ -118,18 +152,23 @@ Index ContourNumbers::polygon(std::span<const Index> vertices) const {
 std::vector<Index> ContourNumbers::vertices_at_missing(const CellGroups& cells) const {
   std::vector<Index> vertices;
   const std::vector<EdgeEnds>& ends = edge_ends();
+  const auto add = [&](Index p, Index q) {
+    if (bits_.is_missing(p) || bits_.is_missing(q) || bits_.is_high(p) == bits_.is_high(q)) return;
+    const EdgeEnds edge{std::min(p, q), std::max(p, q)};
+    const auto found = std::lower_bound(ends.begin(), ends.end(), edge);
+    if (found != ends.end() && *found == edge) vertices.push_back(static_cast<Index>(found - ends.begin()));
+  };
   for (const ActiveBlock& block : blocks_) {
     const CellGroup& group = cells.groups[block.group];
     const tables::CellTable& table = this->table(block.group);
     for (const Index c : block.missing)
-      for (std::uint32_t e = 0; e < table.edge_count; ++e) {
-        const Index p = group.cell(c)[table.edges[2 * e]], q = group.cell(c)[table.edges[2 * e + 1]];
-        if (bits_.is_missing(p) || bits_.is_missing(q) || bits_.is_high(p) == bits_.is_high(q)) continue;
-        const EdgeEnds edge{std::min(p, q), std::max(p, q)};
-        const auto found = std::lower_bound(ends.begin(), ends.end(), edge);
-        if (found != ends.end() && *found == edge) vertices.push_back(static_cast<Index>(found - ends.begin()));
-      }
+      for (std::uint32_t e = 0; e < table.edge_count; ++e)
+        add(group.cell(c)[table.edges[2 * e]], group.cell(c)[table.edges[2 * e + 1]]);
   }
+  for (const PolytopeBlock& block : polytopes_)
+    for (const Index c : block.missing)
+      for (const auto& [a, b] : cells.polytopes.shape(c).edges())
+        add(cells.polytopes.cell(c)[a], cells.polytopes.cell(c)[b]);
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;

@@ -16,7 +16,11 @@ namespace tegl::detail {
 /// Checks the options of an extraction from a complex of dimension `dim`. Errors: InvalidIsovalue, InvalidArgument.
 void check_complex_options(int dim, double isovalue, const ExtractOptions& options);
 
-/// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells.
+/// How polygons and polyhedra are resolved.
+[[nodiscard]] PolytopeRules rules_of(const ExtractOptions& options, double isovalue);
+
+/// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells,
+/// those of polygons and polyhedra last. Simplices: by cell, likewise.
 class ContourNumbers {
  public:
   /// The arguments must outlive this object. Reports progress from 0 to 1. `active`: numbers of the cells that may be
@@ -28,7 +32,7 @@ class ContourNumbers {
   ContourNumbers(const ContourNumbers&) = delete;
   ContourNumbers& operator=(const ContourNumbers&) = delete;
 
-  [[nodiscard]] ContourSize size() const noexcept { return {vertex_count_, first_simplex_.back()}; }
+  [[nodiscard]] ContourSize size() const noexcept { return {vertex_count_, simplex_count_}; }
   [[nodiscard]] const std::vector<ActiveBlock>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] const std::vector<EdgeEnds>& edge_ends() const noexcept { return crossings_.ends(); }
   [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
@@ -39,6 +43,12 @@ class ContourNumbers {
   /// The vertices on crossed edges of a block's cells: one cell after the other, by edge.
   [[nodiscard]] const Buffer<Index>& crossings(std::size_t block) const noexcept { return crossings_.of_block(block); }
   [[nodiscard]] std::uint64_t first_simplex(std::size_t block) const noexcept { return first_simplex_[block]; }
+  [[nodiscard]] const std::vector<PolytopeBlock>& polytopes() const noexcept { return polytopes_; }
+  /// The numbers of the first barycentre and of the first simplex of a block of polytopes.
+  [[nodiscard]] std::uint64_t first_of_polytopes(std::size_t block) const noexcept { return polytope_own_[block]; }
+  [[nodiscard]] std::uint64_t first_simplex_of_polytopes(std::size_t block) const noexcept {
+    return polytope_simplex_[block];
+  }
   /// The barycentre of the polygon with these vertices in a common 3-face, or kNoPoint.
   [[nodiscard]] Index polygon(std::span<const Index> vertices) const;
 
@@ -55,11 +65,13 @@ class ContourNumbers {
   CellTables tables_;
   PointBits bits_;
   std::vector<ActiveBlock> blocks_;
+  std::vector<PolytopeBlock> polytopes_;
   CrossingNumbers crossings_;
   SharedPoints shared_;
   std::vector<std::uint64_t> first_shared_, first_own_, first_simplex_;  ///< by block
   std::uint64_t own_base_ = 0;
-  std::uint64_t vertex_count_ = 0;
+  std::uint64_t vertex_count_ = 0, simplex_count_ = 0;
+  std::vector<std::uint64_t> polytope_own_, polytope_simplex_;  ///< first numbers, by block of polytopes
 };
 
 template <class Visit>

@@ -3,6 +3,7 @@
 // Numbers the crossed edges of a complex.
 #include "complex/crossings.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <limits>
@@ -27,20 +28,20 @@ std::vector<std::uint64_t> sums_before(const std::vector<ActiveBlock>& blocks, s
 }
 
 CrossingNumbers::CrossingNumbers(const CellGroups& cells, const CellTables& tables,
-                                 const std::vector<ActiveBlock>& blocks, const ComplexEdges* edges, std::size_t points,
-                                 const WorkOptions& work)
+                                 const std::vector<ActiveBlock>& blocks, std::vector<PolytopeBlock>& polytopes,
+                                 const ComplexEdges* edges, std::size_t points, const WorkOptions& work)
     : cells_(cells), tables_(tables), blocks_(blocks), edges_(edges), of_blocks_(blocks.size()) {
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     of_blocks_[b].reserve(blocks[b].crossings + kListedBeyond);
     of_blocks_[b].resize(blocks[b].crossings);
   }
   if (edges == nullptr)
-    sort(points, work);
+    sort(points, polytopes, work);
   else
-    count_bits(work);
+    count_bits(polytopes, work);
 }
 
-void CrossingNumbers::sort(std::size_t points, const WorkOptions& work) {
+void CrossingNumbers::sort(std::size_t points, std::vector<PolytopeBlock>& polytopes, const WorkOptions& work) {
   // the distinct edges of each block: a few times fewer to sort
   std::vector<std::vector<EdgeEnds>> distinct(blocks_.size());
   for_each_block(
@@ -62,9 +63,10 @@ void CrossingNumbers::sort(std::size_t points, const WorkOptions& work) {
         }
         distinct[b] = edges.edges();
       });
-  SortedEdges sorted(points, blocks_.size(),
+  SortedEdges sorted(points, blocks_.size() + polytopes.size(),
                      [&](std::size_t b, const auto& add) {
-                       for (const auto& [p, q] : distinct[b]) add(p, q);
+                       const auto& edges = b < blocks_.size() ? distinct[b] : polytopes[b - blocks_.size()].edges;
+                       for (const auto& [p, q] : edges) add(p, q);
                      },
                      {work.threads, part_of(work.progress, 0.4, 0.8)});
   require_numbers(sorted.ends().size());
@@ -77,10 +79,14 @@ void CrossingNumbers::sort(std::size_t points, const WorkOptions& work) {
         distinct[b] = {};
         for (Index& edge : of_blocks_[b]) edge = numbers[edge];
       });
+  for_each_item(polytopes.size(), work.threads, nullptr, [&](std::size_t b) {
+    for (const auto& [p, q] : polytopes[b].edges)
+      polytopes[b].numbers.push_back(static_cast<Index>(sorted.number(p, q)));
+  });
   ends_ = sorted.take_ends();
 }
 
-void CrossingNumbers::count_bits(const WorkOptions& work) {
+void CrossingNumbers::count_bits(std::vector<PolytopeBlock>& polytopes, const WorkOptions& work) {
   // set the bits of crossed edges
   std::vector<EdgeWord> words(block_count(edges_->ends.size(), 64));
   const bool is_one = work.threads == 1;
@@ -98,6 +104,13 @@ void CrossingNumbers::count_bits(const WorkOptions& work) {
           if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
         }
       });
+  for (PolytopeBlock& block : polytopes) {
+    for (const EdgeEnds& edge : block.edges) {
+      const auto found = std::lower_bound(edges_->ends.begin(), edges_->ends.end(), edge);
+      block.numbers.push_back(static_cast<Index>(found - edges_->ends.begin()));
+    }
+    set_crossed(words.data(), block.numbers.data(), block.numbers.size());
+  }
   // count
   const std::uint64_t count = count_before(words);
   require_numbers(count);
@@ -117,6 +130,7 @@ void CrossingNumbers::count_bits(const WorkOptions& work) {
   // from edges to their numbers among the crossed ones
   for_each_item(blocks_.size(), work.threads, part_of(work.progress, 0.7, 1.0),
                 [&](std::size_t b) { number_edges(words.data(), of_blocks_[b].data(), of_blocks_[b].size()); });
+  for (PolytopeBlock& block : polytopes) number_edges(words.data(), block.numbers.data(), block.numbers.size());
 }
 
 }  // namespace tegl::detail

@@ -9,6 +9,7 @@
 
 #include "complex/active_cells.hpp"
 #include "complex/complex_edges.hpp"
+#include "polytope/polytope_contours.hpp"
 
 namespace tegl::detail {
 
@@ -17,10 +18,11 @@ namespace tegl::detail {
 /// of active cells are collected, and the edges of all blocks sorted. Both give the same numbers.
 class CrossingNumbers {
  public:
-  /// The arguments must outlive this object. `edges`: null if not known. Errors: TooLarge (2^32 points or more),
-  /// Cancelled.
+  /// The arguments must outlive this object. `edges`: null if not known. `polytopes`: receive the numbers of their
+  /// edges. Errors: TooLarge (2^32 points or more), Cancelled.
   CrossingNumbers(const CellGroups& cells, const CellTables& tables, const std::vector<ActiveBlock>& blocks,
-                  const ComplexEdges* edges, std::size_t points, const WorkOptions& work);
+                  std::vector<PolytopeBlock>& polytopes, const ComplexEdges* edges, std::size_t points,
+                  const WorkOptions& work);
 
   /// The crossed edges, by number.
   [[nodiscard]] const std::vector<EdgeEnds>& ends() const noexcept { return ends_; }
@@ -36,8 +38,8 @@ class CrossingNumbers {
   }
 
  private:
-  void sort(std::size_t points, const WorkOptions& work);
-  void count_bits(const WorkOptions& work);
+  void sort(std::size_t points, std::vector<PolytopeBlock>& polytopes, const WorkOptions& work);
+  void count_bits(std::vector<PolytopeBlock>& polytopes, const WorkOptions& work);
 
   const CellGroups& cells_;
   const CellTables& tables_;

@@ -141,6 +141,25 @@ class ComplexWriter {
         });
   }
 
+  /// The simplices and barycentres of polygons and polyhedra.
+  void write_polytopes(const WorkOptions& work) {
+    const std::vector<PolytopeBlock>& blocks = numbers_.polytopes();
+    for_each_item(blocks.size(), work.threads, work.progress, [&](std::size_t b) {
+      const PolytopeBlock& block = blocks[b];
+      auto* simplex = contour_.simplices.data() + numbers_.first_simplex_of_polytopes(b);
+      auto own = static_cast<Index>(numbers_.first_of_polytopes(b));
+      std::vector<Index> vertices;
+      std::uint32_t from = 0;
+      for (const PolytopeBlock::Piece& piece : block.pieces) {
+        vertices.clear();
+        for (; from < piece.end; ++from) vertices.push_back(block.numbers[block.vertices[from]]);
+        const bool is_inverted = (signs_.back()[piece.cell >> 6] >> (piece.cell & 63u) & 1u) != 0;
+        simplex = write_piece(vertices, piece.is_coned, own, is_inverted != descends_, simplex);
+        if (piece.is_coned) write_barycentre(vertices, own++);
+      }
+    });
+  }
+
   /// Appends caps.
   void write_caps(const ComplexCaps<N>& caps) {
     std::size_t v = numbers_.size().vertices;
@@ -280,6 +299,30 @@ class ComplexWriter {
     Point gradient;
     for (std::size_t i = 0; i < N; ++i) gradient[i] = (1.0 - alpha) * at_from[i] + alpha * at_to[i];
     contour_.normals[number] = normal_of(gradient);
+  }
+
+  /// Writes the simplices of a segment, or of a loop as a cone from `apex` or a fan from its first vertex. Returns the
+  /// end of what it has written.
+  static std::array<Index, N>* write_piece(std::span<const Index> vertices, bool is_coned, Index apex, bool flip,
+                                           std::array<Index, N>* simplex) noexcept {
+    if constexpr (N == 2) {
+      *simplex++ = {vertices[flip ? 1 : 0], vertices[flip ? 0 : 1]};
+    } else if constexpr (N == 3) {
+      const std::size_t size = vertices.size(), first = is_coned ? 0 : 1;
+      for (std::size_t i = first; i + (is_coned ? 0 : 1) < size; ++i) {
+        const Index from = vertices[i], to = vertices[(i + 1) % size];
+        *simplex++ = {is_coned ? apex : vertices[0], flip ? to : from, flip ? from : to};
+      }
+    }
+    return simplex;
+  }
+
+  /// The barycentre of a loop. Ascending vertices, so that the sum does not depend on the cell's numbering.
+  void write_barycentre(std::vector<Index>& vertices, Index number) const noexcept {
+    std::sort(vertices.begin(), vertices.end());
+    Mean mean(*this);
+    for (const Index v : vertices) mean.add_vertex(v);
+    write(number, mean);
   }
 
   /// The simplices of a block of cells whose vertices are all on edges.
@@ -462,6 +505,7 @@ void write_contour(const Complex<N>& complex, const ContourNumbers& numbers, con
   writer.write_edge_points({threads, part_of(rest, 0.0, 0.25)});
   writer.write_polygon_centres({threads, part_of(rest, 0.25, 0.4)});
   writer.write_cells({threads, part_of(rest, 0.4, 1.0)});
+  writer.write_polytopes({threads, nullptr});
   if (caps != nullptr) writer.write_caps(*caps);
 }
 

@@ -37,6 +37,19 @@ detail::CellGroup prisms_over(const detail::CellGroup& group, std::size_t points
   return prisms;
 }
 
+/// Prisms over polygons are polyhedra.
+detail::Polytopes prisms_over(const detail::Polytopes& polytopes, std::size_t points, std::size_t intervals) {
+  if (polytopes.size() > 0 && polytopes.dim() == 3)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} polyhedra over time; expected tetrahedra, pyramids, wedges, hexahedra and octahedra",
+                            polytopes.size()));
+  for (std::size_t c = 0; c < polytopes.size(); ++c)
+    if (const std::size_t corners = polytopes.points_of(c).size(); 2 * corners > detail::kPolytopeCorners)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("a polygon of {} corners over time; expected at most {}",
+                                                          corners, detail::kPolytopeCorners / 2));
+  return polytopes.in_time(points, intervals);
+}
+
 }  // namespace
 
 template <int N>
@@ -71,6 +84,7 @@ requires DimensionBetween<N, 2, 3> Complex<N + 1> in_time(const Complex<N>& comp
   detail::CellGroups cells;
   for (const detail::CellGroup& group : detail::ComplexAccess::cells(complex).groups)
     cells.groups.push_back(prisms_over(group, count, times.size() - 1));
+  cells.polytopes = prisms_over(detail::ComplexAccess::cells(complex).polytopes, count, times.size() - 1);
   cells.cell_count = complex.cell_count() * (times.size() - 1);
   Complex<N + 1> result = detail::ComplexAccess::layered<N + 1>(std::move(all), std::move(cells));
   result.set_values(std::vector<double>(values.begin(), values.end()));

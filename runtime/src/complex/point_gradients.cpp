@@ -52,16 +52,18 @@ PointGradients<N>::PointGradients(const Complex<N>& complex, std::span<const Edg
   if (known == nullptr) {
     const std::vector<CellRange> ranges = ranges_of(cells);
     const auto visit = [&](std::size_t r, const auto& add) {
+      const auto add_marked = [&](Index p, Index q) {
+        if (is_marked(p) || is_marked(q)) add(p, q);
+      };
+      if (r == ranges.size()) return cells.polytopes.for_each_edge(add_marked);
       const CellGroup& group = cells.groups[ranges[r].group];
       const tables::CellTable& table = table_of(group.shape);
       for (std::size_t c = ranges[r].from; c < ranges[r].to; ++c)
-        for (std::uint32_t e = 0; e < table.edge_count; ++e) {
-          const Index p = group.cell(c)[table.edges[2 * e]], q = group.cell(c)[table.edges[2 * e + 1]];
-          if (is_marked(p) || is_marked(q)) add(p, q);
-        }
+        for (std::uint32_t e = 0; e < table.edge_count; ++e)
+          add_marked(group.cell(c)[table.edges[2 * e]], group.cell(c)[table.edges[2 * e + 1]]);
     };
-    found =
-        SortedEdges(complex.points().size(), ranges.size(), visit, {work.threads, part_of(work.progress, 0.0, 0.7)});
+    found = SortedEdges(complex.points().size(), ranges.size() + 1, visit,
+                        {work.threads, part_of(work.progress, 0.0, 0.7)});
   }
   // sums, in the order of the edges
   std::vector<Sums> sums(count);

@@ -12,6 +12,10 @@
 
 namespace tegl::test {
 
+/// All rules for ambiguous faces that complexes take.
+inline constexpr std::array kAllRules = {Ambiguity::low,    Ambiguity::high,    Ambiguity::mean,
+                                         Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider};
+
 /// A ball of radius 0.7 around the origin.
 template <int N>
 double ball(const std::array<double, N>& x) {

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Keeps polygons and polyhedra, their lattices and their orientations.
+#include "polytope/polytopes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/workers.hpp"
+
+namespace tegl::detail {
+
+PolytopeShape::PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends)
+    : rings_(std::move(rings)), ends_(std::move(ends)) {
+  ring_edges_.resize(rings_.size());
+  for (std::size_t f = 0; f < ends_.size(); ++f) {
+    const std::size_t begin = f == 0 ? 0 : ends_[f - 1], count = ends_[f] - begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [a, b] = std::minmax(rings_[begin + i], rings_[begin + (i + 1) % count]);
+      const std::array<std::uint8_t, 2> edge{a, b};
+      const auto at = static_cast<std::size_t>(std::find(edges_.begin(), edges_.end(), edge) - edges_.begin());
+      ring_edges_[begin + i] = static_cast<std::uint8_t>(at);
+      const auto face = static_cast<std::uint8_t>(f);
+      if (at < edges_.size()) {
+        faces_of_[at][1] = face;
+        continue;
+      }
+      edges_.push_back(edge);
+      faces_of_.push_back({face, face});
+    }
+  }
+  for (const std::uint8_t corner : rings_) corner_count_ = std::max(corner_count_, std::size_t{corner} + 1);
+}
+
+void Polytopes::add(std::span<const Index> corners, Lattice lattice) {
+  const auto [at, is_new] = numbers_.try_emplace(std::move(lattice), static_cast<std::uint32_t>(shapes_.size()));
+  if (is_new) shapes_.emplace_back(at->first.first, at->first.second);
+  shape_of_.push_back(at->second);
+  first_.push_back(corners_.size());
+  corners_.insert(corners_.end(), corners.begin(), corners.end());
+}
+
+void Polytopes::add_polygon(std::span<const Index> corners) {
+  Lattice lattice;
+  for (std::size_t v = 0; v < corners.size(); ++v) lattice.first.push_back(static_cast<std::uint8_t>(v));
+  lattice.second.push_back(static_cast<std::uint16_t>(corners.size()));
+  add(corners, std::move(lattice));
+}
+
+void Polytopes::add_polyhedron(std::span<const Index> corners, std::vector<std::uint8_t> rings,
+                               std::vector<std::uint16_t> ends) {
+  add(corners, {std::move(rings), std::move(ends)});
+}
+
+Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
+  Polytopes prisms;
+  std::vector<Index> corners;
+  for (std::size_t k = 0; k < intervals; ++k)
+    for (std::size_t c = 0; c < size(); ++c) {
+      const std::span<const Index> base = points_of(c);
+      const std::size_t count = base.size();
+      corners.clear();
+      for (const std::size_t layer : {k, k + 1})
+        for (const Index p : base) corners.push_back(static_cast<Index>(layer * points + p));
+      // seen from outside, the base is clockwise and the top counterclockwise if the polygon is counterclockwise
+      Lattice lattice;
+      const auto push = [&](std::size_t v) { lattice.first.push_back(static_cast<std::uint8_t>(v)); };
+      const auto end_face = [&] { lattice.second.push_back(static_cast<std::uint16_t>(lattice.first.size())); };
+      for (std::size_t v = count; v-- > 0;) push(v);
+      end_face();
+      for (std::size_t v = 0; v < count; ++v) push(count + v);
+      end_face();
+      for (std::size_t v = 0; v < count; ++v) {
+        const std::size_t next = (v + 1) % count;
+        for (const std::size_t corner : {v, next, count + next, count + v}) push(corner);
+        end_face();
+      }
+      prisms.add(corners, std::move(lattice));
+    }
+  return prisms;
+}
+
+void Polytopes::renumber(std::span<const Index> number) {
+  for (Index& corner : corners_) corner = number[corner];
+}
+
+namespace {
+
+/// The volume (3D) or area (2D) inside rings, times a positive factor, relative to the box around the corners; 0 if
+/// the cell is flat up to rounding.
+template <int N>
+double relative_volume(const PolytopeShape& shape, const Index* corners,
+                       const std::vector<std::array<double, N>>& points) {
+  using Point = std::array<double, N>;
+  constexpr double kFlat = 0x1p-30;
+  std::array<Point, kPolytopeCorners> at;
+  Point lowest = points[corners[0]], highest = lowest;
+  for (std::size_t v = 0; v < shape.corner_count(); ++v)
+    for (std::size_t i = 0; i < N; ++i) {
+      lowest[i] = std::min(lowest[i], points[corners[v]][i]);
+      highest[i] = std::max(highest[i], points[corners[v]][i]);
+    }
+  for (std::size_t v = 0; v < shape.corner_count(); ++v)
+    for (std::size_t i = 0; i < N; ++i) {
+      const double extent = highest[i] - lowest[i];
+      at[v][i] = extent > 0 ? (points[corners[v]][i] - lowest[i]) / extent : 0.0;
+    }
+  double volume = 0.0;
+  for (std::size_t f = 0; f < shape.face_count(); ++f) {
+    const std::span<const std::uint8_t> ring = shape.ring(f);
+    Point mean{};
+    for (const std::uint8_t v : ring)
+      for (std::size_t i = 0; i < N; ++i) mean[i] += at[v][i] / static_cast<double>(ring.size());
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Point &a = at[ring[k]], &b = at[ring[(k + 1) % ring.size()]];
+      if constexpr (N == 2)
+        volume += (a[0] - mean[0]) * (b[1] - mean[1]) - (a[1] - mean[1]) * (b[0] - mean[0]);
+      else
+        volume += mean[0] * (a[1] * b[2] - a[2] * b[1]) + mean[1] * (a[2] * b[0] - a[0] * b[2]) +
+                  mean[2] * (a[0] * b[1] - a[1] * b[0]);
+    }
+  }
+  return std::abs(volume) > kFlat ? volume : 0.0;
+}
+
+}  // namespace
+
+template <int N>
+std::vector<std::uint64_t> find_polytope_signs(const Polytopes& polytopes,
+                                               const std::vector<std::array<double, N>>& points) {
+  std::vector<std::uint64_t> inverted(block_count(polytopes.size(), 64));
+  if constexpr (N < 4) {
+    std::vector<std::uint64_t> kept(inverted.size());
+    for_each_item(inverted.size(), 0, {}, [&](std::size_t w) {
+      for (std::size_t c = 64 * w; c < std::min(polytopes.size(), 64 * w + 64); ++c) {
+        const double volume = relative_volume<N>(polytopes.shape(c), polytopes.cell(c), points);
+        inverted[w] |= std::uint64_t{volume < 0} << (c & 63u);
+        kept[w] |= std::uint64_t{volume > 0} << (c & 63u);
+      }
+    });
+    const auto is_empty = [](const auto& words) {
+      return std::all_of(words.begin(), words.end(), [](std::uint64_t word) { return word == 0; });
+    };
+    if (is_empty(kept) && !is_empty(inverted)) std::fill(inverted.begin(), inverted.end(), ~std::uint64_t{0});
+  }
+  return inverted;
+}
+
+template std::vector<std::uint64_t> find_polytope_signs<2>(const Polytopes&, const std::vector<std::array<double, 2>>&);
+template std::vector<std::uint64_t> find_polytope_signs<3>(const Polytopes&, const std::vector<std::array<double, 3>>&);
+template std::vector<std::uint64_t> find_polytope_signs<4>(const Polytopes&, const std::vector<std::array<double, 4>>&);
+
+}  // namespace tegl::detail

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The polygons and polyhedra of a complex, by the faces around them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+/// Most corners of a polygon or polyhedron: the bits of a signature.
+inline constexpr std::size_t kPolytopeCorners = 64;
+
+/// The faces of a polytope as rings of its corners. Along each ring of a polyhedron, seen from outside, the corners are
+/// counterclockwise if the cell is not inverted; a polygon has one ring.
+class PolytopeShape {
+ public:
+  PolytopeShape() = default;
+  /// `rings`: one face after the other; `ends`: the end of each face. The faces of a polyhedron must be checked.
+  PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
+
+  [[nodiscard]] std::size_t corner_count() const noexcept { return corner_count_; }
+  [[nodiscard]] std::size_t face_count() const noexcept { return ends_.size(); }
+  [[nodiscard]] std::span<const std::uint8_t> ring(std::size_t face) const noexcept { return part(rings_, face); }
+  /// The edges of a face: edge i is between corners i and i + 1 of its ring.
+  [[nodiscard]] std::span<const std::uint8_t> ring_edges(std::size_t face) const noexcept {
+    return part(ring_edges_, face);
+  }
+  /// The ends of the edges.
+  [[nodiscard]] const std::vector<std::array<std::uint8_t, 2>>& edges() const noexcept { return edges_; }
+  /// Whether two different edges are in a common face.
+  [[nodiscard]] bool share_a_face(std::size_t edge, std::size_t other) const noexcept {
+    const auto &a = faces_of_[edge], &b = faces_of_[other];
+    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+  }
+
+ private:
+  [[nodiscard]] std::span<const std::uint8_t> part(const std::vector<std::uint8_t>& of, std::size_t face) const {
+    const std::size_t begin = face == 0 ? 0 : ends_[face - 1];
+    return {of.data() + begin, ends_[face] - begin};
+  }
+
+  std::size_t corner_count_ = 0;
+  std::vector<std::uint8_t> rings_, ring_edges_;
+  std::vector<std::uint16_t> ends_;
+  std::vector<std::array<std::uint8_t, 2>> edges_, faces_of_;  ///< by edge
+};
+
+/// The polygons (of a 2D complex) or polyhedra (3D) of a complex, in the order of the input.
+class Polytopes {
+ public:
+  [[nodiscard]] std::size_t size() const noexcept { return shape_of_.size(); }
+  /// The dimension of the cells; 3 if there are none.
+  [[nodiscard]] int dim() const noexcept { return !shapes_.empty() && shapes_[0].face_count() == 1 ? 2 : 3; }
+  [[nodiscard]] const PolytopeShape& shape(std::size_t cell) const noexcept { return shapes_[shape_of_[cell]]; }
+  /// The points at the corners of a cell.
+  [[nodiscard]] const Index* cell(std::size_t i) const noexcept { return corners_.data() + first_[i]; }
+  [[nodiscard]] std::span<const Index> points_of(std::size_t i) const noexcept {
+    return {cell(i), shape(i).corner_count()};
+  }
+  /// Number of different shapes.
+  [[nodiscard]] std::size_t shape_count() const noexcept { return shapes_.size(); }
+
+  /// Appends a polygon with its corners around it.
+  void add_polygon(std::span<const Index> corners);
+  /// Appends a polyhedron with the rings of its faces, checked, in the numbers of its corners.
+  void add_polyhedron(std::span<const Index> corners, std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
+  /// The prisms over the polygons in the intervals between layers of `points` points each.
+  [[nodiscard]] Polytopes in_time(std::size_t points, std::size_t intervals) const;
+  /// Replaces each point p by number[p].
+  void renumber(std::span<const Index> number);
+
+  /// Calls visit(p, q) for the edges of all cells.
+  template <class Visit>
+  void for_each_edge(const Visit& visit) const {
+    for (std::size_t c = 0; c < size(); ++c)
+      for (const auto& [a, b] : shape(c).edges()) visit(cell(c)[a], cell(c)[b]);
+  }
+
+ private:
+  using Lattice = std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>>;
+  void add(std::span<const Index> corners, Lattice lattice);
+
+  std::vector<PolytopeShape> shapes_;
+  std::map<Lattice, std::uint32_t> numbers_;  ///< of the shapes
+  std::vector<std::uint32_t> shape_of_;       ///< by cell
+  std::vector<std::uint64_t> first_;          ///< by cell: its first corner in corners_
+  std::vector<Index> corners_;
+};
+
+/// Whether each polytope is oriented against its rings: by the sign of its volume or area. Flat ones are as the others
+/// if these all have one sign, otherwise not inverted. Bit c % 64 of word c / 64.
+template <int N>
+[[nodiscard]] std::vector<std::uint64_t> find_polytope_signs(const Polytopes& polytopes,
+                                                             const std::vector<std::array<double, N>>& points);
+
+}  // namespace tegl::detail
