@@ -15,8 +15,6 @@
 namespace tegl::detail {
 namespace {
 
-constexpr std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
-
 template <std::size_t N>
 int position(const std::array<Index, N>& simplex, Index v) {
   return static_cast<int>(std::find(simplex.begin(), simplex.end(), v) - simplex.begin());
@@ -36,10 +34,7 @@ CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, st
       border_faces_(simplices.size(), 0),
       border_vertex_(vertex_count, false),
       star_of_(vertex_count, Star{}),
-      alive_(simplices.size()),
-      in_u_(vertex_count + 1, 0),
-      in_v_(vertex_count + 1, 0),
-      in_edge_(vertex_count + 1, 0) {
+      alive_(simplices.size()) {
   if (simplices.size() > kNone / N)
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
@@ -136,13 +131,14 @@ void CollapsibleComplex<N>::star(Index v, std::vector<Index>& result) {
 
 template <int N>
 void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
+  const std::span<const Index> star = clean_star(v);
   result.clear();
-  ++round_;
-  in_u_[v] = round_;
-  for (const Index s : clean_star(v))
+  few_.clear(N * star.size() + 1);
+  few_[v] = 0;
+  for (const Index s : star)
     for (const Index a : simplices_[s])
-      if (in_u_[a] != round_) {
-        in_u_[a] = round_;
+      if (std::uint32_t& number = few_[a]; number == FewVertices::kNew) {
+        number = 0;
         result.push_back(a);
       }
 }
@@ -176,120 +172,78 @@ void CollapsibleComplex<N>::load(Index u, Index v, Edge& edge) {
     if (!contains(simplices_[s], u)) edge.only_v.push_back(s);
 }
 
+/// Calls visit(face) for the faces of the link of an end of the edge, except those that contain the other end. `star`:
+/// the simplices at that end only.
 template <int N>
-void CollapsibleComplex<N>::gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces) {
+template <class Visit>
+bool CollapsibleComplex<N>::visit_link(std::span<const Index> star, Index v, const Visit& visit) const {
   const auto cone = static_cast<Index>(star_of_.size());
+  const bool has_border = border_vertex_[v];  // else no border face contains v
   for (const Index s : star) {
     const Simplex& simplex = simplices_[s];
     Face face{};
     for (int i = 0, k = 0; i < N; ++i)
       if (simplex[i] != v) face[k++] = simplex[i];
-    std::sort(face.begin(), face.end());
-    faces.push_back(face);
-    if (border_faces_[s] == 0) continue;
+    if (!visit(face)) return false;
+    if (!has_border || border_faces_[s] == 0) continue;
     for (int omitted = 0; omitted < N; ++omitted) {
       if ((border_faces_[s] >> omitted & 1u) == 0 || simplex[omitted] == v) continue;
       Face border = face;
       std::replace(border.begin(), border.end(), simplex[omitted], cone);
-      std::sort(border.begin(), border.end());
-      faces.push_back(border);
+      if (!visit(border)) return false;
     }
   }
+  return true;
 }
 
+/// Calls visit(face, omitted) for the simplices at the edge, without the edge: faces of its link, with omitted = -1;
+/// and for their border faces with the omitted vertex replaced by that of the cone, in the links of the edge or of one
+/// end.
 template <int N>
-void CollapsibleComplex<N>::gather_edge_link(const Edge& edge) {
-  link_edge_.clear();
-  const auto cone = static_cast<Index>(star_of_.size());
+template <class Visit>
+void CollapsibleComplex<N>::visit_edge_link(const Edge& edge, const Visit& visit) const {
+  const bool has_border = border_vertex_[edge.u] || border_vertex_[edge.v];
   for (const Index s : edge.both) {
     const Simplex& simplex = simplices_[s];
-    const int i = position(simplex, edge.u), j = position(simplex, edge.v);
     Face face{};
     for (int a = 0, k = 0; a < N; ++a)
-      if (a != i && a != j) face[k++] = simplex[a];
-    link_edge_.push_back(face);
-    for (int omitted = 0; omitted < N; ++omitted) {
-      if ((border_faces_[s] >> omitted & 1u) == 0) continue;
-      if (omitted == i || omitted == j) {
-        // This border face contains one end only. Its cone is in the link of that end and does not contain the other
-        // end.
-        Face border{};
-        for (int a = 0, k = 0; a < N; ++a)
-          if (a != i && a != j) border[k++] = simplex[a];
-        border[N - 2] = cone;
-        std::sort(border.begin(), border.end());
-        (omitted == j ? link_u_ : link_v_).push_back(border);
-        continue;
-      }
-      Face border = face;
-      std::replace(border.begin(), border.begin() + (N - 2), simplex[omitted], cone);
-      link_edge_.push_back(border);
-    }
+      if (simplex[a] != edge.u && simplex[a] != edge.v) face[k++] = simplex[a];
+    visit(face, kNone);
+    if (!has_border || border_faces_[s] == 0) continue;
+    for (int omitted = 0; omitted < N; ++omitted)
+      if ((border_faces_[s] >> omitted & 1u) != 0) visit(face, simplex[omitted]);
   }
-}
-
-template <int N>
-void CollapsibleComplex<N>::mark(std::span<const Face> faces, std::vector<std::uint32_t>& marks, int vertices) {
-  for (const Face& face : faces)
-    for (int i = 0; i < vertices; ++i) marks[face[i]] = round_;
 }
 
 template <int N>
 bool CollapsibleComplex<N>::is_contractible(const Edge& edge) {
   if (edge.only_u.empty() && edge.only_v.empty()) return false;
-  link_u_.clear();
-  link_v_.clear();
-  gather_link(edge.only_u, edge.u, link_u_);
-  gather_link(edge.only_v, edge.v, link_v_);
-  gather_edge_link(edge);
-  ++round_;
-  mark(link_u_, in_u_, N - 1);
-  mark(link_v_, in_v_, N - 1);
-  mark(link_edge_, in_edge_, N - 2);
-  return share_only_the_edges_link();
-}
-
-template <int N>
-bool CollapsibleComplex<N>::share_only_the_edges_link() {
-  for (const Face& face : link_u_)
-    for (const Index a : face)
-      if (in_v_[a] == round_ && in_edge_[a] != round_) return false;
-  if constexpr (N == 3) return !share_a_link_edge(false);
-  if constexpr (N == 4) return !share_a_link_edge(true) && !share_a_link_triangle();
-  return true;
-}
-
-/// Whether both links share an edge that is not in the link of uv. The link of uv has edges if N = 4.
-template <int N>
-bool CollapsibleComplex<N>::share_a_link_edge(bool beside_edges_link) {
-  const auto gather = [&](std::span<const Face> faces, const std::vector<std::uint32_t>& in_other,
-                          std::vector<std::uint64_t>& keys) {
-    keys.clear();
-    for (const Face& face : faces)
-      for (int i = 0; i < N - 1; ++i)
-        for (int j = 0; j < i; ++j)
-          if (in_other[face[i]] == round_ && in_other[face[j]] == round_) keys.push_back(edge_key(face[i], face[j]));
-    std::sort(keys.begin(), keys.end());
-  };
-  gather(link_u_, in_v_, edges_u_);
-  gather(link_v_, in_u_, edges_v_);
-  edges_both_.clear();
-  std::set_intersection(edges_u_.begin(), edges_u_.end(), edges_v_.begin(), edges_v_.end(),
-                        std::back_inserter(edges_both_));
-  return std::any_of(edges_both_.begin(), edges_both_.end(), [&](std::uint64_t key) {
-    return !beside_edges_link || std::none_of(link_edge_.begin(), link_edge_.end(),
-                                              [&](const Face& face) { return edge_key(face[0], face[1]) == key; });
+  const auto cone = static_cast<Index>(star_of_.size());
+  links_.clear(N * (edge.only_u.size() + edge.only_v.size() + edge.both.size()) + 1);
+  visit_edge_link(edge, [&](Face face, Index omitted) {
+    if (omitted == edge.u || omitted == edge.v) return;
+    std::replace(face.begin(), face.begin() + (N - 2), omitted, cone);
+    links_.add_to_uv(face);
   });
-}
-
-/// Whether both links share a triangle. The link of uv has no triangles, so a shared one violates the link condition.
-template <int N>
-bool CollapsibleComplex<N>::share_a_link_triangle() const {
-  for (const Face& face : link_u_) {
-    if (!std::all_of(face.begin(), face.end(), [&](Index a) { return in_v_[a] == round_; })) continue;
-    if (std::find(link_v_.begin(), link_v_.end(), face) != link_v_.end()) return true;
-  }
-  return false;
+  links_.complete_uv();
+  // Border faces that contain one end only: their cones are in the link of that end and do not contain the other one.
+  const auto visit_cones = [&](Index other_end, const auto& visit) {
+    bool holds = true;
+    visit_edge_link(edge, [&](Face face, Index omitted) {
+      face[N - 2] = cone;
+      if (omitted == other_end) holds = visit(face) && holds;
+    });
+    return holds;
+  };
+  const auto add_to_u = [&](const Face& face) {
+    links_.add_to_u(face);
+    return true;
+  };
+  const auto add_to_v = [&](const Face& face) { return links_.add_to_v(face); };
+  const bool has_border = border_vertex_[edge.u] || border_vertex_[edge.v];
+  visit_link(edge.only_u, edge.u, add_to_u);
+  if (has_border) visit_cones(edge.v, add_to_u);
+  return visit_link(edge.only_v, edge.v, add_to_v) && (!has_border || visit_cones(edge.u, add_to_v));
 }
 
 template <int N>
@@ -311,7 +265,9 @@ void CollapsibleComplex<N>::open_face(std::span<const Index> star, Index s, Inde
 
 template <int N>
 void CollapsibleComplex<N>::contract(const Edge& edge) {
+  const bool has_border = border_vertex_[edge.u] || border_vertex_[edge.v];
   for (const Index s : edge.both) {
+    if (!has_border) break;
     const unsigned i = static_cast<unsigned>(position(simplices_[s], edge.u));
     const unsigned j = static_cast<unsigned>(position(simplices_[s], edge.v));
     // Two faces of s are identified. If one of them was on the border, the other one becomes a border face of its other

@@ -14,6 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "simplify/few_vertices.hpp"
+#include "simplify/link_condition.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
@@ -60,18 +62,14 @@ class CollapsibleComplex {
   void contract(const Edge& edge);
 
  private:
-  /// Vertices of a face of a link, ascending; shorter faces fill only the first ones.
-  using Face = std::array<Index, N - 1>;
+  using Face = typename LinkCondition<N>::Face;
 
   void fill_stars(std::size_t vertex_count, const Progress& progress);
   void find_border(const Progress& progress);
-  /// Appends the link of `v` in the given simplices of its star, with the cone over the border.
-  void gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces);
-  void gather_edge_link(const Edge& edge);
-  void mark(std::span<const Face> faces, std::vector<std::uint32_t>& marks, int vertices);
-  bool share_only_the_edges_link();
-  bool share_a_link_edge(bool beside_edges_link);
-  bool share_a_link_triangle() const;
+  template <class Visit>
+  bool visit_link(std::span<const Index> star, Index v, const Visit& visit) const;
+  template <class Visit>
+  void visit_edge_link(const Edge& edge, const Visit& visit) const;
   /// Finds the simplex of `star` that shares with `s` the face opposite to `without`, and marks that face as border.
   void open_face(std::span<const Index> star, Index s, Index without);
 
@@ -92,11 +90,9 @@ class CollapsibleComplex {
   Buffer<Index> stars_;   ///< simplices, vertex by vertex
   std::size_t alive_ = 0;
 
-  // Scratch. A mark is the round in which it was set.
-  std::uint32_t round_ = 0;
-  std::vector<std::uint32_t> in_u_, in_v_, in_edge_;
-  std::vector<Face> link_u_, link_v_, link_edge_;
-  std::vector<std::uint64_t> edges_u_, edges_v_, edges_both_;
+  // Scratch.
+  FewVertices few_;
+  LinkCondition<N> links_;
 };
 
 extern template class CollapsibleComplex<2>;
