@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "hwy/cache_control.h"
+
 #include "base/progress.hpp"
 #include "simplify/equal_keys.hpp"
 #include "tegl/error.hpp"
@@ -124,6 +126,19 @@ std::span<const Index> CollapsibleComplex<N>::clean_star(Index v) {
 }
 
 template <int N>
+void CollapsibleComplex<N>::request(Index v, Ahead step) const {
+  const Star& star = star_of_[v];
+  constexpr std::size_t kPerLine = 64 / sizeof(Index);
+  if (step == Ahead::place) {
+    hwy::Prefetch(&star);
+  } else if (step == Ahead::star) {
+    for (std::size_t i = 0; i < star.size; i += kPerLine) hwy::Prefetch(stars_.data() + star.first + i);
+  } else {
+    visit_star(v, [&](Index s) { hwy::Prefetch(&simplices_[s]); });
+  }
+}
+
+template <int N>
 void CollapsibleComplex<N>::star(Index v, std::vector<Index>& result) {
   const std::span<const Index> simplices = clean_star(v);
   result.assign(simplices.begin(), simplices.end());
@@ -131,16 +146,8 @@ void CollapsibleComplex<N>::star(Index v, std::vector<Index>& result) {
 
 template <int N>
 void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
-  const std::span<const Index> star = clean_star(v);
   result.clear();
-  few_.clear(N * star.size() + 1);
-  few_[v] = 0;
-  for (const Index s : star)
-    for (const Index a : simplices_[s])
-      if (std::uint32_t& number = few_[a]; number == FewVertices::kNew) {
-        number = 0;
-        result.push_back(a);
-      }
+  visit_neighbours(v, [&](Index a) { result.push_back(a); });
 }
 
 /// The star of u after v was merged into it, in the part of either vertex if it is large enough.

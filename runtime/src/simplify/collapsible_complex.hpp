@@ -54,6 +54,31 @@ class CollapsibleComplex {
   /// The vertices that share an edge with v, each once.
   void neighbours(Index v, std::vector<Index>& result);
 
+  /// Calls visit(vertex) for them.
+  template <class Visit>
+  void visit_neighbours(Index v, const Visit& visit) {
+    const std::span<const Index> star = clean_star(v);
+    few_.clear(N * star.size() + 1);
+    few_[v] = 0;
+    for (const Index s : star)
+      for (const Index a : simplices_[s])
+        if (std::uint32_t& number = few_[a]; number == FewVertices::kNew) {
+          number = 0;
+          visit(a);
+        }
+  }
+
+  /// Requests memory that `load` will read for an edge at v, before it is needed: first the place of the star, then the
+  /// star, then its simplices. Each step reads what the one before requested.
+  enum class Ahead { place, star, simplices };
+  void request(Index v, Ahead step) const;
+  /// Calls visit(simplex) for the simplices at a vertex, also for some that no longer exist.
+  template <class Visit>
+  void visit_star(Index v, const Visit& visit) const {
+    const Star& star = star_of_[v];
+    for (std::size_t i = 0; i < star.size; ++i) visit(stars_[star.first + i]);
+  }
+
   /// Fills `edge`. u and v have to differ.
   void load(Index u, Index v, Edge& edge);
   /// Whether contracting the edge preserves the topology of the manifold.

@@ -44,10 +44,21 @@ class EdgeBuckets {
     }
   }
 
+  /// For each of the steps, calls request(step, entry) for the entries that will come within so many calls of `next`,
+  /// each once.
+  template <std::size_t Count, class Request>
+  void request_ahead(const std::array<std::size_t, Count>& calls, const Request& request) {
+    static_assert(Count <= kMostSteps);
+    for (std::size_t step = 0; step < Count; ++step)
+      for (; requested_[step] < std::min(position_ + calls[step], entries_.size()); ++requested_[step])
+        request(step, entries_[requested_[step]]);
+  }
+
  private:
   /// Keys of a bucket differ by at most a sixteenth: the sign, the exponent and four bits of the fraction.
   static constexpr int kShift = 48;
   static constexpr std::size_t kBuckets = std::size_t{1} << (63 - kShift);
+  static constexpr std::size_t kMostSteps = 4;  ///< of request_ahead
   static constexpr std::uint64_t kUnsigned = ~std::uint64_t{0} >> 1;  ///< without the sign, which -0.0 has
 
   /// Loads the entries pushed to the current bucket since it was loaded, or else the next bucket.
@@ -55,6 +66,7 @@ class EdgeBuckets {
   bool refill(const IsCurrent& is_current) {
     entries_.clear();
     position_ = 0;
+    requested_.fill(0);
     if (!again_.empty()) {
       entries_.swap(again_);
     } else {
@@ -75,6 +87,7 @@ class EdgeBuckets {
   std::size_t current_ = 0;
   std::vector<Entry> entries_;  ///< of the current bucket, sorted
   std::size_t position_ = 0;
+  std::array<std::size_t, kMostSteps> requested_{};  ///< by step: entries for which request_ahead was called
   std::vector<Entry> again_;  ///< pushed to the current bucket or an earlier one
 };
 

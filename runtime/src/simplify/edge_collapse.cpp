@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/progress.hpp"
+#include "hwy/cache_control.h"
 
 namespace tegl::detail {
 namespace {
@@ -188,6 +189,28 @@ std::optional<CollapseTarget<N>> EdgeCollapse<N>::best_target(Index u, Index v) 
   }
   target.cost = sum(to_scaled(target.at));
   return target;
+}
+
+template <int N>
+void EdgeCollapse<N>::request_corners(Index u, Index v) const {
+  const auto request = [&](Index s) {
+    if (!complex_.is_alive(s)) return;
+    for (const Index corner : complex_.simplex(s)) hwy::Prefetch(&scaled_[corner]);
+  };
+  for (const Index end : {u, v}) {
+    complex_.visit_star(end, request);
+    for (std::size_t i = 0; i < sizeof(Quadric<N>); i += 64)
+      hwy::Prefetch(reinterpret_cast<const char*>(&quadrics_[end]) + i);
+  }
+}
+
+template <int N>
+void EdgeCollapse<N>::request_cost(Index v) const {
+  for (std::size_t i = 0; i < sizeof(Quadric<N>); i += 64)
+    hwy::Prefetch(reinterpret_cast<const char*>(&quadrics_[v]) + i);
+  hwy::Prefetch(&scaled_[v]);
+  hwy::Prefetch(&bound_[v]);
+  hwy::Prefetch(&version_[v]);
 }
 
 template <int N>

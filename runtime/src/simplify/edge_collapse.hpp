@@ -88,6 +88,10 @@ class EdgeCollapse {
   };
   [[nodiscard]] std::optional<CommonTarget> common_target(std::span<const Index> vertices) const;
 
+  /// Requests the corners of the simplices at u and v, which are read to contract them.
+  void request_corners(Index u, Index v) const;
+  /// Requests what costs_around reads of a vertex.
+  void request_cost(Index v) const;
   /// Contracts u v into u, at `target`, if manifold, shape, tolerance and (if requested) the other simplices allow it.
   bool try_contract(Index u, Index v, const CollapseTarget<N>& target);
   /// Call it for a contraction that a limit forbids, such as the tolerance. If everything else allows the contraction,

@@ -84,9 +84,14 @@ class QuadricOrder {
     while (reporter_.continues(collapse_.complex().alive())) {
       const EdgeBuckets::Entry* next = queue_.next(is_current);
       if (next == nullptr) return;
+      request_ahead();
       const auto [u, v, version] = *next;
       if (!contract(u, v)) continue;
-      collapse_.complex().neighbours(u, around_);
+      around_.clear();
+      collapse_.complex().visit_neighbours(u, [&](Index a) {
+        collapse_.request_cost(a);
+        around_.push_back(a);
+      });
       push(u);
     }
   }
@@ -104,6 +109,15 @@ class QuadricOrder {
       if (end.share == 0.0 ? collapse_.may_move_to(b, a) : collapse_.may_move_to(a, b))
         if (collapse_.try_contract(a, b, end)) return true;
     return false;
+  }
+  /// Requests the memory around the next entries, which lies apart: it arrives while others are contracted.
+  void request_ahead() {
+    using Ahead = typename CollapsibleComplex<N>::Ahead;
+    queue_.request_ahead<4>({8, 6, 4, 2}, [&](std::size_t step, const EdgeBuckets::Entry& entry) {
+      if (step == 3) return collapse_.request_corners(entry.a, entry.b);
+      collapse_.complex().request(entry.a, static_cast<Ahead>(step));
+      collapse_.complex().request(entry.b, static_cast<Ahead>(step));
+    });
   }
   [[nodiscard]] std::uint32_t stamp(Index a, Index b) const { return collapse_.version(a) + collapse_.version(b); }
   /// The edges of u to the vertices in around_.
