@@ -6,14 +6,19 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "base/workers.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/simplex_corners.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 
@@ -58,15 +63,25 @@ struct Box {
 template <int N>
 class BoxTree {
  public:
-  explicit BoxTree(const SimplexCorners<N>& simplices) : simplices_(simplices) {
-    nodes_.reserve(simplices.size());
-    if (simplices.size() != 0) build(0, static_cast<Index>(simplices.size()));
+  explicit BoxTree(const SimplexCorners<N>& simplices, unsigned threads = 1, const Progress& progress = {})
+      : simplices_(simplices) {
+    if (simplices.size() == 0) return;
+    origin_ = simplices[0][0];
+    // the nodes of one level with all below them, then those above
+    const Range all{0, static_cast<Index>(simplices.size())};
+    std::size_t level = 1;  // the number of nodes in it, and of its first node
+    std::size_t largest = simplices.size();
+    for (nodes_.resize(2); largest > kLeafSize; largest -= largest / 2) nodes_.resize(2 * nodes_.size());
+    while (level < kParts && 2 * level < nodes_.size()) level *= 2;
+    for_each_block(level, 1, threads, progress,
+                   [&](std::size_t, std::size_t first, std::size_t) { build(level + first, range_of(level + first)); });
+    build(1, all, level);
   }
 
   /// Calls visit(simplex) for every simplex whose box is within `reach` of the box along every axis.
   template <class Visit>
   void visit_near(const Box<N>& box, double reach, const Visit& visit) const {
-    if (!nodes_.empty()) visit_node(0, box, reach, visit);
+    if (!nodes_.empty()) visit_node(1, all(), box, local(box), reach, visit);
   }
 
   struct Nearest {
@@ -76,7 +91,7 @@ class BoxTree {
   /// The nearest simplex; the distance is infinite if there is none.
   [[nodiscard]] Nearest nearest(const PointN<N>& p) const {
     Found best;
-    if (!nodes_.empty()) find_nearest(0, p, best);
+    if (!nodes_.empty()) find_nearest(1, all(), {p, minus(p, origin_)}, best);
     return best.nearest;
   }
   /// The nearest simplex, found faster if `guess` is near. Among equally near simplices the result may depend on the
@@ -87,16 +102,69 @@ class BoxTree {
     Found best;
     best.factor = factor;
     try_simplex(guess, p, best);
-    find_nearest(0, p, best);
+    find_nearest(1, all(), {p, minus(p, origin_)}, best);
     return best.nearest;
   }
 
  private:
   static constexpr Index kLeafSize = 4;
+  static constexpr std::size_t kParts = 256;
+
+  /// The simplices of a node; those of its children are the halves. A node with at most kLeafSize is a leaf.
+  struct Range {
+    Index first, end;
+    [[nodiscard]] bool is_leaf() const { return end - first <= kLeafSize; }
+    [[nodiscard]] Range half(unsigned second) const {
+      const Index middle = first + (end - first) / 2;
+      return second == 0 ? Range{first, middle} : Range{middle, end};
+    }
+  };
+  [[nodiscard]] Range all() const { return {0, static_cast<Index>(simplices_.size())}; }
+  /// The children of node i are 2 i and 2 i + 1; node 1 is the root.
+  [[nodiscard]] Range range_of(std::size_t node) const {
+    Range range = all();
+    for (int bit = static_cast<int>(std::bit_width(node)) - 2; bit >= 0 && !range.is_leaf(); --bit)
+      range = range.half(node >> bit & 1u);
+    return range;
+  }
+
+  /// A box in single precision, relative to the origin; never too small. The boxes of two children are in one cache
+  /// line.
   struct Node {
-    Box<N> box;
-    Index first = 0, end = 0;  ///< simplices of a leaf; 0, 0 for inner nodes
-    Index right = 0;           ///< right child; the left child is the next node
+    std::array<float, N> low, high;
+
+    void set(const Box<N>& box) {
+      constexpr float kInfinity = std::numeric_limits<float>::infinity();
+      for (int a = 0; a < N; ++a) {  // rounded by at most half of a step; one step is more
+        low[a] = std::nextafter(static_cast<float>(box.low[a]), -kInfinity);
+        high[a] = std::nextafter(static_cast<float>(box.high[a]), kInfinity);
+      }
+    }
+    void add(const Node& other) {
+      for (int a = 0; a < N; ++a) {
+        low[a] = std::min(low[a], other.low[a]);
+        high[a] = std::max(high[a], other.high[a]);
+      }
+    }
+    [[nodiscard]] bool meets(const Box<N>& box, double reach) const {
+      for (int a = 0; a < N; ++a)
+        if (static_cast<double>(low[a]) > box.high[a] + reach || box.low[a] > static_cast<double>(high[a]) + reach)
+          return false;
+      return true;
+    }
+    [[nodiscard]] double square_distance(const PointN<N>& p) const {
+      double sum = 0.0;
+      for (int a = 0; a < N; ++a) {
+        const double away = std::max({0.0, static_cast<double>(low[a]) - p[a], p[a] - static_cast<double>(high[a])});
+        sum += away * away;
+      }
+      return sum;
+    }
+  };
+
+  /// A point, and the same relative to the origin.
+  struct Place {
+    PointN<N> point, local;
   };
 
   /// The nearest simplex so far, and the vector from its nearest point to the point searched for.
@@ -112,48 +180,51 @@ class BoxTree {
     return box;
   }
 
-  Index build(Index first, Index end) {
-    const auto number = static_cast<Index>(nodes_.size());
-    nodes_.emplace_back();
-    if (end - first <= kLeafSize) {
+  [[nodiscard]] Box<N> local(const Box<N>& box) const { return {minus(box.low, origin_), minus(box.high, origin_)}; }
+
+  /// Sets the boxes of a node and of all nodes below it. `known`: the first of the nodes that are set already, with
+  /// those below them.
+  void build(std::size_t node, const Range& range, std::size_t known = std::numeric_limits<std::size_t>::max()) {
+    if (node >= known) return;
+    if (range.is_leaf()) {
       Box<N> box;
-      for (Index i = first; i < end; ++i) box.add(box_of(i));
-      nodes_[number] = {box, first, end, 0};
-      return number;
+      for (Index i = range.first; i < range.end; ++i) box.add(box_of(i));
+      nodes_[node].set(local(box));
+      return;
     }
-    const Index middle = first + (end - first) / 2;
-    build(first, middle);
-    const Index right = build(middle, end);
-    Box<N> box = nodes_[number + 1].box;
-    box.add(nodes_[right].box);
-    nodes_[number] = {box, 0, 0, right};
-    return number;
+    build(2 * node, range.half(0), known);
+    build(2 * node + 1, range.half(1), known);
+    nodes_[node] = nodes_[2 * node];
+    nodes_[node].add(nodes_[2 * node + 1]);
   }
 
   template <class Visit>
-  void visit_node(Index number, const Box<N>& box, double reach, const Visit& visit) const {
-    const Node& node = nodes_[number];
-    if (!node.box.meets(box, reach)) return;
-    for (Index i = node.first; i < node.end; ++i)
+  void visit_node(std::size_t node, const Range& range, const Box<N>& box, const Box<N>& local_box, double reach,
+                  const Visit& visit) const {
+    if (!nodes_[node].meets(local_box, reach)) return;
+    if (!range.is_leaf()) {
+      for (const unsigned second : {0u, 1u})
+        visit_node(2 * node + second, range.half(second), box, local_box, reach, visit);
+      return;
+    }
+    for (Index i = range.first; i < range.end; ++i)
       if (box_of(i).meets(box, reach)) visit(i);
-    if (node.end != 0) return;
-    visit_node(number + 1, box, reach, visit);
-    visit_node(node.right, box, reach, visit);
   }
 
-  void find_nearest(Index number, const PointN<N>& p, Found& best) const {
+  void find_nearest(std::size_t node, const Range& range, const Place& p, Found& best) const {
     const auto is_nearer = [&](double square) {
       return best.factor * best.factor * square < best.nearest.distance * best.nearest.distance;
     };
-    const Node& node = nodes_[number];
-    for (Index i = node.first; i < node.end; ++i)
-      if (is_nearer(box_of(i).square_distance(p))) try_simplex(i, p, best);
-    if (node.end != 0) return;
-    std::array<std::pair<double, Index>, 2> next = {{{nodes_[number + 1].box.square_distance(p), number + 1},
-                                                     {nodes_[node.right].box.square_distance(p), node.right}}};
-    if (next[1].first < next[0].first) std::swap(next[0], next[1]);
-    for (const auto& [square, child] : next)
-      if (is_nearer(square)) find_nearest(child, p, best);
+    if (range.is_leaf()) {
+      for (Index i = range.first; i < range.end; ++i)
+        if (is_nearer(box_of(i).square_distance(p.point))) try_simplex(i, p.point, best);
+      return;
+    }
+    const std::array<double, 2> squares = {nodes_[2 * node].square_distance(p.local),
+                                           nodes_[2 * node + 1].square_distance(p.local)};
+    const unsigned nearer = squares[1] < squares[0] ? 1 : 0;
+    for (const unsigned child : {nearer, 1 - nearer})
+      if (is_nearer(squares[child])) find_nearest(2 * node + child, range.half(child), p, best);
   }
 
   void try_simplex(Index s, const PointN<N>& p, Found& best) const {
@@ -175,6 +246,7 @@ class BoxTree {
   }
 
   SimplexCorners<N> simplices_;
+  PointN<N> origin_{};
   Buffer<Node> nodes_;
 };
 

@@ -622,7 +622,7 @@ void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, d
                  const Progress& progress, Deviation& result) {
   const FacetNeighbours<N> neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.0, 0.05));
   const BoundaryFaces<N> open(to, neighbours, threads, part_of(progress, 0.05, 0.1));
-  const BoxTree<N> tree(to.corners);
+  const BoxTree<N> tree(to.corners, threads);
   // distances of vertices: exactly where they are needed
   const SimplexGradients<N> gradients(to.corners, threads, {});
   const SimplexWalk<N> walk(gradients, neighbours);

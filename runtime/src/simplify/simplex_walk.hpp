@@ -125,7 +125,11 @@ class SimplexWalk {
   template <class DistanceFrom>
   [[nodiscard]] NearPoint end_of_walk(const PointN<N>& p, Index start, const DistanceFrom& distance_from) const {
     const auto local = to_.local(p);
-    std::array<std::pair<Index, Weights>, kMostSteps> way;
+    struct Step {
+      Index simplex;
+      Weights weights;
+    };
+    std::array<Step, kMostSteps> way;  // set step by step
     std::size_t steps = 0;
     for (Index at = start, before = kNone; at != kNone && steps < kMostSteps;) {
       const Weights weights = to_.weights(at, local);
@@ -137,8 +141,8 @@ class SimplexWalk {
     }
     NearPoint best;
     for (std::size_t i = 0; i < steps; ++i)
-      if (const double distance = distance_from(way[i].first, way[i].second); distance < best.distance)
-        best = {distance, way[i].first};
+      if (const double distance = distance_from(way[i].simplex, way[i].weights); distance < best.distance)
+        best = {distance, way[i].simplex};
     return best;
   }
 

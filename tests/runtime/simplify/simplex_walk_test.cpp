@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "fields.hpp"
@@ -216,13 +217,37 @@ TYPED_TEST(Walk, BoundsAllPointsOfASimplex) {
   EXPECT_GT(failed, 30);
 }
 
+/// Boxes are in single precision: relative to a point of the contour, so that they stay small.
+TYPED_TEST(Walk, TreeFindsTheNearestSimplexFarFromTheOrigin) {
+  constexpr int N = TypeParam::value;
+  WalkedBall<N> ball(N == 4 ? 5 : 10, 1.0);
+  for (auto& point : ball.points)
+    for (double& x : point) x += 1e6;
+  const BoxTree<N> tree(ball.corners(), 2);
+  std::mt19937 random(6);
+  for (int i = 0; i < 50; ++i) {
+    PointN<N> p = ball.points[random() % ball.points.size()];
+    for (double& x : p) x += std::uniform_real_distribution<double>(-2.0, 2.0)(random);
+    EXPECT_NEAR(tree.nearest(p).distance, ball.distance(p), 1e-8);
+    std::set<Index> near;
+    Box<N> box;
+    box.add(p);
+    tree.visit_near(box, 0.5, [&](Index s) { near.insert(s); });
+    for (Index s = 0; s < ball.simplices.size(); ++s) {
+      Box<N> of_simplex;
+      for (const PointN<N>& corner : ball.corners()[s]) of_simplex.add(corner);
+      EXPECT_EQ(near.count(s) == 1, of_simplex.meets(box, 0.5));
+    }
+  }
+}
+
 TYPED_TEST(Walk, FindsTheFarthestVertexExactly) {
   constexpr int N = TypeParam::value;
   const WalkedBall<N> ball(N == 4 ? 5 : 10, 1.0);
   const FacetNeighbours<N> neighbours = ball.neighbours();
   const SimplexGradients<N> gradients(ball.corners(), 1, {});
   const SimplexWalk<N> walk(gradients, neighbours);
-  const BoxTree<N> tree(ball.corners());
+  const BoxTree<N> tree(ball.corners(), 3);
   std::mt19937 random(5);
   std::vector<PointN<N>> moved = ball.points;
   std::vector<double> distances;
