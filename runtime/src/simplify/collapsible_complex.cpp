@@ -4,18 +4,22 @@
 #include "simplify/collapsible_complex.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 #include <fmt/format.h>
 
 #include "hwy/cache_control.h"
 
 #include "base/progress.hpp"
+#include "base/workers.hpp"
 #include "simplify/equal_keys.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
 namespace {
+
+constexpr std::size_t kBorderBlock = 1024;
 
 template <std::size_t N>
 int position(const std::array<Index, N>& simplex, Index v) {
@@ -31,17 +35,17 @@ bool contains(const std::array<Index, N>& simplex, Index v) {
 
 template <int N>
 CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count,
-                                          const Progress& progress)
+                                          unsigned threads, const Progress& progress)
     : simplices_(simplices.begin(), simplices.end()),
       border_faces_(simplices.size(), 0),
-      border_vertex_(vertex_count, false),
+      border_vertex_(vertex_count, 0),
       star_of_(vertex_count, Star{}),
       alive_(simplices.size()) {
   if (simplices.size() > kNone / N)
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
   fill_stars(vertex_count, part_of(progress, 0.0, 0.3));
-  find_border(part_of(progress, 0.3, 1.0));
+  find_border(threads, part_of(progress, 0.3, 1.0));
 }
 
 template <int N>
@@ -70,50 +74,84 @@ void CollapsibleComplex<N>::fill_stars(std::size_t vertex_count, const Progress&
     for (const Index v : simplices_[s]) stars_[star_of_[v].first + star_of_[v].size++] = s;
 }
 
-/// Each face belongs to its lowest vertex, so all simplices with the face are in that vertex's star.
+/// Finds border faces by their lowest vertex: all simplices with the face are in that vertex's star. Use one per
+/// thread.
 template <int N>
-void CollapsibleComplex<N>::find_border(const Progress& progress) {
+class CollapsibleComplex<N>::BorderSearch {
+ public:
+  explicit BorderSearch(CollapsibleComplex& complex) : complex_(complex) {}
+
+  /// Marks the border faces with v as their lowest vertex. Returns a simplex with a face that is in more than two, and
+  /// their number, if there is one.
+  std::pair<Index, std::size_t> search(Index v) {
+    gather(v);
+    for (const auto& group : equal_.groups(faces_.size(), [&](auto i) { return faces_[i].others; })) {
+      if (group.count > 2) return {faces_[group.first].simplex, group.count};
+      if (group.count == 1) mark(faces_[group.first]);
+    }
+    return {kNone, 0};
+  }
+
+ private:
   struct FaceOfSimplex {
     std::uint64_t others;  ///< the other vertices of the face
     Index simplex;
     int omitted;
   };
-  std::vector<FaceOfSimplex> faces;
-  EqualKeys equal;
-  const auto gather = [&](Index v) {
-    faces.clear();
-    for (const Index s : clean_star(v))
+
+  void gather(Index v) {
+    faces_.clear();
+    for (const Index s : complex_.clean_star(v))
       for (int omitted = 0; omitted < N; ++omitted) {
-        if (simplices_[s][omitted] == v) continue;
+        const Simplex& simplex = complex_.simplices_[s];
+        if (simplex[omitted] == v) continue;
         std::uint64_t low = 0, high = 0;
         bool is_lowest = true;
         for (int i = 0; i < N; ++i) {
-          const Index a = simplices_[s][i];
+          const Index a = simplex[i];
           if (i == omitted || a == v) continue;
           is_lowest = is_lowest && a > v;
           low = high == 0 ? a : std::min<std::uint64_t>(high, a);
           high = std::max<std::uint64_t>(high, a);
         }
-        if (is_lowest) faces.push_back({low << 32 | high, s, omitted});
+        if (is_lowest) faces_.push_back({low << 32 | high, s, omitted});
       }
-  };
-  const auto mark_border = [&](const FaceOfSimplex& face) {
-    border_faces_[face.simplex] |= static_cast<std::uint8_t>(1u << face.omitted);
+  }
+
+  /// Several threads may mark faces of one simplex, or one vertex.
+  void mark(const FaceOfSimplex& face) {
+    const auto bit = static_cast<std::uint8_t>(1u << face.omitted);
+    std::atomic_ref(complex_.border_faces_[face.simplex]).fetch_or(bit, std::memory_order_relaxed);
     for (int i = 0; i < N; ++i)
-      if (i != face.omitted) border_vertex_[simplices_[face.simplex][i]] = true;
-  };
-  in_parts(star_of_.size(), progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) {
-      gather(static_cast<Index>(v));
-      for (const auto& group : equal.groups(faces.size(), [&](auto i) { return faces[i].others; })) {
-        if (group.count > 2)
-          throw Error(ErrorCode::UnsupportedData,
-                      fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold",
-                                  faces[group.first].simplex, group.count));
-        if (group.count == 1) mark_border(faces[group.first]);
-      }
-    }
-  });
+      if (i != face.omitted)
+        std::atomic_ref(complex_.border_vertex_[complex_.simplices_[face.simplex][i]])
+            .store(1, std::memory_order_relaxed);
+  }
+
+  CollapsibleComplex& complex_;
+  std::vector<FaceOfSimplex> faces_;
+  EqualKeys equal_;
+};
+
+template <int N>
+void CollapsibleComplex<N>::find_border(unsigned threads, const Progress& progress) {
+  std::atomic<Index> failed = kNone;  // the first vertex of a face in more than two simplices
+  for_each_block(
+      star_of_.size(), kBorderBlock, threads, progress, [&] { return BorderSearch(*this); },
+      [&](std::size_t, std::size_t from, std::size_t to, BorderSearch& search) {
+        for (auto v = static_cast<Index>(from); v < to; ++v) {
+          if (search.search(v).second == 0) continue;
+          Index first = failed.load(std::memory_order_relaxed);
+          while (v < first && !failed.compare_exchange_weak(first, v, std::memory_order_relaxed)) {
+          }
+          return;
+        }
+      });
+  if (failed == kNone) return;
+  const auto [simplex, count] = BorderSearch(*this).search(failed);
+  throw Error(
+      ErrorCode::UnsupportedData,
+      fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold", simplex, count));
 }
 
 template <int N>
@@ -147,7 +185,7 @@ void CollapsibleComplex<N>::star(Index v, std::vector<Index>& result) {
 template <int N>
 void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
   result.clear();
-  visit_neighbours(v, [&](Index a) { result.push_back(a); });
+  visit_neighbours(v, few_, [&](Index a) { result.push_back(a); });
 }
 
 /// The star of u after v was merged into it, in the part of either vertex if it is large enough.
@@ -185,7 +223,7 @@ template <int N>
 template <class Visit>
 bool CollapsibleComplex<N>::visit_link(std::span<const Index> star, Index v, const Visit& visit) const {
   const auto cone = static_cast<Index>(star_of_.size());
-  const bool has_border = border_vertex_[v];  // else no border face contains v
+  const bool has_border = border_vertex_[v] != 0;  // else no border face contains v
   for (const Index s : star) {
     const Simplex& simplex = simplices_[s];
     Face face{};
@@ -209,7 +247,7 @@ bool CollapsibleComplex<N>::visit_link(std::span<const Index> star, Index v, con
 template <int N>
 template <class Visit>
 void CollapsibleComplex<N>::visit_edge_link(const Edge& edge, const Visit& visit) const {
-  const bool has_border = border_vertex_[edge.u] || border_vertex_[edge.v];
+  const bool has_border = on_border(edge.u) || on_border(edge.v);
   for (const Index s : edge.both) {
     const Simplex& simplex = simplices_[s];
     Face face{};
@@ -247,7 +285,7 @@ bool CollapsibleComplex<N>::is_contractible(const Edge& edge) {
     return true;
   };
   const auto add_to_v = [&](const Face& face) { return links_.add_to_v(face); };
-  const bool has_border = border_vertex_[edge.u] || border_vertex_[edge.v];
+  const bool has_border = on_border(edge.u) || on_border(edge.v);
   visit_link(edge.only_u, edge.u, add_to_u);
   if (has_border) visit_cones(edge.v, add_to_u);
   return visit_link(edge.only_v, edge.v, add_to_v) && (!has_border || visit_cones(edge.u, add_to_v));
@@ -272,7 +310,7 @@ void CollapsibleComplex<N>::open_face(std::span<const Index> star, Index s, Inde
 
 template <int N>
 void CollapsibleComplex<N>::contract(const Edge& edge) {
-  const bool has_border = border_vertex_[edge.u] || border_vertex_[edge.v];
+  const bool has_border = on_border(edge.u) || on_border(edge.v);
   for (const Index s : edge.both) {
     if (!has_border) break;
     const unsigned i = static_cast<unsigned>(position(simplices_[s], edge.u));
@@ -288,7 +326,7 @@ void CollapsibleComplex<N>::contract(const Edge& edge) {
   // attach the other simplices of v to u
   for (const Index s : edge.only_v) simplices_[s][static_cast<std::size_t>(position(simplices_[s], edge.v))] = edge.u;
   set_star(edge.u, edge.v, edge);
-  if (border_vertex_[edge.v]) border_vertex_[edge.u] = true;
+  if (border_vertex_[edge.v] != 0) border_vertex_[edge.u] = 1;
 }
 
 template class CollapsibleComplex<2>;

@@ -39,13 +39,14 @@ class CollapsibleComplex {
 
   /// Errors: InvalidArgument for a vertex number beyond `vertex_count`; UnsupportedData for a simplex that repeats a
   /// vertex, and for a face of more than two simplices; Cancelled.
-  CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count, const Progress& progress = {});
+  CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count, unsigned threads = 1,
+                     const Progress& progress = {});
 
   [[nodiscard]] std::size_t alive() const noexcept { return alive_; }
   [[nodiscard]] std::size_t simplex_count() const noexcept { return simplices_.size(); }
   [[nodiscard]] bool is_alive(Index s) const { return simplices_[s][0] != kNone; }
   [[nodiscard]] const Simplex& simplex(Index s) const { return simplices_[s]; }
-  [[nodiscard]] bool on_border(Index v) const { return border_vertex_[v]; }
+  [[nodiscard]] bool on_border(Index v) const { return border_vertex_[v] != 0; }
   /// Bit i: the face opposite to corner i is in no other simplex.
   [[nodiscard]] unsigned border_faces(Index s) const { return border_faces_[s]; }
 
@@ -54,15 +55,16 @@ class CollapsibleComplex {
   /// The vertices that share an edge with v, each once.
   void neighbours(Index v, std::vector<Index>& result);
 
-  /// Calls visit(vertex) for them.
+  /// Calls visit(vertex) for them. Threads may call it at the same time, for different vertices, each with its own
+  /// scratch.
   template <class Visit>
-  void visit_neighbours(Index v, const Visit& visit) {
+  void visit_neighbours(Index v, FewVertices& scratch, const Visit& visit) {
     const std::span<const Index> star = clean_star(v);
-    few_.clear(N * star.size() + 1);
-    few_[v] = 0;
+    scratch.clear(N * star.size() + 1);
+    scratch[v] = 0;
     for (const Index s : star)
       for (const Index a : simplices_[s])
-        if (std::uint32_t& number = few_[a]; number == FewVertices::kNew) {
+        if (std::uint32_t& number = scratch[a]; number == FewVertices::kNew) {
           number = 0;
           visit(a);
         }
@@ -90,7 +92,8 @@ class CollapsibleComplex {
   using Face = typename LinkCondition<N>::Face;
 
   void fill_stars(std::size_t vertex_count, const Progress& progress);
-  void find_border(const Progress& progress);
+  class BorderSearch;
+  void find_border(unsigned threads, const Progress& progress);
   template <class Visit>
   bool visit_link(std::span<const Index> star, Index v, const Visit& visit) const;
   template <class Visit>
@@ -100,7 +103,7 @@ class CollapsibleComplex {
 
   Buffer<Simplex> simplices_;
   std::vector<std::uint8_t> border_faces_;
-  std::vector<bool> border_vertex_;
+  std::vector<std::uint8_t> border_vertex_;  ///< 1: on the border
   /// A part of stars_. The first `size` of `capacity` entries are used.
   struct Star {
     std::size_t first = 0;

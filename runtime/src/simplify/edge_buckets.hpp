@@ -31,17 +31,23 @@ class EdgeBuckets {
     (number > current_ ? buckets_[number] : again_).push_back(entry);
   }
 
-  /// The next entry; null if there is none. `is_current(entry)`: false for entries to skip. The pointer is valid until
-  /// the next call.
-  template <class IsCurrent>
-  const Entry* next(const IsCurrent& is_current) {
+  /// The next entry; null if there is none. `is_current(entry)`: false for entries to skip. `push_late()`: called when
+  /// all loaded entries were taken; may push others. An entry pushed earlier would not have come sooner, so pushes can
+  /// wait until then. The pointer is valid until the next call.
+  template <class IsCurrent, class PushLate>
+  const Entry* next(const IsCurrent& is_current, const PushLate& push_late) {
     for (;;) {
       while (position_ < entries_.size()) {
         const Entry& entry = entries_[position_++];
         if (is_current(entry)) return &entry;
       }
+      push_late();
       if (!refill(is_current)) return nullptr;
     }
+  }
+  template <class IsCurrent>
+  const Entry* next(const IsCurrent& is_current) {
+    return next(is_current, [] {});
   }
 
   /// For each of the steps, calls request(step, entry) for the entries that will come within so many calls of `next`,
@@ -58,7 +64,7 @@ class EdgeBuckets {
   /// Keys of a bucket differ by at most a sixteenth: the sign, the exponent and four bits of the fraction.
   static constexpr int kShift = 48;
   static constexpr std::size_t kBuckets = std::size_t{1} << (63 - kShift);
-  static constexpr std::size_t kMostSteps = 4;  ///< of request_ahead
+  static constexpr std::size_t kMostSteps = 4;                        ///< of request_ahead
   static constexpr std::uint64_t kUnsigned = ~std::uint64_t{0} >> 1;  ///< without the sign, which -0.0 has
 
   /// Loads the entries pushed to the current bucket since it was loaded, or else the next bucket.
@@ -88,7 +94,7 @@ class EdgeBuckets {
   std::vector<Entry> entries_;  ///< of the current bucket, sorted
   std::size_t position_ = 0;
   std::array<std::size_t, kMostSteps> requested_{};  ///< by step: entries for which request_ahead was called
-  std::vector<Entry> again_;  ///< pushed to the current bucket or an earlier one
+  std::vector<Entry> again_;                         ///< pushed to the current bucket or an earlier one
 };
 
 }  // namespace tegl::detail

@@ -40,6 +40,7 @@ struct CollapseInput {
   bool border_fixed = true;
   bool single_precision = false;
   bool keep_embedded = false;  ///< refuses contractions that make simplices intersect
+  unsigned threads = 1;        ///< of the constructor
   Progress progress = {};      ///< of the constructor
 };
 

@@ -339,7 +339,7 @@ class Simplifier {
     const auto start = std::chrono::steady_clock::now();
     EdgeCollapse<N> collapse = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
     // contract
-    CollapseGoal goal{stop, options_.max_curvature, by_mean, &progress, kReady, kCollapsed};
+    CollapseGoal goal{stop, options_.max_curvature, by_mean, &progress, kReady, kCollapsed, options_.work.threads};
     if (options_.method == SimplifyMethod::quadric) collapse_by_quadrics(collapse, goal);
     if (options_.method == SimplifyMethod::facets) collapse_by_curvature(collapse, goal);
     if (options_.method == SimplifyMethod::vertices) collapse_by_distance(collapse, goal);
@@ -377,6 +377,7 @@ class Simplifier {
     input.border_fixed = options_.border == SimplifyBorder::fixed;
     input.single_precision = is_single_;
     input.keep_embedded = options_.keep_embedded;
+    input.threads = options_.work.threads;
     input.progress = progress;
     EdgeCollapse<N> collapse(std::move(input));
     bind_to_planes(collapse);

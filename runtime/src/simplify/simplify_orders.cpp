@@ -18,7 +18,9 @@
 #include <fmt/format.h>
 
 #include "base/keyed_queue.hpp"
+#include "base/workers.hpp"
 #include "simplify/edge_buckets.hpp"
+#include "simplify/few_vertices.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -65,38 +67,51 @@ class ProgressReporter {
 
 // ---- edges by quadrics ----
 
+/// Costs are computed late: for all vertices that took part in contractions since the queue loaded its entries, by all
+/// threads. The queue gives no entry of theirs before it loads others, and each edge is computed only in its last
+/// state. One thread computes them at once, while the surroundings of the vertex are in the cache: with the same
+/// result.
 template <int N>
 class QuadricOrder {
  public:
   QuadricOrder(EdgeCollapse<N>& collapse, const CollapseGoal& goal)
-      : collapse_(collapse), by_mean_(goal.by_mean), reporter_(goal, collapse.complex().alive()) {}
+      : collapse_(collapse),
+        by_mean_(goal.by_mean),
+        reporter_(goal, collapse.complex().alive()),
+        workers_(goal.threads, [] { return Scratch(); }),
+        waits_(collapse.points().size(), 0) {}
 
   void fill() {
-    for (Index v = 0; v < collapse_.points().size(); ++v) {
-      reporter_.count_step(collapse_.complex().alive());
-      collapse_.complex().neighbours(v, around_);
-      std::erase_if(around_, [&](Index a) { return a < v; });
-      push(v);
-    }
+    for (Index v = 0; v < collapse_.points().size(); ++v) let_wait(v);
   }
   void empty() {
     const auto is_current = [&](const EdgeBuckets::Entry& entry) { return entry.stamp == stamp(entry.a, entry.b); };
     while (reporter_.continues(collapse_.complex().alive())) {
-      const EdgeBuckets::Entry* next = queue_.next(is_current);
+      const EdgeBuckets::Entry* next = queue_.next(is_current, [&] { push_waiting(); });
       if (next == nullptr) return;
       request_ahead();
       const auto [u, v, version] = *next;
       if (!contract(u, v)) continue;
-      around_.clear();
-      collapse_.complex().visit_neighbours(u, [&](Index a) {
-        collapse_.request_cost(a);
-        around_.push_back(a);
-      });
-      push(u);
+      let_wait(u);
+      if (workers_.count() == 1) push_waiting();
     }
   }
 
  private:
+  /// Vertices whose costs are computed before they are pushed, and those in each part of a thread's work.
+  static constexpr std::size_t kChunk = 4096;
+  static constexpr std::size_t kGrain = 64;
+
+  struct Pushed {
+    double key;
+    EdgeBuckets::Entry entry;
+  };
+  struct Scratch {
+    FewVertices few;
+    std::vector<Index> around;
+    std::vector<typename EdgeCollapse<N>::EdgeCost> costs;
+  };
+
   /// Contracts at the best target, or else at one of the ends.
   bool contract(Index a, Index b) {
     const auto target = collapse_.best_target(a, b);
@@ -120,22 +135,56 @@ class QuadricOrder {
     });
   }
   [[nodiscard]] std::uint32_t stamp(Index a, Index b) const { return collapse_.version(a) + collapse_.version(b); }
-  /// The edges of u to the vertices in around_.
-  void push(Index u) {
-    collapse_.costs_around(u, around_, costs_);
-    for (const auto& [a, cost, square] : costs_) {
+
+  void let_wait(Index v) {
+    if (waits_[v] != 0) return;
+    waits_[v] = 1;
+    waiting_.push_back(v);
+  }
+
+  /// Pushes the edges of all vertices that wait. A vertex that was merged into another one has none.
+  void push_waiting() {
+    if (pushed_.size() < std::min(kChunk, waiting_.size())) pushed_.resize(std::min(kChunk, waiting_.size()));
+    for (std::size_t first = 0; first < waiting_.size(); first += kChunk) {
+      const std::size_t count = std::min(kChunk, waiting_.size() - first);
+      workers_.for_range(count, kGrain, [&](std::size_t from, std::size_t to, Scratch& scratch) {
+        for (std::size_t i = from; i < to; ++i) find_edges(waiting_[first + i], scratch, pushed_[i]);
+      });
+      for (std::size_t i = 0; i < count; ++i) {
+        if (count > 1) reporter_.count_step(collapse_.complex().alive());
+        for (const Pushed& edge : pushed_[i]) queue_.push(edge.key, edge.entry);
+      }
+    }
+    for (const Index v : waiting_) waits_[v] = 0;
+    waiting_.clear();
+  }
+
+  /// The edges of u. Those between two vertices that wait belong to the one with the smaller number. Threads may call
+  /// it at the same time, for different vertices.
+  void find_edges(Index u, Scratch& scratch, std::vector<Pushed>& edges) {
+    edges.clear();
+    scratch.around.clear();
+    collapse_.complex().visit_neighbours(u, scratch.few, [&](Index a) {
+      if (a < u && waits_[a] != 0) return;
+      collapse_.request_cost(a);
+      scratch.around.push_back(a);
+    });
+    collapse_.costs_around(u, scratch.around, scratch.costs);
+    for (const auto& [a, cost, square] : scratch.costs) {
       const double weight = collapse_.quadric(u).weight() + collapse_.quadric(a).weight();
       const double sum = cost + kLengthShare * weight * square;
-      queue_.push(by_mean_ && weight > 0.0 ? sum / weight : sum, {std::min(u, a), std::max(u, a), stamp(u, a)});
+      edges.push_back({by_mean_ && weight > 0.0 ? sum / weight : sum, {std::min(u, a), std::max(u, a), stamp(u, a)}});
     }
   }
 
   EdgeCollapse<N>& collapse_;
   bool by_mean_;
   ProgressReporter reporter_;
+  Workers<Scratch> workers_;
   EdgeBuckets queue_;
-  std::vector<Index> around_;
-  std::vector<typename EdgeCollapse<N>::EdgeCost> costs_;
+  std::vector<Index> waiting_;
+  std::vector<std::uint8_t> waits_;          ///< by vertex: whether it is in waiting_
+  std::vector<std::vector<Pushed>> pushed_;  ///< by vertex of a chunk
 };
 
 // ---- facets by curvature ----

@@ -17,6 +17,7 @@ struct CollapseGoal {
   bool by_mean = false;      ///< only for `collapse_by_quadrics`: by the mean of the squared distances, not their sum
   const Progress* progress = nullptr;
   double from = 0, to = 1;  ///< range of `progress` that this work covers
+  unsigned threads = 1;     ///< only for `collapse_by_quadrics`; 0 for all of the machine
 };
 
 /// Contracts until the goal is reached or no contraction is possible. Throws Cancelled.

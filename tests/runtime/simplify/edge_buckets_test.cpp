@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <random>
@@ -71,6 +72,40 @@ TEST(EdgeBuckets, GivesKeysThatAreNoNumbersLast) {
   while (const Entry* const entry = queue.next([](const Entry&) { return true; })) order.push_back(entry->a);
   ASSERT_EQ(order.size(), keys.size());
   EXPECT_EQ(std::vector<Index>(order.begin(), order.begin() + 4), (std::vector<Index>{4, 5, 1, 3}));
+}
+
+TEST(EdgeBuckets, CallsForLateEntriesWhenTheLoadedOnesAreTaken) {
+  EdgeBuckets queue;
+  const auto all = [](const Entry&) { return true; };
+  std::vector<double> late = {64.0, 1.0};
+  int calls = 0;
+  const auto push_late = [&] {
+    ++calls;
+    if (late.empty()) return;
+    queue.push(late.back(), {static_cast<Index>(10 + late.size()), 20, 0});
+    late.pop_back();
+  };
+  queue.push(4.0, {1, 2, 0});
+  queue.push(4.0, {2, 3, 0});
+  std::vector<Index> order;
+  while (const Entry* const entry = queue.next(all, push_late)) order.push_back(entry->a);
+  EXPECT_EQ(order, (std::vector<Index>{1, 2, 12, 11})) << calls;
+}
+
+TEST(EdgeBuckets, RequestsEachEntryOnceAheadOfItsTurn) {
+  EdgeBuckets queue;
+  const auto all = [](const Entry&) { return true; };
+  for (Index a = 0; a < 20; ++a) queue.push(a < 9 ? 1.0 : 8.0, {a, 20, 0});
+  std::array<std::vector<Index>, 2> requested;
+  for (Index turn = 0; const Entry* const entry = queue.next(all); ++turn) {
+    EXPECT_EQ(entry->a, turn);
+    queue.request_ahead<2>({5, 2}, [&](std::size_t step, const Entry& later) { requested[step].push_back(later.a); });
+    const Index loaded = turn < 9 ? 9 : 20;
+    EXPECT_EQ(requested[0].size(), std::min<std::size_t>(turn + 6, loaded));
+    EXPECT_EQ(requested[1].size(), std::min<std::size_t>(turn + 3, loaded));
+  }
+  for (const auto& step : requested)
+    for (Index a = 0; a < 20; ++a) EXPECT_EQ(step[a], a);
 }
 
 TEST(EdgeBuckets, SkipsOutdatedEntries) {
