@@ -47,6 +47,7 @@ namespace {
 struct Operation {
   std::string name;
   std::function<std::string()> work;
+  std::function<void()> prepare = {};  ///< called before each repetition, not measured
 };
 
 /// Input of the operations on a file.
@@ -224,7 +225,8 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`simplify` to a fifth, `quadric`", [simplified] { return simplified(SimplifyMethod::quadric); }});
   list.push_back({"`simplify` to a fifth, `quadric`, with its bound",
                   [simplified] { return simplified(SimplifyMethod::quadric, true); }});
-  list.push_back({"`deviation` from the `quadric` one (`simplify`), and back", [&] {
+  list.push_back({"`deviation` from the `quadric` one (`simplify`), and back",
+                  [&] {
                     DeviationOptions<4> options;
                     options.work = subject.work_options();
                     options.scale = automatic_scale(subject.contour);
@@ -232,6 +234,9 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
                     const Deviation back = deviation(subject.simplified, subject.contour, options);
                     return fmt::format("at most {:.3g} and {:.3g}, at least {:.3g} and {:.3g}", from.bound, back.bound,
                                        from.least, back.least);
+                  },
+                  [&, simplified] {  // if it runs alone
+                    if (subject.simplified.simplices.empty()) simplified(SimplifyMethod::quadric, true);
                   }});
 }
 
@@ -280,6 +285,7 @@ void run(Subject<T>& subject, int repetitions, const std::string& only) {
     std::string result;
     // minima over the repetitions
     for (int r = 0; r < repetitions && all < kLongEnough; ++r) {
+      if (operation.prepare) operation.prepare();
       malloc_trim(0);  // memory freed earlier must not count as in use
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
