@@ -21,7 +21,7 @@
 
 namespace tegl::test {
 
-/// A set of corners, bit v for corner v. In an n-cube, n <= 4, it has coordinate v >> a & 1 along axis a.
+/// A set of corners, bit v for corner v. In an n-cube, n <= 5, it has coordinate v >> a & 1 along axis a.
 using Corners = std::uint32_t;
 
 /// Merges sets that have a corner in common.

@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "../coned_part.hpp"
 #include "builder3.hpp"
 #include "builder3_barycentric.hpp"
 #include "builder3_barycentric_edges.hpp"
@@ -54,6 +55,19 @@ TEST(CubeBuilder, ByEdgesIsTheContourOfTheGeneralBuilderTheDefinitionAndTheTable
 }
 
 /// With every set of squares, so bits of squares that are not ambiguous have no effect.
+TEST(CubeBuilder, TheDefinitionByCentresIsThatByRegions) {
+  for_each_cube([](unsigned signature, unsigned high) {
+    const auto is_high = [high](unsigned base, unsigned axes) {
+      const unsigned axis = (axes & 1u) == 0 ? 0 : (axes & 2u) == 0 ? 1 : 2;
+      return (high >> (2 * axis + (base >> axis & 1u)) & 1u) != 0;
+    };
+    for (const Choice centre : {Choice::low, Choice::high})
+      EXPECT_EQ(eulers_of_facets(3, signature, centre == Choice::high, is_high),
+                eulers_by_definition<3>(signature, is_high, centre))
+          << signature << " " << high;
+  });
+}
+
 TEST(CubeBuilder, TableAndEdgesGiveTheSameBytes) {
   for (unsigned signature = 0; signature < 256; ++signature) {
     ASSERT_EQ(builders::ambiguous_squares(signature), builders::edges::ambiguous_squares(signature));

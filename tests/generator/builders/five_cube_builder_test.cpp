@@ -33,6 +33,26 @@ TEST(FiveCubeBuilder, ComponentsAreThoseOfTheDefinition) {
   for (int i = 0; i < 20'000; ++i) ASSERT_EQ(checks.fault_by_definition(static_cast<std::uint32_t>(random())), "");
 }
 
+/// A random key in which each face and the tile have a centre, low or high.
+template <class Key>
+Key random_centres(std::mt19937_64& random, FiveKeys how) {
+  Key key = random_five_key<Key>(random, how);
+  key.high_cubes = ~key.low_cubes & 0xff'ffff'ffffu;
+  key.high_tesseracts = static_cast<std::uint16_t>(~unsigned{key.low_tesseracts} & 0x3ffu);
+  key.tile = random() % 2 == 0 ? tile::Choice::low : tile::Choice::high;
+  return key;
+}
+
+TEST(FiveCubeBuilder, FacetsAreThoseOfTheDefinition) {
+  Checks checks;
+  std::mt19937_64 random(5);
+  const std::size_t tiles = cases_to_test(20'000, unless_sanitized(600, 100));
+  for (std::size_t i = 0; i < tiles; ++i) {
+    const FiveKeys how = i % 2 == 0 ? FiveKeys::resolved : FiveKeys::few_high_resolved;
+    ASSERT_EQ(checks.fault_by_centres(random_centres<builders::FiveKey>(random, how)), "");
+  }
+}
+
 TEST(FiveCubeBuilder, OneHighCornerIsCutOffByOneSimplex) {
   builders::FiveCubeBuilder builder;
   for (unsigned v = 0; v < 32; ++v) {
@@ -102,6 +122,16 @@ TEST(FaultyBuilder, OfThe5CubeIsFound) {
   EXPECT_TRUE((TEGL_FAULT(five_cube_sign)()));
   EXPECT_TRUE((TEGL_FAULT(five_cube_square)()));
   EXPECT_TRUE((TEGL_FAULT(five_cube_high_side)()));
+}
+
+TEST(FaultyBuilder, OfTheSideThatA5CubeJoinsDiffersFromTheDefinition) {
+  using namespace builders::five_cube_high_side;
+  FiveCubeChecks<FiveCubeBuilder, FiveKey, FiveCube> checks;
+  std::mt19937_64 random(6);
+  std::string fault;
+  for (int i = 0; i < 200 && fault.empty(); ++i)
+    fault = checks.fault_by_centres(random_centres<FiveKey>(random, FiveKeys::few_high_resolved));
+  EXPECT_NE(fault, "");
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 
 #include <fmt/format.h>
 
+#include "../coned_part.hpp"
 #include "builder5.hpp"
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/corners.hpp"
@@ -112,6 +113,25 @@ class FiveCubeChecks {
     if (contour.components + 1 == roots.size()) return "";
     return fmt::format("signature {:#x}: {} components of Sigma between {} regions", signature, contour.components,
                        roots.size());
+  }
+
+  /// Facets by definition, of a key in which each cube, each tesseract and the tile have a centre, low or high: their
+  /// Euler characteristics.
+  std::string fault_by_centres(const Key& key) {
+    const auto is_high = [&](unsigned base, unsigned axes) {
+      for (unsigned q = 0; q < 80; ++q)
+        if (Cube::kSquares[q].base == base && Cube::kSquares[q].axes == axes)
+          return (key.high_squares[q / 64] >> (q % 64) & 1u) != 0;
+      for (unsigned c = 0; c < 40; ++c)
+        if (Cube::kCubes[c].face.base == base && Cube::kCubes[c].face.axes == axes)
+          return (key.high_cubes >> c & 1u) != 0;
+      const auto axis = static_cast<unsigned>(std::countr_zero(~axes));
+      return (key.high_tesseracts >> (2 * axis + (base >> axis)) & 1u) != 0;
+    };
+    std::multiset<long> eulers;
+    for (const auto& [edges, euler] : facets_of(as_built(builder_.build(key)))) eulers.insert(euler);
+    if (eulers == eulers_of_facets(5, key.signature, key.tile == tile::Choice::high, is_high)) return "";
+    return fmt::format("signature {:#x}: facets differ from the definition", key.signature);
   }
 
   /// The first of `count` random tiles of one kind that fails a check.

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <random>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "../../support/share.hpp"
@@ -102,6 +104,30 @@ TEST(TesseractBuilder, RandomChoicesOfCubesAreThoseOfTheGeneralBuilder) {
   builders::ResolvedTesseract compact, barycentric(Triangulation::barycentric);
   EXPECT_EQ(fault_of_tesseracts(compact, Triangulation::compact, 6000), "");
   EXPECT_EQ(fault_of_tesseracts(barycentric, Triangulation::barycentric, 2000), "");
+}
+
+/// Keys in which each cube and the tile have a centre, low or high.
+TEST(TesseractBuilder, CentresOfCubesJoinTheFacetsOfTheDefinition) {
+  builders::ResolvedTesseract builder;
+  RandomKeys keys(8);
+  int other_cubes = 0, other_centre = 0;
+  for (int i = 0; i < 6000; ++i) {
+    ResolvedKey key = keys();
+    key.high_cubes = static_cast<std::uint8_t>(~unsigned{key.low_cubes});
+    key.tile = i % 2 == 0 ? Choice::low : Choice::high;
+    std::multiset<long> eulers;
+    for (const auto& [edges, euler] : figures_of(builder.find(key))) eulers.insert(euler);
+    ASSERT_EQ(eulers, GeneralTesseract::eulers_by_centres(key)) << text_of(key);
+    // the definition does depend on these choices
+    ResolvedKey other = key;
+    std::swap(other.low_cubes, other.high_cubes);
+    other_cubes += eulers != GeneralTesseract::eulers_by_centres(other) ? 1 : 0;
+    other = key;
+    other.tile = i % 2 == 0 ? Choice::high : Choice::low;
+    other_centre += eulers != GeneralTesseract::eulers_by_centres(other) ? 1 : 0;
+  }
+  EXPECT_GT(other_cubes, 100);
+  EXPECT_GT(other_centre, 100);
 }
 
 TEST(TesseractBuilder, TableAndEdgesGiveTheSameBytes) {

@@ -10,12 +10,14 @@
 #include <cstdint>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "../coned_part.hpp"
 #include "../definition_oracle.hpp"
 #include "builder4.hpp"
 #include "embedding/embedding_proof.hpp"
@@ -132,6 +134,18 @@ class GeneralTesseract {
     const BoundaryPart part(4, high ? key.signature : ~unsigned{key.signature} & 0xffffu, is_inside);
     for (std::size_t c = 0; c < part.components(); ++c) result.insert(part.euler(c));
     return result;
+  }
+
+  /// By definition, if each cube and the tile have a centre that is low or high.
+  [[nodiscard]] static std::multiset<long> eulers_by_centres(const ResolvedKey& key) {
+    return eulers_of_facets(4, key.signature, key.tile == Choice::high, [&](unsigned base, unsigned axes) {
+      for (unsigned q = 0; q < 24; ++q)
+        if (builders::kTesseractSquares[q].base == base && builders::kTesseractSquares[q].axes == axes)
+          return (key.squares >> q & 1u) != 0;
+      for (unsigned f = 0; f < 8; ++f)
+        if (base == (f % 2) << f / 2 && axes == (15u ^ 1u << f / 2)) return (key.high_cubes >> f & 1u) != 0;
+      throw std::logic_error("a face that is no square and no cube");
+    });
   }
 
   /// Edge e of the tile for the face of an edge.
