@@ -75,6 +75,9 @@ TEST(GenCli, BuilderRefusesOptionsOfOtherCommands) {
   expect_refused({"--dim", "3", "--builder", "--leaf", "edges", "--language", "glsl"}, {"--leaf edges", "table"});
   expect_refused({"--dim", "3", "--builder", "--triangulation", "all"},
                  {"--triangulation all", "barycentric or compact"});
+  for (const char* const dim : {"2", "4", "5"})
+    expect_refused({"--dim", dim, "--builder", "--triangulation", "barycentric"},
+                   {dim, "--triangulation does not go with this builder"});
   expect_refused({"--dim", "3", "--builder", "--layout", "flat"}, {"--layout does not go with --builder"});
   expect_refused({"--dim", "3", "--count", "--leaf", "table"}, {"--leaf does not go with --count"});
   expect_refused({"--dim", "3", "--builder", "--count"}, {"--builder and --count were both given"});

@@ -192,7 +192,27 @@ TEST(GenCli, ADimensionWithoutACommandIsCertifiedAndSummarised) {
   }
   EXPECT_EQ(names, (std::set<std::string>{"tile3_barycentric", "tile3_compact", "region2_barycentric_low",
                                           "region2_barycentric_high", "region2_compact_low", "region2_compact_high",
-                                          "tile3_resolved"}));
+                                          "tile3_resolved", "tile3_barycentric_variants", "tile3_compact_variants",
+                                          "tile3_barycentric_rows", "tile3_compact_rows"}));
+  std::set<std::string> texts;
+  for (const json& builder_text : summary.at("builder").at("texts")) texts.insert(builder_text.at("name"));
+  EXPECT_EQ(texts, (std::set<std::string>{"builder3.hpp", "builder3.cpp", "builder3.glsl", "builder3.wgsl"}));
+  EXPECT_THAT(std::string(summary.at("builder").at("certified")), HasSubstr("656 resolutions of 256 signatures"));
+}
+
+TEST(GenCli, FiveDimensionsAreSummarisedWithoutTables) {
+  const Outcome text = gen({"--dim", "5"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  for (const char* const line : {"5-tile: 32 corners, 4294967296 signatures\n", "1228158    3840  all symmetries\n",
+                                 "The classes are counted by Burnside's lemma.\n", "200 with random signatures",
+                                 "builder5.cpp", "Certified: faces and incidence signs"}) {
+    EXPECT_THAT(text.out, HasSubstr(line));
+  }
+  const Outcome run = gen({"--dim", "5", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json summary = json::parse(run.out);
+  EXPECT_EQ(summary.at("certified_tiles"), 200);
+  EXPECT_EQ(summary.at("builder").at("texts").size(), 2U);
 }
 
 TEST(GenCli, OtherTilesAreSummarisedWithoutNeighbours) {
@@ -268,10 +288,11 @@ TEST(GenCli, RefusesDimensionsOutsideOfTheCommandsRange) {
   for (const char* const dim : {"-1", "0", "9"}) {
     expect_refused({"--dim", dim, "--count"}, {"--count expects 1 to 8"});
   }
+  for (const char* const dim : {"1", "6"})
+    expect_refused({"--dim", dim}, {"expected 2 to 5", "--count (1 to 8)", "(2 to 6)"});
   for (const char* const dim : {"1", "5"}) {
     expect_refused({"--dim", dim, "--classes"}, {"--classes expects 2 to 4"});
     expect_refused({"--dim", dim, "--symmetries"}, {"--symmetries expects 2 to 4"});
-    expect_refused({"--dim", dim}, {"expected 2 to 4", "--count (1 to 8)", "--transversal (2 to 5)", "(2 to 6)"});
     expect_refused({"--dim", dim, "--certify"}, {"--certify expects 2 to 4"});
     expect_refused({"--dim", dim, "--out", "tables"}, {"--out expects 2 to 4"});
     expect_refused({"--dim", dim, "--cases", "docs"}, {"--cases expects 2 to 4"});

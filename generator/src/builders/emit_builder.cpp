@@ -31,10 +31,7 @@ BuilderTexts texts_of(const BuilderRequest& request) {
   }
 }
 
-/// Squares have the same segments in every triangulation.
-bool is_barycentric(const BuilderRequest& request) {
-  return request.dim > 2 && request.triangulation == Triangulation::barycentric;
-}
+bool is_barycentric(const BuilderRequest& request) { return request.triangulation == Triangulation::barycentric; }
 
 std::uint64_t digest(const std::string& text) {
   Fnv hash;
@@ -85,7 +82,7 @@ std::string builder_banner(const BuilderRequest& request, Language language, con
       builder_command(request, language), what, certificate);
 }
 
-std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {
+BuilderTexts emit_builder_texts(const BuilderRequest& request) {
   for (const Language language : request.languages) {
     const bool shader = language == Language::glsl || language == Language::wgsl;
     if (language == Language::cpp || (shader && request.dim <= 3)) continue;
@@ -96,11 +93,17 @@ std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {
   const auto is_shader = [](Language language) { return language != Language::cpp; };
   if (request.leaf == Leaf::edges && std::any_of(request.languages.begin(), request.languages.end(), is_shader))
     throw Error(ErrorCode::InvalidArgument, "--leaf edges: shaders look up a table; expected --leaf table or cpp only");
-  if (request.dim > 3 && is_barycentric(request))
+  if (request.dim != 3 && request.triangulation == Triangulation::barycentric)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--dim {}: --triangulation does not go with this builder{}", request.dim,
-                            request.dim == 4 ? ", which has both triangulations" : ", which is compact"));
-  BuilderTexts texts = texts_of(request);
+                fmt::format("--dim {}: --triangulation does not go with this builder, {}", request.dim,
+                            request.dim == 2   ? "whose segments are not divided"
+                            : request.dim == 4 ? "which has both triangulations"
+                                               : "which is compact"));
+  return texts_of(request);
+}
+
+std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {
+  BuilderTexts texts = emit_builder_texts(request);
   EmittedFile last = manifest(request, texts);
   texts.files.push_back(std::move(last));
   return std::move(texts.files);

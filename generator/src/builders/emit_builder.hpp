@@ -15,6 +15,8 @@ namespace tegl::gen {
 /// `builderN_manifest.json`: the command, the certificate, and size and digest of each text. Errors: InvalidArgument
 /// for a dimension or language without a builder, CertificateFailed.
 [[nodiscard]] std::vector<EmittedFile> emit_builder(const BuilderRequest& request);
+/// The same without the manifest, with the certificate in words.
+[[nodiscard]] BuilderTexts emit_builder_texts(const BuilderRequest& request);
 
 /// The builder of the square.
 [[nodiscard]] BuilderTexts emit_square_builder(const BuilderRequest& request);

@@ -111,12 +111,12 @@ int run_cell_summary(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const Cell cell = mesh_cell(options.cell->shape);
   const std::vector<GroupCount> counts = count_classes(cell.tile);
-  if (!options.json) print_group_counts(options, cell.tile, counts);
+  if (!options.json) print_group_counts(options, cell.tile.corner_count(), counts);
   const std::vector<CellTables> tables = tables_of(cell);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.json) {
-    fmt::print("{{{}, \"tables\": {}, \"seconds\": {:.2f}}}\n", group_counts_json(options, cell.tile, counts),
-               json_of(tables), seconds);
+    fmt::print("{{{}, \"tables\": {}, \"seconds\": {:.2f}}}\n",
+               group_counts_json(options, cell.tile.corner_count(), counts), json_of(tables), seconds);
     return 0;
   }
   print_tables(tables);

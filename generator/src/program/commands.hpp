@@ -9,9 +9,9 @@
 
 namespace tegl::gen {
 
-/// No command: makes and certifies all tables as `--out` and `--certify` do, writes nothing, and prints the numbers of
-/// classes, the certificates' figures and the tables' sizes. Uses `tile` and `json`. Errors: CountMismatch,
-/// CertificateFailed.
+/// No command: makes and certifies all tables and the builder as `--out`, `--certify` and `--builder` do, writes
+/// nothing, and prints the numbers of classes, the certificates' figures and the sizes. In 5D a sample of tiles takes
+/// the place of tables. Uses `tile` and `json`. Errors: CountMismatch, CertificateFailed.
 int run_summary(const Options& options);
 
 /// `--count`: number of orbits of signatures by Burnside's lemma and, for dim <= 4, by enumeration. Errors:

@@ -29,10 +29,13 @@ struct GroupCount {
 /// differ.
 std::vector<GroupCount> count_classes(const Tile& tile);
 
-/// Prints the counts as the head of a summary.
-void print_group_counts(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts);
+/// The same by Burnside's lemma alone, for cubes that are too large to enumerate. N = 5.
+std::vector<GroupCount> count_classes_by_burnside(int dim);
+
+/// Prints the counts as the head of a summary. `corners`: number of the tile's corners.
+void print_group_counts(const Options& options, unsigned corners, const std::vector<GroupCount>& counts);
 
 /// The tile and its counts as the first members of a JSON object.
-std::string group_counts_json(const Options& options, const Tile& tile, const std::vector<GroupCount>& counts);
+std::string group_counts_json(const Options& options, unsigned corners, const std::vector<GroupCount>& counts);
 
 }  // namespace tegl::gen
