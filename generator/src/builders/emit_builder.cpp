@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/fnv.hpp"
+#include "builders/templates.hpp"
 
 namespace tegl::gen {
 
@@ -99,7 +100,9 @@ BuilderTexts emit_builder_texts(const BuilderRequest& request) {
                             request.dim == 2   ? "whose segments are not divided"
                             : request.dim == 4 ? "which has both triangulations"
                                                : "which is compact"));
-  return texts_of(request);
+  BuilderTexts texts = texts_of(request);
+  for (EmittedFile& file : texts.files) file.text = with_short_lines(file.text);
+  return texts;
 }
 
 std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {

@@ -204,7 +204,7 @@ std::string dividers() {
   };
   std::stable_sort(planes.begin(), planes.end(),
                    [&](const auto& a, const auto& b) { return smaller_side(a) < smaller_side(b); });
-  return rows(planes.size(), 4, [&](std::size_t i) {
+  return rows(planes.size(), 3, [&](std::size_t i) {
     const auto [above, below] = with_points(planes[i].first, planes[i].second, kPoints);
     std::uint32_t inside = 0;
     for (unsigned e = 0; e < 32; ++e) inside |= (ends_of(e) & (above | below)) == 0 ? 1u << e : 0u;

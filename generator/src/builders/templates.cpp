@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Replacement of placeholders in templates.
+// Replacement of placeholders in templates, and division of long lines.
 #include "builders/templates.hpp"
 
 #include <algorithm>
@@ -32,7 +32,42 @@ void append_lines(std::string& result, std::string_view lines, std::string_view 
   }
 }
 
+constexpr std::size_t kColumns = 120;
+
+/// Where a line may be divided: the number of characters that stay in it, without a space at the end; 0 if nowhere.
+std::size_t place_to_divide(std::string_view line, bool is_comment, std::size_t indentation) {
+  if (is_comment) {
+    const std::size_t space = line.rfind(' ', kColumns);
+    return space == std::string_view::npos || space <= indentation + 3 ? 0 : space;
+  }
+  const std::size_t comma = line.rfind(',', kColumns - 1);
+  return comma == std::string_view::npos || comma <= indentation ? 0 : comma + 1;
+}
+
 }  // namespace
+
+std::string with_short_lines(std::string_view text) {
+  std::string result;
+  for (std::size_t first = 0; first < text.size();) {
+    const std::size_t end = std::min(text.find('\n', first), text.size());
+    std::string line(text.substr(first, end - first));
+    first = end + 1;
+    const std::size_t indentation = std::min(line.find_first_not_of(' '), line.size());
+    const bool is_comment = line.compare(indentation, 2, "//") == 0;
+    const bool is_list = line.find_first_of("\";") > kColumns && line.find("//") == std::string::npos;
+    while (line.size() > kColumns && (is_comment || is_list)) {
+      const std::size_t at = place_to_divide(line, is_comment, indentation);
+      if (at == 0) break;
+      const std::size_t rest = std::min(line.find_first_not_of(' ', at), line.size());
+      const std::string again =
+          is_comment ? line.substr(0, line.find_first_of(' ', indentation) + 1) : std::string(indentation, ' ');
+      result += line.substr(0, at) + "\n";
+      line = again + line.substr(rest);
+    }
+    result += line + "\n";
+  }
+  return result;
+}
 
 std::string filled(std::string_view name, std::initializer_list<Placeholder> texts) {
   const std::string_view text = template_text(name);

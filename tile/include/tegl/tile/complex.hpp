@@ -28,15 +28,15 @@ using Simplices = std::vector<Simplex>;
 
 /// Number of vertices of the simplex.
 [[nodiscard]] constexpr int size(const Simplex& simplex) noexcept {
-  int n = 0;
-  while (n < kMaxVertices && simplex[n] != kNoVertex) ++n;
-  return n;
+  unsigned n = 0;
+  while (n < simplex.size() && simplex[n] != kNoVertex) ++n;
+  return static_cast<int>(n);
 }
 
 /// The simplex without vertex i; the other vertices keep their order.
 [[nodiscard]] constexpr Simplex without(const Simplex& simplex, int i) noexcept {
   Simplex rest = simplex;
-  for (; i + 1 < kMaxVertices; ++i) rest[i] = rest[i + 1];
+  for (auto at = static_cast<unsigned>(i); at + 1 < rest.size(); ++at) rest[at] = rest[at + 1];
   rest[kMaxVertices - 1] = kNoVertex;
   return rest;
 }
@@ -45,7 +45,7 @@ using Simplices = std::vector<Simplex>;
 [[nodiscard]] constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
   Simplex result = kNoSimplex;
   result[0] = vertex;
-  for (int i = 1; i < kMaxVertices; ++i) result[i] = simplex[i - 1];
+  for (unsigned i = 1; i < result.size(); ++i) result[i] = simplex[i - 1];
   return result;
 }
 
@@ -53,8 +53,8 @@ using Simplices = std::vector<Simplex>;
 template <class Vertex, std::size_t Size>
 constexpr int sort_vertices(std::array<Vertex, Size>& simplex, int count = static_cast<int>(Size)) noexcept {
   int sign = 1;
-  for (int i = 1; i < count; ++i)
-    for (int j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) {
+  for (unsigned i = 1; i < static_cast<unsigned>(count); ++i)
+    for (unsigned j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) {
       const Vertex larger = simplex[j - 1];
       simplex[j - 1] = simplex[j], simplex[j] = larger;
       sign = -sign;
