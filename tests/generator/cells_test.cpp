@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "base/determinant.hpp"
+#include "base/error.hpp"
 #include "cells/cell_contours.hpp"
 #include "cells/cell_embedding.hpp"
 #include "cells/cell_tables.hpp"
+#include "cells/face_fillings.hpp"
 #include "tegl/generated/cells.hpp"
 
 namespace tegl::gen {
@@ -247,6 +249,80 @@ TEST(Cells, CompactFourCellsAreRefused) {
   const std::vector<Cell> cells = mesh_cells();
   EXPECT_THROW(CellContours(cells[static_cast<std::size_t>(CellShape::simplex4)], Triangulation::compact),
                std::invalid_argument);
+}
+
+/// What the certificate says of the fillings of a shape's faces; "" if it accepts them.
+std::string verdict(const CellTables& compact, const FaceFillings& fillings) {
+  try {
+    certify_face_fillings(compact, fillings);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FaceFillings, TheCertificateNamesEveryKindOfFault) {
+  const CellTables wedge = make_cell_tables(mesh_cell("wedge"), Triangulation::compact);
+  const FaceFillings fillings = make_face_fillings(wedge, false);
+  EXPECT_EQ(verdict(wedge, fillings), "");
+  unsigned s = 0;  // a signature with several fillings of two triangles
+  while (fillings.cases[s].fillings < 2 || fillings.fillings[fillings.cases[s].first_filling].triangles != 2) ++s;
+  const tables::FillingCase& of = fillings.cases[s];
+  const tables::FaceFilling &first = fillings.fillings[of.first_filling], &second = (&first)[1];
+  const auto expect_fault = [&](const FaceFillings& changed, const char* fault) {
+    EXPECT_EQ(verdict(wedge, changed), "wedge, signature " + std::to_string(s) + ", low-connected: " + fault);
+  };
+  FaceFillings changed = fillings;
+  std::copy_n(changed.triangles.begin() + first.first_triangle, 2, changed.triangles.begin() + second.first_triangle);
+  expect_fault(changed, "two equal fillings");
+  changed = fillings;
+  changed.fillings[of.first_filling].triangles = 1;
+  expect_fault(changed, "a filling with another number of triangles");
+  changed = fillings;
+  std::swap(changed.triangles[first.first_triangle][0], changed.triangles[first.first_triangle][1]);
+  expect_fault(changed, "a filling with another boundary");
+  changed = fillings;
+  changed.cases[s].own = of.own == 0 ? 1 : 0;
+  expect_fault(changed, "the number of its own contour");
+  changed = fillings;
+  changed.apexes[changed.polygons[of.first_polygon].first_apex].choice = of.fillings;
+  expect_fault(changed, "choices without a filling");
+}
+
+TEST(FaceFillings, AChordInAFaceIsRefused) {
+  const CellTables cube = make_cell_tables(mesh_cell("hexahedron"), Triangulation::compact);
+  FaceFillings fillings = make_face_fillings(cube, false);
+  EXPECT_EQ(verdict(cube, fillings), "");
+  fillings.of_frames[3][5] = fillings.cases[3].fillings;
+  EXPECT_EQ(verdict(cube, fillings), "hexahedron, signature 3, low-connected: a frame without a filling");
+  // Low corners 0 and 3 are joined: a hexagon with four points in the square of corners 0 to 3.
+  fillings = make_face_fillings(cube, false);
+  const tables::FillingCase& of = fillings.cases[246];
+  const tables::FaceFilling& filling = fillings.fillings[of.first_filling];
+  ASSERT_EQ(filling.triangles, 4);
+  std::map<std::uint8_t, std::uint8_t> next;  // along the polygon
+  for (unsigned i = 0; i < 4; ++i)
+    for (unsigned k = 0; k < 3; ++k) {
+      const auto& t = fillings.triangles[filling.first_triangle + i];
+      const std::pair side(t[k], t[(k + 1) % 3]);
+      bool is_inner = false;
+      for (unsigned j = 0; j < 12; ++j) {
+        const auto& other = fillings.triangles[filling.first_triangle + j / 3];
+        is_inner = is_inner || std::pair(other[(j + 1) % 3], other[j % 3]) == side;
+      }
+      if (!is_inner) next.insert(side);
+    }
+  ASSERT_EQ(next.size(), 6U);
+  bool is_refused = false;
+  for (const auto& [start, unused] : next) {  // all fans
+    FaceFillings fan = fillings;
+    std::uint8_t at = next.at(start);
+    for (unsigned i = 0; i < 4; ++i, at = next.at(at))
+      fan.triangles[filling.first_triangle + i] = {start, at, next.at(at)};
+    is_refused =
+        is_refused || verdict(cube, fan) == "hexahedron, signature 246, low-connected: a side in a face of the shape";
+  }
+  EXPECT_TRUE(is_refused);
 }
 
 }  // namespace

@@ -55,7 +55,8 @@ struct CellTables {
 /// The tables of all cells in the order of tables::CellShape; for each, barycentric, then compact (2D and 3D).
 [[nodiscard]] std::vector<CellTables> make_all_cell_tables();
 
-/// `cells.cpp`, which defines tables::cell_table, and `cells_manifest.json` with counts and digests.
+/// `cells.cpp`, which defines tables::cell_table and tables::face_filling_table (face_fillings.hpp), and
+/// `cells_manifest.json` with counts and digests.
 [[nodiscard]] std::vector<EmittedFile> emit_cells(const std::vector<CellTables>& tables);
 
 /// The tables of one cell: for `cpp` `cell_NAME.cpp`, which defines a tables::CellTable for each, as

@@ -9,6 +9,7 @@
 
 #include "base/fnv.hpp"
 #include "cells/cell_tables.hpp"
+#include "cells/face_fillings.hpp"
 #include "filling/position_search.hpp"
 #include "tables/emit_arrays.hpp"
 #include "tables/emit_json_text.hpp"
@@ -128,8 +129,9 @@ std::string opening(const std::vector<CellTables>& tables, const std::string& co
   return text;
 }
 
-EmittedFile source(const std::vector<CellTables>& tables) {
+EmittedFile source(const std::vector<CellTables>& tables, const std::vector<FaceFillings>& fillings) {
   std::string text = opening(tables, "gen --cells", "tegl/generated/cells.hpp");
+  text += face_filling_arrays(fillings);
   text += "\n// by shape: barycentric, compact (4D: barycentric)\n";
   fmt::format_to(Appender(text), "const CellTable kTables[{}][2] = {{\n", tables::kCellShapes);
   for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -140,8 +142,8 @@ EmittedFile source(const std::vector<CellTables>& tables) {
   }
   text +=
       "};\n\n}  // namespace\n\nconst CellTable& cell_table(CellShape shape, Triangulation triangulation) noexcept {\n"
-      "  return kTables[static_cast<unsigned>(shape)][static_cast<unsigned>(triangulation)];\n}\n\n"
-      "}  // namespace tegl::tables\n";
+      "  return kTables[static_cast<unsigned>(shape)][static_cast<unsigned>(triangulation)];\n}\n\n";
+  text += face_filling_function(fillings) + "\n}  // namespace tegl::tables\n";
   return {"cells.cpp", std::move(text)};
 }
 
@@ -189,7 +191,8 @@ EmittedFile json_of_cell(const CellTables& table, const std::string& command) {
   return {fmt::format("cell_{}_{}.json", table.name, triangulation_name(table.triangulation)), std::move(text)};
 }
 
-std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, const std::string& command) {
+std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, const std::string& command,
+                     const std::vector<FaceFillings>& fillings = {}) {
   std::string text = fmt::format("{{\n  \"cells\": {},\n  \"contract_version\": {},\n  \"command\": \"{}\",\n", cells,
                                  tables::kCellContractVersion, command);
   text += "  \"tables\": [";
@@ -206,13 +209,17 @@ std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, c
         search_text(t), digest(t));
     separator = ",\n";
   }
-  return text + "\n  ]\n}\n";
+  text += "\n  ]";
+  if (!fillings.empty()) text += ",\n  \"face_fillings\": [\n" + face_filling_manifest(fillings) + "\n  ]";
+  return text + "\n}\n";
 }
 
 }  // namespace
 
 std::vector<EmittedFile> emit_cells(const std::vector<CellTables>& tables) {
-  return {source(tables), {"cells_manifest.json", manifest(tables, tables::kCellShapes, "gen --cells")}};
+  const std::vector<FaceFillings> fillings = make_all_face_fillings(tables);
+  return {source(tables, fillings),
+          {"cells_manifest.json", manifest(tables, tables::kCellShapes, "gen --cells", fillings)}};
 }
 
 std::vector<EmittedFile> emit_cell(const std::vector<CellTables>& tables, std::span<const Language> languages,

@@ -13,9 +13,9 @@ namespace tegl::detail {
 /// Maximum bytes of built tiles kept for later use, in addition to those in use.
 inline constexpr std::size_t kBuiltTileBytes = std::size_t{1} << 28;
 
-/// Extracts the contour of `source` over `grid` into memory, triangulated barycentrically. `plan`'s members on batches
-/// and on keeping tiles have no effect. An image without tiles has an empty contour. Throws UnsupportedData for missing
-/// values.
+/// Extracts the contour of `source` over `grid` into memory; in 2D to 4D triangulated barycentrically. `plan`'s members
+/// on batches and on keeping tiles have no effect. An image without tiles has an empty contour. Throws UnsupportedData
+/// for missing values.
 template <int N, class Real>
 Extraction<N, Real> extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
                                   std::size_t tile_bytes = kBuiltTileBytes, const ExtractPlan& plan = {});

@@ -4,10 +4,14 @@
 #pragma once
 
 #include "tegl/cell_contract.hpp"
+#include "tegl/face_filling_contract.hpp"
 
 namespace tegl::tables {
 
 /// The table of a cell's contours. 4-cells have barycentric contours only: both triangulations give the same table.
 const CellTable& cell_table(CellShape shape, Triangulation triangulation) noexcept;
+
+/// All compact contours of a 3D shape in the faces of 4-cells; null for other shapes.
+const FaceFillingTable* face_filling_table(CellShape shape, bool high_connected) noexcept;
 
 }  // namespace tegl::tables
