@@ -262,14 +262,8 @@ class TileResolver {
       }
       for (std::size_t j = 0; j < found; j += of_.count) {
         numbers_ = numbers.data() + j;
+        const std::size_t count = list_word(found - j);
         const std::size_t word = room_.at[numbers_[0]] / kWordBits;
-        std::size_t count = 0;
-        for (; count < found - j; ++count) {
-          const auto place = room_.at[numbers_[count]];
-          if (place / kWordBits != word) break;
-          of_.bits[count] = static_cast<std::uint8_t>(place % kWordBits);
-          of_.signatures[count] = static_cast<std::uint8_t>(room_.signatures[numbers_[count]]);
-        }
         of_.count = count;
         visit(word, of_.count);
       }
@@ -284,19 +278,40 @@ class TileResolver {
   void resolve_together(RowFaces<N>& faces, std::size_t word) {
     detail::resolve(estimator_, table_, faces.look_at(word), of_);
     // apply the variants; key 0: not resolved here
+    std::int32_t simplices = 0, own_vertices = 0;  // sums of up to 64 tiles, in registers
     for (std::size_t j = 0; j < of_.count; ++j) {
       const Variant variant = of_.variants[j];
       if (variant.key == 0) {
         resolve(j, word);
         continue;
       }
-      count_.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
-      count_.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
+      simplices += variant.more_simplices;
+      own_vertices += variant.more_own_vertices;
       room_.signatures[numbers_[j]] = variant.key;
     }
+    count_.simplices += static_cast<std::uint64_t>(std::int64_t{simplices});
+    count_.own_vertices += static_cast<std::uint32_t>(own_vertices);
   }
 
  private:
+  /// Lists the tiles of one word, of the next `most` ambiguous ones. Returns their number. By local pointers: bytes may
+  /// alias the members, which would be read again after each.
+  std::size_t list_word(std::size_t most) {
+    const std::uint32_t* const numbers = numbers_;
+    const std::uint16_t* const at = room_.at;
+    const std::uint16_t* const signatures = room_.signatures;
+    const unsigned word = at[numbers[0]] / kWordBits;
+    std::uint8_t* const bits = of_.bits.data();
+    std::uint8_t* const listed = of_.signatures.data();
+    std::size_t count = 0;
+    for (; count < most; ++count) {
+      const unsigned place = at[numbers[count]];
+      if (place / kWordBits != word) break;
+      bits[count] = static_cast<std::uint8_t>(place % kWordBits);
+      listed[count] = static_cast<std::uint8_t>(signatures[numbers[count]]);
+    }
+    return count;
+  }
   void resolve(std::size_t j, std::size_t word) {
     const unsigned signature = of_.signatures[j];
     base_[0] = word * kWordBits + of_.bits[j];

@@ -20,7 +20,7 @@ namespace tegl::detail {
 template <int K>
 class SimplexList {
  public:
-  SimplexList(const tables::TileTable& table, unsigned signature) noexcept
+  [[gnu::always_inline]] SimplexList(const tables::TileTable& table, unsigned signature) noexcept
       : list_(&table.lists[table.list_of[signature]]),
         simplices_(table.simplices + std::size_t{list_->first_simplex} * K),
         side_masks_(table.side_masks + list_->first_side) {
