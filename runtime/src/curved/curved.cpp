@@ -58,15 +58,18 @@ class Mover {
     return is_straight_and_needed_ ? (1u << N) - 1 : map_.along() | map_.curved();
   }
   [[nodiscard]] unsigned written() const noexcept { return map_.curved(); }
-  /// Finds the places of points in the grid, and starts to load coordinates there.
+  /// Finds the places of points in the grid.
   void look_up(detail::CurvedBlock& block) const noexcept {
     for (int a = 0; a < N && !is_straight_and_needed_; ++a)
       if (steps_[a] != 0.0) detail::find_places(block, a, steps_[a]);
     if (is_straight_and_needed_) locate_all(block);
     map_.look_up(block);
   }
-  /// Moves points that were looked up to space; NaN where coordinates are unknown.
-  void move(detail::CurvedBlock& block) const noexcept { map_.move(block); }
+  /// Starts to load coordinates at the places of a block that was looked up.
+  void request(const detail::CurvedBlock& block) const noexcept { map_.request(block); }
+  /// Moves points that were looked up to space; NaN where coordinates are unknown. Meanwhile starts to load those of
+  /// `next`.
+  void move(detail::CurvedBlock& block, const detail::CurvedBlock& next) const noexcept { map_.move(block, next); }
 
   /// The normal in space of one on the index grid: the gradient g becomes the solution x of J^T x = g.
   [[nodiscard]] std::array<double, N> turned(const std::array<double, N>& point,
@@ -146,18 +149,21 @@ void move_contour(const Mover<N>& mover, std::span<const CurvedAxis> curved, con
   // The first vertex without a place keeps its indices, for the message.
   std::atomic<std::size_t> unknown{vertices};
   detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    std::array<detail::CurvedBlock, 2> blocks;  // one is looked up before the other is moved, as memory is slow
-    const auto look_up = [&](std::size_t first) {
-      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
-      block.count = std::min(to - first, block.kMost);
+    // While one block is moved, the coordinates of the next one are requested, as memory is slow.
+    constexpr std::size_t kMost = detail::CurvedBlock::kMost;
+    std::array<detail::CurvedBlock, 2> blocks;
+    const auto look_up = [&](std::size_t first) -> detail::CurvedBlock& {
+      detail::CurvedBlock& block = blocks[first / kMost % 2];
+      block.count = first < to ? std::min(to - first, kMost) : 0;
+      if (block.count == 0) return block;
       detail::load_points(contour.vertices[first].data(), N, mover.read(), block);
       mover.look_up(block);
+      return block;
     };
-    if (from < to) look_up(from);
-    for (std::size_t first = from; first < to; first += detail::CurvedBlock::kMost) {
-      if (to - first > detail::CurvedBlock::kMost) look_up(first + detail::CurvedBlock::kMost);
-      detail::CurvedBlock& block = blocks[first / detail::CurvedBlock::kMost % 2];
-      mover.move(block);
+    mover.request(look_up(from));
+    for (std::size_t first = from; first < to; first += kMost) {
+      detail::CurvedBlock& block = blocks[first / kMost % 2];
+      mover.move(block, look_up(first + kMost));
       if (const std::size_t i = first_unknown<N>(block, mover.written()); i < block.count) {
         detail::lower_to(unknown, first + i);
         continue;

@@ -74,12 +74,12 @@ void ends(const CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::End
 }
 
 /// The coordinates between the values at the ends.
-void between(CurvedBlock& block, const CurvedBlock::Ends& ends, std::size_t axis) {
+void between(CurvedBlock& block, const CurvedBlock::Ends& ends, std::size_t k, std::size_t axis) {
   const BlockTag d;
   const auto one = hn::Set(d, 1.0);
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const auto share = hn::LoadU(d, ends.weight.data() + i);
-    const auto here = hn::LoadU(d, block.here.data() + i), next = hn::LoadU(d, block.next.data() + i);
+    const auto here = hn::LoadU(d, block.here[k].data() + i), next = hn::LoadU(d, block.next[k].data() + i);
     hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d, block.point[axis].data() + i);
   }
 }
@@ -214,23 +214,40 @@ bool are_finite(const CurvedBlock& block, unsigned axes) noexcept { return HWY_D
 
 void find_ends(CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& ends) noexcept {
   HWY_DYNAMIC_DISPATCH(ends)(block, arrays, ends);
-  for (std::size_t k = 0; arrays.is_large && k < arrays.count; ++k)
-    for (std::size_t i = 0; i < block.count; ++i) {
+}
+
+void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
+  for (std::size_t i = 0; arrays.is_large && i < count; ++i)
+    for (std::size_t k = 0; k < arrays.count; ++k) {
       hwy::Prefetch(arrays.values[k] + ends.first[i]);
       hwy::Prefetch(arrays.values[k] + ends.second[i]);
     }
 }
 
-void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends) noexcept {
-  for (std::size_t k = 0; k < arrays.count; ++k) {
-    // here, for the baseline: many processors load one by one faster than they gather
-    const double* const values = arrays.values[k];
-    for (std::size_t i = 0; i < block.count; ++i) {
-      block.here[i] = values[ends.first[i]];
-      block.next[i] = values[ends.second[i]];
+/// Reads the values of `Count` arrays at ends.
+template <std::size_t Count>
+static void read_ends(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends,
+                      const CurvedBlock::Ends& next, std::size_t count) noexcept {
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const std::int64_t first = ends.first[i], second = ends.second[i];
+    for (std::size_t k = 0; k < Count; ++k) {
+      block.here[k][i] = arrays.values[k][first];
+      block.next[k][i] = arrays.values[k][second];
     }
-    HWY_DYNAMIC_DISPATCH(between)(block, ends, arrays.axis[k]);
+    if (i >= count) continue;
+    for (std::size_t k = 0; k < Count; ++k) {
+      hwy::Prefetch(arrays.values[k] + next.first[i]);
+      hwy::Prefetch(arrays.values[k] + next.second[i]);
+    }
   }
+}
+
+void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends,
+                 const CurvedBlock::Ends& next, std::size_t count) noexcept {
+  // here, for the baseline: many processors load one by one faster than they gather
+  constexpr std::array kRead = {&read_ends<1>, &read_ends<2>, &read_ends<3>, &read_ends<4>};
+  kRead[arrays.count - 1](block, arrays, ends, next, arrays.is_large ? count : 0);
+  for (std::size_t k = 0; k < arrays.count; ++k) HWY_DYNAMIC_DISPATCH(between)(block, ends, k, arrays.axis[k]);
 }
 
 }  // namespace tegl::detail

@@ -25,9 +25,9 @@ struct CurvedBlock {
     std::array<std::int64_t, kMost> first{}, second{};
     Numbers weight{};
   };
-  std::array<Ends, kMostAxes> ends{};  ///< by CurvedArrays
-  Numbers here{}, next{};              ///< values at ends
-  std::uint64_t inside = 0;            ///< bit i: place i is not on an edge, or at its second end
+  std::array<Ends, kMostAxes> ends{};             ///< by CurvedArrays
+  std::array<Numbers, kMostAxes> here{}, next{};  ///< values at ends, by array of one CurvedArrays
+  std::uint64_t inside = 0;                       ///< bit i: place i is not on an edge, or at its second end
 };
 
 /// Arrays of coordinates with the same axes.
@@ -51,9 +51,13 @@ void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, floa
 void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) noexcept;
 /// Whether the coordinates of all points along the axes with bits in `axes` are finite.
 bool are_finite(const CurvedBlock& block, unsigned axes) noexcept;
-/// Finds the ends of edges in arrays, and starts to load the values there if the arrays are large.
+/// Finds the ends of edges in arrays.
 void find_ends(CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& ends) noexcept;
-/// Replaces coordinates of points by those between the ends of their edges.
-void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends) noexcept;
+/// Starts to load the values at `count` ends if the arrays are large.
+void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept;
+/// Replaces coordinates of points by those between the ends of their edges. Meanwhile requests the values at the first
+/// `count` of the `next` ends: memory delivers only few at a time.
+void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends,
+                 const CurvedBlock::Ends& next, std::size_t count) noexcept;
 
 }  // namespace tegl::detail

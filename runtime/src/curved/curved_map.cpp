@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "hwy/cache_control.h"
+
 namespace tegl::detail {
 
 template <int N>
@@ -88,7 +90,7 @@ double CurvedMap<N>::main_orientation() const {
   std::size_t cells = 1;
   for (int a = 0; a < N; ++a) cells *= (along_ >> a & 1u) != 0 ? std::max<std::size_t>(sizes_[a], 2) - 1 : 1;
   const std::size_t step = std::max<std::size_t>(1, cells / kSamples);
-  double sum = 0.0;
+  std::vector<SampleIndex> some;
   for (std::size_t number = 0; number < cells; number += step) {
     SampleIndex cell{};
     std::size_t rest = number;
@@ -100,10 +102,27 @@ double CurvedMap<N>::main_orientation() const {
       cell[a] = rest % size;
       rest /= size;
     }
-    const double sign = is_cell ? orientation(cell, 0) : 0.0;
+    if (is_cell) some.push_back(cell);
+  }
+  // Far apart in memory, so they are requested ahead.
+  constexpr std::size_t kAhead = 8;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    if (i + kAhead < some.size()) request_corner(some[i + kAhead]);
+    const double sign = orientation(some[i], 0);
     if (!std::isnan(sign)) sum += sign;
   }
   return sum < 0.0 ? -1.0 : 1.0;
+}
+
+template <int N>
+void CurvedMap<N>::request_corner(const SampleIndex& cell) const noexcept {
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    const double* here = axes_[k].values.data();
+    for (int a = 0; a < N; ++a) here += cell[a] * strides_[k][a];
+    hwy::Prefetch(here);
+    for (int a = 0; a < N; ++a) hwy::Prefetch(here + strides_[k][a]);
+  }
 }
 
 template <int N>
@@ -113,8 +132,14 @@ void CurvedMap<N>::look_up(CurvedBlock& block) const noexcept {
 }
 
 template <int N>
-void CurvedMap<N>::move(CurvedBlock& block) const noexcept {
-  for (std::size_t k = 0; k < arrays_.size(); ++k) interpolate(block, arrays_[k], block.ends[k]);
+void CurvedMap<N>::request(const CurvedBlock& block) const noexcept {
+  for (std::size_t k = 0; k < arrays_.size(); ++k) detail::request(arrays_[k], block.ends[k], block.count);
+}
+
+template <int N>
+void CurvedMap<N>::move(CurvedBlock& block, const CurvedBlock& next) const noexcept {
+  for (std::size_t k = 0; k < arrays_.size(); ++k)
+    interpolate(block, arrays_[k], block.ends[k], next.ends[k], next.count);
   for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     CellPlace<N> place{};

@@ -45,10 +45,13 @@ class CurvedMap {
     }
   }
 
-  /// Finds the ends of the edges of places in the grid, and starts to load coordinates there.
+  /// Finds the ends of the edges of places in the grid.
   void look_up(CurvedBlock& block) const noexcept;
-  /// Replaces the curved coordinates of points, which were looked up, by those of their places in the grid.
-  void move(CurvedBlock& block) const noexcept;
+  /// Starts to load coordinates at the places of a block that was looked up.
+  void request(const CurvedBlock& block) const noexcept;
+  /// Replaces the curved coordinates of points, which were looked up, by those of their places in the grid. Meanwhile
+  /// starts to load those of `next`, which may have no points.
+  void move(CurvedBlock& block, const CurvedBlock& next) const noexcept;
   /// The derivatives by index, derivatives[c][a], of coordinate c along axis a, at a place: central differences between
   /// samples, interpolated. Only those of curved coordinates are set, the others are 0.
   [[nodiscard]] Matrix<N> derivatives(const CellPlace<N>& place) const noexcept;
@@ -59,6 +62,8 @@ class CurvedMap {
     for (int a = 0; a < N; ++a) at += index[a] * strides_[k][a];
     return axes_[k].values[at];
   }
+  /// Starts to load the coordinates that orientation(cell, 0) reads.
+  void request_corner(const SampleIndex& cell) const noexcept;
   /// The coordinate of axes_[k] at a place between any number of samples.
   [[nodiscard]] double inside(std::size_t k, const CellPlace<N>& place) const noexcept;
   [[nodiscard]] double difference(std::size_t k, const SampleIndex& index, int a) const noexcept;
