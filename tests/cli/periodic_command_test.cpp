@@ -134,7 +134,9 @@ TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
   expect_refused({"--periodic", "x", "--stream", "--unroll", "-o", output}, "--unroll with --stream");
   expect_refused({"--periodic", "w", "--stream", "-o", output}, "--periodic w names no axis");
   expect_refused({"--periodic", "x=20", "--stream", "-o", output}, "expected more than 29");
-  expect_refused({"--periodic", "x", "--facets", "-o", output}, "--periodic x with --facets");
+  expect_refused({"--periodic", "x", "--facets", "--unroll", "-o", output}, "--unroll with --facets");
+  expect_refused({"--periodic", "x=20", "--facets", "-o", output}, "expected more than 29");
+  expect_refused({"--periodic", "x", "--triangulation", "fan", "-o", output}, "--periodic x with a triangulation");
   expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");
   expect_refused({"--unroll", "-o", output}, "--unroll without --periodic");
 }
@@ -160,6 +162,24 @@ TEST_F(PeriodicCommand, StreamedContoursAreThoseInMemory) {
     EXPECT_NEAR(measure(contour).size, measure(to_contour<3>(other)).size, 1e-9);
     EXPECT_EQ(run_json({"components", streamed})["components"], run_json({"components", in_memory})["components"]);
   }
+}
+
+TEST_F(PeriodicCommand, FacetsAreClosedAcrossTheSeam) {
+  for (const char* const axes : {"x", "x,y,z"})
+    for (const char* const name : {"facets.vtu", "facets.vtkhdf"}) {
+      const std::string output = path(name);
+      const nlohmann::json facets =
+          run_json({"contour", file_, "--iso", "0", "--periodic", axes, "--facets", "-o", output});
+      const nlohmann::json simplices =
+          run_json({"contour", file_, "--iso", "0", "--periodic", axes, "-o", path("simplices.vtkhdf")});
+      for (const char* const key : {"euler", "components", "tiles", "active_tiles"})
+        EXPECT_EQ(facets[key], simplices[key]) << axes << " " << key;
+      EXPECT_EQ(facets["components"], 1);
+      EXPECT_EQ(facets["boundary_facets"], 0);
+      std::ifstream file(output, std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+      EXPECT_THAT(bytes, HasSubstr("periods"));
+    }
 }
 
 TEST_F(PeriodicCommand, SlicesOfASavedContourAreWrappedToo) {

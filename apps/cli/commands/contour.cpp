@@ -201,10 +201,11 @@ class ContourCommand final : public Command {
   void require_tiling_options() const {
     if (unroll_ && options_.tiling().periodic.empty())
       throw Error(ErrorCode::InvalidArgument, "--unroll without --periodic; expected both");
-    if (unroll_ && is_streamed())
-      throw Error(ErrorCode::InvalidArgument, "--unroll with --stream; expected one of the two");
+    if (unroll_ && (is_streamed() || facets_))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--unroll with {}; expected one of the two", facets_ ? "--facets" : "--stream"));
     for_plain_cells([&](const char* with) {
-      is_streamed() ? options_.refuse_other_tiling(with) : options_.refuse_tiling(with);
+      is_streamed() || facets_ ? options_.refuse_other_tiling(with) : options_.refuse_tiling(with);
     });
     if (attributes_.wanted() && options_.tiling().of_cells) options_.refuse_tiling("--attribute");
   }
@@ -627,7 +628,8 @@ class ContourCommand final : public Command {
     WrittenFiles written;
     for (FacetsResult& result : results)
       write_image_facets(input.image,
-                         {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()},
+                         {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression(),
+                          options_.tiling().periodic},
                          bar, result, written);
     written.keep();
     // report

@@ -54,11 +54,18 @@ std::string unlike_balls(const FacetReport& report) {
   return text;
 }
 
+/// The tiles of an image, with those across the seam of periodic axes.
+template <int N>
+std::uint64_t tiles_of(const Grid<N>& grid, const AxisPeriods<N>& periods) {
+  std::uint64_t tiles = 1;
+  for (int a = 0; a < N; ++a) tiles *= grid.axes[a].size() - (periods[a] != 0.0 ? 0 : 1);
+  return tiles;
+}
+
 template <int N, class Real>
-ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, double seconds) {
+ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, std::uint64_t tiles, double seconds) {
   ExtractStats stats;
-  stats.tiles = 1;
-  for (const std::size_t size : facets.sizes) stats.tiles *= size - 1;
+  stats.tiles = tiles;
   const auto& places = facets.levels[N - 1].places;
   stats.active_tiles = static_cast<std::uint64_t>(std::count_if(
       places.begin(), places.end(), [](const FacetPlace& place) { return place.number == 0 && !place.is_cap; }));
@@ -66,12 +73,14 @@ ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, double seconds) {
   return stats;
 }
 
-/// Extracts the facets of an image and passes them to `use`.
+/// Extracts the facets of an image and passes them to `use`, with the number of tiles.
 template <class Result, class T, int N, class Use>
 Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const ExtractOptions& options,
                   const Use& use) {
-  if (work.single_precision) return use(extract_facets<float>(image.view(), work.isovalue, options));
-  return use(extract_facets<double>(image.view(), work.isovalue, options));
+  const AxisPeriods<N> periods = periods_of(image.grid, work.periodic);
+  const std::uint64_t tiles = tiles_of(image.grid, periods);
+  if (work.single_precision) return use(extract_facets<float>(image.view(), work.isovalue, options, periods), tiles);
+  return use(extract_facets<double>(image.view(), work.isovalue, options, periods), tiles);
 }
 
 template <int N, class Real>
@@ -173,9 +182,9 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
   ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
-  const auto finish = [&](const auto& facets) {
+  const auto finish = [&](const auto& facets, std::uint64_t tiles) {
     result.seconds.generate = watch.lap();
-    result.stats = stats_of(facets, result.seconds.generate);
+    result.stats = stats_of(facets, tiles, result.seconds.generate);
     check_and_write(facets, work, bar, result, written);
   };
   const auto of_owned = [&](const auto& owned) { use_facets<void>(owned, work, options, finish); };
@@ -195,9 +204,9 @@ std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(
   ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
-  const auto triangulated = [&]<class Real>(const FacetHierarchy<3, Real>& facets) -> Triangles {
+  const auto triangulated = [&]<class Real>(const FacetHierarchy<3, Real>& facets, std::uint64_t tiles) -> Triangles {
     auto contour = triangulate(facets, method, {work.options.work.threads, bar.stage("triangles")});
-    return Extraction<3, Real>{std::move(contour), stats_of(facets, watch.lap())};
+    return Extraction<3, Real>{std::move(contour), stats_of(facets, tiles, watch.lap())};
   };
   return std::visit([&](const auto& owned) { return use_facets<Triangles>(owned, work, options, triangulated); },
                     *typed);

@@ -51,6 +51,7 @@ struct FacetsWork {
   bool single_precision = false;
   bool no_check = false;
   Compression compression = Compression::none;
+  std::vector<std::string> periodic = {};  ///< the axes of --periodic
 };
 
 /// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of

@@ -15,6 +15,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/periodic.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -73,6 +74,7 @@ struct FacetHierarchy {
   std::array<std::string, N> axis_names = {};  ///< taken from the grid
   std::array<std::string, N> axis_units = {};  ///< taken from the grid
   GradientDirection direction = GradientDirection::descent;  ///< the side that facets face
+  std::vector<Period<N>> periods = {};  ///< as Contour::periods: facets across the seam connect points at both ends
 
   /// Number of facets of dimension k.
   [[nodiscard]] std::size_t count(int k) const noexcept { return levels[k].places.size(); }
@@ -138,6 +140,10 @@ struct FacetHierarchy {
 /// the boundary of a contour may still touch itself there in a point or along a segment, which `extract` separates by
 /// simplices of zero size.)
 ///
+/// With periods that are not all 0, there is one more layer of tiles across each periodic axis, as in
+/// `extract_periodic`, and facets on the seam are there once. Then ExtractOptions::close closes the contour at the
+/// borders of the other axes. Memory: also a copy of the image. Errors: also those of `extract_periodic`.
+///
 /// Errors: those of `extract`; TooLarge also for 2^32 incidences of one dimension. O(samples + output), on
 /// options.work.threads threads; the result is the same for any number. Memory besides the result, in 4D: 3 bytes per
 /// sample, 240 per row along axis 0 and 4 per facet; half of that in 3D, a fifth in 2D; twice as much for closed
@@ -145,7 +151,8 @@ struct FacetHierarchy {
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
-                                                     const ExtractOptions& options = {});
+                                                     const ExtractOptions& options = {},
+                                                     const AxisPeriods<N>& periods = {});
 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus. For a polyhedron it
 /// is half the Euler characteristic of its boundary: each handle subtracts 1, each boundary component after the first

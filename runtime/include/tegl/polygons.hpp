@@ -90,7 +90,8 @@ requires DimensionBetween < detail::kPointDim<Points>,
 /// one square of the grid are forbidden, as the cube on the other side might use them too.
 ///
 /// The points of `facets` keep their numbers. Barycentres come last, with the mean of their polygon's normals if there
-/// are normals. Triangles come polygon by polygon. Errors: TooLarge, Cancelled. O(size).
+/// are normals. Triangles come polygon by polygon. Errors: TooLarge, Cancelled, UnsupportedData for facets with
+/// periods. O(size).
 template <Coordinate Real>
 [[nodiscard]] Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
                                            const WorkOptions& work = {});

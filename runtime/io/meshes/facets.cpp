@@ -141,6 +141,7 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& 
   grid.cells = cells.count();
   grid.axis_names.assign(facets.axis_names.begin(), facets.axis_names.end());
   grid.axis_units.assign(facets.axis_units.begin(), facets.axis_units.end());
+  grid.periods = period_numbers(facets.periods);
   add_rows<N, Real>(facets.vertices, "Points", io_detail::kFurtherCoordinates[0], grid.coordinates, grid.point_arrays);
   if (!facets.normals.empty()) {
     grid.normals = io_detail::kNormals;
@@ -199,7 +200,8 @@ io_detail::VtkhdfLayout vtkhdf_layout(const FacetHierarchy<N, Real>& facets, con
           {},
           kSingle,
           kSingle && fits_int32(facets, cells),
-          compression};
+          compression,
+          period_numbers(facets.periods)};
 }
 
 template <int N, class Real>

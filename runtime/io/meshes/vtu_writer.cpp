@@ -6,10 +6,12 @@
 #include <bit>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <zlib.h>
 
 #include "base/common.hpp"
 #include "base/output_file.hpp"
+#include "meshes/vtkhdf_names.hpp"
 
 namespace tegl::io_detail {
 namespace {
@@ -97,6 +99,14 @@ std::string text_tag(const char* name, const std::vector<std::string>& texts) {
   return text + "</DataArray>\n";
 }
 
+/// The XML tag of numbers of the field data, in full precision; nothing if there are none.
+std::string number_tag(const char* name, const std::vector<double>& numbers) {
+  if (numbers.empty()) return {};
+  return fmt::format(R"(<DataArray type="Float64" Name="{}" NumberOfTuples="{}" format="ascii">{}</DataArray>)", name,
+                     numbers.size(), fmt::join(numbers, " ")) +
+         "\n";
+}
+
 std::string header(const VtuGrid& grid, FileSizes sizes, Compression compression) {
   std::uint64_t offset = 0;
   std::string text = fmt::format(
@@ -104,7 +114,8 @@ std::string header(const VtuGrid& grid, FileSizes sizes, Compression compression
       "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"{}>\n"
       "<UnstructuredGrid>\n<FieldData>\n",
       compression == Compression::none ? "" : " compressor=\"vtkZLibDataCompressor\"");
-  text += text_tag("axis_names", grid.axis_names) + text_tag("axis_units", grid.axis_units) + "</FieldData>\n";
+  text += text_tag("axis_names", grid.axis_names) + text_tag("axis_units", grid.axis_units);
+  text += number_tag(kPeriods, grid.periods) + "</FieldData>\n";
   text += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", grid.points, grid.cells);
   text += grid.normals.empty() ? "<PointData>\n" : fmt::format("<PointData Normals=\"{}\">\n", grid.normals);
   text += array_tags(grid.point_arrays, sizes, offset) + "</PointData>\n<CellData>\n";

@@ -63,6 +63,7 @@ struct VtuGrid {
   VtuArray coordinates;
   std::vector<VtuArray> topology;  ///< connectivity, offsets, types; for polyhedra faces and faceoffsets
   std::vector<std::string> axis_names, axis_units;
+  std::vector<double> periods = {};  ///< written to the field array "periods", if not empty
 };
 
 /// Writes a VTU file to a pending file. With compression, the compressed arrays are held in memory. Errors:

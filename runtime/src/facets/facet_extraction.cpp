@@ -19,6 +19,7 @@
 #include "base/workers.hpp"
 #include "builder4_facets.hpp"
 #include "facets/facet_rows.hpp"
+#include "facets/merge_seam.hpp"
 #include "facets/split_facets.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_kernel.hpp"
@@ -87,7 +88,7 @@ struct NumberedFacets {
 template <int N>
 class FacetExtraction {
  public:
-  FacetExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options)
+  FacetExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options, unsigned seam_axes)
       : source_(source),
         options_(options),
         flip_(against_tables(grid, options)),
@@ -96,7 +97,7 @@ class FacetExtraction {
                            : N > 2                          ? 2
                                                             : 1)),
         reporter_(options.work.progress, passes_, "passes"),
-        rows_(grid.sizes()),
+        rows_(grid.sizes(), kAll & ~seam_axes),
         workers_(options.work.threads, [] { return FacetScratch(); }) {
     if (is_estimated(options.ambiguity)) estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
     faces_.resize(2u << N);
@@ -491,8 +492,8 @@ class FacetWriter : FacetExtraction<N> {
   using Base = FacetExtraction<N>;
 
  public:
-  FacetWriter(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options)
-      : Base(source, grid, options), placement_(grid) {
+  FacetWriter(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options, unsigned seam_axes)
+      : Base(source, grid, options, seam_axes), seam_axes_(seam_axes), placement_(grid) {
     if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     facets_.sizes = grid.sizes();
     facets_.direction = options.direction;
@@ -512,10 +513,11 @@ class FacetWriter : FacetExtraction<N> {
       level.down_signs = std::move(levels_[k].down_signs);
     }
     write_points();
+    if (seam_axes_ != 0) SeamMerging<N, Real>(facets_, seam_axes_).run();
     if (rows_.any_missing())
       separate_facets(facets_, [this](const FacetPlace& place) {
-        return !rows_.is_surrounded(place.axes, static_cast<std::size_t>(place.base / rows_.size(0)),
-                                    static_cast<std::size_t>(place.base % rows_.size(0)));
+        return seam_axes_ != 0 || !rows_.is_surrounded(place.axes, static_cast<std::size_t>(place.base / rows_.size(0)),
+                                                       static_cast<std::size_t>(place.base % rows_.size(0)));
       });
     reporter_.tell(static_cast<double>(passes_));
     return std::move(facets_);
@@ -637,6 +639,7 @@ class FacetWriter : FacetExtraction<N> {
                                 });
   }
 
+  unsigned seam_axes_;
   Placement<N, Real> placement_;
   FacetHierarchy<N, Real> facets_;
 };
@@ -644,11 +647,13 @@ class FacetWriter : FacetExtraction<N> {
 }  // namespace
 
 template <int N, class Real>
-FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
+FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                                       unsigned seam_axes) {
   const auto sizes = grid.sizes();
   if (*std::min_element(sizes.begin(), sizes.end()) < 2) {
     FacetHierarchy<N, Real> none;
     none.sizes = sizes;
+    for (int a = 0; a < N; ++a) none.sizes[a] -= seam_axes >> a & 1u;
     none.direction = options.direction;
     for (int a = 0; a < N; ++a) {
       none.axis_names[a] = grid.axes[a].name;
@@ -657,11 +662,12 @@ FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& g
     }
     return none;
   }
-  return FacetWriter<N, Real>(source, grid, options).run();
+  return FacetWriter<N, Real>(source, grid, options, seam_axes).run();
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
-  template FacetHierarchy<N, Real> extract_facets<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&);
+#define TEGL_INSTANTIATE_CONTOURS(N, Real)                                                                          \
+  template FacetHierarchy<N, Real> extract_facets<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&, \
+                                                           unsigned);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -8,7 +8,9 @@
 
 namespace tegl::detail {
 
+/// Bit a of `seam_axes`: the last layer across axis a repeats the first one; its facets are merged.
 template <int N, class Real>
-FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options);
+FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                                       unsigned seam_axes = 0);
 
 }  // namespace tegl::detail

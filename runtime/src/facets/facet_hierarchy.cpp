@@ -13,6 +13,8 @@
 #include "facets/facet_extraction.hpp"
 #include "image/row_source.hpp"
 #include "kernel/extract_kernel.hpp"
+#include "periodic/periodic_layers.hpp"
+#include "periodic/periods.hpp"
 
 namespace tegl {
 
@@ -159,10 +161,21 @@ requires DimensionBetween<N, 2, 4> FacetReport check(const FacetHierarchy<N, Rea
 
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
-                                                                          const ExtractOptions& options) {
+                                                                          const ExtractOptions& options,
+                                                                          const AxisPeriods<N>& periods) {
   detail::check_arguments(isovalue, options);
-  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  return detail::extract_facets<N, Real>(source, image.grid(), options);
+  unsigned axes = 0;
+  for (int a = 0; a < N; ++a) axes |= periods[a] != 0.0 ? 1u << a : 0u;
+  if (axes == 0) {
+    detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+    return detail::extract_facets<N, Real>(source, image.grid(), options);
+  }
+  detail::check_periods(image.grid(), periods, options);
+  const Grid<N> longer = detail::longer_grid(image.grid(), periods);
+  detail::CopiedSource<T, N> source(image, periods, longer, options, isovalue);
+  auto facets = detail::extract_facets<N, Real>(source, longer, options, axes);
+  facets.periods = detail::world_periods(image.grid(), periods);
+  return facets;
 }
 
 #define TEGL_INSTANTIATE_CONTOURS(N, Real)                                             \
@@ -171,8 +184,9 @@ requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const 
   template FacetReport check<N, Real>(const FacetHierarchy<N, Real>&, const WorkOptions&);
 #include "base/instantiate.hpp"
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real) \
-  template FacetHierarchy<N, Real> extract_facets<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&);
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                       \
+  template FacetHierarchy<N, Real> extract_facets<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
+                                                              const AxisPeriods<N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -52,8 +52,14 @@ class GridRows {
   using Index = std::array<std::size_t, N>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
-  explicit GridRows(const Index& sizes)
-      : sizes_(sizes), words_((sizes[0] + kWordBits - 1) / kWordBits), high_(), missing_(), tiles_() {
+  /// Bit a of `closed_axes`: faces across axis a at the border may lead out of the image.
+  explicit GridRows(const Index& sizes, unsigned closed_axes = kAll)
+      : sizes_(sizes),
+        closed_axes_(closed_axes),
+        words_((sizes[0] + kWordBits - 1) / kWordBits),
+        high_(),
+        missing_(),
+        tiles_() {
     for (int a = 1; a < N; ++a) {
       strides_[a] = rows_;
       rows_ *= sizes[a];
@@ -183,10 +189,11 @@ class GridRows {
   [[nodiscard]] bool tile(std::size_t row, std::size_t i) const noexcept {
     return (tiles_[row * pitch() + i / kWordBits] >> (i % kWordBits) & 1u) != 0;
   }
+  [[nodiscard]] bool closes(unsigned axis) const noexcept { return (closed_axes_ >> axis & 1u) != 0; }
   [[nodiscard]] Word border(const FaceKind& kind, const Index& index, std::size_t w) const noexcept {
     for (unsigned a = 1; a < N; ++a)
-      if ((kind.axes >> a & 1u) == 0 && (index[a] == 0 || index[a] + 1 == sizes_[a])) return ~Word{0};
-    if ((kind.axes & 1u) != 0) return 0;
+      if (closes(a) && (kind.axes >> a & 1u) == 0 && (index[a] == 0 || index[a] + 1 == sizes_[a])) return ~Word{0};
+    if ((kind.axes & 1u) != 0 || !closes(0)) return 0;
     Word result = w == 0 ? 1 : 0;
     if (w == (sizes_[0] - 1) / kWordBits) result |= Word{1} << ((sizes_[0] - 1) % kWordBits);
     return result;
@@ -207,6 +214,7 @@ class GridRows {
   }
 
   Index sizes_;
+  unsigned closed_axes_;
   std::array<std::size_t, N> strides_{};
   std::size_t rows_ = 1;
   std::size_t words_;

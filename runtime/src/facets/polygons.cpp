@@ -318,6 +318,9 @@ template <Coordinate Real>
 Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
                              const WorkOptions& work) {
   constexpr std::size_t kRun = 1024;
+  if (!facets.periods.empty())
+    throw Error(ErrorCode::UnsupportedData,
+                "facets with periodic axes, whose polygons cross the seam; expected facets without periods");
   const std::size_t count = facets.count(2);
   std::vector<PolygonRun> runs((count + kRun - 1) / kRun);
   const PolygonTriangulator<Real> triangulator(facets, method);
