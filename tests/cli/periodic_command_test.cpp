@@ -491,7 +491,7 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
     refused({"scale-space", ball, "--sigmas", "1:2:3", "-o", path("s.nrrd")}, "lattice fcc");
     refused({"elements", ball, "--iso", "0", "--per", "cell", "-o", path("e.txt")}, "--per cell on the lattice fcc");
     for (const std::vector<std::string>& more :
-         std::vector<std::vector<std::string>>{{"--stream", "-o", path("s.vtkhdf")},
+         std::vector<std::vector<std::string>>{{"--periodic", "x,y,z", "--stream", "-o", path("s.vtkhdf")},
                                                {"--facets", "-o", path("s.vtkhdf")},
                                                {"--pick", "0,0,0", "-o", output},
                                                {"--division", "kuhn", "-o", output},
@@ -501,12 +501,38 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
       std::vector<std::string> arguments = {"contour", ball, "--iso", "0"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       refused(arguments, "is on the lattice fcc; expected it without this, or --lattice cubic");
-      if (more.front() == "--facets" || more.front() == "--stream") {
+      if (more.front() == "--facets" || more.front() == "--periodic") {
         arguments.insert(arguments.end(), {"--lattice", "cubic"});
         EXPECT_EQ(run_tegl(arguments).exit, 0) << more.front();
       }
     }
   }
+}
+
+TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
+  const std::string ball = path("ball.nrrd"), streamed = path("streamed.vtkhdf"), in_memory = path("memory.vtkhdf");
+  (void)run_json({"sample", "ball", "--lattice", "fcc", "--size", "40", "-o", ball});
+  for (const char* const lattice : {"fcc", "bcc"}) {
+    const std::vector<std::string> options = {"contour", ball, "--iso", "0", "--lattice", lattice};
+    auto stream = options, memory = options;
+    stream.insert(stream.end(), {"--stream", "-o", streamed});
+    memory.insert(memory.end(), {"-o", in_memory});
+    const nlohmann::json report = run_json(stream);
+    EXPECT_EQ(report["tiles"], run_json(memory)["tiles"]);
+    const Mesh one = read_mesh(streamed), other = read_mesh(in_memory);
+    EXPECT_TRUE(std::ranges::equal(one.coordinates, other.coordinates)) << lattice;
+    EXPECT_TRUE(std::ranges::equal(one.simplices, other.simplices)) << lattice;
+    EXPECT_GT(one.simplices.size(), 1000u);
+  }
+  // of the file
+  EXPECT_EQ(run_json({"contour", ball, "--iso", "0", "--stream", "-o", streamed})["tiles"],
+            run_json({"contour", ball, "--iso", "0", "-o", in_memory})["tiles"]);
+  expect_refused_of(ball, {"--stream", "--close", "-o", streamed}, "close of a streamed contour on the lattice fcc");
+  expect_refused_of(ball, {"--stream", "--lattice", "fcc", "--periodic", "z", "-o", streamed}, "with --stream");
+  const std::string moving = path("moving.nrrd");
+  (void)run_json({"sample", "ball", "--lattice", "d4", "--size", "9", "-o", moving});
+  expect_refused_of(moving, {"--stream", "-o", streamed},
+                    "--stream with the lattice d4; expected triangular, fcc or bcc");
 }
 
 TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {

@@ -192,7 +192,7 @@ class ContourCommand final : public Command {
   void refuse_tiling_of_file(const ImageInfo& info) const {
     for_plain_cells([&](const char* with) {
       options_.refuse_cells(info.samples_are_cells, file(), with);
-      options_.refuse_lattice(info, file(), with);
+      if (!is_streamed() || !options_.tiling().periodic.empty()) options_.refuse_lattice(info, file(), with);
     });
     if (attributes_.wanted()) options_.refuse_cells(info.samples_are_cells, file(), "--attribute");
     if (!positions_.are_linear()) options_.refuse_lattice(info, file(), "--positions");
@@ -204,7 +204,9 @@ class ContourCommand final : public Command {
     if (unroll_ && (is_streamed() || facets_))
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--unroll with {}; expected one of the two", facets_ ? "--facets" : "--stream"));
+    const Tiling tiling = options_.tiling();
     for_plain_cells([&](const char* with) {
+      if (is_streamed() && tiling.lattice && tiling.periodic.empty()) return;
       is_streamed() || facets_ ? options_.refuse_other_tiling(with) : options_.refuse_tiling(with);
     });
     if (attributes_.wanted() && options_.tiling().of_cells) options_.refuse_tiling("--attribute");
@@ -648,14 +650,9 @@ class ContourCommand final : public Command {
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
-    // validate options and files
     require_open_files(results.size());
     for (const ContourResult& result : results) require_output_grows(result.output);
-    if (options_.wants_shape_normals() || attributes_.wanted())
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("{} with a streamed contour, which is never in memory as a whole; expected {}",
-                              attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
-                              attributes_.wanted() ? "an image that fits into memory" : "normals from the gradient"));
+    require_streamed_additions(options_.wants_shape_normals(), attributes_.wanted());
     // open, extract and write in one pass
     ReadImageResult image;  // of a scale space, whose layers are computed from it
     Stopwatch watch;
@@ -666,9 +663,12 @@ class ContourCommand final : public Command {
       result.input = inputs();
       result.variable = input.info.variable;
     }
+    Tiling tiling = options_.tiling();
+    options_.take_lattice(input.info, file(), tiling);
     options.work.progress = bar.stage("stream");
-    const StreamOptions streaming{options, options_.single_precision(), options_.allows_empty(),
-                                  compress_.compression(), options_.tiling().periodic};
+    const StreamOptions streaming{
+        options,       options_.single_precision(), options_.allows_empty(), compress_.compression(), tiling.periodic,
+        tiling.lattice};
     for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));
     results.front().seconds.read += read_seconds;
     for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);

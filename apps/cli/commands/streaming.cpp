@@ -89,17 +89,35 @@ std::pair<double, double> isovalue_range(const std::vector<ContourResult>& resul
 }
 
 template <class Real, class T, int N>
+std::vector<ExtractedSize> extract_all(LayerReader<T, N>& layers, std::span<const StreamedContour<N, Real>> contours,
+                                       const StreamOptions& options, const AxisPeriods<N>& periods) {
+  if (!options.lattice) return extract_streamed_several<Real>(layers, contours, options.extract, periods);
+  if constexpr (N < 4)
+    return extract_lattice_streamed_several<Real>(layers, *options.lattice, contours, options.extract);
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("--stream with the lattice {}; expected triangular, fcc or bcc", name_of(*options.lattice)));
+}
+
+template <class Real, class T, int N>
 std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
                                       std::vector<ContourResult>& results) {
   const AxisPeriods<N> periods = periods_of(source.grid(), options.periodic);
   StreamedFiles<N, Real> files(source.grid(), periods, options, results);
   const auto [least, most] = isovalue_range(results);
   RangedLayers<T, N> layers(source, least, most);
-  const auto extracted = extract_streamed_several<Real>(layers, files.contours(), options.extract, periods);
+  const auto extracted = extract_all<Real>(layers, files.contours(), options, periods);
   return files.finish(extracted, layers.range(), unit);
 }
 
 }  // namespace
+
+void require_streamed_additions(bool shape_normals, bool attributes) {
+  if (!shape_normals && !attributes) return;
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("{} with a streamed contour, which is never in memory as a whole; expected {}",
+                          attributes ? "--attribute" : "--normals geometric or flat",
+                          attributes ? "an image that fits into memory" : "normals from the gradient"));
+}
 
 void require_output_grows(const std::string& output) {
   const MeshFileFormat* const format = find_mesh_file_format(output);
