@@ -22,6 +22,7 @@
 
 namespace tegl::detail {
 
+class DecidedCells;
 class ResolvedCells;
 
 /// Everything that a cell's contour depends on.
@@ -126,6 +127,7 @@ class BuiltCells {
 class CompactCells final : public BuiltCells {
  public:
   CompactCells(tables::CellShape shape, bool high_connected, bool is_swept);
+  ~CompactCells() override;
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
                             std::span<const double> values) const noexcept override;
@@ -142,6 +144,7 @@ class CompactCells final : public BuiltCells {
   const tables::CellTable& barycentric_;
   std::map<tables::CellShape, FaceFillings> fillings_;
   std::vector<const FaceFillings*> fillings_of_;  ///< by facet
+  std::unique_ptr<const DecidedCells> copied_;    ///< of prisms over octahedra: fills what the table does not prove
 };
 
 /// The contours of the cells of one 4D shape whose ambiguous faces are decided from the data. The contour in a facet is
@@ -151,7 +154,13 @@ class DecidedCells final : public BuiltCells {
  public:
   /// `rule`: not a caller's.
   DecidedCells(tables::CellShape shape, Triangulation triangulation, FaceRule rule, double isovalue, bool is_swept);
+  /// Of compact contours by a fixed rule: to fill single contours (fill_as).
+  DecidedCells(tables::CellShape shape, bool high_connected, bool is_swept);
   ~DecidedCells() override;
+
+  /// The contour of a key of CompactCells, filled as if its faces were decided. `key.tile`: high to fill components
+  /// that are no spheres with copies of the low side, otherwise separate.
+  [[nodiscard]] BuiltContour fill_as(CellKey key) const;
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
                             std::span<const double> values) const noexcept override;
@@ -170,6 +179,7 @@ class DecidedCells final : public BuiltCells {
   Triangulation triangulation_;
   FaceRule rule_;
   double isovalue_;
+  bool high_connected_ = false;                                        ///< of the fixed rule
   std::map<tables::CellShape, std::array<FaceFillings, 2>> fillings_;  ///< of facets other than cubes: low, high
   std::unique_ptr<const ResolvedCells> wedges_;
   std::vector<std::array<std::uint8_t, 4>> quadrilaterals_;   ///< their corners; bit i of the place is a coordinate

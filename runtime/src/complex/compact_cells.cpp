@@ -17,6 +17,7 @@
 #include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
 #include "image/tile_heights.hpp"
+#include "regions/separating_planes.hpp"
 #include "regions/shape_volumes.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/generated/tables.hpp"
@@ -76,7 +77,11 @@ CompactCells::CompactCells(CellShape shape, bool high_connected, bool is_swept)
     : BuiltCells(shape, is_swept), high_connected_(high_connected), barycentric_(table_of(shape)) {
   for (const Facet& facet : facets_)
     fillings_of_.push_back(&fillings_.try_emplace(facet.of->shape, facet.of->shape, high_connected).first->second);
+  if (shape == CellShape::octahedron_prism)
+    copied_ = std::make_unique<const DecidedCells>(shape, high_connected, is_swept);
 }
+
+CompactCells::~CompactCells() = default;
 
 CellKey CompactCells::key(unsigned signature, const Index* corners, std::span<const double> /*values*/) const noexcept {
   CellKey key;
@@ -96,7 +101,7 @@ std::span<const Triangle> CompactCells::in_facet(std::size_t f, const CellKey& k
 class CompactCells::Filler {
  public:
   Filler(const CompactCells& cells, const CellKey& key)
-      : cells_(cells), signature_(key.signature), shift_(cells.table_.corner_count) {
+      : cells_(cells), key_(key), signature_(key.signature), shift_(cells.table_.corner_count) {
     for (std::size_t f = 0; f < cells.facets_.size(); ++f) {
       for (const std::uint8_t e : std::span(cells.facets_[f].edges).first(table_of_facet(f).edge_count))
         facets_of_edge_[e] |= 1u << f;
@@ -108,9 +113,16 @@ class CompactCells::Filler {
   BuiltContour operator()() {
     if (cells_.shape_ == CellShape::hexahedron_prism && is_of_image()) return std::move(built_);
     auto components = components_of(sigma_, cells_.table_.edge_count);
-    if (std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
-      copy_barycentric(components);
-    for (const auto& [root, component] : components) add_sphere(component);
+    const bool has_spheres =
+        std::all_of(components.begin(), components.end(), [](const auto& c) { return is_sphere(c.second); });
+    if (!has_spheres && has_unproved_copy()) return copied(cells_.high_connected_);
+    if (!has_spheres) copy_barycentric(components);
+    std::vector<std::size_t> ends;  // of the components' tetrahedra
+    for (const auto& [root, component] : components) {
+      add_sphere(component);
+      ends.push_back(built_.tetrahedra.size());
+    }
+    if (has_spheres && ends.size() == 2 && may_meet(ends[0])) return copied(false);
     return std::move(built_);
   }
 
@@ -160,6 +172,35 @@ class CompactCells::Filler {
     }
     for (const Piece& piece : component)
       if (most == 0 || (edges_of(piece.triangle) >> apex & 1u) == 0) add_cone(piece, apex);
+  }
+
+  /// Whether `gen` does not prove the table's copy of a side: in prisms over octahedra those of tori with more than ten
+  /// polygons, two classes of signatures.
+  [[nodiscard]] bool has_unproved_copy() const noexcept {
+    constexpr unsigned kMostProved = 10;
+    const CellContour contour(cells_.barycentric_, signature_, cells_.high_connected_);
+    return cells_.copied_ != nullptr && contour.list().shared_vertices > kMostProved;
+  }
+  /// The contour with copies of the regions in facets.
+  [[nodiscard]] BuiltContour copied(bool of_low_side) const {
+    CellKey key = key_;
+    if (of_low_side) key.tile = tile::Choice::high;
+    return cells_.copied_->fill_as(key);
+  }
+
+  /// Whether the cones of two spheres, the first of which has the first tetrahedra, intersect for some positions. Of
+  /// three spheres, hyperplanes divide any two.
+  [[nodiscard]] bool may_meet(std::size_t first) const {
+    if (cells_.copied_ == nullptr || !built_.cones.empty()) return false;
+    std::vector<SeparatingPlanes::Tetrahedron> cones;
+    for (const Tetrahedron& t : built_.tetrahedra) {
+      auto& ends = cones.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k)
+        ends[k] =
+            static_cast<std::uint16_t>(1u << cells_.table_.edges[2 * t[k]] | 1u << cells_.table_.edges[2 * t[k] + 1]);
+    }
+    const std::span all(cones);
+    return SeparatingPlanes::of(cells_.shape_).may_meet(all.first(first), all.subspan(first));
   }
 
   /// Fills the components that are not spheres, and those that the barycentric table fills together with them; removes
@@ -289,6 +330,7 @@ class CompactCells::Filler {
   }
 
   const CompactCells& cells_;
+  const CellKey& key_;
   std::uint16_t signature_;
   unsigned shift_;
   std::array<std::uint32_t, 32> facets_of_edge_{};  ///< as bits

@@ -9,7 +9,6 @@
 // image's contour.
 #include <algorithm>
 #include <bit>
-#include <deque>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -21,6 +20,8 @@
 #include "complex/built_cells.hpp"
 #include "complex/cell_cases.hpp"
 #include "regions/cube_frame.hpp"
+#include "regions/oriented_tetrahedra.hpp"
+#include "regions/separating_planes.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
@@ -37,24 +38,6 @@ using Local = std::uint16_t;
 constexpr Local kShared = 64, kCones = 256, kSides = 512, kCorners = 768, kCentres = 1024, kLocals = 2048;
 using Triangle = std::array<Local, 3>;
 using Tetrahedron = std::array<Local, 4>;
-
-template <std::size_t Count>
-std::array<Local, Count> sorted(std::array<Local, Count> vertices) noexcept {
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
-
-/// A face of a tetrahedron, in the order that the tetrahedron induces.
-Triangle face_of(const Tetrahedron& t, unsigned opposite) noexcept {
-  static constexpr std::uint8_t kFaces[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
-  const auto& of = kFaces[opposite];
-  return {t[of[0]], t[of[1]], t[of[2]]};
-}
-
-/// Whether two orders of the same vertices are rotations of each other.
-bool same_turn(const Triangle& a, const Triangle& b) noexcept {
-  return b == a || b == Triangle{a[1], a[2], a[0]} || b == Triangle{a[2], a[0], a[1]};
-}
 
 /// A contour in a cube, as the cube sees it.
 struct CubeContour {
@@ -98,6 +81,11 @@ DecidedCells::DecidedCells(CellShape shape, Triangulation triangulation, FaceRul
       fillings_.try_emplace(facet.of->shape,
                             std::array{FaceFillings(facet.of->shape, false), FaceFillings(facet.of->shape, true)});
   }
+}
+
+DecidedCells::DecidedCells(CellShape shape, bool high_connected, bool is_swept)
+    : DecidedCells(shape, Triangulation::compact, {FaceRule::By::means, true}, 0.0, is_swept) {
+  high_connected_ = high_connected;
 }
 
 DecidedCells::~DecidedCells() = default;
@@ -206,6 +194,8 @@ class DecidedCells::Filler {
     const bool joins = key_->tile != tile::Choice::separate && components.size() > 1;
     if (joins || std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
       copy_regions(key_->tile != tile::Choice::high, components);
+    else
+      copy_if_cones_meet(components);
     for (const auto& [root, component] : components) add_sphere(component);
     finish();
   }
@@ -221,7 +211,9 @@ class DecidedCells::Filler {
     if (bits == 0 || bits + 1 == 1u << facet.of->corner_count) return;
     if (facet.of->shape == CellShape::hexahedron) return add_cube(f, bits);
     const auto variant =
-        ResolvedCells::variant(bits, cells_.ambiguous_in(f, key_->signature), cells_.high_in(f, *key_));
+        facet.of->shape == CellShape::octahedron  // by `low` in contours that are decided
+            ? std::uint16_t{cells_.high_connected_}
+            : ResolvedCells::variant(bits, cells_.ambiguous_in(f, key_->signature), cells_.high_in(f, *key_));
     if (variant < 2 && cells_.triangulation_ == Triangulation::compact) {
       for (const auto& t : cells_.fillings_.at(facet.of->shape)[variant].triangles(bits, key_->fillings[f]))
         sigma_.push_back({{facet.edges[t[0]], facet.edges[t[1]], facet.edges[t[2]]}, f});
@@ -306,11 +298,11 @@ class DecidedCells::Filler {
     return detail::cone_of(piece.triangle, cells_.facets_[piece.facet].of->is_inverted, apex);
   }
 
-  void add_sphere(const Component& component) {
-    const std::vector<Local> vertices = vertices_of(component);
+  /// The vertex of a sphere that its cone starts at; kLocals: its barycentre.
+  [[nodiscard]] Local apex_of(const Component& component) const {
     Local apex = kLocals;
     std::ptrdiff_t most = 0;  // triangles at the apex, which need no tetrahedra
-    for (const Local v : vertices) {
+    for (const Local v : vertices_of(component)) {
       if (v >= edges_ || (cells_.triangulation_ == Triangulation::barycentric && component.size() > 4)) break;
       const auto around =
           std::count_if(component.begin(), component.end(), [&](const Piece& piece) { return has(piece.triangle, v); });
@@ -320,26 +312,51 @@ class DecidedCells::Filler {
           });
       if (around > most && is_apex) apex = v, most = around;
     }
-    if (most == 0) {
+    return apex;
+  }
+
+  void add_sphere(const Component& component) {
+    Local apex = apex_of(component);
+    const bool is_inside = apex == kLocals;
+    if (is_inside) {
       apex = static_cast<Local>(kCones + built_.cones.size());
       std::uint64_t mask = 0;
-      for (const Local v : vertices) mask |= v < edges_ ? bit_of(v) : 0;
+      for (const Local v : vertices_of(component)) mask |= v < edges_ ? bit_of(v) : 0;
       built_.cones.push_back(mask);
     }
     for (const Piece& piece : component)
-      if (most == 0 || !has(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
+      if (is_inside || !has(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
+  }
+
+  /// The cone of a sphere by the ends of its vertices' edges; empty if some vertices are not on edges.
+  [[nodiscard]] std::vector<SeparatingPlanes::Tetrahedron> cone_on_edges(const Component& component) const {
+    std::vector<SeparatingPlanes::Tetrahedron> cone;
+    const Local apex = apex_of(component);
+    if (apex == kLocals || vertices_of(component).back() >= edges_) return cone;
+    const auto ends = [&](Local v) { return static_cast<std::uint16_t>(span_of(v)); };
+    for (const auto& [t, facet] : component)
+      if (!has(t, apex)) cone.push_back({ends(apex), ends(t[0]), ends(t[1]), ends(t[2])});
+    return cone;
+  }
+
+  /// If the cones of two spheres intersect for some positions, fills each with a copy of a region that it alone bounds.
+  void copy_if_cones_meet(std::map<Index, Component>& components) {
+    if (components.size() != 2) return;  // of three, hyperplanes divide any two
+    const Component &a = components.begin()->second, &b = components.rbegin()->second;
+    if (!SeparatingPlanes::of(cells_.shape_).may_meet(cone_on_edges(a), cone_on_edges(b))) return;
+    // of the three regions, the middle one is on the other side than the two others
+    for (const bool high : {true, false}) {
+      DisjointSets sets = find_regions(high);
+      if (sets.find(a.front().triangle[0]) == sets.find(b.front().triangle[0])) continue;
+      copy(
+          sets, [](Index) { return true; }, components);
+      return;
+    }
   }
 
   /// Fills components with copies of the regions beside them on one side, and removes them.
   void copy_regions(bool high, std::map<Index, Component>& components) {
-    regions_.clear();
-    for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
-      for (std::size_t f = 0; f < cells_.facets_.size(); ++f)
-        if ((contours_[f] && has_tunnel(cubes_, contours_[f]->list)) == tunnels)
-          tunnels ? add_cube_regions(f, high) : add_regions(f, high);
-    DisjointSets sets(kLocals);
-    for (const Tetrahedron& t : regions_)
-      for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
+    DisjointSets sets = find_regions(high);
     std::map<Index, std::vector<const Component*>> beside;
     for (const auto& [root, component] : components)
       beside[sets.find(component.front().triangle[0])].push_back(&component);
@@ -348,14 +365,35 @@ class DecidedCells::Filler {
       is_copied[region] =
           (of.size() > 1 && key_->tile != tile::Choice::separate) ||
           std::any_of(of.begin(), of.end(), [](const Component* component) { return !is_sphere(*component); });
-    std::map<Triangle, const Piece*> starts;
+    copy(
+        sets, [&](Index region) { return is_copied[region]; }, components);
+  }
+
+  /// Divides the regions of one side into tetrahedra, and returns those that are connected, by vertices.
+  DisjointSets find_regions(bool high) {
+    regions_.clear();
+    fans_.clear();
+    centres_.clear();
+    for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
+      for (std::size_t f = 0; f < cells_.facets_.size(); ++f)
+        if ((contours_[f] && has_tunnel(cubes_, contours_[f]->list)) == tunnels)
+          tunnels ? add_cube_regions(f, high) : add_regions(f, high);
+    DisjointSets sets(kLocals);
+    for (const Tetrahedron& t : regions_)
+      for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
+    return sets;
+  }
+
+  /// Adds copies of regions, and removes the components beside them. `sets`: of find_regions.
+  template <class IsCopied>
+  void copy(DisjointSets& sets, const IsCopied& is_copied, std::map<Index, Component>& components) {
+    std::vector<Triangle> starts;
     for (auto at = components.begin(); at != components.end();) {
-      if (!is_copied[sets.find(at->second.front().triangle[0])]) {
+      if (!is_copied(sets.find(at->second.front().triangle[0]))) {
         ++at;
         continue;
       }
-      done_.push_back(std::move(at->second));
-      for (const Piece& piece : done_.back()) starts[sorted(piece.triangle)] = &piece;
+      for (const Piece& piece : at->second) starts.push_back(face_of(cone_of(piece, kLocals), 3));
       at = components.erase(at);
     }
     std::vector<bool> is_sigma(kLocals);
@@ -363,14 +401,13 @@ class DecidedCells::Filler {
       for (const Local v : piece.triangle) is_sigma[v] = true;
     std::vector<Tetrahedron> copies;
     for (Tetrahedron t : regions_) {
-      if (!is_copied[sets.find(t[0])]) continue;
+      if (!is_copied(sets.find(t[0]))) continue;
       for (Local& v : t)
         if (!is_sigma[v]) v = copy_of(v);
       copies.push_back(t);
     }
-    orient(copies, starts);
+    orient(copies, std::move(starts));
     tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
-    done_.clear();
   }
 
   Local copy_of(Local v) {
@@ -379,34 +416,6 @@ class DecidedCells::Filler {
       built_.sides.push_back(v < kCentres ? bit_of(v) : centres_[v - kCentres]);
     }
     return side_of_[v];
-  }
-
-  /// Orients connected tetrahedra like their triangles in Sigma.
-  void orient(std::vector<Tetrahedron>& copies, const std::map<Triangle, const Piece*>& starts) const {
-    std::map<Triangle, std::vector<std::size_t>> at_face;
-    for (std::size_t i = 0; i < copies.size(); ++i)
-      for (unsigned k = 0; k < 4; ++k) at_face[sorted(face_of(copies[i], k))].push_back(i);
-    std::vector<bool> is_known(copies.size());
-    std::deque<std::size_t> open;
-    const auto take = [&](std::size_t i, const Triangle& face, bool same) {
-      if (is_known[i]) return;
-      is_known[i] = true;
-      Tetrahedron& t = copies[i];
-      for (unsigned k = 0; k < 4; ++k)
-        if (const Triangle own = face_of(t, k); sorted(own) == sorted(face)) {
-          if (same_turn(own, face) != same) std::swap(t[2], t[3]);
-          break;
-        }
-      open.push_back(i);
-    };
-    for (const auto& [face, piece] : starts) {
-      take(at_face.at(face).front(), face_of(cone_of(*piece, kLocals), 3), true);
-      for (; !open.empty(); open.pop_front()) {
-        const Tetrahedron t = copies[open.front()];
-        for (unsigned k = 0; k < 4; ++k)
-          for (const std::size_t other : at_face.at(sorted(face_of(t, k)))) take(other, face_of(t, k), false);
-      }
-    }
   }
 
   Local add_centre(std::uint64_t mask) {
@@ -669,7 +678,6 @@ class DecidedCells::Filler {
   const CellKey* key_ = nullptr;
   BuiltContour built_;
   Component sigma_;
-  std::vector<Component> done_;
   std::vector<Tetrahedron> tetrahedra_, regions_;
   std::map<unsigned, std::vector<Triangle>> fans_;  ///< by corners of the quadrilateral: its triangles, sorted
   std::vector<std::uint64_t> centres_;              ///< masks
@@ -677,6 +685,12 @@ class DecidedCells::Filler {
   std::vector<std::optional<CubeContour>> contours_;
   std::array<Local, 16> first_own_{};
 };
+
+BuiltContour DecidedCells::fill_as(CellKey key) const {
+  for (std::size_t q = 0; q < quadrilaterals_.size(); ++q)
+    key.squares |= (high_connected_ && is_ambiguous_square(key.signature, quadrilaterals_[q]) ? 1u : 0u) << q;
+  return Filler(*this)(key);
+}
 
 void DecidedCells::fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const {
   Filler filler(*this);

@@ -13,6 +13,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -483,6 +484,78 @@ TEST(Compact4d, ContoursOfCellsWithFlatFacesDoNotIntersectThemselves) {
   }
 }
 
+/// Cells that do not touch, with random signatures. Half of them have uniform distances from the isovalue, half
+/// log-uniform ones.
+Complex<4> random_cells(CellType type, std::size_t count, std::uint64_t seed) {
+  const detail::CellKind& kind = *detail::find_kind(type);
+  std::mt19937_64 random(seed);
+  std::vector<std::array<double, 4>> points;
+  std::vector<double> values;
+  std::vector<Index> cells;
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::vector<Index> number = add_corners<4>(kind, random, points, cells);
+    const bool is_uniform = random() % 2 == 0;
+    for (const Index p : number) {
+      points[p][0] += 4.0 * static_cast<double>(c % 64);
+      points[p][1] += 4.0 * static_cast<double>(c / 64);
+      const double u = static_cast<double>(random() >> 11) * 0x1p-53;
+      const double size = is_uniform ? 0.001 + 0.999 * u : std::pow(10.0, -3.0 * u);
+      values.push_back(random() % 2 == 0 ? size : -size);
+    }
+  }
+  Complex<4> complex(points, type, cells);
+  complex.set_values(values);
+  return complex;
+}
+
+/// Prisms over octahedra with these signatures, one for each of 50 random orders of the corners.
+Complex<4> octahedra_over_time(std::span<const unsigned> signatures) {
+  const detail::CellKind& kind = *detail::find_kind(CellType::octahedron_prism);
+  std::mt19937_64 random(8);
+  std::vector<std::array<double, 4>> points;
+  std::vector<double> values;
+  std::vector<Index> cells;
+  for (std::size_t c = 0; c < 50 * signatures.size(); ++c) {
+    const std::vector<Index> number = add_corners<4>(kind, random, points, cells);
+    values.resize(points.size());
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      points[number[v]][0] += 4.0 * static_cast<double>(c % 50);
+      points[number[v]][1] += 4.0 * static_cast<double>(c / 50);
+      const double u = static_cast<double>(random() >> 11) * 0x1p-53;
+      const double size = c % 2 == 0 ? 0.001 + 0.999 * u : std::pow(10.0, -3.0 * u);
+      values[number[v]] = (signatures[c / 50] >> v & 1u) != 0 ? size : -size;
+    }
+  }
+  Complex<4> complex(points, kind.type, cells);
+  complex.set_values(values);
+  return complex;
+}
+
+/// In these cells, vertex cones of two spheres intersect for some positions, or the side of a torus has more than ten
+/// polygons.
+TEST(Compact4d, OctahedraOverTimeDoNotIntersectThemselves) {
+  const std::vector<unsigned> of_low = {370,  504,  628,  756,  882,  1260, 1323, 1827, 2567, 3213, 3591,
+                                        3717, 499,  755,  892,  956,  979,  988,  995,  1004, 1231, 1807,
+                                        2255, 2831, 3196, 3260, 3271, 3275, 3316, 3320, 3379, 3635, 3853,
+                                        3854, 3889, 3890, 1011, 1020, 3279, 3324, 3855, 3891};
+  std::vector<unsigned> of_high;
+  for (const unsigned signature : of_low) of_high.push_back(~signature & 0xfffu);
+  for (const Ambiguity rule : {Ambiguity::low, Ambiguity::high, Ambiguity::mean}) {
+    SCOPED_TRACE(static_cast<int>(rule));
+    const Complex<4> complex = octahedra_over_time(rule == Ambiguity::high ? of_high : of_low);
+    ExtractOptions options = compact_by(rule);
+    const auto contour = extract<double>(complex, 0.0, options);
+    const auto found = find_intersections(contour);
+    EXPECT_TRUE(found.is_embedded()) << found.pair_count << " pairs";
+    const MeshReport report = check(contour);
+    EXPECT_EQ(0u, report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts);
+    options.triangulation = Triangulation::barycentric;
+    const MeshReport other = check(extract<double>(complex, 0.0, options));
+    EXPECT_EQ(other.euler, report.euler);
+    EXPECT_EQ(other.components, report.components);
+  }
+}
+
 constexpr Ambiguity kFromData[] = {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider};
 constexpr Triangulation kOfEach[] = {Triangulation::barycentric, Triangulation::compact};
 
@@ -540,30 +613,6 @@ TEST(Decided4d, CellsInAnyOrderOfTheirCornersHaveAClosedContour) {
       EXPECT_GT(contour.simplices.size(), 1000u);
       expect_closed_manifold(contour);
     }
-}
-
-/// Cells that do not touch, with random signatures. Half of them have uniform distances from the isovalue, half
-/// log-uniform ones.
-Complex<4> random_cells(CellType type, std::size_t count, std::uint64_t seed) {
-  const detail::CellKind& kind = *detail::find_kind(type);
-  std::mt19937_64 random(seed);
-  std::vector<std::array<double, 4>> points;
-  std::vector<double> values;
-  std::vector<Index> cells;
-  for (std::size_t c = 0; c < count; ++c) {
-    const std::vector<Index> number = add_corners<4>(kind, random, points, cells);
-    const bool is_uniform = random() % 2 == 0;
-    for (const Index p : number) {
-      points[p][0] += 4.0 * static_cast<double>(c % 64);
-      points[p][1] += 4.0 * static_cast<double>(c / 64);
-      const double u = static_cast<double>(random() >> 11) * 0x1p-53;
-      const double size = is_uniform ? 0.001 + 0.999 * u : std::pow(10.0, -3.0 * u);
-      values.push_back(random() % 2 == 0 ? size : -size);
-    }
-  }
-  Complex<4> complex(points, type, cells);
-  complex.set_values(values);
-  return complex;
 }
 
 TEST(Decided4d, RandomCellsDoNotIntersectThemselves) {
