@@ -142,6 +142,13 @@ py::array owned_array(std::vector<T>&& values, const std::vector<py::ssize_t>& s
   return py::array(py::dtype::of<T>(), shape, data, owner);
 }
 
+/// The same for a list.
+template <class T>
+py::array owned_list(std::vector<T>&& values) {
+  const auto size = static_cast<py::ssize_t>(values.size());
+  return owned_array(std::move(values), {size});
+}
+
 py::dict read_mesh_of_cells(const std::vector<std::string>& paths, const std::string& variable, bool cells_to_points,
                             const std::vector<double>& times, bool allow_outside_paths, const py::object& progress) {
   Call call(progress);
@@ -166,6 +173,10 @@ py::dict read_mesh_of_cells(const std::vector<std::string>& paths, const std::st
                                       : owned_array(std::move(mesh.points), {count, dim});
   result["types"] = owned_array(std::move(types), {cells});
   result["corners"] = owned_array(std::move(mesh.corners), {corners});
+  result["ends"] = owned_list(std::move(mesh.ends));
+  result["face_corners"] = owned_list(std::move(mesh.face_corners));
+  result["face_ends"] = owned_list(std::move(mesh.face_ends));
+  result["face_lists_ends"] = owned_list(std::move(mesh.face_lists_ends));
   result["values"] =
       steps > 0 ? owned_array(std::move(mesh.values), {steps, count}) : owned_array(std::move(mesh.values), {count});
   result["times"] = owned_array(std::move(mesh.times), {steps});

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -34,21 +35,30 @@ std::vector<std::array<double, N>> points_of(const Doubles& array) {
   return points;
 }
 
+using Ends = py::array_t<std::uint64_t, py::array::c_style>;
+/// Types, corners and the four other arrays of CellLists, which are empty without polygons and polyhedra.
+using CellArrays = std::tuple<Types, Corners, Ends, Corners, Ends, Ends>;
+
 /// What the caller gave, without Python.
 struct MeshArguments {
-  std::vector<CellType> types;
-  std::span<const Index> corners;
+  CellLists cells;
   std::span<const double> values, times;
   std::vector<std::string> axis_names;
 };
 
 using AnyComplex = std::variant<Complex<2>, Complex<3>, Complex<4>>;
 
+template <int N>
+Complex<N> complex_of_cells(std::vector<std::array<double, N>> points, const CellLists& cells) {
+  if (cells.ends.empty()) return Complex<N>(std::move(points), cells.types, cells.corners);
+  return Complex<N>(std::move(points), cells);
+}
+
 /// `points`: #P x N, or, if they move, #T x #P x N.
 template <int N>
 AnyComplex complex_of(std::vector<std::array<double, N>> points, const MeshArguments& mesh) {
   if (mesh.times.empty()) {
-    Complex<N> complex(std::move(points), mesh.types, mesh.corners);
+    Complex<N> complex = complex_of_cells<N>(std::move(points), mesh.cells);
     complex.set_values(std::vector<double>(mesh.values.begin(), mesh.values.end()));
     return complex;
   }
@@ -57,7 +67,7 @@ AnyComplex complex_of(std::vector<std::array<double, N>> points, const MeshArgum
     const bool moves = points.size() != count;
     std::vector<std::array<double, N>> first(
         points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
-    const Complex<N> complex(std::move(first), mesh.types, mesh.corners);
+    const Complex<N> complex = complex_of_cells<N>(std::move(first), mesh.cells);
     const std::span<const std::array<double, N>> moving(points);
     return in_time<N>(complex, mesh.times, mesh.values, moves ? moving : moving.first(0));
   } else {
@@ -73,10 +83,21 @@ AnyComplex complex_of(const Doubles& points, const MeshArguments& mesh) {
   throw Error(ErrorCode::UnsupportedData, fmt::format("points have {} coordinates; expected 2 to 4", dim));
 }
 
-MeshArguments arguments_of(const Types& types, const Corners& corners, const Doubles& values, const Doubles& times,
+template <class T, class Array>
+std::vector<T> vector_of(const Array& array) {
+  return std::vector<T>(array.data(), array.data() + array.size());
+}
+
+MeshArguments arguments_of(const CellArrays& arrays, const Doubles& values, const Doubles& times,
                            const std::vector<std::string>& axis_names) {
-  MeshArguments mesh{{}, span_of<Index>(corners), span_of<double>(values), span_of<double>(times), axis_names};
-  for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.types.push_back(static_cast<CellType>(type));
+  const auto& [types, corners, ends, face_corners, face_ends, face_lists_ends] = arrays;
+  MeshArguments mesh{{}, span_of<double>(values), span_of<double>(times), axis_names};
+  for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.cells.types.push_back(static_cast<CellType>(type));
+  mesh.cells.corners = vector_of<Index>(corners);
+  mesh.cells.ends = vector_of<std::uint64_t>(ends);
+  mesh.cells.face_corners = vector_of<Index>(face_corners);
+  mesh.cells.face_ends = vector_of<std::uint64_t>(face_ends);
+  mesh.cells.face_lists_ends = vector_of<std::uint64_t>(face_lists_ends);
   return mesh;
 }
 
@@ -125,23 +146,22 @@ ContourArguments wanted_of(double level, bool is_double, const py::dict& argumen
   return wanted;
 }
 
-std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const Types& types, const Corners& corners,
-                                         const Doubles& values, const Doubles& times,
-                                         const std::vector<std::string>& axis_names, double level, bool is_double,
-                                         const py::dict& arguments, const PointArrays& attributes,
+std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const CellArrays& cells, const Doubles& values,
+                                         const Doubles& times, const std::vector<std::string>& axis_names, double level,
+                                         bool is_double, const py::dict& arguments, const PointArrays& attributes,
                                          const py::object& progress) {
   Call call(progress);
   const ContourArguments wanted = wanted_of(level, is_double, arguments, attributes, call);
-  const MeshArguments mesh = arguments_of(types, corners, values, times, axis_names);
+  const MeshArguments mesh = arguments_of(cells, values, times, axis_names);
   return call.run([&] { return contour_of(complex_of(points, mesh), nullptr, axis_names, wanted); });
 }
 
-std::pair<std::uint64_t, std::uint64_t> count_mesh(const Doubles& points, const Types& types, const Corners& corners,
+std::pair<std::uint64_t, std::uint64_t> count_mesh(const Doubles& points, const CellArrays& cells,
                                                    const Doubles& values, const Doubles& times, double level,
                                                    const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
-  const MeshArguments mesh = arguments_of(types, corners, values, times, {});
+  const MeshArguments mesh = arguments_of(cells, values, times, {});
   const ContourSize size = call.run([&] {
     return std::visit([&](const auto& complex) { return count(complex, level, options); }, complex_of(points, mesh));
   });
@@ -155,12 +175,11 @@ struct MeshIndex {
   std::vector<std::string> axis_names;
 };
 
-std::unique_ptr<MeshIndex> make_index(const Doubles& points, const Types& types, const Corners& corners,
-                                      const Doubles& values, const Doubles& times,
-                                      const std::vector<std::string>& axis_names, unsigned threads,
-                                      const py::object& progress) {
+std::unique_ptr<MeshIndex> make_index(const Doubles& points, const CellArrays& cells, const Doubles& values,
+                                      const Doubles& times, const std::vector<std::string>& axis_names,
+                                      unsigned threads, const py::object& progress) {
   Call call(progress);
-  const MeshArguments mesh = arguments_of(types, corners, values, times, axis_names);
+  const MeshArguments mesh = arguments_of(cells, values, times, axis_names);
   const WorkOptions work{threads, call.progress()};
   return call.run([&] {
     AnyComplex complex = complex_of(points, mesh);
@@ -202,14 +221,14 @@ py::array delaunay_cells(const Doubles& points) {
 
 void bind_mesh(py::module_& m) {
   m.def("delaunay", &delaunay_cells, py::arg("points"), doc::delaunay);
-  m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
-        py::arg("times"), py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"),
-        py::arg("attributes"), py::arg("progress"), doc::extract);
-  m.def("count_mesh", &count_mesh, py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
-        py::arg("times"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
+  m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("cells"), py::arg("values"), py::arg("times"),
+        py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("attributes"),
+        py::arg("progress"), doc::extract);
+  m.def("count_mesh", &count_mesh, py::arg("points"), py::arg("cells"), py::arg("values"), py::arg("times"),
+        py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   py::class_<MeshIndex>(m, "MeshIndex", doc::CellIndex)
-      .def(py::init(&make_index), py::arg("points"), py::arg("types"), py::arg("corners"), py::arg("values"),
-           py::arg("times"), py::arg("axis_names"), py::arg("threads"), py::arg("progress"))
+      .def(py::init(&make_index), py::arg("points"), py::arg("cells"), py::arg("values"), py::arg("times"),
+           py::arg("axis_names"), py::arg("threads"), py::arg("progress"))
       .def("contour", &contour_of_mesh_index, py::arg("level"), py::arg("double"), py::arg("options"),
            py::arg("attributes"), py::arg("progress"), doc::extract)
       .def_property_readonly(

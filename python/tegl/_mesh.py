@@ -21,9 +21,15 @@ _TYPES = {
     "tetrahedron": (10, 4), "voxel": (11, 8), "hexahedron": (12, 8), "wedge": (13, 6), "pyramid": (14, 5),
     "simplex4": (100, 5), "octahedron": (101, 6), "cell16": (102, 8),
 }
+#: types without a fixed number of corners; in meshio's names a number of corners may follow
+_POLYTOPES = {"polygon": 7, "polyhedron": 42}
 #: (dimension, corners) -> the type of cells that are given without one
 _BY_CORNERS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hexahedron", (3, 6): "wedge",
                (3, 5): "pyramid", (4, 5): "simplex4"}
+
+
+#: types, corners, and the other lists of the library's CellLists, which are empty without polygons and polyhedra
+_CellArrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def contour_mesh(points, cells=None, values=None, level: float | None = None, *, times=None,
@@ -47,7 +53,9 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
         An array #C x k of numbers of points: triangles or quadrilaterals (N = 2); tetrahedra, pyramids, wedges or
         hexahedra (N = 3; k = 4, 5, 6, 8); 4-simplices. Or several types, in the form of meshio: a mapping or a list of
         pairs of a name and such an array, with the names "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron",
-        "pixel" and "voxel". The order of corners is VTK's. Cells must meet in whole faces.
+        "pixel" and "voxel". The order of corners is VTK's. Cells must meet in whole faces. Cells of type "polygon" are
+        arrays or lists of numbers of points around them; cells of type "polyhedron" are lists of faces, and a face is a
+        list of numbers of points around it. Both have up to 64 corners.
     values
         #P values; with `times` #T x #P. NaN and masked values are missing: cells there have no contour. For a mesh also
         the name of an array in its `point_data`; none for the only one.
@@ -68,13 +76,13 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     options = _options_of(triangulation=triangulation, ambiguity=ambiguity, direction=direction, close=close,
                           epsilon=epsilon, normals=normals, threads=threads)
     arguments = _arguments_of(points, cells, values, times)
-    others = _attributes_of(attributes, points, arguments[3].shape)
+    others = _attributes_of(attributes, points, arguments[2].shape)
     if level is None:
         raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, others, progress)
     if not allow_empty and not len(core.simplices):
-        _require_level(arguments[3], level)
+        _require_level(arguments[2], level)
     return Contour._of(core, False)
 
 
@@ -108,8 +116,8 @@ class MeshIndex:
                  progress: Progress | None = None) -> None:
         """Arguments as in `tegl.contour_mesh`."""
         arguments = _arguments_of(points, cells, values, times)
-        all_values = arguments[3].ravel()
-        self._shape = arguments[3].shape
+        all_values = arguments[2].ravel()
+        self._shape = arguments[2].shape
         self._range = np.array([end(all_values, initial=np.nan) for end in (np.fmin.reduce, np.fmax.reduce)])
         self._core = _tegl.MeshIndex(*arguments, _arguments.threads_of(threads), progress)
 
@@ -168,8 +176,7 @@ def _options_of(normals=False, **options) -> dict:
     return chosen
 
 
-def _arguments_of(points, cells, values, times) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray,
-                                                         list[str]]:
+def _arguments_of(points, cells, values, times) -> tuple[np.ndarray, _CellArrays, np.ndarray, np.ndarray, list[str]]:
     """The arguments of `_tegl.extract_mesh` and `_tegl.MeshIndex` up to the names of the axes."""
     axis_names: list[str] = []
     if hasattr(points, "points") and hasattr(points, "cells"):
@@ -192,10 +199,10 @@ def _arguments_of(points, cells, values, times) -> tuple[np.ndarray, np.ndarray,
     points = _arguments.real("points", points).astype(np.float64, order="C", copy=False)
     values = _with_missing(values)
     _check_shapes(points, values, len(numbers))
-    types, corners = _cells_of(cells, points.shape[-1])
+    arrays = _cells_of(cells, points.shape[-1])
     if axis_names and len(numbers):
         axis_names.append("t")
-    return points, types, corners, values, numbers, axis_names
+    return points, arrays, values, numbers, axis_names
 
 
 @dataclasses.dataclass(frozen=True)
@@ -203,7 +210,8 @@ class Mesh:
     """A mesh with values at its points, the result of `tegl.read_mesh`."""
 
     points: np.ndarray  #: #P x N coordinates; #T x #P x N if the points move
-    cells: list[tuple[str, np.ndarray]]  #: names of types, as in meshio, and #C x k numbers of points
+    #: names of types, as in meshio, and #C x k numbers of points; of polygons and polyhedra lists as in `contour_mesh`
+    cells: list[tuple[str, typing.Any]]
     values: np.ndarray  #: #P values; over time #T x #P
     times: np.ndarray  #: #T times; empty for a mesh at one time
     variable: str  #: the name of the values
@@ -268,34 +276,53 @@ def read_mesh(path: str | os.PathLike | Sequence[str | os.PathLike], variable: s
     allow_outside_paths = _arguments.as_bool("allow_outside_paths", allow_outside_paths)
     found, *more = [_tegl.read_cell_mesh(paths, _arguments.as_text("variable", name), cells_to_points, numbers,
                                          allow_outside_paths, progress) for name in (variable, *others)]
-    return Mesh(points=found["points"], cells=_blocks_of(found["types"], found["corners"]), values=found["values"],
+    return Mesh(points=found["points"], cells=_blocks_of(found), values=found["values"],
                 times=found["times"] if len(found["times"]) > 1 else found["times"][:0], variable=found["variable"],
                 axis_names=tuple(found["axis_names"]), others={one["variable"]: one["values"] for one in more})
 
 
-def _blocks_of(types: np.ndarray, corners: np.ndarray) -> list[tuple[str, np.ndarray]]:
+def _blocks_of(found: dict[str, typing.Any]) -> list[tuple[str, typing.Any]]:
     """Runs of cells of one type."""
+    types, corners = found["types"], found["corners"]
     names = {number: (name, count) for name, (number, count) in reversed(_TYPES.items())}
+    if len(found["ends"]):
+        names.update({number: (name, 0) for name, number in _POLYTOPES.items()})
     starts = np.flatnonzero(np.diff(types.astype(np.int16), prepend=-1))
     blocks, at = [], 0
     for first, end in zip(starts, [*starts[1:], len(types)]):
         name, count = names[int(types[first])]
+        if not count:
+            blocks.append((name, _polytopes_of(found, name, int(first), int(end))))
+            at = int(found["ends"][end - 1])
+            continue
         size = int(end - first) * count
         blocks.append((name, corners[at:at + size].reshape(-1, count)))
         at += size
     return blocks
 
 
+def _polytopes_of(found: dict[str, typing.Any], name: str, first: int, end: int) -> list:
+    """Polygons as arrays of points, polyhedra as lists of faces."""
+    def parts(ends, begin: int, last: int, whole) -> list:
+        starts = [int(ends[begin - 1]) if begin else 0, *(int(at) for at in ends[begin:last])]
+        return [whole(i, j) for i, j in zip(starts, starts[1:])]
+
+    if name == "polygon":
+        return parts(found["ends"], first, end, lambda i, j: found["corners"][i:j])
+    return parts(found["face_lists_ends"], first, end, lambda f, g: parts(
+        found["face_ends"], f, g, lambda i, j: found["face_corners"][i:j]))
+
+
 def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
     """Points, cells and values of a mesh like those of meshio. A 2D mesh loses a constant coordinate."""
     pairs = _pairs_of(mesh.cells) or []
-    known = [(name, block) for name, block in pairs if name in _TYPES]
-    flat = [pair for pair in known if _TYPES[pair[0]][0] in (5, 8, 9)]
-    others = [name for name, _ in pairs if name not in _TYPES and not name.startswith(("vertex", "line"))]
+    known = [(name, block) for name, block in pairs if _number_of(name)]
+    flat = [pair for pair in known if _number_of(pair[0]) in (5, 7, 8, 9)]
+    others = [name for name, _ in pairs if not _number_of(name) and not name.startswith(("vertex", "line"))]
     if others:
-        raise ValueError(f"cells are of type {others[0]!r}; expected one of {', '.join(map(repr, _TYPES))}")
+        raise ValueError(f"cells are of type {others[0]!r}; expected one of {_known_types()}")
     is_flat = bool(flat) and len(flat) == len(known)
-    cells = flat if is_flat else [pair for pair in known if _TYPES[pair[0]][0] not in (5, 8, 9)]
+    cells = flat if is_flat else [pair for pair in known if _number_of(pair[0]) not in (5, 7, 8, 9)]
     points = _arguments.real("points", mesh.points)
     if is_flat and points.ndim and points.shape[-1] == 3:
         constant = [a for a in (2, 1, 0) if points.size and np.ptp(points[..., a]) == 0]
@@ -374,8 +401,55 @@ def _check_shapes(points: np.ndarray, values: np.ndarray, times: int) -> None:
         raise ValueError(f"points have the shape {points.shape}; expected {(times, *points.shape[1:])}")
 
 
-def _cells_of(cells, ndim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Types and corners of all cells."""
+def _number_of(name: str) -> int:
+    """VTK's number of a type; 0 for an unknown one."""
+    if name in _TYPES:
+        return _TYPES[name][0]
+    return _POLYTOPES.get(name.rstrip("0123456789"), 0)
+
+
+def _known_types() -> str:
+    return ", ".join(map(repr, [*_TYPES, *_POLYTOPES]))
+
+
+def _rings_of(name: str, rings) -> list[np.ndarray]:
+    """Polygons or faces as arrays of numbers of points."""
+    if isinstance(rings, (str, bytes)) or not isinstance(rings, (Sequence, np.ndarray)):
+        raise TypeError(f"{name} are {type(rings).__name__}; expected lists of numbers of points")
+    return [_numbers_of(name, np.asarray(ring)[np.newaxis])[0] for ring in rings]
+
+
+def _ends_of(rings: Iterable) -> np.ndarray:
+    return np.cumsum([len(ring) for ring in rings], dtype=np.uint64)
+
+
+def _polytope_arrays(name: str, block) -> _CellArrays:
+    """The cells of a block of polygons or polyhedra."""
+    number, what = _number_of(name), f"cells of type {name!r}"
+    if number == 7:
+        rings = _rings_of(what, block)
+        cells, faces, counts = rings, [], np.zeros(len(rings), dtype=np.uint64)
+    else:
+        lists = [_rings_of(f"faces of {what}", cell) for cell in block]
+        faces = [ring for cell in lists for ring in cell]
+        cells, counts = [np.empty(0, np.uint32)] * len(lists), _ends_of(lists)
+    none = np.empty(0, np.uint32)
+    return (np.full(len(cells), number, dtype=np.uint8), np.concatenate([none, *cells]), _ends_of(cells),
+            np.concatenate([none, *faces]), _ends_of(faces), counts)
+
+
+def _joined(blocks: list[_CellArrays]) -> _CellArrays:
+    """One after the other; ends go on from block to block."""
+    def ends(which: int, of: int) -> np.ndarray:
+        first = np.cumsum([0, *(len(block[of]) for block in blocks)])
+        return np.concatenate([block[which].astype(np.uint64) + np.uint64(at) for block, at in zip(blocks, first)])
+
+    types, corners, face_corners = (np.concatenate([block[i] for block in blocks]) for i in (0, 1, 3))
+    return types, corners, ends(2, 1), face_corners, ends(4, 3), ends(5, 4)
+
+
+def _cells_of(cells, ndim: int) -> _CellArrays:
+    """The lists of all cells."""
     pairs = _pairs_of(cells)
     if pairs is None:
         array = _numbers_of("cells", cells)
@@ -384,19 +458,26 @@ def _cells_of(cells, ndim: int) -> tuple[np.ndarray, np.ndarray]:
             known = ", ".join(f"{k} ({name})" for (n, k), name in _BY_CORNERS.items() if n == ndim)
             raise ValueError(f"cells have {array.shape[1]} corners; expected in {ndim} dimensions: {known}")
         pairs = [(name, array)]
-    types, corners = [], []
+    blocks: list[_CellArrays] = []
+    none = np.empty(0, np.uint64)
     for name, block in pairs:
+        if not _number_of(name):
+            raise ValueError(f"cells are of type {name!r}; expected one of {_known_types()}")
         if name not in _TYPES:
-            raise ValueError(f"cells are of type {name!r}; expected one of {', '.join(map(repr, _TYPES))}")
+            blocks.append(_polytope_arrays(name, block))
+            continue
         number, count = _TYPES[name]
         array = _numbers_of(f"cells of type {name!r}", block)
         if array.shape[1] != count:
             raise ValueError(f"cells of type {name!r} have {array.shape[1]} corners; expected {count}")
-        types.append(np.full(len(array), number, dtype=np.uint8))
-        corners.append(array.ravel())
-    if not types:
-        return np.empty(0, np.uint8), np.empty(0, np.uint32)
-    return np.concatenate(types), np.concatenate(corners)
+        blocks.append((np.full(len(array), number, dtype=np.uint8), array.ravel(),
+                       np.arange(count, count * (len(array) + 1), count, dtype=np.uint64), none.astype(np.uint32), none,
+                       np.zeros(len(array), dtype=np.uint64)))
+    if not any(_number_of(name) in (7, 42) for name, _ in pairs):
+        types, corners = (np.concatenate([np.empty(0, kind), *(block[i] for block in blocks)])
+                          for i, kind in ((0, np.uint8), (1, np.uint32)))
+        return types, corners, none, none.astype(np.uint32), none, none
+    return _joined(blocks)
 
 
 def _pairs_of(cells) -> list[tuple[str, typing.Any]] | None:

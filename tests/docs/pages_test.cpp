@@ -14,6 +14,7 @@
 
 #include "tegl/active_tiles.hpp"
 #include "tegl/check.hpp"
+#include "tegl/complex.hpp"
 #include "tegl/components.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/elements.hpp"
@@ -216,6 +217,23 @@ TEST(Guides, TasksTakeAFewLines) {
   // [/progress]
   EXPECT_EQ(tegl::extract(image, 0.0, options).simplices, contour.simplices);
   EXPECT_GT(fraction, 0.0);
+}
+
+TEST(Meshes, APolyhedronIsGivenByItsFaces) {
+  std::vector<std::array<double, 3>> corners_of_prism;
+  for (const double z : {0.0, 1.0})
+    for (int k = 0; k < 5; ++k) corners_of_prism.push_back({std::cos(1.2566 * k), std::sin(1.2566 * k), z});
+  // [polyhedron]
+  tegl::CellLists cells;
+  cells.types = {tegl::CellType::polyhedron};
+  cells.ends = {0};  // no corners beside those of the faces
+  cells.face_corners = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1, 6, 5, 1, 2, 7, 6, 2, 3, 8, 7, 3, 4, 9, 8, 4, 0, 5, 9};
+  cells.face_ends = {5, 10, 14, 18, 22, 26, 30};
+  cells.face_lists_ends = {7};
+  tegl::Complex<3> prism(corners_of_prism, cells);
+  // [/polyhedron]
+  prism.set_values(std::vector<double>{0, 0, 0, 0, 0, 1, 1, 1, 1, 1});
+  EXPECT_EQ(tegl::extract(prism, 0.5).vertices.size(), 5U);
 }
 
 TEST(OtherTilings, ACurvedGridHasArraysOfCoordinates) {

@@ -270,6 +270,25 @@ def write_vtk_xml(folder):
     to_tetrahedra.Update()
     mesh = to_tetrahedra.GetOutput()
     write(vtk.vtkXMLUnstructuredGridWriter(), mesh, "vtk_ascii.vtu", "SetDataModeToAscii")
+    # a pentagonal prism and a pyramid on one of its sides as polyhedra, another prism beside it
+    ring = [(numpy.cos(0.4 * numpy.pi * k), numpy.sin(0.4 * numpy.pi * k)) for k in range(5)]
+    places = vtk.vtkPoints()
+    for x, y, z in [*((x, y, z) for z in (0, 1, 2) for x, y in ring), (2, 1.5, 0.5)]:
+        places.InsertNextPoint(x, y, z)
+    polyhedra = vtk.vtkUnstructuredGrid()
+    polyhedra.SetPoints(places)
+    sides = [[k, (k + 1) % 5, (k + 1) % 5 + 5, k + 5] for k in range(5)]
+    pyramid = [sides[0], *([a, b, 15] for a, b in ((0, 1), (1, 6), (6, 5), (5, 0)))]
+    for faces in ([list(range(5)), list(range(5, 10)), *sides], pyramid):
+        stream = vtk.vtkIdList()
+        for number in [len(faces)] + [number for face in faces for number in (len(face), *face)]:
+            stream.InsertNextId(number)
+        polyhedra.InsertNextCell(vtk.VTK_POLYHEDRON, stream)
+    polyhedra.InsertNextCell(vtk.VTK_PENTAGONAL_PRISM, 10, list(range(5, 15)))
+    values = numpy_support.numpy_to_vtk(numpy.arange(16.0) * 7 % 100, deep=True)
+    values.SetName("f")
+    polyhedra.GetPointData().AddArray(values)
+    write(vtk.vtkXMLUnstructuredGridWriter(), polyhedra, "vtk_polyhedra.vtu", "SetDataModeToAscii")
     write(vtk.vtkXMLUnstructuredGridWriter(), mesh, "vtk_raw_zlib.vtu", "SetDataModeToAppended", True, False, True)
 
 

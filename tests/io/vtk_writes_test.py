@@ -13,9 +13,10 @@ import sys
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkRectilinearGrid, vtkStructuredGrid, vtkUnstructuredGrid
-from vtkmodules.vtkFiltersCore import vtkCellDataToPointData
+from vtkmodules.vtkFiltersCore import vtkCellDataToPointData, vtkContourFilter
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOXML import (vtkXMLImageDataWriter, vtkXMLRectilinearGridWriter, vtkXMLStructuredGridWriter,
                                  vtkXMLUnstructuredGridWriter)
 
@@ -285,8 +286,7 @@ def unstructured():
     same = written(vtkXMLUnstructuredGridWriter(), mesh(points, rest, values), "rest.vtu")
     expect("hidden cells", contour(path, 0.1) == contour(same, 0.1), True)
     # types of cells that are refused, by name
-    lists = {37: "triquadratic pyramid", 42: "polyhedron", 72: "Lagrange hexahedron", 74: "Lagrange pyramid",
-             81: "Bezier pyramid", 15: "pentagonal prism"}
+    lists = {37: "triquadratic pyramid", 72: "Lagrange hexahedron", 74: "Lagrange pyramid", 81: "Bezier pyramid"}
     for kind, name in lists.items():
         data = mesh(points, cells[:3], values)
         path = written(vtkXMLUnstructuredGridWriter(), data, "kind.vtu", "ascii")
@@ -296,8 +296,92 @@ def unstructured():
         refused(f"cell 1 is a {name} (VTK's type {kind})", "contour", path, "--iso", 0.1, "-o", FOLDER / "no.ply")
 
 
+def truncated_octahedra(count):
+    """Points and the faces of cells that fill space: those of a body-centred cubic lattice."""
+    places = [tuple(numpy.roll(v, k)) for k in range(3) for a in (-1, 1) for b in (-1, 1)
+              for v in ((0, a, 2 * b), (0, 2 * a, b))]
+    squares = [[p for p in places if p[axis] == 2 * side] for axis in range(3) for side in (-1, 1)]
+    hexagons = [[p for p in places if numpy.dot(p, s) == 3] for s in itertools.product((-1, 1), repeat=3)]
+    faces = []
+    for face in squares + hexagons:
+        middle = numpy.mean(face, axis=0)
+        u = face[0] - middle
+        v = numpy.cross(middle, u)
+        faces.append(sorted(face, key=lambda p: numpy.arctan2(numpy.dot(p - middle, v) / numpy.linalg.norm(v),
+                                                              numpy.dot(p - middle, u) / numpy.linalg.norm(u))))
+    numbers, cells = {}, []
+    for centre in itertools.product(range(2 * count), repeat=3):
+        if len({x % 2 for x in centre}) == 1:
+            cells.append([[numbers.setdefault(tuple(2 * numpy.array(centre) + p), len(numbers)) for p in face]
+                          for face in faces])
+    return numpy.array(list(numbers), float), cells
+
+
+def polyhedra_of(points, cells, values, others=()):
+    data = mesh(points, others, values)
+    for faces in cells:
+        stream = vtkIdList()
+        for number in [len(faces)] + [number for face in faces for number in (len(face), *face)]:
+            stream.InsertNextId(int(number))
+        data.InsertNextCell(42, stream)
+    return data
+
+
+def polyhedra():
+    """Polyhedra as VTK writes them; a plane through them has the area that VTK finds."""
+    points, cells = truncated_octahedra(4)
+    values = 5.3 - numpy.linalg.norm(points - 7.1, axis=1)
+    wanted = None
+    for encoding, compressor, is_big, is_wide in encodings():
+        how = (encoding, compressor, is_big, is_wide)
+        path = written(vtkXMLUnstructuredGridWriter(), polyhedra_of(points, cells, values), "p.vtu", *how)
+        wanted = wanted or contour(path, 0.1)
+        expect(f"polyhedra, {how}", contour(path, 0.1) == wanted, True)
+    found = report(path, 0.1)
+    expect("sphere in polyhedra", (found["euler"], found["boundary_simplices"], found["components"]), (2, 0, 1))
+    # a linear function: the section of the mesh by a plane, of which VTK measures the area
+    plane = points @ (0.3, -0.5, 0.8) - 4.1
+    data = polyhedra_of(points, cells, plane)
+    data.GetPointData().SetActiveScalars("f")
+    cutter = vtkContourFilter()
+    cutter.SetInputData(data)
+    cutter.SetValue(0, 0.0)
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputConnection(cutter.GetOutputPort())
+    sizes.Update()
+    area = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Area")).sum()
+    path = written(vtkXMLUnstructuredGridWriter(), data, "plane.vtu")
+    measured = json.loads(tegl("measure", path, "--iso", 0, "--json"))["size"]
+    expect("area of a plane in polyhedra", round(measured / area, 5), 1.0)
+    kinds = json.loads(tegl("info", path, "--json"))["cells"]
+    expect("kinds of cells", kinds, {"polyhedron": len(cells)})
+    # hexahedra as polyhedra, a hexagonal prism as VTK's own type and as a polyhedron
+    cubes = [list(corners) for kind, corners in grid_cells(SIZES) if kind == 12]
+    faces = [[[c[i] for i in face] for face in ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6),
+                                                (3, 0, 4, 7))] for c in cubes]
+    places = grid_points(SIZES)
+    of_grid = field(places.T)
+    one = report(written(vtkXMLUnstructuredGridWriter(), mesh(places, [(12, c) for c in cubes], of_grid), "h.vtu"), 0.1)
+    other = report(written(vtkXMLUnstructuredGridWriter(), polyhedra_of(places, faces, of_grid), "hp.vtu"), 0.1)
+    for key in ("vertices", "simplices", "euler", "boundary_simplices"):
+        expect(f"{key} of hexahedra as polyhedra", other[key], one[key])
+    ring = [(numpy.cos(k * numpy.pi / 3), numpy.sin(k * numpy.pi / 3)) for k in range(6)]
+    prism = [(x, y, z) for z in (0.0, 1.0) for x, y in ring]
+    sides = [[k, (k + 1) % 6, (k + 1) % 6 + 6, k + 6] for k in range(6)]
+    prism_faces = [list(range(6)), list(range(6, 12)), *sides]
+    for iso in (0.5, 3.5):
+        one = contour(written(vtkXMLUnstructuredGridWriter(), mesh(prism, [(16, range(12))], range(12)), "x.vtu"), iso)
+        other = contour(written(vtkXMLUnstructuredGridWriter(), polyhedra_of(prism, [prism_faces], range(12)), "y.vtu"), iso)
+        expect("hexagonal prism", one, other)
+    refused("(hexagonal prism) has 10 corners; expected 12", "contour",
+            written(vtkXMLUnstructuredGridWriter(), mesh(prism, [(16, range(10))], range(12)), "z.vtu", "ascii"), "--iso", 1,
+            "-o", FOLDER / "no.ply", status=3)
+    open_cell = written(vtkXMLUnstructuredGridWriter(), polyhedra_of(prism, [prism_faces[1:]], range(12)), "open.vtu")
+    refused("cell 0: the edge between the points", "contour", open_cell, "--iso", 1, "-o", FOLDER / "no.ply", status=2)
+
+
 def planar():
-    """2D meshes, in a plane across any axis; polygons become triangles."""
+    """2D meshes, in a plane across any axis, of quadrilaterals and polygons."""
     points = numpy.array([(x, y) for y in range(6) for x in range(6)], float)
     values = numpy.hypot(points[:, 0] - 2.4, points[:, 1] - 2.6)
     squares = [[y * 6 + x, y * 6 + x + 1, y * 6 + x + 7, y * 6 + x + 6] for y in range(5) for x in range(5)]
@@ -310,7 +394,7 @@ def planar():
         expect("boundary", found["boundary_simplices"], 0)
         lengths.append(json.loads(tegl("measure", path, "--iso", 1.7, "--json"))["size"])
     expect("lengths", {round(length, 9) for length in lengths}, {round(lengths[0], 9)})
-    # two pentagons around an edge, as a fan of triangles
+    # two pentagons around an edge
     ring = [(0, 0, 0), (2, 0, 0), (3, 1.5, 0), (1, 3, 0), (-1, 1.5, 0), (4, -1, 0), (5, 1, 0), (4.5, 2, 0)]
     path = written(vtkXMLUnstructuredGridWriter(), mesh(ring, [(7, [0, 1, 2, 3, 4]), (7, [1, 5, 6, 7, 2])], range(8)), "5.vtu")
     expect("pentagons", report(path, 2.5)["nonmanifold_simplices"], 0)
@@ -377,5 +461,5 @@ def contour_vtkhdf(names, *more):
 
 shutil.rmtree(FOLDER, ignore_errors=True)
 FOLDER.mkdir(parents=True)
-for test in (images, rectilinear_and_structured, unstructured, planar, over_time):
+for test in (images, rectilinear_and_structured, unstructured, polyhedra, planar, over_time):
     test()

@@ -24,7 +24,9 @@ void require_same_mesh(const std::string& file, const CellMesh& other, const Cel
   const std::size_t others = other.points.size() / static_cast<std::size_t>(other.dim);
   if (other.dim != mesh.dim) refuse(fmt::format("{}D cells, others", other.dim));
   if (other.times.size() > 1 && other.times != mesh.times) refuse(fmt::format("{} other times", other.times.size()));
-  if (other.types != mesh.types || other.corners != mesh.corners) refuse("other cells");
+  if (other.types != mesh.types || other.corners != mesh.corners || other.ends != mesh.ends ||
+      other.face_corners != mesh.face_corners || other.face_ends != mesh.face_ends)
+    refuse("other cells");
   // points that move, and an array at one time: the first points decide
   const std::size_t count = std::min(points, others) * static_cast<std::size_t>(mesh.dim);
   const bool is_short = points != others && !(mesh.points_move && other.times.size() < 2);

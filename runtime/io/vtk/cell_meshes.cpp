@@ -36,11 +36,28 @@ struct FileMesh {
   std::vector<double> points;           ///< #P x dim
   std::vector<CellType> types;
   std::vector<Index> corners;
-  std::vector<double> values;  ///< #P
+  std::vector<std::uint64_t> ends;                        ///< of cells in `corners`
+  std::vector<Index> face_corners;                        ///< of polyhedra
+  std::vector<std::uint64_t> face_ends, face_lists_ends;  ///< as in CellLists
+  std::vector<double> values;                             ///< #P
   std::optional<double> time;
   std::string variable;
   std::vector<std::string> remarks;
 };
+
+/// Adds the faces of a prism whose corners are those of two polygons.
+void add_prism_faces(std::span<const Index> own, std::size_t sides, FileMesh& mesh) {
+  const auto end_face = [&] { mesh.face_ends.push_back(mesh.face_corners.size()); };
+  for (const std::size_t layer : {std::size_t{0}, sides}) {
+    for (std::size_t v = 0; v < sides; ++v) mesh.face_corners.push_back(own[layer + v]);
+    end_face();
+  }
+  for (std::size_t v = 0; v < sides; ++v) {
+    const std::size_t next = (v + 1) % sides;
+    for (const std::size_t corner : {v, next, sides + next, sides + v}) mesh.face_corners.push_back(own[corner]);
+    end_face();
+  }
+}
 
 /// Adds a cell as one or several of the types of Complex. Throws for other types.
 void add_cell(std::uint8_t type, std::span<const Index> own, std::size_t number, FileMesh& mesh, const fs::path& path) {
@@ -52,19 +69,33 @@ void add_cell(std::uint8_t type, std::span<const Index> own, std::size_t number,
              number, name_of_type(type), corners[i]);
     mesh.types.push_back(as);
     mesh.corners.insert(mesh.corners.end(), corners.begin(), corners.end());
+    mesh.ends.push_back(mesh.corners.size());
+    mesh.face_lists_ends.push_back(mesh.face_ends.size());
   };
-  constexpr std::uint8_t kStrip = 6, kPolygon = 7;
+  constexpr std::uint8_t kStrip = 6, kPolygon = 7, kPentagonalPrism = 15, kHexagonalPrism = 16;
+  constexpr std::size_t kMostCorners = 32;  // of polygons, whose prisms over time then have 64
   if (type == kStrip) {
     for (std::size_t i = 0; i + 3 <= own.size(); ++i) add(CellType::triangle, own.subspan(i, 3));
   } else if (type == kPolygon && own.size() == 4) {
     add(CellType::quadrilateral, own);
+  } else if (type == kPolygon && own.size() >= 5 && own.size() <= kMostCorners) {
+    add(CellType::polygon, own);
+  } else if (type == kPentagonalPrism || type == kHexagonalPrism) {
+    const std::size_t sides = type == kPentagonalPrism ? 5 : 6;
+    if (own.size() != 2 * sides)
+      fail(ErrorCode::MalformedFile, path, "cell {} ({}) has {} corners; expected {}", number, name_of_type(type),
+           own.size(), 2 * sides);
+    add_prism_faces(own, sides, mesh);
+    add(CellType::polyhedron, own);
   } else if (type == kPolygon && own.size() >= 3) {
     for (std::size_t i = 1; i + 1 < own.size(); ++i) add(CellType::triangle, std::array{own[0], own[i], own[i + 1]});
   } else if (name_of(static_cast<CellType>(type)) == "unknown" || type >= 100) {
     fail(ErrorCode::UnsupportedData, path, "cell {} is a {} (VTK's type {}) of {} corners; expected {}", number,
          name_of_type(type), type, own.size(),
-         mesh.dim == 2 ? "triangles, quadrilaterals, pixels, strips of triangles and convex polygons"
-                       : "tetrahedra, hexahedra, voxels, wedges and pyramids");
+         mesh.dim == 2 ? "triangles, quadrilaterals, pixels, strips of triangles and polygons"
+                       : "tetrahedra, hexahedra, voxels, wedges, pyramids, prisms and polyhedra");
+  } else if (type == static_cast<std::uint8_t>(CellType::polyhedron)) {
+    add(CellType::polyhedron, own);
   } else {
     if (own.size() != corner_count(static_cast<CellType>(type)))
       fail(ErrorCode::MalformedFile, path, "cell {} ({}) has {} corners; expected {}", number, name_of_type(type),
@@ -97,12 +128,25 @@ void add_cells(const StoredCells& stored, FileMesh& mesh, std::vector<std::size_
       continue;
     }
     own.clear();
-    for (std::uint64_t i = c == 0 ? 0 : stored.ends[c - 1]; i < stored.ends[c]; ++i) {
-      const auto corner = static_cast<Index>(stored.corners[static_cast<std::size_t>(i)]);
-      own.push_back(stored.same_point.empty() ? corner : stored.same_point[corner]);
-    }
+    const auto point_of = [&](std::int64_t stored_corner) {
+      const auto corner = static_cast<Index>(stored_corner);
+      return stored.same_point.empty() ? corner : stored.same_point[corner];
+    };
+    for (std::uint64_t i = c == 0 ? 0 : stored.ends[c - 1]; i < stored.ends[c]; ++i)
+      own.push_back(point_of(stored.corners[static_cast<std::size_t>(i)]));
+    if (!stored.face_lists_ends.empty())
+      for (std::uint64_t f = c == 0 ? 0 : stored.face_lists_ends[c - 1]; f < stored.face_lists_ends[c]; ++f) {
+        for (std::uint64_t i = f == 0 ? 0 : stored.face_ends[f - 1]; i < stored.face_ends[f]; ++i)
+          mesh.face_corners.push_back(point_of(stored.face_corners[static_cast<std::size_t>(i)]));
+        mesh.face_ends.push_back(mesh.face_corners.size());
+      }
     add_cell(stored.types[c], own, c, mesh, path);
     kept.push_back(c);
+  }
+  if (std::none_of(mesh.types.begin(), mesh.types.end(),
+                   [](CellType type) { return type == CellType::polygon || type == CellType::polyhedron; })) {
+    mesh.ends.clear();
+    mesh.face_lists_ends.clear();
   }
   if (others > 0)
     mesh.remarks.push_back(fmt::format("cells of fewer than {} dimensions are left out: {}", mesh.dim, others));
@@ -244,11 +288,18 @@ std::vector<double> times_of(const std::vector<std::optional<double>>& own, cons
 }
 
 template <int N>
+Complex<N> complex_of(const CellMesh& mesh, std::vector<std::array<double, N>> points) {
+  if (mesh.ends.empty()) return Complex<N>(std::move(points), mesh.types, mesh.corners);
+  return Complex<N>(std::move(points), CellLists{mesh.types, mesh.corners, mesh.ends, mesh.face_corners, mesh.face_ends,
+                                                 mesh.face_lists_ends});
+}
+
+template <int N>
 AnyComplex complex_of(const CellMesh& mesh) {
   std::vector<std::array<double, N>> points(mesh.points.size() / N);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) points[i / N][i % N] = mesh.points[i];
   if (mesh.times.size() < 2) {
-    Complex<N> complex(std::move(points), mesh.types, mesh.corners);
+    Complex<N> complex = complex_of<N>(mesh, std::move(points));
     complex.set_values(mesh.values);
     return complex;
   }
@@ -256,7 +307,7 @@ AnyComplex complex_of(const CellMesh& mesh) {
     const std::size_t count = mesh.values.size() / mesh.times.size();
     std::vector<std::array<double, N>> first(
         points.begin(), points.begin() + static_cast<std::ptrdiff_t>(std::min(count, points.size())));
-    const Complex<N> complex(std::move(first), mesh.types, mesh.corners);
+    const Complex<N> complex = complex_of<N>(mesh, std::move(first));
     const std::span<const std::array<double, N>> moving(points);
     return in_time<N>(complex, mesh.times, mesh.values, mesh.points_move ? moving : moving.first(0));
   } else {
@@ -303,7 +354,9 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
       mesh.values = first.values;
       continue;
     }
-    if (one.types != first.types || one.corners != first.corners || one.points.size() != first.points.size())
+    if (one.types != first.types || one.corners != first.corners || one.ends != first.ends ||
+        one.face_corners != first.face_corners || one.face_ends != first.face_ends ||
+        one.face_lists_ends != first.face_lists_ends || one.points.size() != first.points.size())
       fail(ErrorCode::UnsupportedData, path,
            "has other cells than {}: {} cells and {} points, {} and {} there; expected "
            "the same cells at all times",
@@ -325,6 +378,10 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
   mesh.dim = first.dim;
   mesh.types = std::move(first.types);
   mesh.corners = std::move(first.corners);
+  mesh.ends = std::move(first.ends);
+  mesh.face_corners = std::move(first.face_corners);
+  mesh.face_ends = std::move(first.face_ends);
+  mesh.face_lists_ends = std::move(first.face_lists_ends);
   mesh.variable = std::move(first.variable);
   mesh.remarks = std::move(first.remarks);
   mesh.axis_names = std::move(first.axis_names);

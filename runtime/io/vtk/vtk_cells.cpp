@@ -121,6 +121,48 @@ VtkArray points_array(const VtkFile& file, const XmlElement& piece) {
   return array;
 }
 
+/// Appends the faces of a piece's polyhedra: `faces` has for each of them the number of faces, then of each face the
+/// number of corners and the corners; `faceoffsets` has the end of each cell in it, or -1.
+void append_faces(const VtkFile& file, const XmlElement& piece, std::uint64_t points, std::size_t first_cell,
+                  std::int64_t first_point, StoredCells& all) {
+  constexpr std::uint8_t kPolyhedron = 42;
+  const std::size_t cells = all.types.size() - first_cell;
+  const auto begin = all.types.begin() + static_cast<std::ptrdiff_t>(first_cell);
+  if (std::find(begin, all.types.end(), kPolyhedron) == all.types.end()) {
+    all.face_lists_ends.resize(all.types.size(), all.face_ends.size());
+    return;
+  }
+  const auto faces = file.read_integers(file.array(piece, "Cells", "faces"), std::nullopt);
+  const auto ends = file.read_integers(file.array(piece, "Cells", "faceoffsets"), cells);
+  std::int64_t at = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    const std::size_t cell = first_cell + c;
+    if (all.types[cell] == kPolyhedron) {
+      const std::int64_t end = ends[c];
+      if (end <= at || end > static_cast<std::int64_t>(faces.size()))
+        fail(ErrorCode::MalformedFile, file.path(),
+             "cell {} has the faces {} to {} of {} numbers; expected ascending faceoffsets", cell, at, end,
+             faces.size());
+      const auto next = [&](std::int64_t least, std::int64_t most, const char* what) {
+        const std::int64_t number = at < end ? faces[static_cast<std::size_t>(at)] : -1;
+        if (at++ >= end || number < least || number > most)
+          fail(ErrorCode::MalformedFile, file.path(), "cell {} has {} {} in its faces; expected {} to {}", cell, what,
+               number, least, most);
+        return number;
+      };
+      for (std::int64_t rest = next(0, end - at, "the number of faces"); rest > 0; --rest) {
+        for (std::int64_t corners = next(0, end - at, "the number of corners"); corners > 0; --corners)
+          all.face_corners.push_back(first_point + next(0, static_cast<std::int64_t>(points) - 1, "the point"));
+        all.face_ends.push_back(all.face_corners.size());
+      }
+      if (at != end)
+        fail(ErrorCode::MalformedFile, file.path(), "cell {} has {} numbers after its faces; expected none", cell,
+             end - at);
+    }
+    all.face_lists_ends.push_back(all.face_ends.size());
+  }
+}
+
 /// Appends a piece of an UnstructuredGrid.
 void append_piece(const VtkFile& file, const XmlElement& piece, StoredCells& all) {
   const std::uint64_t points = file.whole_number(piece, "NumberOfPoints");
@@ -153,6 +195,7 @@ void append_piece(const VtkFile& file, const XmlElement& piece, StoredCells& all
   }
   for (std::int64_t i = 0; i < ends.back(); ++i)
     all.corners.push_back(first_point + corners[static_cast<std::size_t>(i)]);
+  append_faces(file, piece, points, first_cell, first_point, all);
   require_count(all.types.size(), "cells", file);
 }
 

@@ -14,12 +14,15 @@
 namespace tegl::io_detail {
 
 struct StoredCells {
-  std::vector<double> points;         ///< #P x 3
-  std::vector<std::uint8_t> types;    ///< #C, VTK's numbers
-  std::vector<std::uint64_t> ends;    ///< #C, end of each cell in `corners`
-  std::vector<std::int64_t> corners;  ///< numbers of points, below #P
-  std::vector<Index> same_point;      ///< #P: the point of an earlier piece at the same place, or itself
-  std::vector<bool> is_hidden;        ///< #C: hidden or a duplicate by vtkGhostType; may be empty
+  std::vector<double> points;                  ///< #P x 3
+  std::vector<std::uint8_t> types;             ///< #C, VTK's numbers
+  std::vector<std::uint64_t> ends;             ///< #C, end of each cell in `corners`
+  std::vector<std::int64_t> corners;           ///< numbers of points, below #P
+  std::vector<std::int64_t> face_corners;      ///< of the faces of polyhedra, numbers of points
+  std::vector<std::uint64_t> face_ends;        ///< by face: its end in `face_corners`
+  std::vector<std::uint64_t> face_lists_ends;  ///< #C, end of each cell's faces in `face_ends`
+  std::vector<Index> same_point;               ///< #P: the point of an earlier piece at the same place, or itself
+  std::vector<bool> is_hidden;                 ///< #C: hidden or a duplicate by vtkGhostType; may be empty
   [[nodiscard]] std::uint64_t point_count() const { return points.size() / 3; }
 };
 

@@ -171,6 +171,90 @@ TEST(CellMesh, GhostTypesAreReadFromAllPiecesAndMustBeWhole) {
   expect_error(ErrorCode::MalformedFile, {"vtkGhostType", "float", "UInt8"}, [&] { read(dir / "b.vtu"); });
 }
 
+/// A pentagonal prism as a polyhedron; points 0 to 4 and 5 to 9 are the pentagons.
+const std::string kPrismFaces = "7 5 0 1 2 3 4 5 5 6 7 8 9 4 0 1 6 5 4 1 2 7 6 4 2 3 8 7 4 3 4 9 8 4 4 0 5 9";
+
+std::string prism(const std::string& faces, const std::string& ends, const std::string& types = "42",
+                  const std::string& corners = "0 1 2 3 4 5 6 7 8 9") {
+  std::string points;
+  for (const char* z : {" 0 ", " 1 "})
+    for (const char* place : {"1 0", "0.3 1", "-0.8 0.6", "-0.8 -0.6", "0.3 -1"}) points += std::string(place) + z;
+  std::string text = vtu(points, corners, "10", types, on_points("0 1 2 3 4 5 6 7 8 9"), "10 1");
+  const std::string arrays = "<DataArray type=\"Int64\" Name=\"faces\" format=\"ascii\">" + faces +
+                             "</DataArray><DataArray type=\"Int64\" Name=\"faceoffsets\" format=\"ascii\">" + ends +
+                             "</DataArray>";
+  return text.insert(text.find("</Cells>"), arrays);
+}
+
+TEST(CellMesh, PolyhedraHaveTheirFaces) {
+  TempDir dir;
+  write_file(dir / "a.vtu", prism(kPrismFaces, "38"));
+  const CellMesh mesh = read(dir / "a.vtu");
+  EXPECT_EQ(mesh.types, std::vector{CellType::polyhedron});
+  EXPECT_THAT(mesh.ends, testing::ElementsAre(10));
+  EXPECT_THAT(mesh.face_ends, testing::ElementsAre(5, 10, 14, 18, 22, 26, 30));
+  EXPECT_THAT(mesh.face_lists_ends, testing::ElementsAre(7));
+  const auto contour = extract<double>(std::get<Complex<3>>(to_complex(mesh)), 4.5);
+  EXPECT_EQ(contour.vertices.size(), 5U);
+  // the type of VTK for it
+  write_file(dir / "b.vtu", prism("", "", "15"));
+  const CellMesh same = read(dir / "b.vtu");
+  EXPECT_EQ(same.face_corners, mesh.face_corners);
+  EXPECT_EQ(same.types, mesh.types);
+  EXPECT_THAT(describe_cell_mesh(dir / "a.vtu").cells, testing::ElementsAre(testing::Pair("polyhedron", 1)));
+  // at two times the faces must be the same, and a polyhedron has no prism
+  write_file(dir / "c.vtu", prism(kPrismFaces.substr(0, kPrismFaces.size() - 3) + "9 5", "38"));
+  expect_error(ErrorCode::UnsupportedData, {"has other cells"}, [&] {
+    read_cell_mesh(std::array{dir / "a.vtu", dir / "c.vtu"});
+  });
+  const CellMesh moving = read_cell_mesh(std::array{dir / "a.vtu", dir / "a.vtu"});
+  expect_error(ErrorCode::InvalidArgument, {"1 polyhedra over time"}, [&] { (void)to_complex(moving); });
+}
+
+TEST(CellMesh, WrongFacesOfPolyhedraAreErrorsThatNameTheCell) {
+  TempDir dir;
+  const std::vector<WrongMesh> all = {
+      {prism(kPrismFaces, "39"), ErrorCode::MalformedFile, {"cell 0", "0 to 39 of 38"}},
+      {prism(kPrismFaces, "-1"), ErrorCode::MalformedFile, {"cell 0", "ascending faceoffsets"}},
+      {prism(kPrismFaces, "37"), ErrorCode::MalformedFile, {"cell 0 has the point -1", "0 to 9"}},
+      {prism(kPrismFaces + " 3", "39"), ErrorCode::MalformedFile, {"1 numbers after its faces"}},
+      {prism("9" + kPrismFaces.substr(1), "38"), ErrorCode::MalformedFile, {"the number of corners"}},
+      {prism("99" + kPrismFaces.substr(1), "38"), ErrorCode::MalformedFile, {"the number of faces 99", "0 to 38"}},
+      {prism(kPrismFaces.substr(0, kPrismFaces.size() - 3) + "9 10", "38"),
+       ErrorCode::MalformedFile,
+       {"the point 10", "0 to 9"}},
+      {prism(kPrismFaces.substr(0, kPrismFaces.size() - 3) + "9 -5", "38"), ErrorCode::MalformedFile, {"the point -5"}},
+      {prism(kPrismFaces, "38 38"), ErrorCode::MalformedFile, {"expected 1"}},
+      {vtu(kPoints, kCorners, "4 8", "42 10", on_points("0 1 2 3 4")), ErrorCode::MalformedFile, {"faces"}},
+  };
+  for (const auto& [bytes, code, parts] : all) {
+    write_file(dir / "a.vtu", bytes);
+    expect_error(code, parts, [&] { read(dir / "a.vtu"); });
+  }
+}
+
+TEST(CellMesh, PolygonsOfUpTo32CornersArePolygons) {
+  TempDir dir;
+  const auto polygon = [&](int corners) {
+    std::string points, numbers, values;
+    for (int k = 0; k < corners; ++k) {
+      points += std::to_string(std::cos(6.283185 * k / corners)) + " " +
+                std::to_string(std::sin(6.283185 * k / corners)) + " 0 ";
+      numbers += std::to_string(k) + " ";
+      values += "1 ";
+    }
+    write_file(dir / "a.vtu",
+               vtu(points, numbers, std::to_string(corners), "7", on_points(values), std::to_string(corners) + " 1"));
+    return read(dir / "a.vtu");
+  };
+  EXPECT_EQ(polygon(3).types, std::vector{CellType::triangle});
+  EXPECT_EQ(polygon(4).types, std::vector{CellType::quadrilateral});
+  EXPECT_TRUE(polygon(4).ends.empty());
+  EXPECT_EQ(polygon(32).types, std::vector{CellType::polygon});
+  EXPECT_THAT(polygon(32).ends, testing::ElementsAre(32));
+  EXPECT_EQ(polygon(33).types, std::vector(31, CellType::triangle));
+}
+
 TEST(CellMesh, FilesOfASeriesMustMatch) {
   TempDir dir;
   const std::string data = on_points("0 1 2 3 4");

@@ -23,17 +23,23 @@ namespace tegl {
 
 /// A mesh of cells with one array of values at its points, at one or several times.
 struct CellMesh {
-  int dim = 3;                                    ///< of the cells, and number of coordinates: 2 or 3; tables: or 4
-  std::vector<double> points = {};                ///< #P x dim, or #T x #P x dim if the points move
-  bool points_move = false;                       ///< whether the points differ between times
-  std::vector<CellType> types = {};               ///< one per cell
-  std::vector<Index> corners = {};                ///< the corners of all cells, one cell after the other
-  std::vector<double> times = {};                 ///< #T ascending times; empty for one file that is not in a series
-  std::vector<double> values = {};                ///< max(1, #T) x #P; NaN: missing
-  std::string variable = {};                      ///< name of the values
-  std::vector<std::string> axis_names = {};       ///< of the coordinates: x, y, z, or as in the table
-  std::vector<std::string> remarks = {};          ///< cells that were left out
-  std::vector<std::filesystem::path> files = {};  ///< in the order of the times
+  int dim = 3;                       ///< of the cells, and number of coordinates: 2 or 3; tables: or 4
+  std::vector<double> points = {};   ///< #P x dim, or #T x #P x dim if the points move
+  bool points_move = false;          ///< whether the points differ between times
+  std::vector<CellType> types = {};  ///< one per cell
+  std::vector<Index> corners = {};   ///< the corners of all cells, one cell after the other
+  /// With polygons or polyhedra: `ends`, `face_corners`, `face_ends` and `face_lists_ends` of CellLists. Otherwise
+  /// empty.
+  std::vector<std::uint64_t> ends = {};
+  std::vector<Index> face_corners = {};             ///< see `ends`
+  std::vector<std::uint64_t> face_ends = {};        ///< see `ends`
+  std::vector<std::uint64_t> face_lists_ends = {};  ///< see `ends`
+  std::vector<double> times = {};                   ///< #T ascending times; empty for one file that is not in a series
+  std::vector<double> values = {};                  ///< max(1, #T) x #P; NaN: missing
+  std::string variable = {};                        ///< name of the values
+  std::vector<std::string> axis_names = {};         ///< of the coordinates: x, y, z, or as in the table
+  std::vector<std::string> remarks = {};            ///< cells that were left out
+  std::vector<std::filesystem::path> files = {};    ///< in the order of the times
 };
 
 /// Options of read_cell_mesh.
@@ -57,10 +63,11 @@ struct CellMeshOptions {
 
 /// Reads a mesh, or several files as one mesh over time. A .pvd file must be the only one.
 ///
-/// Cells: those of CellType in 2D or 3D, triangle strips and polygons (as triangles or a quadrilateral; polygons must
-/// be convex). If there are 3D cells, others are left out; so are vertices and lines. Structured grids become
-/// quadrilaterals or hexahedra. 2D meshes must lie in a plane across an axis, whose coordinate is dropped. Cells that
-/// are hidden or duplicates by vtkGhostType are left out. Points of several pieces at one place become one.
+/// Cells: those of CellType in 2D or 3D, pentagonal and hexagonal prisms (as polyhedra), triangle strips (as
+/// triangles). Polygons of more than 32 corners become triangles and must be convex. If there are 3D cells, others are
+/// left out; so are vertices and lines. Structured grids become quadrilaterals or hexahedra. 2D meshes must lie in a
+/// plane across an axis, whose coordinate is dropped. Cells that are hidden or duplicates by vtkGhostType are left out.
+/// Points of several pieces at one place become one.
 ///
 /// Tables: a row for each point, with fields separated by commas, semicolons, tabs or blanks; lines that start with '#'
 /// are comments. With a first line of names, the columns x, y, z and t (or time) are the coordinates; without columns
@@ -69,7 +76,7 @@ struct CellMeshOptions {
 ///
 /// Errors, naming the file (and of a table the line): FileNotFound; MalformedFile (damaged, or numbers that contradict
 /// each other; two equal points of a table); UnsupportedFormat (a compressor other than zlib; parallel files, which
-/// name others); UnsupportedData (polyhedra, curved cells and other types; no cells of 2 or 3 dimensions; values of
+/// name others); UnsupportedData (curved cells and other types; no cells of 2 or 3 dimensions; values of
 /// cells without cells_to_points; files of a series that do not match); VariableNotFound; InvalidArgument (times;
 /// cells_to_points with values of points);
 /// TooLarge; Cancelled.
