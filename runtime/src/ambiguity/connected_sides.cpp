@@ -67,26 +67,34 @@ struct Connections {
     }
   }
 
-  /// Adds the corners at the other ends of edges along an axis.
+  /// The corners at the other ends of edges along an axis.
   template <int Axis>
-  HWY_INLINE Sides along(Sides reached) const {
+  static HWY_INLINE Sides ends_along(Sides from) {
     constexpr int kStep = 1 << Axis;
     const auto lower = bits_in_all(lower_ends(Axis));
-    const auto up = hn::ShiftLeft<kStep>(hn::And(reached, lower));
-    const auto down = hn::And(hn::ShiftRight<kStep>(reached), lower);
-    return hn::And(hn::Or(reached, hn::Or(up, down)), corners);
+    const auto up = hn::ShiftLeft<kStep>(hn::And(from, lower));
+    const auto down = hn::And(hn::ShiftRight<kStep>(from), lower);
+    return hn::Or(up, down);
   }
-  /// Adds the opposite corners of squares that connect.
+  /// The opposite corners of squares that connect.
   template <unsigned Pair>
-  HWY_INLINE Sides across(Sides reached) const {
+  HWY_INLINE Sides opposite(Sides from) const {
     constexpr unsigned kAxes = kTesseractSquares[4 * Pair].axes;
     constexpr int kFirst = static_cast<int>(kAxes & (0u - kAxes)), kSecond = static_cast<int>(kAxes) - kFirst;
     const auto base = bases[Pair], beside = hn::ShiftLeft<kFirst>(base);
-    const auto up = hn::Or(hn::ShiftLeft<kFirst + kSecond>(hn::And(reached, base)),
-                           hn::ShiftLeft<kSecond - kFirst>(hn::And(reached, beside)));
-    const auto down = hn::Or(hn::And(hn::ShiftRight<kFirst + kSecond>(reached), base),
-                             hn::And(hn::ShiftRight<kSecond - kFirst>(reached), beside));
-    return hn::And(hn::Or(reached, hn::Or(up, down)), corners);
+    const auto up = hn::Or(hn::ShiftLeft<kFirst + kSecond>(hn::And(from, base)),
+                           hn::ShiftLeft<kSecond - kFirst>(hn::And(from, beside)));
+    const auto down = hn::Or(hn::And(hn::ShiftRight<kFirst + kSecond>(from), base),
+                             hn::And(hn::ShiftRight<kSecond - kFirst>(from), beside));
+    return hn::Or(up, down);
+  }
+  template <int Axis>
+  HWY_INLINE Sides along(Sides reached) const {
+    return hn::And(hn::Or(reached, ends_along<Axis>(reached)), corners);
+  }
+  template <unsigned Pair>
+  HWY_INLINE Sides across(Sides reached) const {
+    return hn::And(hn::Or(reached, opposite<Pair>(reached)), corners);
   }
   HWY_INLINE Sides grown(Sides reached) const {
     const SideTag d;
@@ -99,6 +107,19 @@ struct Connections {
     }
     return reached;
   }
+  /// The corners that are connected with no other.
+  HWY_INLINE Sides isolated() const {
+    const SideTag d;
+    auto beside = hn::Or(hn::Or(ends_along<0>(corners), ends_along<1>(corners)),
+                         hn::Or(ends_along<2>(corners), ends_along<3>(corners)));
+    beside = hn::Or(beside, hn::Or(opposite<0>(corners), hn::Or(opposite<1>(corners), opposite<2>(corners))));
+    beside = hn::Or(beside, hn::Or(opposite<3>(corners), hn::Or(opposite<4>(corners), opposite<5>(corners))));
+    for (const auto& cube : cubes) {
+      const auto has_several = hn::Ne(hn::And(cube, hn::Sub(cube, bits_in_all(1))), hn::Zero(d));
+      beside = hn::Or(beside, hn::IfThenElseZero(has_several, cube));
+    }
+    return hn::AndNot(beside, corners);
+  }
 };
 
 void connected_sides(BoundarySides& sides) {
@@ -109,16 +130,20 @@ void connected_sides(BoundarySides& sides) {
     std::fill(entries->begin() + sides.count, entries->begin() + end, std::uint16_t{0});
   for (std::size_t i = 0; i < end; i += lanes) {
     const Connections connections(sides, i);
-    // from the lowest corner
-    auto reached = hn::And(connections.corners, hn::Sub(hn::Zero(d), connections.corners));
-    auto is_final = hn::Eq(reached, connections.corners);
+    const auto isolated = connections.isolated();
+    const auto lowest = hn::And(connections.corners, hn::Sub(hn::Zero(d), connections.corners));
+    const auto apart = hn::IfThenElse(hn::Eq(isolated, connections.corners), hn::AndNot(lowest, isolated), isolated);
+    // from the lowest of the others
+    const auto others = hn::AndNot(apart, connections.corners);
+    auto reached = hn::And(others, hn::Sub(hn::Zero(d), others));
+    auto is_final = hn::Eq(reached, others);
     while (!hn::AllTrue(d, is_final)) {
       const auto before = reached;
       reached = connections.grown(reached);
-      is_final = hn::Or(hn::Eq(reached, before), hn::Eq(reached, connections.corners));
+      is_final = hn::Or(hn::Eq(reached, before), hn::Eq(reached, others));
     }
-    const auto connected = hn::Eq(reached, connections.corners);
-    hn::Store(hn::IfThenElseZero(connected, hn::Set(d, std::uint16_t{1})), d, sides.connected.data() + i);
+    const auto scattered = bits_in_all(BoundarySides::kScattered);
+    hn::Store(hn::IfThenElse(hn::Eq(reached, others), apart, scattered), d, sides.apart.data() + i);
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Finds out for many tesseracts at once whether the contour in the boundary is connected: whether the high corners are
-// connected in the boundary, and the low ones. The boundary is a 3-sphere, so a surface in it has one component less
-// than it separates regions.
+// Finds out for many tesseracts at once whether the contour in the boundary is connected, or connected except for
+// spheres around single corners: whether the high corners are connected in the boundary, and the low ones. The boundary
+// is a 3-sphere, so a surface in it has one component less than it separates regions.
 #pragma once
 
 #include <array>
@@ -23,7 +23,10 @@ struct BoundarySides {
   alignas(64) std::array<std::uint16_t, kMost> corners;
   alignas(64) std::array<std::uint16_t, kMost> squares, more_squares;  ///< bits 0 to 15 and 16 to 23
   alignas(64) std::array<std::uint16_t, kMost> cubes;
-  alignas(64) std::array<std::uint16_t, kMost> connected;  ///< not 0 if the corners are connected
+  /// The corners that are connected with no other, if the others are connected with each other; otherwise kScattered.
+  /// If there are no others, the lowest one is left out. So 0: all corners are connected.
+  alignas(64) std::array<std::uint16_t, kMost> apart;
+  static constexpr std::uint16_t kScattered = 0xffff;
 
   void add(std::uint32_t of_corners, std::uint32_t of_squares, std::uint32_t of_cubes) noexcept {
     corners[count] = static_cast<std::uint16_t>(of_corners);

@@ -153,7 +153,7 @@ class WordResolver {
     else
       take_joins();
     find_vertices();
-    find_connected_ones();
+    find_apart();
   }
 
  private:
@@ -267,7 +267,7 @@ class WordResolver {
     }
   }
 
-  void find_connected_ones() noexcept {
+  void find_apart() noexcept {
     BoundarySides sides;
     for (std::size_t j = 0; j < of_.count; ++j) {
       const ResolvedKey& key = of_.tiles[j].key;
@@ -275,8 +275,14 @@ class WordResolver {
       sides.add(~std::uint32_t{key.signature}, ~key.squares, key.low_cubes);
     }
     find_connected(sides);
-    for (std::size_t j = 0; j < of_.count; ++j)
-      of_.tiles[j].is_connected = (sides.connected[2 * j] & sides.connected[2 * j + 1]) != 0;
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      const auto choice = of_.tiles[j].key.tile;
+      const unsigned high = sides.apart[2 * j], low = sides.apart[2 * j + 1];
+      // one of the sides is connected, and the other one is not joined by the tile's centre
+      const bool is_high = low == 0 && high != BoundarySides::kScattered && (high == 0 || choice != tile::Choice::high);
+      const bool is_low = high == 0 && low != BoundarySides::kScattered && choice != tile::Choice::low;
+      of_.tiles[j].apart = is_high ? high : is_low ? low : ResolvedTesseract::kNotKnown;
+    }
   }
 
   const FaceEstimator<4>& estimator_;
@@ -314,7 +320,7 @@ void RowOfTesseracts::fetch(const ResolvedCubes& cubes, const ResolvedTile& tile
   for (unsigned f = 0; f < 8; ++f) {
     const unsigned list = tile.lists[f];
     hwy::Prefetch(cubes.triangles(f, list).words);
-    if (tile.is_connected) continue;
+    if (tile.apart == 0) continue;
     const std::uint32_t part = ResolvedCubes::first_part(f) + cubes.summary(list).first_part;
     hwy::Prefetch(cubes.part_vertices() + part);
     hwy::Prefetch(cubes.part_apexes() + part);

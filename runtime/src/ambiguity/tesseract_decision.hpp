@@ -16,8 +16,8 @@ struct ResolvedTile {
   ResolvedKey key;
   std::array<std::uint16_t, 8> cubes{};  ///< keys; only from resolved_tile
   ResolvedCubes::Lists lists{};
-  std::uint8_t with_vertices = 0;  ///< bit set of the cubes that own vertices
-  bool is_connected = false;       ///< whether Sigma is known to be connected (ResolvedTesseract::find)
+  std::uint8_t with_vertices = 0;                      ///< bit set of the cubes that own vertices
+  std::uint32_t apart = ResolvedTesseract::kNotKnown;  ///< as in ResolvedTesseract::find
 };
 
 /// Whether a 4D tile is combined from its cubes if ambiguities are resolved from the data. This holds if the data

@@ -117,7 +117,7 @@ class TileWriter {
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
           return own.writer.write_resolved(*own.cubes, own.index, key, tile,
-                                           own.scratch.tesseract->find(tile.key, tile.lists, tile.is_connected),
+                                           own.scratch.tesseract->find(tile.key, tile.lists, tile.apart),
                                            edge_ids, own.next, *own.cells, out);
         }
       Ids ids;
@@ -204,7 +204,7 @@ class TileWriter {
           if (is_estimated_tile(signature)) {
             const ResolvedTile tile = tile_of(scratch.answers, index, signature);
             out = write_resolved(*resolved_cubes, index, signature, tile,
-                                 scratch.tesseract->find(tile.key, tile.lists, tile.is_connected), ids.data(), own,
+                                 scratch.tesseract->find(tile.key, tile.lists, tile.apart), ids.data(), own,
                                  *own_cells, out);
             continue;
           }

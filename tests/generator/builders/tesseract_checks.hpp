@@ -195,19 +195,20 @@ inline std::string text_of(const FacetFigures& figures) {
   return text;
 }
 
-/// All numbers of a filling: size, simplices and masks. `is_connected`: Sigma is known to be connected.
+/// All numbers of a filling: size, simplices and masks. `apart`: what is known of Sigma.
 template <class Builder>
-std::vector<std::uint64_t> tesseract_numbers(Builder& builder, const ResolvedKey& key, bool is_connected = false) {
+std::vector<std::uint64_t> tesseract_numbers(Builder& builder, const ResolvedKey& key,
+                                             std::uint32_t apart = builders::ResolvedTesseract::kNotKnown) {
   const auto size = builder.size(key);
-  const builders::ResolvedView view = builder.find(key, Builder::lists_of(key), is_connected);
+  const builders::ResolvedView view = builder.find(key, Builder::lists_of(key), apart);
   std::vector<std::uint64_t> numbers{size.simplices, size.own_vertices};
   numbers.insert(numbers.end(), view.simplices, view.simplices + 4 * std::size_t{view.simplex_count});
   if (view.own_vertices != 0) numbers.insert(numbers.end(), view.masks, view.masks + view.own_vertices);
   return numbers;
 }
 
-/// Whether the corners of a sign are connected in the boundary, by edges and by the centres of squares and cubes.
-inline bool has_connected_side(const ResolvedKey& key, bool high) {
+/// The corners of a sign as sets that are connected in the boundary, by edges and by the centres of squares and cubes.
+inline std::vector<std::uint32_t> regions_of_side(const ResolvedKey& key, bool high) {
   const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
   std::vector<std::uint32_t> faces;
   const auto add_face = [&](unsigned base, unsigned axes) {
@@ -225,17 +226,34 @@ inline bool has_connected_side(const ResolvedKey& key, bool high) {
   for (unsigned f = 0; f < 8; ++f)
     if (((high ? key.high_cubes & ~unsigned{key.low_cubes} : key.low_cubes) >> f & 1u) != 0)
       add_face((f % 2) << f / 2, 15u ^ 1u << f / 2);
-  std::uint32_t reached = corners & (0u - corners);
-  for (std::uint32_t before = 0; before != reached;) {
-    before = reached;
-    for (const std::uint32_t face : faces) reached |= (face & reached) != 0 ? face : 0u;
+  std::vector<std::uint32_t> regions;
+  for (std::uint32_t rest = corners; rest != 0; rest &= ~regions.back()) {
+    std::uint32_t reached = rest & (0u - rest);
+    for (std::uint32_t before = 0; before != reached;) {
+      before = reached;
+      for (const std::uint32_t face : faces) reached |= (face & reached) != 0 ? face : 0u;
+    }
+    regions.push_back(reached);
   }
-  return reached == corners;
+  return regions;
 }
-/// Whether Sigma is one component: the boundary is a 3-sphere, in which a connected surface separates two regions.
-inline bool has_connected_sides(const ResolvedKey& key) {
-  return key.signature != 0 && key.signature != 0xffffu && has_connected_side(key, true) &&
-         has_connected_side(key, false);
+/// What ResolvedTesseract::find may be told of Sigma, by definition: 0 if Sigma is one component. The boundary is a
+/// 3-sphere, in which a connected surface separates two regions.
+inline std::uint32_t known_of_sigma(const ResolvedKey& key) {
+  if (key.signature == 0 || key.signature == 0xffffu) return builders::ResolvedTesseract::kNotKnown;
+  for (const bool high : {true, false}) {
+    if (regions_of_side(key, !high).size() != 1) continue;
+    std::vector<std::uint32_t> regions = regions_of_side(key, high);
+    if (regions.size() > 1 && key.tile == (high ? Choice::high : Choice::low)) continue;
+    const auto is_corner = [](std::uint32_t region) { return std::has_single_bit(region); };
+    const auto rest = std::find_if_not(regions.begin(), regions.end(), is_corner);
+    regions.erase(rest == regions.end() ? regions.begin() : rest);
+    if (!std::all_of(regions.begin(), regions.end(), is_corner)) continue;
+    std::uint32_t apart = 0;
+    for (const std::uint32_t region : regions) apart |= region;
+    return apart;
+  }
+  return builders::ResolvedTesseract::kNotKnown;
 }
 
 /// What is wrong with the filling of a tile; "" if nothing is. The definition applies if `is_by_squares`: no centre of
@@ -257,8 +275,8 @@ std::string fault_of_tesseract(Builder& builder, GeneralTesseract& general, cons
   for (const auto& [edges, euler] : figures) eulers.insert(euler);
   if (is_by_squares && eulers != GeneralTesseract::eulers(key))
     return text_of(key) + "facets differ from the definition";
-  if (has_connected_sides(key) && tesseract_numbers(builder, key, true) != tesseract_numbers(builder, key, false))
-    return text_of(key) + "another filling if it is known that Sigma is connected";
+  if (tesseract_numbers(builder, key, known_of_sigma(key)) != tesseract_numbers(builder, key))
+    return text_of(key) + "another filling if it is known how Sigma is connected";
   return "";
 }
 

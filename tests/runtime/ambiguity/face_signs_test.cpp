@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/corners.hpp"
 #include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
@@ -240,7 +242,7 @@ TEST(FaceSigns, JoinsInCubesThatRoundingCouldDecideAreUnsure) {
 /// Against the parts of the contours in the cubes, for random signatures and centres of squares and cubes.
 TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
   std::mt19937_64 random(1);
-  std::size_t connected = 0;
+  std::size_t connected = 0, with_spheres = 0;
   ResolvedTesseract tesseract;
   for (int i = 0; i < 2000; ++i) {
     BoundarySides sides;
@@ -256,13 +258,30 @@ TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
     }
     find_connected(sides);
     for (std::size_t j = 0; j < keys.size(); ++j) {
-      const bool is_connected = sides.connected[2 * j] != 0 && sides.connected[2 * j + 1] != 0;
-      ASSERT_EQ(is_connected, tesseract.find_sigma(ResolvedTesseract::lists_of(keys[j])).size() == 1)
+      const unsigned high = sides.apart[2 * j], low = sides.apart[2 * j + 1];
+      const std::span<const ResolvedTesseract::Component> components =
+          tesseract.find_sigma(ResolvedTesseract::lists_of(keys[j]));
+      ASSERT_EQ(high == 0 && low == 0, components.size() == 1)
           << "signature " << keys[j].signature << ", squares " << keys[j].squares;
-      connected += is_connected ? 1 : 0;
+      connected += components.size() == 1 ? 1 : 0;
+      if (high == 0 || high == BoundarySides::kScattered || low != 0) continue;
+      // one component more than spheres around corners, each on the edges at the corner
+      ASSERT_EQ(components.size(), static_cast<std::size_t>(std::popcount(high)) + 1);
+      std::uint32_t around = 0;
+      for (const ResolvedTesseract::Component& component : components) {
+        if (component.triangles != 4 || component.vertices >> 32 != 0) continue;
+        for (unsigned v = 0; v < 16; ++v) {
+          std::uint64_t edges = 0;
+          for (unsigned axis = 0; axis < 4; ++axis) edges |= std::uint64_t{1} << edge_number(4, axis, v);
+          around |= component.vertices == edges ? 1u << v : 0u;
+        }
+      }
+      ASSERT_EQ(around & high, high) << "signature " << keys[j].signature << ", squares " << keys[j].squares;
+      ++with_spheres;
     }
   }
   EXPECT_GT(connected, 10'000u);
+  EXPECT_GT(with_spheres, 1'000u);
 }
 
 }  // namespace
