@@ -58,11 +58,17 @@ HWY_INLINE void write_by_registers(const LocalSimplices& simplices, Simplex* out
                                       _mm512_permutex2var_epi32(cubes[0], local, cubes[1]));
     return _mm512_mask_add_epi32(numbers, _mm512_cmpge_epu32_mask(local, first_own), local, after_own);
   };
-  const std::uint8_t* local = simplices.local;
-  for (std::uint32_t fours = simplices.count / 4; fours != 0; --fours, local += 16, out += 4)
-    _mm512_storeu_si512(out, numbers_of(_mm_loadu_si128(reinterpret_cast<const __m128i*>(local))));
-  const auto rest = static_cast<__mmask16>((1u << (4 * (simplices.count % 4))) - 1);
-  if (rest != 0) _mm512_mask_storeu_epi32(out, rest, numbers_of(_mm_maskz_loadu_epi8(rest, local)));
+  const auto write_four = [&](std::uint32_t first) HWY_ATTR {
+    const auto* const local = reinterpret_cast<const __m128i*>(simplices.local + 4 * std::size_t{first});
+    _mm512_storeu_si512(out + first, numbers_of(_mm_loadu_si128(local)));
+  };
+  if (simplices.count < 4) {
+    const auto all = static_cast<__mmask16>((1u << (4 * simplices.count)) - 1);
+    return _mm512_mask_storeu_epi32(out, all, numbers_of(_mm_maskz_loadu_epi8(all, simplices.local)));
+  }
+  // The last four are written whatever their number: twice in part, which costs less than a mask.
+  for (std::uint32_t first = 0; first + 4 < simplices.count; first += 4) write_four(first);
+  write_four(simplices.count - 4);
 }
 
 #endif
