@@ -13,55 +13,19 @@
 #include <utility>
 #include <vector>
 
+#include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
 #include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/vertex_stars.hpp"
+#include "track/face_list.hpp"
 #include "track/link_sides.hpp"
 #include "track/sides_across.hpp"
 #include "track/sweep_result.hpp"
 
 namespace tegl::detail {
-
-/// A list of faces by their vertices, which counts each face once.
-template <int N>
-class Faces {
- public:
-  void clear() { keys_.clear(); }
-
-  /// Adds the faces of a simplex (vertices[0 … count - 1]) for which wanted(mask) is true; bit i of mask: vertex i.
-  template <class Wanted>
-  void add(const std::array<Index, N>& vertices, int count, const Wanted& wanted) {
-    for (unsigned mask = 1; mask < (1u << count); ++mask) {
-      if (!wanted(mask)) continue;
-      Key key;
-      key.fill(kNone);
-      int size = 0;
-      for (int i = 0; i < count; ++i)
-        if (((mask >> i) & 1u) != 0) key[size++] = vertices[i];
-      std::sort(key.begin(), key.begin() + size);
-      keys_.push_back(key);
-    }
-  }
-
-  /// Euler characteristic: number of vertices - edges + triangles - …
-  [[nodiscard]] std::int64_t euler() {
-    std::sort(keys_.begin(), keys_.end());
-    const auto end = std::unique(keys_.begin(), keys_.end());
-    std::int64_t sum = 0;
-    for (auto key = keys_.begin(); key != end; ++key) {
-      const auto dim = std::find(key->begin(), key->end(), kNone) - key->begin() - 1;
-      sum += dim % 2 == 0 ? 1 : -1;
-    }
-    return sum;
-  }
-
- private:
-  using Key = std::array<Index, N>;
-  std::vector<Key> keys_;
-};
 
 /// A simplicial complex whose vertices are ordered by the last coordinate (time), then by number. Vertices have their
 /// *ranks*, their positions in that order, and each simplex lists its vertices by rank: those below a vertex come
@@ -104,12 +68,7 @@ class SweptComplex {
   /// Times of the lowest and the highest vertex of a simplex; 0 if there are none.
   [[nodiscard]] std::pair<double, double> times() const {
     if (simplices_.empty()) return {0.0, 0.0};
-    Index lowest = kNone, highest = 0;
-    for (const Simplex& simplex : simplices_) {
-      lowest = std::min(lowest, simplex.front());
-      highest = std::max(highest, simplex.back());
-    }
-    return {times_[lowest], times_[highest]};
+    return {times_[lowest_], times_[times_.size() - 1 - from_highest_]};
   }
   /// The vertex of the contour.
   [[nodiscard]] Index vertex(Index rank) const { return order_[rank]; }
@@ -119,6 +78,11 @@ class SweptComplex {
   }
   /// N = 4: by place, the simplex across the facet without that vertex, or a constant of Incidence.
   [[nodiscard]] const Simplex& across(Index s) const { return across_[s]; }
+  /// N = 4: fetches the rows of a simplex. Inlined, as GCC omits calls of functions that only fetch.
+  [[gnu::always_inline]] void prefetch(Index s) const {
+    __builtin_prefetch(&simplices_[s]);
+    __builtin_prefetch(&across_[s]);
+  }
   /// Bit i: the facet without vertex i is in no other simplex (border).
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
   /// The same for positions in the simplex of the contour.
@@ -181,23 +145,33 @@ class SweptComplex {
         across_.resize(simplices_.size());
       if (incidence_ == &own_) across = across_.data();
     }
-    for_each_item(simplices_.size(), threads, progress, [&](std::size_t s) {
-      Simplex given;
-      for (int i = 0; i < N; ++i) given[i] = rank_[contour_.simplices()[s][i]];
-      Simplex there;
-      there.fill(kSeveralSimplices);
-      if (across != nullptr) there = across[s];
-      Simplex ranks{}, sorted_across{};
-      for (int i = 0; i < N; ++i) {
-        int place = 0;
-        for (int j = 0; j < N; ++j) place += (j < i ? given[j] <= given[i] : given[j] < given[i]) ? 1 : 0;
-        ranks[place] = given[i];
-        sorted_across[place] = there[i];
+    for_each_part(simplices_.size(), threads, progress, [&](std::size_t from, std::size_t to) {
+      Index lowest = kNone, highest = 0;
+      for (std::size_t s = from; s < to; ++s) {
+        rank_simplex(s, across);
+        lowest = std::min(lowest, simplices_[s].front());
+        highest = std::max(highest, simplices_[s].back());
       }
-      simplices_[s] = ranks;
-      if constexpr (N == 4) across_[s] = sorted_across;
-      if (std::find(there.begin(), there.end(), kNoSimplex) != there.end()) mark_border(s, sorted_across);
+      lower_to(lowest_, lowest);
+      lower_to(from_highest_, times_.size() - 1 - highest);
     });
+  }
+  void rank_simplex(std::size_t s, const Simplex* across) {
+    Simplex given;
+    for (int i = 0; i < N; ++i) given[i] = rank_[contour_.simplices()[s][i]];
+    Simplex there;
+    there.fill(kSeveralSimplices);
+    if (across != nullptr) there = across[s];
+    Simplex ranks{}, sorted_across{};
+    for (int i = 0; i < N; ++i) {
+      int place = 0;
+      for (int j = 0; j < N; ++j) place += (j < i ? given[j] <= given[i] : given[j] < given[i]) ? 1 : 0;
+      ranks[place] = given[i];
+      sorted_across[place] = there[i];
+    }
+    simplices_[s] = ranks;
+    if constexpr (N == 4) across_[s] = sorted_across;
+    if (std::find(there.begin(), there.end(), kNoSimplex) != there.end()) mark_border(s, sorted_across);
   }
   void mark_border(std::size_t s, const Simplex& across) {
     const Simplex& simplex = simplices_[s];
@@ -263,11 +237,8 @@ class SweptComplex {
   }
   static constexpr std::size_t kAhead = 2;  ///< stars
   /// Fetches the rows of simplices that are needed soon; most are in the third level of cache.
-  void prefetch(std::span<const Index> star) const {
-    for (const Index s : star) {
-      __builtin_prefetch(&simplices_[s]);
-      __builtin_prefetch(&across_[s]);
-    }
+  [[gnu::always_inline]] void prefetch(std::span<const Index> star) const {
+    for (const Index s : star) prefetch(s);
   }
   [[nodiscard]] Passage count_cells(Index v) const {
     Passage passage;
@@ -288,6 +259,8 @@ class SweptComplex {
   Buffer<Index> rank_;
   Buffer<double> times_;       ///< by rank
   Buffer<Simplex> simplices_;  ///< by ranks
+  /// Minimum rank of the vertices of simplices, and the number of ranks above the maximum.
+  std::atomic<std::size_t> lowest_ = kNone, from_highest_ = kNone;
   /// N = 4: the simplices across the facet without the vertex at the same place, or constants of Incidence.
   Buffer<Simplex> across_;
   Stars stars_;  ///< empty if the incidence is known

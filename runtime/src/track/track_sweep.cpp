@@ -59,9 +59,12 @@ class Sweeper {
         complex_(contour, incidence, options.work.threads, part_of(options.work.progress, 0.0, kReady)),
         star_(complex_) {
     const std::size_t count = contour.simplices().size();
-    labels_.assign(count, kNone);
+    labels_.resize(count);
+    is_labelled_.assign((count + 63) / 64, 0);
     labels_of_new_.assign(contour.vertex_count(), kNone);
-    seen_.assign(count, 0);
+    seen_.resize(count);
+    for_each_part(count, options.work.threads, {},
+                  [&](std::size_t from, std::size_t to) { std::fill(&seen_[from], &seen_[from] + (to - from), 0u); });
     for (const double time : options.times)
       times_.push_back(contour.is_single() ? static_cast<double>(rounded_at<float>(time)) : rounded_at<double>(time));
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
@@ -105,10 +108,13 @@ class Sweeper {
   // ---- the sweep ----
 
   void visit(Index v) {
+    if (const auto& passage = complex_.passage(v); passage.below != kNone) {
+      tell_all(kPassing);
+      return pass_by(v, passage);
+    }
     const std::span<const Index> cells = complex_.star(v);
     tell_all(1 + cells.size());
     if (cells.empty()) return;
-    if (const auto& passage = complex_.passage(v); passage.below != kNone) return pass_by(v, passage);
     growth_ = 0;
     for (const Index s : cells) {
       const auto& simplex = complex_.simplex(s);
@@ -124,8 +130,7 @@ class Sweeper {
   /// Visits a vertex at which no component begins, ends, merges or splits.
   void pass_by(Index v, const typename SweptComplex<N>::Passage& passage) {
     growth_ = passage.growth;
-    const Index label = labels_[passage.below];
-    const Index set = sets_.find(label != kNone ? label : labels_of_new_[passage.front]);
+    const Index set = sets_.find(is_labelled(passage.below) ? labels_[passage.below] : labels_of_new_[passage.front]);
     pass(v, set, passage.euler);
     if (passage.euler != 0)
       result_.handles.push_back(
@@ -134,7 +139,12 @@ class Sweeper {
 
   /// A member of the set that a cell which exists belongs to.
   [[nodiscard]] Index label_of(Index s) const {
-    return labels_[s] != kNone ? labels_[s] : labels_of_new_[complex_.simplex(s).front()];
+    return is_labelled(s) ? labels_[s] : labels_of_new_[complex_.simplex(s).front()];
+  }
+  [[nodiscard]] bool is_labelled(Index s) const { return (is_labelled_[s / 64] >> s % 64 & 1u) != 0; }
+  void set_label(Index s, Index label) {
+    labels_[s] = label;
+    is_labelled_[s / 64] |= std::uint64_t{1} << s % 64;
   }
 
   /// The sets of the cells below the vertex, without duplicates, sorted by arc.
@@ -251,6 +261,10 @@ class Sweeper {
     std::vector<Index> cells;
     std::size_t next = 0;         ///< not yet searched over edges
     std::size_t next_across = 0;  ///< N = 4: not yet searched across facets; next at least
+    /// N = 4: number of the edges of searched cells, minus that of their triangles, which cross the level. Each is
+    /// counted at one cell.
+    std::int64_t euler = 0;
+    bool is_counted = true;  ///< N = 4: whether no triangle is in more than two tetrahedra; else `euler` is not known
     [[nodiscard]] bool is_done() const { return next == cells.size(); }
   };
 
@@ -291,6 +305,8 @@ class Sweeper {
     for (std::size_t f = 0; f < count; ++f) {
       fronts_[f].cells.clear();
       fronts_[f].next = fronts_[f].next_across = 0;
+      fronts_[f].euler = 0;
+      fronts_[f].is_counted = true;
     }
     front_of_part_.assign(star_.link_size(), kNone);
     Index used = 0;
@@ -310,15 +326,21 @@ class Sweeper {
   /// searches end when they meet.
   bool expand(Front& front, std::size_t number, Index level) {
     if constexpr (N == 4)
-      if (front.next_across < front.cells.size()) return expand_across(front.cells[front.next_across++], number, level);
-    const auto& simplex = complex_.simplex(front.cells[front.next++]);
-    bool joined = false;
-    for (const Index a : simplex) {
-      if (a > level) continue;
-      for (const Index b : simplex)
-        if (b > level) joined = expand_over(a, b, number) || joined;
-    }
-    return joined;
+      if (front.next_across < front.cells.size()) {
+        prefetch_across(front);
+        return expand_across(front.cells[front.next_across++], number, level);
+      }
+    return expand_over(front.cells[front.next++], number, level);
+  }
+
+  /// Fetches rows that the next searches across triangles read; most are not in a cache.
+  [[gnu::always_inline]] void prefetch_across(const Front& front) const {
+    constexpr std::size_t kRows = 8, kNeighbours = 3;
+    const std::size_t next = front.next_across;
+    if (next + kRows < front.cells.size()) complex_.prefetch(front.cells[next + kRows]);
+    if (next + kNeighbours < front.cells.size())
+      for (const Index t : complex_.across(front.cells[next + kNeighbours]))
+        if (t < kSeveralSimplices) __builtin_prefetch(&seen_[t]);
   }
 
   bool expand_across(Index s, std::size_t front, Index level) {
@@ -329,22 +351,50 @@ class Sweeper {
     tell_all(N);
     for (int i = 0; i < N; ++i) {
       const bool crosses = below - (i < below ? 1 : 0) > 0 && N - below - (i < below ? 0 : 1) > 0;
+      if (!crosses) continue;
       const Index t = complex_.across(s)[i];
-      if (crosses && t < kSeveralSimplices) joined = meet(t, front) || joined;
+      if (t < kSeveralSimplices) joined = meet(t, front) || joined;
+      fronts_[front].euler -= s < t ? 1 : 0;  // also if there is no other tetrahedron
+      if (t == kSeveralSimplices) fronts_[front].is_counted = false;
     }
     return joined;
   }
 
-  bool expand_over(Index a, Index b, std::size_t front) {
-    if (complex_.star(b).size() < complex_.star(a).size()) std::swap(a, b);
+  /// Searches over the edges of a cell that cross the level: for each vertex below, for each vertex above.
+  bool expand_over(Index s, std::size_t front, Index level) {
+    const auto& simplex = complex_.simplex(s);
+    const std::size_t below =
+        static_cast<std::size_t>(std::count_if(simplex.begin(), simplex.end(), [&](Index u) { return u <= level; }));
+    const std::span<const Index> lower = std::span(simplex).first(below);
+    const std::span<const Index> upper = std::span(simplex).subspan(below);
+    if (upper.size() == 1) return expand_around(s, upper[0], lower, front);
     bool joined = false;
-    tell_all(complex_.star(a).size());
+    for (const Index a : lower) joined = expand_around(s, a, upper, front) || joined;
+    return joined;
+  }
+
+  /// Searches over the edges from a vertex of the cell s to others, in their order. One pass over the star finds the
+  /// cells around all of these edges.
+  bool expand_around(Index s, Index centre, std::span<const Index> others, std::size_t front) {
+    const std::span<const Index> star = complex_.star(centre);
+    tell_all(star.size());
+    around_.clear();
+    for (const Index t : star) {
+      unsigned met = 0;  // found without branches
+      for (const Index u : complex_.simplex(t))
+        for (std::size_t i = 0; i < others.size(); ++i) met |= u == others[i] ? 1u << i : 0u;
+      if (met != 0) around_.emplace_back(t, met);
+    }
     const auto own = first_seen_ + static_cast<std::uint32_t>(front);
-    for (const Index t : complex_.star(a)) {
-      if (seen_[t] == own) continue;
-      bool has_b = false;  // found without branches
-      for (const Index u : complex_.simplex(t)) has_b = has_b | (u == b);
-      if (has_b) joined = meet(t, front) || joined;
+    bool joined = false;
+    for (unsigned i = 0; i < others.size(); ++i) {
+      bool is_first = true;
+      for (const auto& [t, met] : around_) {
+        if ((met >> i & 1u) == 0) continue;
+        fronts_[front].euler += is_first && t == s ? 1 : 0;  // the star is ascending
+        is_first = false;
+        if (seen_[t] != own) joined = meet(t, front) || joined;
+      }
     }
     return joined;
   }
@@ -386,23 +436,37 @@ class Sweeper {
 
   /// Moves the cells of an exhausted group from the old set to a new one.
   Index part_off(Index group, std::size_t count, Index old_set, Index level) {
-    faces_.clear();
     Component part;
     const Index set = new_set({});
+    bool is_counted = N == 4;
     for (Index f = 0; f < count; ++f) {
       if (groups_.find(f) != group) continue;
       for (const Index s : fronts_[f].cells) {
         tell_all(1);
-        labels_[s] = set;
-        add_cell_faces(s, level);
+        set_label(s, set);
       }
       part.size += fronts_[f].cells.size();
+      part.euler += fronts_[f].euler;
+      is_counted = is_counted && fronts_[f].is_counted;
     }
-    part.euler = -faces_.euler();  // a k-face of the complex is a (k-1)-face of the level set
+    // a k-face of the complex is a (k-1)-face of the level set
+    if (is_counted)
+      part.euler += static_cast<std::int64_t>(part.size);
+    else
+      part.euler = -euler_of_group(group, count, level);
     components_[old_set].size -= part.size;
     components_[old_set].euler -= part.euler;
     components_[set] = part;
     return set;
+  }
+
+  /// Alternating number of the faces of a group's cells that cross the level.
+  std::int64_t euler_of_group(Index group, std::size_t count, Index level) {
+    faces_.clear();
+    for (Index f = 0; f < count; ++f)
+      if (groups_.find(f) == group)
+        for (const Index s : fronts_[f].cells) add_cell_faces(s, level);
+    return faces_.euler();
   }
 
   void add_cell_faces(Index s, Index level) {
@@ -513,6 +577,7 @@ class Sweeper {
   }
 
   static constexpr unsigned kAll = (1u << N) - 1;
+  static constexpr std::size_t kPassing = 8;  ///< the work of passing a vertex, in simplices
   static constexpr std::size_t kTellEvery = std::size_t{1} << 16;
   static constexpr double kReady = 0.2;  ///< progress at the start of the sweep
 
@@ -525,19 +590,22 @@ class Sweeper {
   SweepResult result_;
   DisjointSets sets_;
   std::vector<Component> components_;  ///< by set, valid at its root
-  /// #S: a member of the set that the simplex's cell belongs to; kNone while it is that of the cell's lowest vertex.
-  std::vector<Index> labels_;
-  std::vector<Index> labels_of_new_;  ///< by vertex: a member of the set that the cells above it began in
+  /// #S: a member of the set that the simplex's cell belongs to, if it is labelled. Else it belongs to the set of its
+  /// lowest vertex. Few cells are labelled: only their labels take memory.
+  Buffer<Index> labels_;
+  std::vector<std::uint64_t> is_labelled_;  ///< by simplex, one bit
+  std::vector<Index> labels_of_new_;        ///< by vertex: a member of the set that the cells above it began in
   std::vector<Index> incoming_;
   std::vector<Index> started_;  ///< sets whose arcs started at the current time
   std::uint64_t time_ = 0;      ///< number of distinct times so far
   std::int64_t growth_ = 0;     ///< cells that begin at the current vertex minus those that end
 
   std::vector<Front> fronts_;
-  DisjointSets groups_;              ///< of fronts
-  std::vector<std::uint32_t> seen_;  ///< #S: first_seen_ + the front that has the cell
+  DisjointSets groups_;         ///< of fronts
+  Buffer<std::uint32_t> seen_;  ///< #S: first_seen_ + the front that has the cell
   std::uint32_t first_seen_ = 1;
   std::vector<Index> front_of_part_;
+  std::vector<std::pair<Index, unsigned>> around_;  ///< cells of a star, and the edges that they are around
   Faces<N> faces_;
 
   double first_ = 0.0;         ///< minimum time of a vertex, if there are samples
