@@ -3,18 +3,21 @@
 // Benchmarks of seed sets: number of seeds by method, lower bounds, time and memory, and the cost of picking a
 // component. Writes the tables of docs/seed-sets.md in Markdown.
 //
-//   seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--scaling] IMAGE...
+//   seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--threads N]
+//               [--scaling] IMAGE...
 //
 // Images can be generated: "metaballs:N" has N^3 float samples, "metaballs:N^D" D dimensions, "metaballs:N@uint8" 8
 // bits. Instead of "metaballs": "gyroid", "noise", and the other names in bench/fields.hpp; "sines" (wavelength about
 // 40 samples for any N), "smooth-noise" (long waves and a tenth of noise), and "plateaus" (the same waves in 20 steps).
 // `--orders`: minimum and maximum number of seeds over all scan orders. `--picks`: number of components to pick, each
-// at a random point and an isovalue of the middle half. `--scaling`: all images in one table, without bounds. One
-// thread; CPU times, the minimum of `--runs`.
+// at a random point and an isovalue of the middle half. `--scaling`: all images in one table, without bounds. Times
+// are the minimum of `--runs`: CPU times of one thread, or, with `--threads` other than 1, wall-clock times of the
+// searches with so many threads (0: all of the machine).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -42,6 +45,7 @@ struct Arguments {
   bool orders = false;
   int picks = 0;
   int runs = 1;
+  unsigned threads = 1;
   bool scaling = false;
   std::vector<std::string> images;
 };
@@ -70,7 +74,11 @@ struct Search {
   double peak_bytes = 0;  ///< in addition to memory in use before
 };
 
-/// Runs every requested search on one thread and prints each.
+double passed_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Runs every requested search and prints each.
 template <Value T, int N, class Print>
 void for_each_search(const Image<T, N>& image, const Arguments& arguments, const Print& print) {
   for (const Neighbourhood neighbourhood : arguments.neighbourhoods)
@@ -78,11 +86,13 @@ void for_each_search(const Image<T, N>& image, const Arguments& arguments, const
       Search search;
       search.options.method = method;
       search.options.neighbourhood = neighbourhood;
-      search.options.work.threads = 1;
+      search.options.work.threads = arguments.threads;
       give_back_memory();  // memory of earlier images
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
-      search.seconds = least_seconds([&] { search.found = find_seeds(image, search.options); }, arguments.runs);
+      search.seconds = least_seconds_by(
+          arguments.threads == 1 ? worked_seconds : passed_seconds,
+          [&] { search.found = find_seeds(image, search.options); }, arguments.runs);
       const std::uint64_t peak = memory_bytes("VmHWM");
       search.peak_bytes = static_cast<double>(peak - std::min(before, peak));
       print(search);
@@ -269,8 +279,8 @@ std::vector<Each> choose(const std::string& option, const std::string& list, con
 }
 
 constexpr const char* kUsage =
-    "seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--scaling] "
-    "IMAGE|FIELD:N[^D][@TYPE] ...";
+    "seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--threads "
+    "N] [--scaling] IMAGE|FIELD:N[^D][@TYPE] ...";
 
 int run(int argc, char** argv) {
   if (tells_usage(argc, argv, kUsage)) return 0;
@@ -289,6 +299,8 @@ int run(int argc, char** argv) {
       arguments.picks = whole_number(argument, argv[++i], 0, 1000000);
     else if (argument == "--runs" && more)
       arguments.runs = whole_number(argument, argv[++i], 1, 1000000);
+    else if (argument == "--threads" && more)
+      arguments.threads = whole_number<unsigned>(argument, argv[++i], 0, 1024);
     else if (argument == "--scaling")
       arguments.scaling = true;
     else if (argument.rfind("--", 0) == 0)
