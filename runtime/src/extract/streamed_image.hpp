@@ -8,6 +8,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "kernel/stream.hpp"
 #include "periodic/periodic_ring.hpp"
