@@ -251,6 +251,39 @@ TEST_F(SeriesCommand, InTheOrderOfAShellIsRefusedUnlessThatIsSaid) {
   EXPECT_NE(read_mesh(path("whole.vtkhdf")).coordinates, read_mesh(path("series.vtkhdf")).coordinates);
 }
 
+/// A tetrahedron with these values at its points.
+std::string tetrahedron_file(const std::string& values) {
+  const std::string array = "<DataArray format=\"ascii\" type=";
+  return "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
+         "NumberOfCells=\"1\"><Points>" +
+         array + "\"Float64\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>" + array +
+         "\"Int64\" Name=\"connectivity\">0 1 2 3</DataArray>" + array + "\"Int64\" Name=\"offsets\">4</DataArray>" +
+         array + "\"UInt8\" Name=\"types\">10</DataArray></Cells><PointData>" + array + "\"Float64\" Name=\"f\">" +
+         values + "</DataArray></PointData></Piece></UnstructuredGrid></VTKFile>";
+}
+
+TEST_F(SeriesCommand, OfMeshesIsSortedLikeOneOfImages) {
+  const std::string ten = write("step_10.vtu", tetrahedron_file("4 -1 -1 -1")),
+                    two = write("step_2.vtu", tetrahedron_file("1 -1 -1 -2")),
+                    nine = write("step_9.vtu", tetrahedron_file("-1 2 -1 -1"));
+  const auto contour = [&](std::vector<std::string> files, const std::vector<std::string>& more, const char* to) {
+    files.insert(files.begin(), "contour");
+    files.insert(files.end(), {"--iso", "0", "-o", path(to)});
+    files.insert(files.end(), more.begin(), more.end());
+    return files;
+  };
+  run(contour({two, nine, ten}, {"--time-step", "0.5"}, "ordered.vtkhdf"));
+  run(contour({ten, two, nine}, {"--time-step", "0.5", "--sort", "name"}, "by_name.vtkhdf"));
+  expect_same_mesh("ordered.vtkhdf", "by_name.vtkhdf");
+  run(contour({ten, two, nine}, {"--times", "1,0,0.5", "--sort", "time"}, "by_time.vtkhdf"));
+  expect_same_mesh("ordered.vtkhdf", "by_time.vtkhdf");
+  expect_refused(2, contour({ten, two, nine}, {}, "out.vtkhdf"), {"as shells list names", "--sort name"});
+  run(contour({ten, two, nine}, {"--sort", "given"}, "given.vtkhdf"));
+  expect_refused(2, contour({ten, two}, {"--sort", "time", "--time-step", "1"}, "out.vtkhdf"), {"time step"});
+  expect_refused(2, contour({ten}, {"--sort", "name"}, "out.vtkhdf"), {"one mesh"});
+  expect_refused(2, {"info", ten, "--sort", "name"}, {"--sort"});
+}
+
 TEST_F(SeriesCommand, LiesAtTheTimesThatAreGiven) {
   const nlohmann::json step = run(of_frames({"info", "--time-step", "0.25", "--time-unit", "s"}, {}))["axes"][3];
   EXPECT_EQ(step["step"], 0.25);

@@ -55,6 +55,12 @@ std::vector<FixedIndex> parse_fixed(const std::vector<std::string>& texts) {
 constexpr SeriesWords kWords{"--times",     "--time-step", "--time-unit", "--sort",
                              "--sort time", "--sort name", "--sort given"};
 
+/// The order of a value of --sort.
+SeriesOrder order_of(const std::string& sort) {
+  if (sort == "name") return SeriesOrder::by_name;
+  return sort == "time" ? SeriesOrder::coordinate : SeriesOrder::given;
+}
+
 std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& files) {
   return {files.begin(), files.end()};
 }
@@ -197,10 +203,7 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
   if (is_given("--times")) request.times = parse_numbers("--times", times_);
   if (is_given("--time-step")) request.time_step = parse_finite("--time-step", time_step_);
   if (is_given("--time-unit")) request.time_unit = time_unit_;
-  if (is_given("--sort"))
-    request.sort = sort_ == "name"   ? SeriesOrder::by_name
-                   : sort_ == "time" ? SeriesOrder::coordinate
-                                     : SeriesOrder::given;
+  if (is_given("--sort")) request.sort = order_of(sort_);
   request.fixed = parse_fixed(fixed_);
   request.allow_outside_paths = allow_outside_paths_;
   if (raw()) request.raw = raw_layout();
@@ -276,8 +279,11 @@ OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const
   return result;
 }
 
-CellMeshOptions ImageOptions::cell_mesh_options(const Progress& progress) const {
+CellMeshOptions ImageOptions::cell_mesh_options(const Progress& progress, const std::vector<std::string>& files) const {
   CellMeshOptions options;
+  if (!sort_.empty()) options.order = order_of(sort_);
+  // several files: only the order of a shell is an error of the empty request
+  if (sort_.empty() && files.size() > 1) (void)tegl::series_options(paths_of(files), {}, kWords);
   options.variable = variable_;
   options.cells_to_points = cells_to_points_;
   options.allow_outside_paths = allow_outside_paths_;

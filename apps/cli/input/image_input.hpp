@@ -60,8 +60,10 @@ class ImageOptions {
   /// Opens the files as one image to be read layer by layer.
   [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
 
-  /// The options to read FILE as a mesh: --var, --times, --time-step, --cells-to-points.
-  [[nodiscard]] CellMeshOptions cell_mesh_options(const Progress& progress) const;
+  /// The options to read FILE as a mesh: --var, --times, --time-step, --sort, --cells-to-points. Errors:
+  /// InvalidArgument, also for several files in the order of a shell without --sort.
+  [[nodiscard]] CellMeshOptions cell_mesh_options(const Progress& progress,
+                                                  const std::vector<std::string>& files = {}) const;
 
   /// The variables of the files, as from list_image_variables; empty for raw files.
   [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;

@@ -21,7 +21,8 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
                               const std::vector<std::string>& others) {
   std::vector<std::string> refused = others;
   for (const std::string& option : images.given())
-    if (option != "--var" && option != "--times" && option != "--time-step" && option != "--cells-to-points")
+    if (option != "--var" && option != "--times" && option != "--time-step" && option != "--sort" &&
+        option != "--cells-to-points")
       refused.push_back(option);
   if (!refused.empty())
     throw Error(ErrorCode::InvalidArgument,
@@ -39,7 +40,7 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
 }
 
 MeshInput read_cells(const std::vector<std::string>& files, const ImageOptions& images, const Progress& progress) {
-  const CellMeshOptions options = images.cell_mesh_options(progress);
+  const CellMeshOptions options = images.cell_mesh_options(progress, files);
   const auto read = [&] {
     try {
       return read_cell_mesh(std::vector<std::filesystem::path>(files.begin(), files.end()), options);

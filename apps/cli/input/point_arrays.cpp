@@ -49,6 +49,7 @@ std::vector<PointArray> read_point_arrays(const AttributeOptions& attributes, co
     if (!is_input) {
       options.times.clear();
       options.time_step.reset();
+      options.order = SeriesOrder::given;
     }
     std::vector<std::filesystem::path> paths = {from.file};
     if (is_input) paths.assign(files.begin(), files.end());

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -261,6 +262,60 @@ FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const P
   return is_point_table(path) ? read_table(path, options, progress) : read_vtk(path, options, progress);
 }
 
+/// Puts items of a list into an order.
+template <class Item>
+void reorder(std::vector<Item>& list, const std::vector<std::size_t>& order) {
+  std::vector<Item> sorted;
+  for (const std::size_t i : order) sorted.push_back(std::move(list[i]));
+  list = std::move(sorted);
+}
+
+/// Sorts files and given times, before files are read. Errors: InvalidArgument.
+void sort_files(CellMeshOptions& options, std::vector<fs::path>& files) {
+  if (options.order == SeriesOrder::given) return;
+  if (files.size() == 1)
+    fail(ErrorCode::InvalidArgument, files[0], "is one mesh; expected several for an order of files (--sort)");
+  if (options.order == SeriesOrder::coordinate && options.time_step)
+    throw Error(ErrorCode::InvalidArgument,
+                "files in the order of their times and a time step, which follows the order; expected times");
+  if (!options.times.empty() && options.times.size() != files.size()) return;  // an error of times_of
+  std::vector<std::size_t> order(files.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (options.order == SeriesOrder::by_name)
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return natural_less(files[a].native(), files[b].native()); });
+  else if (!options.times.empty())
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return options.times[a] < options.times[b]; });
+  reorder(files, order);
+  if (!options.times.empty()) reorder(options.times, order);
+}
+
+/// Sorts values, and points that move, by the times in the files, if there are no given times. Errors: InvalidArgument
+/// (a file without a time).
+void sort_by_own_times(const CellMeshOptions& options, std::vector<std::optional<double>>& own, CellMesh& mesh) {
+  if (options.order != SeriesOrder::coordinate || !options.times.empty()) return;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (!own[i])
+      fail(ErrorCode::InvalidArgument, mesh.files[i], "has no time; expected one for the order by times, or times");
+  std::vector<std::size_t> order(own.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return *own[a] < *own[b]; });
+  const auto move_blocks = [&](std::vector<double>& list) {
+    const auto size = static_cast<std::ptrdiff_t>(list.size() / order.size());
+    std::vector<double> sorted;
+    for (const std::size_t i : order) {
+      const auto first = list.begin() + static_cast<std::ptrdiff_t>(i) * size;
+      sorted.insert(sorted.end(), first, first + size);
+    }
+    list = std::move(sorted);
+  };
+  move_blocks(mesh.values);
+  if (mesh.points_move) move_blocks(mesh.points);
+  reorder(mesh.files, order);
+  reorder(own, order);
+}
+
 /// The times of files; empty for a single file without one.
 std::vector<double> times_of(const std::vector<std::optional<double>>& own, const CellMeshOptions& options,
                              const std::vector<fs::path>& files) {
@@ -339,6 +394,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
     }
     if (options.times.empty() && !options.time_step && times.size() > 1) options.times = std::move(times);
   }
+  sort_files(options, mesh.files);
   std::vector<std::optional<double>> own_times;
   FileMesh first;
   for (std::size_t i = 0; i < mesh.files.size(); ++i) {
@@ -385,6 +441,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
   mesh.variable = std::move(first.variable);
   mesh.remarks = std::move(first.remarks);
   mesh.axis_names = std::move(first.axis_names);
+  sort_by_own_times(options, own_times, mesh);
   mesh.times = times_of(own_times, options, mesh.files);
   return mesh;
 }

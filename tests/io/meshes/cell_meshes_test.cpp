@@ -274,6 +274,68 @@ TEST(CellMesh, FilesOfASeriesMustMatch) {
   EXPECT_THAT(read_cell_mesh(same, options).times, testing::ElementsAre(0.0, 0.25));
 }
 
+TEST(CellMesh, FilesOfASeriesHaveTheOrderOfNamesOrTimes) {
+  TempDir dir;
+  const auto write = [&](const std::string& name, int first) {
+    write_file(dir / name, vtu(kPoints, kCorners, "4 8", "10 10", on_points(std::to_string(first) + " 1 2 3 4")));
+  };
+  write("step_10.vtu", 10);
+  write("step_2.vtu", 2);
+  write("step_9.vtu", 9);
+  const std::vector<fs::path> listed = {dir / "step_10.vtu", dir / "step_2.vtu", dir / "step_9.vtu"};
+  const auto first_values = [](const CellMesh& mesh) {
+    return std::vector<double>{mesh.values[0], mesh.values[5], mesh.values[10]};
+  };
+  CellMeshOptions options;
+  EXPECT_THAT(first_values(read_cell_mesh(listed, options)), testing::ElementsAre(10, 2, 9));
+  options.order = SeriesOrder::by_name;
+  options.time_step = 0.5;
+  CellMesh mesh = read_cell_mesh(listed, options);
+  EXPECT_THAT(first_values(mesh), testing::ElementsAre(2, 9, 10));
+  EXPECT_THAT(mesh.times, testing::ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_EQ(mesh.files[0], listed[1]);
+  options.order = SeriesOrder::coordinate;
+  expect_error(ErrorCode::InvalidArgument, {"time step"}, [&] { read_cell_mesh(listed, options); });
+  options.time_step.reset();
+  expect_error(ErrorCode::InvalidArgument, {"step_10.vtu", "no time"}, [&] { read_cell_mesh(listed, options); });
+  options.times = {2.0, 3.0, 1.0};  // in the order of the list
+  mesh = read_cell_mesh(listed, options);
+  EXPECT_THAT(first_values(mesh), testing::ElementsAre(9, 10, 2));
+  EXPECT_THAT(mesh.times, testing::ElementsAre(1.0, 2.0, 3.0));
+  options.order = SeriesOrder::by_name;
+  expect_error(ErrorCode::InvalidArgument, {"ascending"}, [&] { read_cell_mesh(listed, options); });
+  options.times.clear();
+  expect_error(ErrorCode::InvalidArgument, {"one mesh"}, [&] { read(listed[0], options); });
+}
+
+TEST(CellMesh, FilesAreSortedByTheirOwnTimes) {
+  TempDir dir;
+  const auto write = [&](const std::string& name, double time, const std::string& points) {
+    std::string text = vtu(points, kCorners, "4 8", "10 10", on_points(std::to_string(time) + " 1 2 3 4"));
+    text.insert(text.find("<UnstructuredGrid>") + 18,
+                "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" +
+                    std::to_string(time) + "</DataArray></FieldData>");
+    write_file(dir / name, text);
+  };
+  const std::string still(kPoints), moved = "5" + still.substr(1);
+  write("a.vtu", 3.0, still);
+  write("b.vtu", 1.0, moved);
+  write("c.vtu", 2.0, still);
+  const std::vector<fs::path> listed = {dir / "a.vtu", dir / "b.vtu", dir / "c.vtu"};
+  expect_error(ErrorCode::InvalidArgument, {"ascending"}, [&] { read_cell_mesh(listed); });
+  CellMeshOptions options;
+  options.order = SeriesOrder::coordinate;
+  const CellMesh mesh = read_cell_mesh(listed, options);
+  EXPECT_THAT(mesh.times, testing::ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_EQ(mesh.files[0], listed[1]);
+  ASSERT_TRUE(mesh.points_move);
+  const std::size_t layer = mesh.points.size() / 3;
+  EXPECT_EQ(mesh.points[0], 5.0);
+  EXPECT_NE(mesh.points[layer], 5.0);
+  EXPECT_EQ(mesh.values[0], 1.0);
+  EXPECT_EQ(mesh.values[5], 2.0);
+}
+
 TEST(CellMesh, OptionsThatDoNotFitAreErrors) {
   TempDir dir;
   write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "tegl/complex.hpp"
+#include "tegl/io/series.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl {
@@ -50,11 +51,14 @@ struct CellMeshOptions {
   /// Values of cells become values of points: the mean of the cells at the point, as by vtkCellDataToPointData. An
   /// error for values of points.
   bool cells_to_points = false;
-  /// One per mesh, ascending; empty: those in the files, else 0, 1, 2, ... For several meshes only.
+  /// One per mesh, in the order of the list; empty: those in the files, else 0, 1, 2, ... For several meshes only.
   std::vector<double> times = {};
-  std::optional<double> time_step = {};  ///< in place of times: 0, this, twice this, ...
-  bool allow_outside_paths = false;      ///< a .pvd file may name files outside of its folder
-  WorkOptions work = {};                 ///< progress; files are read by one thread
+  std::optional<double> time_step = {};  ///< in place of times: 0, this, twice this, ... in the order of the files
+  /// Order of several files, also of those that a .pvd file names. Given times stay with their files; by `coordinate`,
+  /// files have the order of the given times or of their own. In the resulting order, times must ascend.
+  SeriesOrder order = SeriesOrder::given;
+  bool allow_outside_paths = false;  ///< a .pvd file may name files outside of its folder
+  WorkOptions work = {};             ///< progress; files are read by one thread
 };
 
 /// Whether a file is a mesh of cells: by extension (.vtu, .vts, .csv); a .pvd file by the files that it names. Errors:
