@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numeric>
 #include <random>
 #include <set>
@@ -17,8 +15,6 @@
 #include <tuple>
 #include <utility>
 #include <vector>
-
-#include <Eigen/LU>
 
 #include "compare.hpp"
 #include "complex/cell_groups.hpp"
@@ -31,7 +27,6 @@
 #include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
-#include "tegl/tile/facets.hpp"
 
 namespace tegl {
 namespace {
@@ -64,21 +59,6 @@ MeshData<N> renumbered(MeshData<N> mesh, std::vector<double>& values, std::uint6
   return mesh;
 }
 
-/// Adds a cell with the reference corners of its shape, numbered at random. Returns the number of each corner.
-template <int N>
-std::vector<Index> add_corners(const detail::CellKind& kind, std::mt19937_64& random,
-                               std::vector<std::array<double, N>>& points, std::vector<Index>& cells) {
-  const tables::CellTable& table = detail::table_of(kind.shape);
-  std::vector<Index> number(table.corner_count);
-  std::iota(number.begin(), number.end(), static_cast<Index>(points.size()));
-  std::shuffle(number.begin(), number.end(), random);
-  points.resize(points.size() + number.size());
-  for (std::size_t v = 0; v < number.size(); ++v)
-    for (std::size_t a = 0; a < N; ++a) points[number[v]][a] = table.corners[N * v + a];
-  for (std::size_t i = 0; i < number.size(); ++i) cells.push_back(number[detail::table_corner(kind, i)]);
-  return number;
-}
-
 /// Cells that do not touch, one for each `step`-th signature, with their corners numbered at random.
 Complex<4> cells_by_signature(CellType type, unsigned step, std::uint64_t seed) {
   const detail::CellKind& kind = *detail::find_kind(type);
@@ -102,212 +82,6 @@ Complex<4> cells_by_signature(CellType type, unsigned step, std::uint64_t seed) 
   Complex<4> complex(points, type, cells);
   complex.set_values(values);
   return complex;
-}
-
-/// The facets of a shape's convex hull as sets of corners, found by trying all hyperplanes through corners.
-template <int N>
-std::vector<tile::Signature> hull_facets(const tables::CellTable& table) {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  const auto corner = [&](unsigned v) {
-    return Vector(Eigen::Map<const Eigen::Matrix<std::int8_t, N, 1>>(table.corners + N * v).template cast<double>());
-  };
-  std::set<tile::Signature> facets;
-  for (unsigned chosen = 0; chosen < 1u << table.corner_count; ++chosen) {
-    if (std::popcount(chosen) != N) continue;
-    const auto first = static_cast<unsigned>(std::countr_zero(chosen));
-    Eigen::Matrix<double, N - 1, N> across;
-    int row = 0;
-    for (unsigned rest = chosen & (chosen - 1); rest != 0; rest &= rest - 1)
-      across.row(row++) = corner(static_cast<unsigned>(std::countr_zero(rest))) - corner(first);
-    const Eigen::FullPivLU<Eigen::Matrix<double, N - 1, N>> lu(across);
-    if (lu.rank() < N - 1) continue;
-    const Vector normal = lu.kernel().col(0).normalized();
-    tile::Signature on = 0;
-    bool above = false, below = false;
-    for (unsigned v = 0; v < table.corner_count; ++v) {
-      const double height = normal.dot(corner(v) - corner(first));
-      if (std::abs(height) < 1e-9) on |= tile::Signature{1} << v;
-      above = above || height > 1e-9;
-      below = below || height < -1e-9;
-    }
-    if (!(above && below)) facets.insert(on);
-  }
-  return {facets.begin(), facets.end()};
-}
-
-/// The contour of a cell: simplices by any numbers of their vertices, and for each number the edge (as a set of two
-/// corners) that the vertex is on, or 0.
-template <int N>
-struct CellPieces {
-  std::vector<std::array<std::size_t, N>> simplices = {};
-  std::map<std::size_t, tile::Signature> edge_of = {};
-
-  /// The simplices by the edges of their vertices, ascending; the last number is 1 for an odd order of the vertices, if
-  /// all are on edges. `flip`: 1 for the other orientation.
-  [[nodiscard]] std::multiset<std::array<tile::Signature, N + 1>> by_edges(unsigned flip) const {
-    std::multiset<std::array<tile::Signature, N + 1>> result;
-    for (const auto& simplex : simplices) {
-      std::array<tile::Signature, N + 1> edges{};
-      unsigned inversions = flip;
-      for (int i = 0; i < N; ++i) {
-        edges[i] = edge_of.at(simplex[i]);
-        for (int j = 0; j < i; ++j) inversions += edges[j] > edges[i] ? 1 : 0;
-      }
-      std::sort(edges.begin(), edges.end() - 1);
-      edges[N] = edges[0] == 0 ? 0 : inversions % 2;
-      result.insert(edges);
-    }
-    return result;
-  }
-  /// The boundary's simplices by the edges of their vertices, ascending, and the Euler characteristic.
-  [[nodiscard]] std::pair<std::multiset<std::vector<tile::Signature>>, int> boundary_and_euler() const {
-    std::map<std::vector<std::size_t>, int> faces;
-    for (const auto& simplex : simplices)
-      for (unsigned subset = 1; subset < 1u << N; ++subset) {
-        std::vector<std::size_t> face;
-        for (unsigned i = 0; i < N; ++i)
-          if ((subset >> i & 1u) != 0) face.push_back(simplex[i]);
-        std::sort(face.begin(), face.end());
-        ++faces[face];
-      }
-    std::pair<std::multiset<std::vector<tile::Signature>>, int> result;
-    for (const auto& [face, times] : faces) {
-      result.second += face.size() % 2 == 1 ? 1 : -1;
-      if (face.size() != N - 1 || times != 1) continue;
-      std::vector<tile::Signature> edges;
-      for (const std::size_t v : face) edges.push_back(edge_of.at(v));
-      std::sort(edges.begin(), edges.end());
-      result.first.insert(edges);
-    }
-    return result;
-  }
-};
-
-/// The contour of a cell by the general engine.
-template <int N>
-CellPieces<N> pieces_of(const tile::TileFacets& built, const std::vector<tile::Face>& faces) {
-  CellPieces<N> pieces;
-  for (std::size_t v = 0; v < built.vertices.size(); ++v)
-    pieces.edge_of[v] = built.vertices[v].kind == tile::VertexKind::edge ? faces[built.vertices[v].face].corners : 0;
-  for (const tile::Facet& facet : built.facets)
-    for (const auto& simplex : facet.simplices) {
-      pieces.simplices.emplace_back();
-      std::copy_n(simplex.begin(), N, pieces.simplices.back().begin());
-    }
-  return pieces;
-}
-
-/// Cells of one type with random signatures, `kApart` apart along the first axis; values are 1 and -1, so that vertices
-/// on edges are midpoints.
-template <int N>
-struct RandomCells {
-  static constexpr double kApart = 8;
-
-  RandomCells(const detail::CellKind& kind, std::size_t count, std::uint64_t seed) {
-    const tables::CellTable& table = detail::table_of(kind.shape);
-    const std::size_t corners = table.corner_count;
-    std::mt19937_64 random(seed);
-    std::vector<std::array<double, N>> points;
-    std::vector<double> values;
-    std::vector<Index> cells;
-    for (std::size_t c = 0; c < count; ++c) {
-      signatures.push_back(random() % (tile::Signature{1} << corners));
-      const std::vector<Index> number = add_corners<N>(kind, random, points, cells);
-      values.resize(points.size());
-      for (std::size_t v = 0; v < corners; ++v) {
-        points[number[v]][0] += kApart * static_cast<double>(c);
-        values[number[v]] = (signatures[c] >> v & 1u) != 0 ? 1.0 : -1.0;
-      }
-    }
-    complex = Complex<N>(points, kind.type, cells);
-    complex.set_values(values);
-  }
-
-  std::vector<tile::Signature> signatures;
-  Complex<N> complex{{}, std::span<const CellType>(), {}};
-};
-
-/// The contour of each of random cells. `faces`: of their shape.
-template <int N>
-std::vector<CellPieces<N>> pieces_of(const Contour<N, double>& contour, const tables::CellTable& table,
-                                     const std::vector<tile::Face>& faces, std::size_t count) {
-  std::map<std::array<double, N>, tile::Signature> middles;
-  for (const tile::Face& face : faces) {
-    if (face.dim != 1) continue;
-    std::array<double, N> middle{};
-    for (std::size_t v = 0; v < table.corner_count; ++v)
-      for (std::size_t a = 0; a < N; ++a)
-        middle[a] += (face.corners >> v & 1u) != 0 ? table.corners[N * v + a] / 2.0 : 0.0;
-    middles[middle] = face.corners;
-  }
-  std::vector<CellPieces<N>> of_cell(count);
-  constexpr double kApart = RandomCells<N>::kApart;
-  const auto cell_of = [&](std::size_t v) { return static_cast<std::size_t>((contour.vertices[v][0] + 2) / kApart); };
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
-    const std::size_t c = cell_of(v);
-    auto place = contour.vertices[v];
-    place[0] -= kApart * static_cast<double>(c);
-    const auto found = middles.find(place);
-    of_cell[c].edge_of[v] = found == middles.end() ? 0 : found->second;
-  }
-  for (const auto& simplex : contour.simplices) {
-    CellPieces<N>& pieces = of_cell[cell_of(simplex[0])];
-    pieces.simplices.emplace_back();
-    std::copy(simplex.begin(), simplex.end(), pieces.simplices.back().begin());
-  }
-  return of_cell;
-}
-
-/// The contours of random cells that do not touch, and of each cell by the general engine.
-template <int N>
-void expect_contours_of_the_engine(CellType type, std::size_t count, std::uint64_t seed) {
-  SCOPED_TRACE(name_of(type));
-  const detail::CellKind& kind = *detail::find_kind(type);
-  const tables::CellTable& table = detail::table_of(kind.shape);
-  const RandomCells<N> cells(kind, count, seed);
-  tile::FacetBuilder engine(tile::FaceLattice(N, hull_facets<N>(table)));
-  const std::vector<tile::Face>& faces = engine.lattice().faces();
-  for (const Ambiguity rule : kBoth) {
-    ExtractOptions options;
-    options.triangulation = Triangulation::barycentric;
-    options.ambiguity = rule;
-    const auto of_cell = pieces_of<N>(extract<double>(cells.complex, 0.0, options), table, faces, count);
-    std::array<std::size_t, 2> different{};  // by orientation: that of the lattice of faces has no coordinates
-    std::size_t plain = 0;
-    for (std::size_t c = 0; c < count; ++c) {
-      // by definition: one vertex on each edge whose ends are on different sides, and on no other edge
-      std::multiset<tile::Signature> expected, crossed;
-      for (const tile::Face& face : faces)
-        if (face.dim == 1 && std::popcount(face.corners & cells.signatures[c]) == 1) expected.insert(face.corners);
-      for (const auto& [v, edge] : of_cell[c].edge_of)
-        if (edge != 0) crossed.insert(edge);
-      EXPECT_EQ(expected, crossed) << "signature " << cells.signatures[c];
-      const auto alternative = rule == Ambiguity::low ? tile::Alternative::low : tile::Alternative::high;
-      const tile::TileFacets& built = engine.build(cells.signatures[c], {.choices = {}, .alternative = alternative});
-      const CellPieces<N> pieces = pieces_of<N>(built, faces);
-      EXPECT_EQ(pieces.boundary_and_euler(), of_cell[c].boundary_and_euler()) << "signature " << cells.signatures[c];
-      // which side is copied depends on the numbers of corners
-      if (std::any_of(built.facets.begin(), built.facets.end(),
-                      [](const tile::Facet& facet) { return facet.filling == tile::Filling::side; }))
-        continue;
-      ++plain;
-      for (const unsigned flip : {0u, 1u}) different[flip] += pieces.by_edges(flip) != of_cell[c].by_edges(0) ? 1 : 0;
-    }
-    EXPECT_EQ(0u, std::min(different[0], different[1]));
-    EXPECT_GT(plain, count / 2);
-  }
-}
-
-TEST(ComplexCells, RandomCellsOfEveryTypeHaveTheContoursOfTheGeneralEngine) {
-  for (const CellType type : {CellType::triangle, CellType::pixel, CellType::quadrilateral})
-    expect_contours_of_the_engine<2>(type, 100, 11);
-  for (const CellType type : {CellType::tetrahedron, CellType::voxel, CellType::hexahedron, CellType::wedge,
-                              CellType::pyramid, CellType::octahedron})
-    expect_contours_of_the_engine<3>(type, 300, 12);
-  for (const CellType type :
-       {CellType::simplex4, CellType::tetrahedron_prism, CellType::voxel_prism, CellType::hexahedron_prism,
-        CellType::wedge_prism, CellType::pyramid_prism, CellType::cell16, CellType::octahedron_prism})
-    expect_contours_of_the_engine<4>(type, 200, 13);
 }
 
 /// The certificate of every signature: closed by caps, the contour is an oriented manifold with the topology of the

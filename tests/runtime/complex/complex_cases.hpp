@@ -3,10 +3,14 @@
 // What tests of complexes of images have in common.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <random>
 #include <vector>
 
+#include "complex/cell_groups.hpp"
 #include "meshes.hpp"
 #include "tegl/extract.hpp"
 
@@ -47,6 +51,21 @@ inline std::vector<ExtractOptions> fixed_rules() {
       options.ambiguity = ambiguity;
     }
   return rules;
+}
+
+/// Adds a cell with the reference corners of its shape, numbered at random. Returns the number of each corner.
+template <int N>
+std::vector<Index> add_corners(const detail::CellKind& kind, std::mt19937_64& random,
+                               std::vector<std::array<double, N>>& points, std::vector<Index>& cells) {
+  const tables::CellTable& table = detail::table_of(kind.shape);
+  std::vector<Index> number(table.corner_count);
+  std::iota(number.begin(), number.end(), static_cast<Index>(points.size()));
+  std::shuffle(number.begin(), number.end(), random);
+  points.resize(points.size() + number.size());
+  for (std::size_t v = 0; v < number.size(); ++v)
+    for (std::size_t a = 0; a < N; ++a) points[number[v]][a] = table.corners[N * v + a];
+  for (std::size_t i = 0; i < number.size(); ++i) cells.push_back(number[detail::table_corner(kind, i)]);
+  return number;
 }
 
 }  // namespace tegl::test
