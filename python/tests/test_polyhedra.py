@@ -53,10 +53,11 @@ def test_polyhedra_mix_with_other_cells():
     values = np.random.default_rng(1).random(len(points))
     every = tegl.contour_mesh(points, {"polyhedron": cells}, values, 0.5, close=True)
     assert every.check().is_closed
-    # a pyramid on a side of a prism, and a hexahedron as a polyhedron
+    # a pyramid on a side of a prism
     square = [int(p) for p in cells[0][4]]
     apex = len(points)
-    more = np.vstack([points, points[square].mean(axis=0) - [0.5, 3.0, 0.1]])
+    middle = points[np.unique(np.concatenate(cells[0]))].mean(axis=0)
+    more = np.vstack([points, 2 * points[square].mean(axis=0) - middle])
     mixed = [("polyhedron", cells[:7]), ("pyramid", np.array([[*square, apex]])), ("polyhedron", cells[7:])]
     contour = tegl.contour_mesh(more, mixed, np.append(values, 1.0), 0.5)
     report = contour.check()
