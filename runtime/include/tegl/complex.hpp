@@ -165,9 +165,10 @@ class Complex {
 /// ascending values; `values`: T x #P, row = time, NaN: missing; `points`: T x #P, row = time, if the points move, or
 /// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (in the same
 /// triangulation), if no value is missing; at every other time, too, it is closed away from the border. N = 2 or 3.
-/// Errors: InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of values or points;
-/// a coordinate that is not finite, or above 2^1018 in absolute value), TooLarge (2^32 points or prisms or more). O(T
-/// (P + C)) time and memory.
+/// Polygons of up to 32 corners have prisms, polyhedra that are no shape of the other types have none
+/// (InvalidArgument). Errors: InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of
+/// values or points; a coordinate that is not finite, or above 2^1018 in absolute value), TooLarge (2^32 points or
+/// prisms or more). O(T (P + C)) time and memory.
 template <int N>
 requires DimensionBetween<N, 2, 3>
 [[nodiscard]] Complex<N + 1> in_time(const Complex<N>& complex, std::span<const double> times,
@@ -196,10 +197,10 @@ requires DimensionBetween<N, 2, 4>
 /// Options: all, except as follows. Neighbouring cells of any types agree in their common faces, with every rule.
 /// - triangulation: the diagonals of compact 4D contours in faces between cells depend on the numbers of the points.
 /// - ambiguity: all but custom. With rules that read the data, hexahedra are resolved as the cubes of an image; in
-///   wedges and pyramids every polygon is a disc. (The interpolant of a wedge has no tunnels; so in wedges `saddle` is
-///   exact.) Octahedra are not ambiguous. The 3D facets of 4D cells are resolved in the same way, by their own values.
-///   Hexahedra over time are resolved as the tesseracts of an image. In other 4D cells spheres of the boundary are
-///   filled one by one.
+///   wedges, pyramids and polyhedra every polygon is a disc; faces of five corners or more are decided by their mean.
+///   (The interpolant of a wedge has no tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous. The 3D
+///   facets of 4D cells are resolved in the same way, by their own values. Hexahedra over time are resolved as the
+///   tesseracts of an image. In other 4D cells spheres of the boundary are filled one by one.
 /// - close: not in 4D with rules that read the data if the triangulation is compact, nor with mean and saddle if a cell
 ///   has a hexahedron as a facet. Caps are the high part of the complex's border, the facets of one cell only. Without
 ///   missing values, the contour is then closed if the border is a manifold. Facets of cells with missing corners have

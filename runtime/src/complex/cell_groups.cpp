@@ -47,9 +47,10 @@ constexpr CellKind kKinds[] = {
 const CellKind& kind_of(CellType type) {
   const CellKind* const kind = find_kind(type);
   if (kind == nullptr)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7 and 42: no fixed corners)",
-                            static_cast<int>(type)));
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7 and 42 have no fixed number)",
+                    static_cast<int>(type)));
   return *kind;
 }
 
