@@ -152,9 +152,19 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
   return true;
 }
 
+template <class T, class Calc>
+HWY_INLINE void convert(const T* from, std::size_t count, Calc* out) {
+  const hn::ScalableTag<Calc> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) hn::StoreU(load_values(d, from + i), d, out + i);
+  for (; i < count; ++i) out[i] = static_cast<Calc>(from[i]);
+}
+
 // Highway's dispatch tables cannot hold templates.
-#define TEGL_PICK(T, Calc, name) \
-  bool name(const EdgesInRow<T, Calc>& row) { return pick(row); }
+#define TEGL_PICK(T, Calc, name)                                  \
+  bool name(const EdgesInRow<T, Calc>& row) { return pick(row); } \
+  void name##_convert(const T* from, std::size_t count, Calc* out) { convert(from, count, out); }
 TEGL_FOR_VALUES(TEGL_PICK)
 #undef TEGL_PICK
 
@@ -166,11 +176,16 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-#define TEGL_DISPATCH(T, Calc, name)                                   \
-  HWY_EXPORT(name);                                                    \
-  template <>                                                          \
-  bool pick_values<T, Calc>(const EdgesInRow<T, Calc>& row) noexcept { \
-    return HWY_DYNAMIC_DISPATCH(name)(row);                            \
+#define TEGL_DISPATCH(T, Calc, name)                                                   \
+  HWY_EXPORT(name);                                                                    \
+  template <>                                                                          \
+  bool pick_values<T, Calc>(const EdgesInRow<T, Calc>& row) noexcept {                 \
+    return HWY_DYNAMIC_DISPATCH(name)(row);                                            \
+  }                                                                                    \
+  HWY_EXPORT(name##_convert);                                                          \
+  template <>                                                                          \
+  void convert_values<T, Calc>(const T* from, std::size_t count, Calc* out) noexcept { \
+    HWY_DYNAMIC_DISPATCH(name##_convert)(from, count, out);                            \
   }
 TEGL_FOR_VALUES(TEGL_DISPATCH)
 #undef TEGL_DISPATCH

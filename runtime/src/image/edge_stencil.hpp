@@ -40,4 +40,8 @@ constexpr bool may_be_dense(std::size_t samples, std::size_t edges) noexcept {
 template <class T, class Calc>
 bool pick_values(const EdgesInRow<T, Calc>& row) noexcept;
 
+/// Converts adjacent values. Exact, or to the nearest float.
+template <class T, class Calc>
+void convert_values(const T* from, std::size_t count, Calc* out) noexcept;
+
 }  // namespace tegl::detail

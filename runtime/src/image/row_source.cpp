@@ -92,7 +92,7 @@ void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* 
     const T* from = layers[r / kHalf];
     for (unsigned a = 1; a < N - 1; ++a) from += static_cast<std::ptrdiff_t>(r >> (a - 1) & 1u) * strides()[a];
     if (strides()[0] == 1)
-      std::copy_n(from, count, out);
+      convert_values<T, double>(from, count, out);
     else
       for (std::size_t i = 0; i < count; ++i)
         out[i] = static_cast<double>(from[static_cast<std::ptrdiff_t>(i) * strides()[0]]);
