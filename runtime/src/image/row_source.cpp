@@ -170,57 +170,33 @@ struct Places {
   std::size_t row_size;
 };
 
-/// Where one edge's values are, relative to the pointers of Places.
-struct EdgePlace {
-  std::ptrdiff_t here;   ///< its first sample
-  std::ptrdiff_t back;   ///< step to the sample before it; 0 if there is none
-  std::ptrdiff_t ahead;  ///< step to the sample behind it; 0 if there is none
-};
-
-/// Reads the values of some edges, place by place. kCount: how many; several at a time are stored by one instruction.
-template <bool kAlongRow, std::size_t kCount, Value T, int N, class Calc>
-[[gnu::always_inline]] inline void gather_some(const Places<T, N>& places, const std::array<EdgePlace, kCount>& edges,
-                                               Calc* out) noexcept {
-  const auto put = [&](unsigned place, const T* samples, auto step) {
-    std::array<Calc, kCount> values;
-    for (std::size_t i = 0; i < kCount; ++i) values[i] = static_cast<Calc>(samples[edges[i].here + step(edges[i])]);
-    std::copy_n(values.begin(), kCount, out + place * kEdgesAtOnce);
-  };
-  const auto back = [](const EdgePlace& edge) { return edge.back; };
-  const auto ahead = [](const EdgePlace& edge) { return edge.ahead; };
-  const auto here = [](const EdgePlace& /*edge*/) { return std::ptrdiff_t{0}; };
-  const auto next = [along = places.along](const EdgePlace& /*edge*/) { return along; };
-  put(0, places.first, back);
-  if constexpr (kAlongRow) {
-    put(1, places.first, next);
-    put(2, places.first, here);
-  } else {
-    put(1, places.first, ahead);
-    put(2, places.second, back);
-  }
-  put(3, places.second, ahead);
-  // Unrolled, as not every optimisation level unrolls a loop.
-  [&]<unsigned... J>(std::integer_sequence<unsigned, J...>) { (put(J + 4, places.from[J + 4], here), ...); }
-  (std::make_integer_sequence<unsigned, kEdgeValues<N> - 4>());
-}
-
 /// Reads the values edge by edge.
 template <bool kAlongRow, Value T, int N, class Calc>
 std::uint64_t gather_each(const Places<T, N>& places, const EdgesInRows& edges, Calc* out) noexcept {
+  const T* const first = places.first;
+  const T* const second = places.second;
+  const auto& from = places.from;
+  const std::ptrdiff_t along = places.along;
   const std::size_t last = places.row_size - 1;
   std::uint64_t at_ends = 0;
-  const auto place_of = [&](std::size_t i) {
-    const std::size_t at = edges.at[i];
-    const bool at_start = at == 0;
-    const bool at_end = kAlongRow ? at + 1 == last : at == last;
+  for (std::size_t i = 0; i < edges.count; ++i) {
+    const std::size_t here = edges.at[i];
+    const std::ptrdiff_t place = edges.rows[i] + static_cast<std::ptrdiff_t>(here) * along;
+    const bool at_start = here == 0;
+    const bool at_end = kAlongRow ? here + 1 == last : here == last;
     at_ends |= std::uint64_t{at_start || at_end} << i;
-    return EdgePlace{edges.rows[i] + static_cast<std::ptrdiff_t>(at) * places.along, at_start ? 0 : -places.along,
-                     at_end ? 0 : places.along};
-  };
-  std::size_t i = 0;
-  for (; i + 4 <= edges.count; i += 4)
-    gather_some<kAlongRow, 4>(places, {place_of(i), place_of(i + 1), place_of(i + 2), place_of(i + 3)}, out + i);
-  for (; i < edges.count; ++i) gather_some<kAlongRow, 1>(places, {place_of(i)}, out + i);
+    const auto value = [&](const T* samples, std::ptrdiff_t step) { return static_cast<Calc>(samples[place + step]); };
+    const std::ptrdiff_t back = at_start ? 0 : -along;
+    const std::ptrdiff_t ahead = at_end ? 0 : along;
+    Calc* const to = out + i;
+    to[0] = value(first, back);
+    to[kEdgesAtOnce] = value(first, kAlongRow ? along : ahead);
+    to[2 * kEdgesAtOnce] = kAlongRow ? value(first, 0) : value(second, back);
+    to[3 * kEdgesAtOnce] = value(second, ahead);
+    // Unrolled, as not every optimisation level unrolls a loop.
+    [&]<std::size_t... J>(std::index_sequence<J...>) { ((to[(J + 4) * kEdgesAtOnce] = value(from[J + 4], 0)), ...); }
+    (std::make_index_sequence<kEdgeValues<N> - 4>());
+  }
   return at_ends;
 }
 
