@@ -51,8 +51,8 @@ class ContourSink {
 /// contour at the image border. Errors: those of `extract` except TooLarge, and exceptions of the reader and the sink.
 ///
 /// With periods that are not all 0, as `extract_periodic`: the same simplices in the same order, but vertices are
-/// numbered by first appearance, and copies at missing values may be others. contour_periods gives the periods of the
-/// contour. If the last axis is periodic, two more layers of samples and the numbers of the vertices in the first layer
+/// numbered by first appearance, and copies at missing values may be others (in 4D also some simplices of zero size
+/// there). contour_periods gives the periods of the contour. If the last axis is periodic, two more layers of samples and the numbers of the vertices in the first layer
 /// stay in memory; with normals, the reader's last layer is requested first and stays, too. Errors: also those of
 /// `extract_periodic`.
 template <Coordinate Real = float, Value T, int N>

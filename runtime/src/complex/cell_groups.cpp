@@ -49,8 +49,9 @@ const CellKind& kind_of(CellType type) {
   if (kind == nullptr)
     throw Error(
         ErrorCode::InvalidArgument,
-        fmt::format("cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7 and 42 have no fixed number)",
-                    static_cast<int>(type)));
+        fmt::format(
+            "cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7 and 42 have any number of corners)",
+            static_cast<int>(type)));
   return *kind;
 }
 
