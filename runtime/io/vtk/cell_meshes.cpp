@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "base/common.hpp"
@@ -197,6 +199,23 @@ void set_points(const std::vector<double>& points, FileMesh& mesh, const fs::pat
     for (const std::size_t a : axes) mesh.points.push_back(points[p + a]);
 }
 
+/// Makes a complex of the cells if there are polyhedra, whose faces it checks, so that an error has the file and the
+/// number that the cell has there. `kept`: these numbers.
+void check_polyhedra(const FileMesh& mesh, const std::vector<std::size_t>& kept, const fs::path& path) {
+  if (std::find(mesh.types.begin(), mesh.types.end(), CellType::polyhedron) == mesh.types.end()) return;
+  std::vector<std::array<double, 3>> anywhere(mesh.points.size() / 3);
+  try {
+    (void)Complex<3>(std::move(anywhere),
+                     {mesh.types, mesh.corners, mesh.ends, mesh.face_corners, mesh.face_ends, mesh.face_lists_ends});
+  } catch (const Error& error) {
+    const std::string_view what = error.what(), prefix = "cell ";
+    if (!what.starts_with(prefix)) fail(error.code(), path, "{}", what);
+    std::size_t cell = 0;
+    const char* const end = std::from_chars(what.data() + prefix.size(), what.data() + what.size(), cell).ptr;
+    fail(ErrorCode::UnsupportedData, path, "cell {}{}", kept[cell], end);
+  }
+}
+
 template <int N>
 std::vector<Index> delaunay_of(const std::vector<double>& coordinates) {
   std::vector<std::array<double, N>> points(coordinates.size() / N);
@@ -253,6 +272,7 @@ FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Pr
   mesh.values = std::visit([](const auto& all) { return std::vector<double>(all.begin(), all.end()); }, values);
   if (variable.on_cells) mesh.values = means_at_points(mesh.values, stored, kept);
   set_points(stored.points, mesh, path);
+  check_polyhedra(mesh, kept, path);
   mesh.time = file.time();
   mesh.variable = options.variable.empty() ? variable.name : options.variable;
   return mesh;

@@ -175,11 +175,12 @@ TEST(CellMesh, GhostTypesAreReadFromAllPiecesAndMustBeWhole) {
 const std::string kPrismFaces = "7 5 0 1 2 3 4 5 5 6 7 8 9 4 0 1 6 5 4 1 2 7 6 4 2 3 8 7 4 3 4 9 8 4 4 0 5 9";
 
 std::string prism(const std::string& faces, const std::string& ends, const std::string& types = "42",
-                  const std::string& corners = "0 1 2 3 4 5 6 7 8 9") {
+                  const std::string& corners = "0 1 2 3 4 5 6 7 8 9", const std::string& cell_ends = "10",
+                  const std::string& sizes = "10 1") {
   std::string points;
   for (const char* z : {" 0 ", " 1 "})
     for (const char* place : {"1 0", "0.3 1", "-0.8 0.6", "-0.8 -0.6", "0.3 -1"}) points += std::string(place) + z;
-  std::string text = vtu(points, corners, "10", types, on_points("0 1 2 3 4 5 6 7 8 9"), "10 1");
+  std::string text = vtu(points, corners, cell_ends, types, on_points("0 1 2 3 4 5 6 7 8 9"), sizes);
   const std::string arrays = "<DataArray type=\"Int64\" Name=\"faces\" format=\"ascii\">" + faces +
                              "</DataArray><DataArray type=\"Int64\" Name=\"faceoffsets\" format=\"ascii\">" + ends +
                              "</DataArray>";
@@ -203,7 +204,7 @@ TEST(CellMesh, PolyhedraHaveTheirFaces) {
   EXPECT_EQ(same.types, mesh.types);
   EXPECT_THAT(describe_cell_mesh(dir / "a.vtu").cells, testing::ElementsAre(testing::Pair("polyhedron", 1)));
   // at two times the faces must be the same, and a polyhedron has no prism
-  write_file(dir / "c.vtu", prism(kPrismFaces.substr(0, kPrismFaces.size() - 3) + "9 5", "38"));
+  write_file(dir / "c.vtu", prism("7 5 5 6 7 8 9" + kPrismFaces.substr(1, 12) + kPrismFaces.substr(25), "38"));
   expect_error(ErrorCode::UnsupportedData, {"has other cells"}, [&] {
     read_cell_mesh(std::array{dir / "a.vtu", dir / "c.vtu"});
   });
@@ -226,6 +227,11 @@ TEST(CellMesh, WrongFacesOfPolyhedraAreErrorsThatNameTheCell) {
       {prism(kPrismFaces.substr(0, kPrismFaces.size() - 3) + "9 -5", "38"), ErrorCode::MalformedFile, {"the point -5"}},
       {prism(kPrismFaces, "38 38"), ErrorCode::MalformedFile, {"expected 1"}},
       {vtu(kPoints, kCorners, "4 8", "42 10", on_points("0 1 2 3 4")), ErrorCode::MalformedFile, {"faces"}},
+      // without its last face; the triangle before it is left out, and counts
+      {prism("6" + kPrismFaces.substr(1, kPrismFaces.size() - 11), "-1 33", "5 42", "0 1 2 0 1 2 3 4 5 6 7 8 9", "3 13",
+             "10 2"),
+       ErrorCode::UnsupportedData,
+       {"a.vtu", "cell 1: the edge between the points", "in the face 0 only"}},
   };
   for (const auto& [bytes, code, parts] : all) {
     write_file(dir / "a.vtu", bytes);
