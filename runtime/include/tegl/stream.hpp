@@ -52,9 +52,9 @@ class ContourSink {
 ///
 /// With periods that are not all 0, as `extract_periodic`: the same simplices in the same order, but vertices are
 /// numbered by first appearance, and copies at missing values may be others (in 4D also some simplices of zero size
-/// there). contour_periods gives the periods of the contour. If the last axis is periodic, two more layers of samples and the numbers of the vertices in the first layer
-/// stay in memory; with normals, the reader's last layer is requested first and stays, too. Errors: also those of
-/// `extract_periodic`.
+/// there). contour_periods gives the periods of the contour. If the last axis is periodic, two more layers of samples
+/// and the numbers of the vertices in the first layer stay in memory; with normals, the reader's last layer is
+/// requested first and stays, too. Errors: also those of `extract_periodic`.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
                                                                   ContourSink<N, Real>& sink,
