@@ -452,32 +452,14 @@ class Cutter {
 
   /// Numbers the points in the order of their keys and replaces keys by numbers.
   void number_points() {
-    const auto is_first = [&](std::size_t i) { return i == 0 || corners_[i - 1].key != corners_[i].key; };
-    const auto first = first_of_blocks(corners_.size(), [&](std::size_t i) { return is_first(i) ? 1u : 0u; });
-    if (first.back() > std::numeric_limits<Index>::max())
-      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", first.back(),
+    keys_.reserve(corners_.size() / 3);  // about: a point is in several pieces
+    for (const Corner& corner : corners_) {
+      if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
+      pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;
+    }
+    if (keys_.size() > std::numeric_limits<Index>::max())
+      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", keys_.size(),
                                                    std::numeric_limits<Index>::max()));
-    keys_.resize(first.back());
-    for_each_block(corners_.size(), kBlock, threads_, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
-      std::size_t next = first[block];
-      for (std::size_t i = from; i < to; ++i) {
-        const Corner& corner = corners_[i];
-        if (is_first(i)) keys_[next++] = corner.key;
-        pieces_[corner.at / 4].points[corner.at % 4] = next - 1;
-      }
-    });
-  }
-
-  /// Of `count` items that yield size(item) results each, one after the other: the first result of each block of items,
-  /// and the number of all.
-  template <class Size>
-  [[nodiscard]] std::vector<std::size_t> first_of_blocks(std::size_t count, const Size& size) const {
-    std::vector<std::size_t> first(block_count(count, kBlock) + 1, 0);
-    for_each_block(count, kBlock, threads_, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
-      for (std::size_t i = from; i < to; ++i) first[block + 1] += size(i);
-    });
-    for (std::size_t block = 1; block < first.size(); ++block) first[block] += first[block - 1];
-    return first;
   }
 
   /// The edge of a point and the fraction at which it lies. If a vertex is on, both ends are that vertex.
@@ -540,23 +522,34 @@ class Cutter {
   }
 
   void emit(Contour<N - 1, Real>& result) const {
-    const auto first = first_of_blocks(pieces_.size(), [&](std::size_t p) {
-      return N == 4 ? static_cast<std::size_t>(pieces_[p].count - 2) : std::size_t{1};
-    });
-    result.simplices.resize(first.back());
     std::vector<Index> inherited;  // source simplex of each simplex of the cut
-    if (!contour_.simplex_attributes.empty()) inherited.resize(first.back());
-    for_each_block(pieces_.size(), kBlock, threads_, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
-      std::size_t next = first[block];
-      for (std::size_t p = from; p < to; ++p)
-        for_simplices(result, pieces_[p], [&](const std::array<int, N - 1>& corners) {
-          std::array<Index, N - 1> simplex;
-          for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(pieces_[p].points[corners[i]]);
-          if (!family_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
-          if (!inherited.empty()) inherited[next] = pieces_[p].simplex;
-          result.simplices[next++] = simplex;
-        });
-    });
+    std::size_t count = 0;
+    for (const Piece& piece : pieces_) count += N == 4 ? static_cast<std::size_t>(piece.count - 2) : 1;
+    result.simplices.reserve(count);
+    const bool inherits = !contour_.simplex_attributes.empty();
+    if (inherits) inherited.reserve(count);
+    const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
+      std::array<Index, N - 1> simplex;
+      for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
+      if (!family_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
+      result.simplices.push_back(simplex);
+      if (inherits) inherited.push_back(piece.simplex);
+    };
+    for (const Piece& piece : pieces_) {
+      if constexpr (N == 3) {
+        add(piece, {0, 1});
+      } else if constexpr (N == 5) {
+        add(piece, {0, 1, 2, 3});
+      } else if (piece.count == 3) {
+        add(piece, {0, 1, 2});
+      } else if (splits_from_first(result, piece)) {
+        add(piece, {0, 1, 2});
+        add(piece, {0, 2, 3});
+      } else {
+        add(piece, {1, 2, 3});
+        add(piece, {1, 3, 0});
+      }
+    }
     // copy the attributes of the source simplices
     for (const Attribute& attribute : contour_.simplex_attributes) {
       const auto width = static_cast<std::size_t>(attribute.width);
@@ -567,24 +560,6 @@ class Cutter {
         const double* const row = attribute.values.data() + s * width;
         rows.values.insert(rows.values.end(), row, row + width);
       }
-    }
-  }
-
-  /// Calls add(corners) for the simplices of a piece, by positions of its points.
-  template <class Add>
-  static void for_simplices(const Contour<N - 1, Real>& result, const Piece& piece, const Add& add) {
-    if constexpr (N == 3) {
-      add({0, 1});
-    } else if constexpr (N == 5) {
-      add({0, 1, 2, 3});
-    } else if (piece.count == 3) {
-      add({0, 1, 2});
-    } else if (splits_from_first(result, piece)) {
-      add({0, 1, 2});
-      add({0, 2, 3});
-    } else {
-      add({1, 2, 3});
-      add({1, 3, 0});
     }
   }
 
@@ -606,7 +581,7 @@ class Cutter {
     return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
   }
 
-  static constexpr std::size_t kBlock = std::size_t{1} << 13;  ///< simplices, pieces or corners of a part of the work
+  static constexpr std::size_t kBlock = std::size_t{1} << 13;  ///< simplices of a part of the work
   static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart, to bound the time
 
   const Contour<N, Real>& contour_;
@@ -621,7 +596,7 @@ class Cutter {
   Index most_ = 0;            ///< maximum number of their vertices
   Buffer<Piece> pieces_;
   Buffer<Corner> corners_;  ///< incidences of the pieces, sorted by key
-  Buffer<PointKey> keys_;
+  std::vector<PointKey> keys_;
 };
 
 }  // namespace
