@@ -525,7 +525,7 @@ TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
   EXPECT_EQ(run_json({"contour", ball, "--iso", "0", "--stream", "-o", streamed})["tiles"],
             run_json({"contour", ball, "--iso", "0", "-o", in_memory})["tiles"]);
   expect_refused_of(ball, {"--stream", "--close", "-o", streamed}, "close of a streamed contour on the lattice fcc");
-  expect_refused_of(ball, {"--stream", "--lattice", "fcc", "--periodic", "z", "-o", streamed}, "with --stream");
+  expect_refused_of(ball, {"--stream", "--lattice", "fcc", "--periodic", "z", "-o", streamed}, "z with --stream");
   const std::string moving = path("moving.nrrd");
   (void)run_json({"sample", "ball", "--lattice", "d4", "--size", "9", "-o", moving});
   expect_refused_of(moving, {"--stream", "-o", streamed},

@@ -62,6 +62,8 @@ class ExtractionOptions {
   void refuse_tiling(const std::string& with) const;
   /// As refuse_tiling, but allows --periodic.
   void refuse_other_tiling(const std::string& with) const;
+  /// Throws InvalidArgument with --periodic.
+  void refuse_periodic_with(const std::string& other) const;
   /// Takes the lattice that the file records to the tiling, unless --lattice is given. Throws InvalidArgument for
   /// options that choose other cells.
   void take_lattice(const ImageInfo& info, const std::string& file, Tiling& tiling) const;
@@ -113,7 +115,6 @@ class ExtractionOptions {
 
  private:
   [[nodiscard]] bool has_lattice() const { return !lattice_.empty() && lattice_ != "cubic"; }
-  void refuse_periodic_with(const std::string& other) const;
   void refuse_lattice_with(const std::string& other) const;
   void refuse_division_with(const std::string& other) const;
 

@@ -144,8 +144,11 @@ void append_faces(const VtkFile& file, const XmlElement& piece, std::uint64_t po
              "cell {} has the faces {} to {} of {} numbers; expected ascending faceoffsets", cell, at, end,
              faces.size());
       const auto next = [&](std::int64_t least, std::int64_t most, const char* what) {
-        const std::int64_t number = at < end ? faces[static_cast<std::size_t>(at)] : -1;
-        if (at++ >= end || number < least || number > most)
+        if (at >= end)
+          fail(ErrorCode::MalformedFile, file.path(),
+               "cell {} has faces that end within a face, before {}; expected the rest of it", cell, what);
+        const std::int64_t number = faces[static_cast<std::size_t>(at++)];
+        if (number < least || number > most)
           fail(ErrorCode::MalformedFile, file.path(), "cell {} has {} {} in its faces; expected {} to {}", cell, what,
                number, least, most);
         return number;

@@ -241,7 +241,7 @@ bool CollapsibleComplex<N>::visit_link(std::span<const Index> star, Index v, con
   return true;
 }
 
-/// Calls visit(face, omitted) for the simplices at the edge, without the edge: faces of its link, with omitted = -1;
+/// Calls visit(face, omitted) for the simplices at the edge, without the edge: faces of its link, with omitted = kNone;
 /// and for their border faces with the omitted vertex replaced by that of the cone, in the links of the edge or of one
 /// end.
 template <int N>

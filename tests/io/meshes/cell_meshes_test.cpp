@@ -217,7 +217,7 @@ TEST(CellMesh, WrongFacesOfPolyhedraAreErrorsThatNameTheCell) {
   const std::vector<WrongMesh> all = {
       {prism(kPrismFaces, "39"), ErrorCode::MalformedFile, {"cell 0", "0 to 39 of 38"}},
       {prism(kPrismFaces, "-1"), ErrorCode::MalformedFile, {"cell 0", "ascending faceoffsets"}},
-      {prism(kPrismFaces, "37"), ErrorCode::MalformedFile, {"cell 0 has the point -1", "0 to 9"}},
+      {prism(kPrismFaces, "37"), ErrorCode::MalformedFile, {"cell 0 has faces that end within a face"}},
       {prism(kPrismFaces + " 3", "39"), ErrorCode::MalformedFile, {"1 numbers after its faces"}},
       {prism("9" + kPrismFaces.substr(1), "38"), ErrorCode::MalformedFile, {"the number of corners"}},
       {prism("99" + kPrismFaces.substr(1), "38"), ErrorCode::MalformedFile, {"the number of faces 99", "0 to 38"}},
