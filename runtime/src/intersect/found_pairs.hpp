@@ -54,7 +54,7 @@ class FoundPairs {
     depth_ = std::max(depth_, pair.depth);
     keep(pair);
   }
-  /// Adds those of another object with the same options, and clears it.
+  /// Adds the pairs of another object with the same options, and clears it.
   void take(FoundPairs& other) {
     count_ += std::exchange(other.count_, 0);
     depth_ = std::max(depth_, std::exchange(other.depth_, 0.0));

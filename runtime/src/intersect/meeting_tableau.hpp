@@ -114,7 +114,7 @@ class MeetingTableau {
     return column;
   }
 
-  /// The row whose variable becomes 0 first; of several, that of the lowest number.
+  /// The row whose variable becomes 0 first; of several rows, the one with the lowest number.
   [[nodiscard]] std::size_t leaving(std::size_t column, const Number& tiny) {
     std::size_t best = rows_;
     for (std::size_t i = 0; i < rows_; ++i) {

@@ -67,7 +67,7 @@ std::vector<FaceCounts> count_faces(const IncidenceData<N>& incidence, std::span
   return result;
 }
 
-/// Throws InvalidArgument unless the incidence is that of these simplices.
+/// Throws InvalidArgument unless the incidence was made of these simplices.
 template <int N>
 void require_incidence(const IncidenceData<N>& incidence, std::span<const Index> rows, std::size_t vertex_count);
 

@@ -19,7 +19,7 @@ namespace tegl::detail {
 template <int N>
 using PointOf = std::array<double, N>;
 
-/// The corners of simplex s, N points; those of a wrapped contour are moved next to the first one.
+/// The corners of simplex s, N points; in a wrapped contour they are moved next to the first one.
 template <int N, class Real>
 std::array<PointOf<N>, N> corners_of(const Contour<N, Real>& contour, std::size_t s) noexcept {
   std::array<PointOf<N>, N> corners;
@@ -135,7 +135,7 @@ class SimplexView {
   [[nodiscard]] double coordinate(Index v, int axis) const noexcept {
     return is_single_ ? static_cast<double>(singles_[v][axis]) : doubles_[v][axis];
   }
-  /// The corners of simplex s, N points; those of a wrapped contour are moved next to the first one.
+  /// The corners of simplex s, N points; in a wrapped contour they are moved next to the first one.
   [[nodiscard]] std::array<PointOf<N>, N> corners(std::size_t s) const noexcept {
     std::array<PointOf<N>, N> result;
     for (int j = 0; j < N; ++j) result[j] = point(simplices_[s][j]);
