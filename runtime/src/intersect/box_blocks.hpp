@@ -40,8 +40,8 @@ class BoxBlocks {
   }
   /// Replaces `near` by the blocks from `block` on whose boxes meet its box.
   void find_near(std::size_t block, NearBlocks& near) const;
-  /// Calls visit(simplex) for the simplices whose boxes meet the box of simplex `k` of `block`, in the blocks `near` it.
-  /// In `block` itself, only for those after `k`.
+  /// Calls visit(simplex) for the simplices whose boxes meet the box of simplex `k` of `block`, in the blocks `near`
+  /// it. In `block` itself, only for those after `k`.
   template <class Visit>
   void visit_meeting(std::size_t block, std::size_t k, const NearBlocks& near, const Visit& visit) const;
   /// Calls visit(simplex) for all simplices whose boxes meet the box of these corners.

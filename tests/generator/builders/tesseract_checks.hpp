@@ -237,8 +237,8 @@ inline std::vector<std::uint32_t> regions_of_side(const ResolvedKey& key, bool h
   }
   return regions;
 }
-/// The values that ResolvedTesseract::find accepts for Sigma, by definition: 0 if Sigma is one component. The boundary is a
-/// 3-sphere, in which a connected surface separates two regions.
+/// The values that ResolvedTesseract::find accepts for Sigma, by definition: 0 if Sigma is one component. The boundary
+/// is a 3-sphere, in which a connected surface separates two regions.
 inline std::uint32_t known_of_sigma(const ResolvedKey& key) {
   if (key.signature == 0 || key.signature == 0xffffu) return builders::ResolvedTesseract::kNotKnown;
   for (const bool high : {true, false}) {
