@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -17,6 +18,7 @@
 #include "cells/cell_embedding.hpp"
 #include "cells/cell_tables.hpp"
 #include "cells/face_fillings.hpp"
+#include "cells/shape_tables.hpp"
 #include "tegl/generated/cells.hpp"
 
 namespace tegl::gen {
@@ -323,6 +325,96 @@ TEST(FaceFillings, AChordInAFaceIsRefused) {
         is_refused || verdict(cube, fan) == "hexahedron, signature 246, low-connected: a side in a face of the shape";
   }
   EXPECT_TRUE(is_refused);
+}
+
+TEST(ShapeTables, TheEmittedOnesAreThoseThatWereCertified) {
+  const std::vector<ShapeTables> all = make_all_shape_tables();
+  ASSERT_EQ(all.size(), tables::kCellShapes);
+  for (unsigned s = 0; s < tables::kCellShapes; ++s) {
+    const auto shape = static_cast<CellShape>(s);
+    const tables::ShapeTable& table = tables::shape_table(shape);
+    const CellTable& cell = tables::cell_table(shape, Triangulation::barycentric);
+    const ShapeTables& of = all[s];
+    ASSERT_EQ(table.facet_count, of.facets.size()) << of.name;
+    for (std::size_t f = 0; f < of.facets.size(); ++f) {
+      EXPECT_EQ(table.facets[f].shape, of.facets[f].shape) << of.name;
+      EXPECT_EQ(table.facets[f].corner_count, of.facets[f].corner_count) << of.name;
+      EXPECT_EQ(table.facets[f].corners, of.facets[f].corners) << of.name;
+      EXPECT_EQ(table.facets[f].is_inverted, of.facets[f].is_inverted) << of.name;
+    }
+    const auto expect_same = [&](const auto* emitted, const auto& made, const auto& same) {
+      ASSERT_EQ(emitted == nullptr, made.empty()) << of.name;
+      for (std::size_t i = 0; i < made.size(); ++i) ASSERT_TRUE(same(emitted[i], made[i])) << of.name << " " << i;
+    };
+    const auto same_sides = [](const auto& a, const auto& b) { return a.above == b.above && a.below == b.below; };
+    EXPECT_EQ(std::size_t{table.symmetry_count} * (cell.corner_count + cell.edge_count), of.symmetries.size());
+    expect_same(table.symmetries, of.symmetries, std::equal_to<>());
+    expect_same(table.planes_of_three, of.planes_of_three, same_sides);
+    EXPECT_EQ(table.plane_count, of.planes.size());
+    expect_same(table.planes, of.planes, same_sides);
+  }
+}
+
+TEST(ShapeTables, HaveTheNumbersThatAreKnown) {
+  // orders of the symmetry groups; hyperplanes through corners of the 4-cube (OEIS A007847)
+  const auto table = [](CellShape shape) { return tables::shape_table(shape); };
+  EXPECT_EQ(table(CellShape::tetrahedron).symmetry_count, 24);
+  EXPECT_EQ(table(CellShape::wedge).symmetry_count, 12);
+  EXPECT_EQ(table(CellShape::pyramid).symmetry_count, 8);
+  EXPECT_EQ(table(CellShape::hexahedron).symmetry_count, 48);
+  EXPECT_EQ(table(CellShape::octahedron).symmetry_count, 48);
+  EXPECT_EQ(table(CellShape::simplex4).plane_count, 5);
+  EXPECT_EQ(table(CellShape::hexahedron_prism).plane_count, 140);
+}
+
+/// What the certificate says of shapes, of which one was changed; "" if it accepts them.
+template <class Change>
+std::string verdict_with(CellShape shape, const Change& change) {
+  static const std::vector<ShapeTables> kAll = make_all_shape_tables();
+  std::vector<ShapeTables> changed = kAll;
+  change(changed[static_cast<std::size_t>(shape)]);
+  try {
+    certify_shape_tables(changed);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ShapeTables, TheCertificateNamesEveryKindOfFault) {
+  const auto wedge = [](const auto& change) { return verdict_with(CellShape::wedge, change); };
+  const auto prism = [](const auto& change) { return verdict_with(CellShape::tetrahedron_prism, change); };
+  EXPECT_EQ(wedge([](ShapeTables&) {}), "");
+  EXPECT_EQ(wedge([](ShapeTables& t) { std::swap(t.facets[0].corners[0], t.facets[0].corners[1]); }),
+            "wedge: corners of a facet that do not ascend");
+  EXPECT_EQ(wedge([](ShapeTables& t) { t.facets.pop_back(); }), "wedge: facets other than those of the lattice");
+  EXPECT_EQ(wedge([](ShapeTables& t) { t.facets.push_back(t.facets[0]); }),
+            "wedge: facets other than those of the lattice");
+  EXPECT_EQ(wedge([](ShapeTables& t) { t.facets[3].shape = CellShape::quadrilateral; }),
+            "wedge: a facet of another shape");
+  EXPECT_EQ(prism([](ShapeTables& t) { t.facets[2].shape = CellShape::octahedron; }),
+            "tetrahedron_prism: a facet of another shape");
+  EXPECT_EQ(prism([](ShapeTables& t) { t.facets[2].is_inverted = !t.facets[2].is_inverted; }),
+            "tetrahedron_prism: orientations of facets that do not cancel");
+  EXPECT_EQ(prism([](ShapeTables& t) {
+              for (tables::CellFacet& facet : t.facets) facet.is_inverted = !facet.is_inverted;
+            }),
+            "tetrahedron_prism: inverted orientations of all facets");
+  const std::string symmetries = "wedge: symmetries other than all permutations that map facets to facets";
+  EXPECT_EQ(wedge([](ShapeTables& t) { t.symmetries.resize(t.symmetries.size() - 15); }), symmetries);
+  EXPECT_EQ(wedge([](ShapeTables& t) { std::swap(t.symmetries[20], t.symmetries[21]); }), symmetries);
+  EXPECT_EQ(wedge([](ShapeTables& t) { std::swap(t.symmetries[25], t.symmetries[26]); }), symmetries);
+  EXPECT_EQ(wedge([](ShapeTables& t) { t.planes_of_three[1 * 8 + 2].above ^= 1u << 3; }),
+            "wedge: the sign of a tetrahedron");
+  EXPECT_EQ(prism([](ShapeTables& t) { t.planes.pop_back(); }),
+            "tetrahedron_prism: hyperplanes other than those through four corners");
+  EXPECT_EQ(prism([](ShapeTables& t) { t.planes.back().below |= 1u << 15; }),
+            "tetrahedron_prism: hyperplanes other than those through four corners");
+  EXPECT_EQ(prism([](ShapeTables& t) { std::swap(t.planes[3], t.planes[4]); }),
+            "tetrahedron_prism: hyperplanes that do not ascend");
+  EXPECT_EQ(verdict_with(CellShape::triangle, [](ShapeTables& t) { t.planes.resize(1); }),
+            "triangle: a table of 4D shapes");
+  EXPECT_EQ(verdict_with(CellShape::triangle, [](ShapeTables& t) { std::swap(t.facets[0], t.facets[1]); }), "");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/fnv.hpp"
 #include "cells/cell_tables.hpp"
 #include "cells/face_fillings.hpp"
+#include "cells/shape_tables.hpp"
 #include "filling/position_search.hpp"
 #include "tables/emit_arrays.hpp"
 #include "tables/emit_json_text.hpp"
@@ -129,9 +130,11 @@ std::string opening(const std::vector<CellTables>& tables, const std::string& co
   return text;
 }
 
-EmittedFile source(const std::vector<CellTables>& tables, const std::vector<FaceFillings>& fillings) {
+EmittedFile source(const std::vector<CellTables>& tables, const std::vector<FaceFillings>& fillings,
+                   const std::vector<ShapeTables>& shapes) {
   std::string text = opening(tables, "gen --cells", "tegl/generated/cells.hpp");
   text += face_filling_arrays(fillings);
+  text += shape_arrays(shapes);
   text += "\n// by shape: barycentric, compact (4D: barycentric)\n";
   fmt::format_to(Appender(text), "const CellTable kTables[{}][2] = {{\n", tables::kCellShapes);
   for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -143,7 +146,7 @@ EmittedFile source(const std::vector<CellTables>& tables, const std::vector<Face
   text +=
       "};\n\n}  // namespace\n\nconst CellTable& cell_table(CellShape shape, Triangulation triangulation) noexcept {\n"
       "  return kTables[static_cast<unsigned>(shape)][static_cast<unsigned>(triangulation)];\n}\n\n";
-  text += face_filling_function(fillings) + "\n}  // namespace tegl::tables\n";
+  text += face_filling_function(fillings) + "\n" + shape_function(shapes) + "\n}  // namespace tegl::tables\n";
   return {"cells.cpp", std::move(text)};
 }
 
@@ -192,7 +195,7 @@ EmittedFile json_of_cell(const CellTables& table, const std::string& command) {
 }
 
 std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, const std::string& command,
-                     const std::vector<FaceFillings>& fillings = {}) {
+                     const std::vector<FaceFillings>& fillings = {}, const std::vector<ShapeTables>& shapes = {}) {
   std::string text = fmt::format("{{\n  \"cells\": {},\n  \"contract_version\": {},\n  \"command\": \"{}\",\n", cells,
                                  tables::kCellContractVersion, command);
   text += "  \"tables\": [";
@@ -211,6 +214,7 @@ std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, c
   }
   text += "\n  ]";
   if (!fillings.empty()) text += ",\n  \"face_fillings\": [\n" + face_filling_manifest(fillings) + "\n  ]";
+  if (!shapes.empty()) text += ",\n  \"shapes\": [\n" + shape_manifest(shapes) + "\n  ]";
   return text + "\n}\n";
 }
 
@@ -218,8 +222,9 @@ std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, c
 
 std::vector<EmittedFile> emit_cells(const std::vector<CellTables>& tables) {
   const std::vector<FaceFillings> fillings = make_all_face_fillings(tables);
-  return {source(tables, fillings),
-          {"cells_manifest.json", manifest(tables, tables::kCellShapes, "gen --cells", fillings)}};
+  const std::vector<ShapeTables> shapes = make_all_shape_tables();
+  return {source(tables, fillings, shapes),
+          {"cells_manifest.json", manifest(tables, tables::kCellShapes, "gen --cells", fillings, shapes)}};
 }
 
 std::vector<EmittedFile> emit_cell(const std::vector<CellTables>& tables, std::span<const Language> languages,

@@ -1,154 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lists the facets of the shapes of cells, and finds the border of a complex by sorting all facets.
+// Finds the border of a complex by sorting all facets.
 #include "complex/border_facets.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
-#include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
 
 namespace {
-
-using tables::CellShape;
-using Corners = std::vector<unsigned>;
-
-/// Three corners of a 3D shape, two of a polygon, that are not in one plane or line with corner 0.
-std::array<unsigned, 3> frame_of(CellShape shape) noexcept {
-  switch (shape) {
-    case CellShape::pyramid:
-    case CellShape::hexahedron:
-    case CellShape::octahedron:
-      return {1, 2, 4};
-    default:
-      return {1, 2, 3};
-  }
-}
-
-/// The sign of the determinant of the vectors from corner 0 to others, and one more vector.
-int orientation(const tables::CellTable& table, const Corners& corners, const Eigen::VectorXd* last) {
-  const auto dim = static_cast<Eigen::Index>(table.dim);
-  Eigen::MatrixXd columns(dim, dim);
-  for (Eigen::Index k = 0; k < dim; ++k)
-    for (Eigen::Index i = 0; i < dim; ++i) {
-      const auto at = [&](unsigned v) {
-        return static_cast<double>(table.corners[v * table.dim + static_cast<unsigned>(i)]);
-      };
-      columns(i, k) =
-          last != nullptr && k == dim - 1 ? (*last)(i) : at(corners[static_cast<std::size_t>(k) + 1]) - at(corners[0]);
-    }
-  return columns.determinant() < 0 ? -1 : 1;
-}
-
-CellFacet make_facet(CellShape cell, CellShape shape, const Corners& corners) {
-  CellFacet facet{shape, static_cast<std::uint8_t>(corners.size()), {}, false};
-  for (std::size_t i = 0; i < corners.size(); ++i) facet.corners[i] = static_cast<std::uint8_t>(corners[i]);
-  const tables::CellTable& table = table_of(cell);
-  Eigen::VectorXd inwards = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(table.dim));
-  for (unsigned i = 0; i < table.dim; ++i)
-    for (unsigned v = 0; v < table.corner_count; ++v)
-      inwards(i) += table.corners[v * table.dim + i] - table.corners[corners[0] * table.dim + i];
-  Corners in_cell{corners[0]}, in_facet{0};
-  for (const unsigned v : frame_of(shape)) {
-    if (in_cell.size() == table.dim) break;
-    in_cell.push_back(corners[corners.size() == 2 ? 1 : v]);
-    in_facet.push_back(v);
-  }
-  const int own = corners.size() == 2 ? 1 : orientation(table_of(shape), in_facet, nullptr);
-  facet.is_inverted = orientation(table, in_cell, &inwards) != own;
-  return facet;
-}
-
-struct Face {
-  CellShape shape;
-  Corners corners;
-};
-
-std::vector<Face> faces_of(CellShape shape);
-
-/// The facets of a base x an interval.
-std::vector<Face> faces_of_prism(CellShape base) {
-  const unsigned count = table_of(base).corner_count;
-  const auto with_above = [count](Corners corners) {
-    for (std::size_t i = 0, size = corners.size(); i < size; ++i) corners.push_back(corners[i] + count);
-    return corners;
-  };
-  Corners lower, upper;
-  for (unsigned v = 0; v < count; ++v) {
-    lower.push_back(v);
-    upper.push_back(v + count);
-  }
-  std::vector<Face> faces{{base, lower}, {base, upper}};
-  for (const Face& face : faces_of(base)) faces.push_back({prism_of(face.shape), with_above(face.corners)});
-  return faces;
-}
-
-/// The facets of a shape; edges have the shape of a triangle.
-std::vector<Face> faces_of(CellShape shape) {
-  const auto all = [](CellShape of, std::initializer_list<Corners> lists) {
-    std::vector<Face> faces;
-    for (const Corners& corners : lists) faces.push_back({of, corners});
-    return faces;
-  };
-  switch (shape) {
-    case CellShape::triangle:
-      return all(CellShape::triangle, {{0, 1}, {1, 2}, {0, 2}});
-    case CellShape::quadrilateral:
-      return all(CellShape::triangle, {{0, 2}, {1, 3}, {0, 1}, {2, 3}});
-    case CellShape::tetrahedron:
-      return all(CellShape::triangle, {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}});
-    case CellShape::pyramid: {
-      std::vector<Face> faces = all(CellShape::triangle, {{0, 1, 4}, {0, 2, 4}, {1, 3, 4}, {2, 3, 4}});
-      faces.push_back({CellShape::quadrilateral, {0, 1, 2, 3}});
-      return faces;
-    }
-    case CellShape::wedge: {
-      std::vector<Face> faces = all(CellShape::quadrilateral, {{0, 1, 3, 4}, {1, 2, 4, 5}, {0, 2, 3, 5}});
-      faces.push_back({CellShape::triangle, {0, 1, 2}});
-      faces.push_back({CellShape::triangle, {3, 4, 5}});
-      return faces;
-    }
-    case CellShape::hexahedron: {
-      std::vector<Face> faces(6, {CellShape::quadrilateral, {}});
-      for (unsigned f = 0; f < 6; ++f)
-        for (unsigned v = 0; v < 4; ++v) faces[f].corners.push_back(lifted_corner(f, v));
-      return faces;
-    }
-    case CellShape::octahedron: {
-      std::vector<Face> faces;
-      for (unsigned i = 0; i < 8; ++i)
-        faces.push_back({CellShape::triangle, {i & 1u, 2 + (i >> 1 & 1u), 4 + (i >> 2)}});
-      return faces;
-    }
-    case CellShape::simplex4:
-      return all(CellShape::tetrahedron, {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 3, 4}, {0, 2, 3, 4}, {1, 2, 3, 4}});
-    case CellShape::cell16: {
-      std::vector<Face> faces;
-      for (unsigned i = 0; i < 16; ++i)
-        faces.push_back({CellShape::tetrahedron, {i & 1u, 2 + (i >> 1 & 1u), 4 + (i >> 2 & 1u), 6 + (i >> 3)}});
-      return faces;
-    }
-    case CellShape::tetrahedron_prism:
-      return faces_of_prism(CellShape::tetrahedron);
-    case CellShape::wedge_prism:
-      return faces_of_prism(CellShape::wedge);
-    case CellShape::pyramid_prism:
-      return faces_of_prism(CellShape::pyramid);
-    case CellShape::octahedron_prism:
-      return faces_of_prism(CellShape::octahedron);
-    case CellShape::hexahedron_prism:
-      return faces_of_prism(CellShape::hexahedron);
-  }
-  return {};
-}
 
 /// A facet by its corners in ascending order, followed by the largest number.
 template <std::size_t kCorners>
@@ -245,17 +110,6 @@ std::vector<Index> facet_points(const Polytopes& polytopes, std::size_t cell, st
   std::vector<Index> points;
   for (const std::uint8_t v : shape.ring(facet)) points.push_back(corners[v]);
   return points;
-}
-
-std::span<const CellFacet> facets_of(CellShape shape) {
-  static const auto kFacets = [] {
-    std::array<std::vector<CellFacet>, tables::kCellShapes> facets;
-    for (unsigned s = 0; s < tables::kCellShapes; ++s)
-      for (const Face& face : faces_of(static_cast<CellShape>(s)))
-        facets[s].push_back(make_facet(static_cast<CellShape>(s), face.shape, face.corners));
-    return facets;
-  }();
-  return kFacets[static_cast<std::size_t>(shape)];
 }
 
 BorderFacets find_border(std::size_t points, const CellGroups& cells, const WorkOptions& work) {

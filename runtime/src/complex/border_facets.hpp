@@ -3,28 +3,23 @@
 // The facets of cells, and those on the border of a complex: facets of one cell only.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "complex/cell_groups.hpp"
+#include "tegl/generated/cells.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
 
-/// A facet of a shape: an edge, a polygon or a 3D cell.
-struct CellFacet {
-  tables::CellShape shape;              ///< of polygons and 3D cells; an edge has 2 corners
-  std::uint8_t corner_count;            ///< number of corners
-  std::array<std::uint8_t, 8> corners;  ///< of the cell, in the facet's own order
-  /// Whether the facet's own orientation, followed by a direction into the cell, is not that of the cell's reference
-  /// corners.
-  bool is_inverted;
-};
+using tables::CellFacet;
 
 /// The facets of a shape.
-[[nodiscard]] std::span<const CellFacet> facets_of(tables::CellShape shape);
+[[nodiscard]] inline std::span<const CellFacet> facets_of(tables::CellShape shape) noexcept {
+  const tables::ShapeTable& table = tables::shape_table(shape);
+  return {table.facets, table.facet_count};
+}
 
 /// The points of a facet of a polygon (its edge) or polyhedron (around the face), in the direction of its ring.
 [[nodiscard]] std::vector<Index> facet_points(const Polytopes& polytopes, std::size_t cell, std::size_t facet);

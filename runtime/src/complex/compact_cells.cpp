@@ -200,7 +200,7 @@ class CompactCells::Filler {
             static_cast<std::uint16_t>(1u << cells_.table_.edges[2 * t[k]] | 1u << cells_.table_.edges[2 * t[k] + 1]);
     }
     const std::span all(cones);
-    return SeparatingPlanes::of(cells_.shape_).may_meet(all.first(first), all.subspan(first));
+    return SeparatingPlanes(cells_.shape_).may_meet(all.first(first), all.subspan(first));
   }
 
   /// Fills the components that are not spheres, and those that the barycentric table fills together with them; removes

@@ -343,7 +343,7 @@ class DecidedCells::Filler {
   void copy_if_cones_meet(std::map<Index, Component>& components) {
     if (components.size() != 2) return;  // of three, hyperplanes divide any two
     const Component &a = components.begin()->second, &b = components.rbegin()->second;
-    if (!SeparatingPlanes::of(cells_.shape_).may_meet(cone_on_edges(a), cone_on_edges(b))) return;
+    if (!SeparatingPlanes(cells_.shape_).may_meet(cone_on_edges(a), cone_on_edges(b))) return;
     // of the three regions, the middle one is on the other side than the two others
     for (const bool high : {true, false}) {
       DisjointSets sets = find_regions(high);

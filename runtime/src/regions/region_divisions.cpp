@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -522,46 +523,17 @@ RegionDivision divide(tables::CellShape shape, const tables::RegionTable& cube, 
 /// Where a symmetry of a shape moves each vertex.
 using Symmetry = std::array<std::uint8_t, Vertices::kEnd>;
 
-/// Adds the symmetries that move the first corners as given.
-void add_symmetries(const tables::CellTable& table, std::vector<std::uint8_t>& corners,
-                    std::vector<Symmetry>& symmetries) {
-  const auto has_edge = [&](unsigned p, unsigned q) {
-    for (unsigned e = 0; e < table.edge_count; ++e)
-      if ((one(table.edges[2 * e]) | one(table.edges[2 * e + 1])) == (one(p) | one(q))) return true;
-    return false;
-  };
-  if (corners.size() == table.corner_count) {
-    Symmetry& moved = symmetries.emplace_back();
-    for (std::uint8_t v = 0; v < Vertices::kEnd; ++v) moved[v] = v;
-    std::copy(corners.begin(), corners.end(), moved.begin());
-    for (unsigned e = 0; e < table.edge_count; ++e)
-      moved[Vertices::kFirstEdge + e] = static_cast<std::uint8_t>(
-          Vertices::kFirstEdge + edge_between(table, corners[table.edges[2 * e]], corners[table.edges[2 * e + 1]]));
-    return;
-  }
-  const auto next = static_cast<unsigned>(corners.size());
-  for (std::uint8_t v = 0; v < table.corner_count; ++v) {
-    bool fits = std::find(corners.begin(), corners.end(), v) == corners.end();
-    for (unsigned u = 0; fits && u < next; ++u) fits = has_edge(u, next) == has_edge(corners[u], v);
-    if (!fits) continue;
-    corners.push_back(v);
-    add_symmetries(table, corners, symmetries);
-    corners.pop_back();
-  }
-}
-
-/// The symmetries of a 3D shape: those of its edges, as each is the symmetry of an affine image.
-const std::vector<Symmetry>& symmetries_of(tables::CellShape shape) {
-  static const auto kSymmetries = [] {
-    std::array<std::vector<Symmetry>, tables::kCellShapes> all;
-    for (unsigned s = 0; s < tables::kCellShapes; ++s) {
-      const auto& table = tables::cell_table(static_cast<tables::CellShape>(s), Triangulation::barycentric);
-      std::vector<std::uint8_t> corners;
-      if (table.dim == 3) add_symmetries(table, corners, all[s]);
-    }
-    return all;
-  }();
-  return kSymmetries[static_cast<std::size_t>(shape)];
+/// A symmetry of a 3D shape, by number (ShapeTable::symmetries).
+Symmetry symmetry_of(tables::CellShape shape, unsigned number) {
+  const auto& table = tables::cell_table(shape, Triangulation::barycentric);
+  const std::uint8_t* const corners =
+      tables::shape_table(shape).symmetries + number * (table.corner_count + table.edge_count);
+  Symmetry moved;
+  std::iota(moved.begin(), moved.end(), std::uint8_t{0});
+  std::copy_n(corners, table.corner_count, moved.begin());
+  for (unsigned e = 0; e < table.edge_count; ++e)
+    moved[Vertices::kFirstEdge + e] = static_cast<std::uint8_t>(Vertices::kFirstEdge + corners[table.corner_count + e]);
+  return moved;
 }
 
 /// Moves a boundary; barycentres are numbered by the first of their edges, and `symmetry` gets their numbers.
@@ -632,7 +604,8 @@ const RegionDivision& RegionDivisions::of_region(tables::CellShape shape, const 
   if (!is_new) return at->second;
   Triangles representative;
   Symmetry least{};
-  for (Symmetry symmetry : symmetries_of(shape)) {
+  for (unsigned i = 0; i < tables::shape_table(shape).symmetry_count; ++i) {
+    Symmetry symmetry = symmetry_of(shape, i);
     Triangles there = moved(boundary, symmetry);
     if (!representative.empty() && there >= representative) continue;
     representative = std::move(there);

@@ -6,9 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
-#include "tegl/cell_contract.hpp"
+#include "tegl/generated/cells.hpp"
 
 namespace tegl::detail {
 
@@ -18,9 +17,8 @@ class SeparatingPlanes {
   /// A tetrahedron: for each vertex the ends of its edge, as bits of corners.
   using Tetrahedron = std::array<std::uint16_t, 4>;
 
-  explicit SeparatingPlanes(const tables::CellTable& table);
-  /// Made once for each shape.
-  [[nodiscard]] static const SeparatingPlanes& of(tables::CellShape shape);
+  explicit SeparatingPlanes(tables::CellShape shape)
+      : planes_(tables::shape_table(shape).planes, tables::shape_table(shape).plane_count) {}
 
   /// Whether some tetrahedron of one set intersects one of the other set for some positions of the vertices on their
   /// edges. No vertex is in both sets. Exact: embedding.md has the proof.
@@ -33,7 +31,7 @@ class SeparatingPlanes {
   [[nodiscard]] bool are_divided(std::span<const Tetrahedron> a, std::span<const Tetrahedron> b) const noexcept;
   [[nodiscard]] bool faces_may_meet(const Tetrahedron& a, const Tetrahedron& b) const noexcept;
 
-  std::vector<std::array<std::uint16_t, 2>> planes_;  ///< the corners above and below
+  std::span<const tables::PlaneSides<std::uint16_t>> planes_;
 };
 
 }  // namespace tegl::detail

@@ -3,8 +3,6 @@
 // Signs of volumes from those of the tetrahedra between corners.
 #include "regions/shape_volumes.hpp"
 
-#include "tegl/generated/cells.hpp"
-
 namespace tegl::detail {
 
 std::uint8_t edge_between(const tables::CellTable& table, unsigned p, unsigned q) noexcept {
@@ -38,37 +36,10 @@ ShapePlaces::Place ShapePlaces::place(unsigned vertex) const noexcept {
   return place;
 }
 
-ShapeVolumes::CornerSigns ShapeVolumes::corner_signs_of(const tables::CellTable& table) {
-  CornerSigns signs{};
-  const unsigned corners = table.corner_count;
-  for (unsigned i = 0; i < corners * corners * corners * corners; ++i) {
-    const std::array<unsigned, 4> v = {i / (corners * corners * corners), i / (corners * corners) % corners,
-                                       i / corners % corners, i % corners};
-    std::array<std::array<int, 3>, 4> p;
-    for (std::size_t k = 0; k < 4; ++k)
-      for (std::size_t a = 0; a < 3; ++a) p[k][a] = table.corners[3 * v[k] + a];
-    const int volume = six_volumes(p);
-    signs[((v[0] * 8 + v[1]) * 8 + v[2]) * 8 + v[3]] = static_cast<std::int8_t>(volume > 0 ? 1 : (volume < 0 ? -1 : 0));
-  }
-  return signs;
-}
-
-const ShapeVolumes::CornerSigns& ShapeVolumes::corner_signs_of(tables::CellShape shape) {
-  static const auto kSigns = [] {
-    std::array<CornerSigns, tables::kCellShapes> all{};
-    for (unsigned s = 0; s < tables::kCellShapes; ++s) {
-      const auto& table = tables::cell_table(static_cast<tables::CellShape>(s), Triangulation::barycentric);
-      if (table.dim == 3) all[s] = corner_signs_of(table);
-    }
-    return all;
-  }();
-  return kSigns[static_cast<std::size_t>(shape)];
-}
-
 ShapeVolumes::ShapeVolumes(tables::CellShape shape)
     : table_(tables::cell_table(shape, Triangulation::barycentric)),
       generic_(table_),
-      corner_signs_(corner_signs_of(shape)) {
+      planes_(tables::shape_table(shape).planes_of_three) {
   for (std::uint8_t v = 0; v < RegionVertices::kFirstCentre; ++v) {
     points_[v] = {v};
     ends_[v] = {v, v};
@@ -90,9 +61,10 @@ void ShapeVolumes::add_signs(const Tetrahedron& points, VolumeSigns& to) const n
       corners[i] = ends[choice >> i & 1u];
     }
     if (repeats) continue;
-    const int sign = corner_sign(corners);
-    to.positive = to.positive || sign > 0;
-    to.negative = to.negative || sign < 0;
+    constexpr unsigned kBase = tables::kMostCornersIn3D;
+    const auto& [above, below] = planes_[(corners[0] * kBase + corners[1]) * kBase + corners[2]];
+    to.positive = to.positive || (above >> corners[3] & 1u) != 0;
+    to.negative = to.negative || (below >> corners[3] & 1u) != 0;
   }
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tegl/cell_contract.hpp"
+#include "tegl/generated/cells.hpp"
 
 namespace tegl::detail {
 
@@ -82,17 +82,11 @@ class ShapeVolumes {
   [[nodiscard]] const ShapePlaces& generic() const noexcept { return generic_; }
 
  private:
-  using CornerSigns = std::array<std::int8_t, 4096>;
-  static CornerSigns corner_signs_of(const tables::CellTable& table);
-  static const CornerSigns& corner_signs_of(tables::CellShape shape);
-  [[nodiscard]] int corner_sign(const Tetrahedron& corners) const noexcept {
-    return corner_signs_[((corners[0] * 8u + corners[1]) * 8u + corners[2]) * 8u + corners[3]];
-  }
   void add_signs(const Tetrahedron& points, VolumeSigns& to) const noexcept;
 
   const tables::CellTable& table_;
   ShapePlaces generic_;
-  const CornerSigns& corner_signs_;
+  const tables::PlaneSides<std::uint8_t>* planes_;                           ///< ShapeTable::planes_of_three
   std::array<std::vector<std::uint8_t>, RegionVertices::kFirstOwn> points_;  ///< corners and edges, by vertex
   std::array<std::array<std::uint8_t, 2>, RegionVertices::kFirstCentre> ends_{};
 };

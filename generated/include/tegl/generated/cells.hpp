@@ -5,6 +5,7 @@
 
 #include "tegl/cell_contract.hpp"
 #include "tegl/face_filling_contract.hpp"
+#include "tegl/shape_contract.hpp"
 
 namespace tegl::tables {
 
@@ -13,5 +14,8 @@ const CellTable& cell_table(CellShape shape, Triangulation triangulation) noexce
 
 /// All compact contours of a 3D shape in the faces of 4-cells; null for other shapes.
 const FaceFillingTable* face_filling_table(CellShape shape, bool high_connected) noexcept;
+
+/// Facets, symmetries and planes of a shape.
+const ShapeTable& shape_table(CellShape shape) noexcept;
 
 }  // namespace tegl::tables

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The layout of the tables of shapes of mesh cells, which the generator emits: facets, symmetries, and on which sides
+// of the planes through their corners the other corners are. They do not depend on signatures.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tegl/cell_contract.hpp"
+
+namespace tegl::tables {
+
+/// A facet of a shape: an edge, a polygon or a 3D cell.
+struct CellFacet {
+  CellShape shape;                      ///< of polygons and 3D cells; `triangle` for an edge, which has 2 corners
+  std::uint8_t corner_count;            ///< number of corners
+  std::array<std::uint8_t, 8> corners;  ///< of the cell, ascending: in the facet's own order
+  /// Whether the facet's own orientation, followed by a direction into the cell, is not that of the cell's reference
+  /// corners. An edge is oriented from its first corner to the second.
+  bool is_inverted;
+};
+
+/// The corners on either side of a plane, as bits. Corners in the plane have none.
+template <class Corners>
+struct PlaneSides {
+  Corners above;  ///< bits of corners
+  Corners below;  ///< bits of corners
+};
+
+/// Corner indices of a 3D shape are digits to this base in ShapeTable::planes_of_three.
+inline constexpr unsigned kMostCornersIn3D = 8;
+
+/// A shape without contours.
+struct ShapeTable {
+  std::uint8_t facet_count;     ///< number of facets
+  std::uint8_t symmetry_count;  ///< 3D: number of symmetries; otherwise 0
+  std::uint16_t plane_count;    ///< 4D: number of hyperplanes; otherwise 0
+  const CellFacet* facets;      ///< the facets
+  /// 3D: symmetry x (corners, edges): the images of corners, then those of edges. Symmetries are sorted by the images
+  /// of corners; the identity is the first. Otherwise null.
+  const std::uint8_t* symmetries;
+  /// 3D: by corners a, b and c, at (8 a + b) 8 + c: a corner d is above iff the tetrahedron a, b, c, d has positive
+  /// volume. Otherwise null.
+  const PlaneSides<std::uint8_t>* planes_of_three;
+  /// 4D: all hyperplanes through four corners, ascending; which side is `above` does not matter, above < below.
+  /// Otherwise null.
+  const PlaneSides<std::uint16_t>* planes;
+};
+
+}  // namespace tegl::tables
