@@ -39,6 +39,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -55,6 +56,7 @@
 #include "base/periods.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
+#include "cut/point_numbers.hpp"
 #include "cut/simplex_cut.hpp"
 #include "cut/slice_piece.hpp"
 
@@ -93,16 +95,24 @@ template <int N, class Real>
 class Cutter {
  public:
   Cutter(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
-         std::span<const Index> touching, unsigned threads)
-      : contour_(contour), family_(family), level_(level), touching_(touching), threads_(threads) {}
+         std::span<const Index> touching, unsigned threads, std::span<const Side> sides)
+      : contour_(contour),
+        family_(family),
+        level_(level),
+        touching_(touching),
+        threads_(threads),
+        sides_of_vertices_(sides) {}
 
   Contour<N - 1, Real> cut() {
-    classify();
-    if (on_.empty())
-      set_pieces(cut_pieces({}));
-    else
+    if (!cut_between_vertices()) {
+      classify();
       merge_on_vertices();
+      divide_pieces();
+    }
     number_points();
+    if (keys_.size() > std::numeric_limits<Index>::max())
+      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", keys_.size(),
+                                                   std::numeric_limits<Index>::max()));
     Contour<N - 1, Real> result;
     for (int i = 0, a = 0; i < N - 1; ++i, ++a) {
       a += a == family_.dropped_axis();
@@ -133,6 +143,48 @@ class Cutter {
     std::uint8_t below = 0;
     std::uint8_t on = 0;
   };
+
+  /// A piece, by the numbers of its points in its part. Triangles have no last point.
+  using PieceOfPart = std::array<std::uint16_t, 4>;
+  static constexpr std::uint16_t kNone = std::numeric_limits<std::uint16_t>::max();
+  /// A part of the pieces.
+  struct Part {
+    std::vector<PieceOfPart> pieces;
+    std::vector<Index> sources;      ///< by piece, if simplices have attributes: the simplex that was cut
+    std::vector<PointKey> keys;      ///< of the points, until they have numbers
+    std::span<const Index> numbers;  ///< of the points, in the cut
+    std::size_t simplices = 0;       ///< of the cut
+  };
+
+  void add(const Piece& piece, PartPoints& points, Part& part) const {
+    PieceOfPart& numbers = part.pieces.emplace_back();
+    numbers.fill(kNone);
+    for (int k = 0; k < piece.count; ++k) numbers[k] = static_cast<std::uint16_t>(points.number_of(piece.points[k]));
+    part.simplices += N == 4 ? static_cast<std::size_t>(piece.count - 2) : 1;
+    if (!contour_.simplex_attributes.empty()) part.sources.push_back(piece.simplex);
+  }
+
+  /// Cuts all simplices, if no vertex is on the hyperplane. Returns false if one is.
+  bool cut_between_vertices() {
+    parts_.resize(block_count(touching_.size(), kBlock));
+    std::atomic<bool> any_on = false;
+    for_each_block(
+        touching_.size(), kBlock, threads_, {}, [] { return PartPoints(); },
+        [&](std::size_t block, std::size_t from, std::size_t to, PartPoints& points) {
+          Part& part = parts_[block];
+          part.pieces.reserve(to - from);
+          for (std::size_t i = from; i < to; ++i) {
+            const auto& simplex = contour_.simplices[touching_[i]];
+            const Sides sides = sides_of(simplex);
+            if (sides.on != 0) return any_on.store(true, std::memory_order_relaxed);
+            visit_pieces<N>(simplex, touching_[i], kAll & ~unsigned{sides.below},
+                            [&](const Piece& piece) { add(piece, points, part); });
+          }
+          part.keys = points.take_keys();
+        });
+    if (any_on) parts_.clear();
+    return !any_on;
+  }
 
   /// The periods of the cut of a wrapped contour. Throws InvalidArgument if the hyperplane is not along all of them.
   [[nodiscard]] std::vector<Period<N - 1>> periods_within() const {
@@ -203,6 +255,14 @@ class Cutter {
 
   [[nodiscard]] Sides sides_of(const std::array<Index, N>& simplex) const {
     Sides sides;
+    if (!sides_of_vertices_.empty()) {
+      for (int j = 0; j < N; ++j) {
+        const Side here = sides_of_vertices_[simplex[j]];
+        sides.below = static_cast<std::uint8_t>(sides.below | static_cast<unsigned>(here == Side::below) << j);
+        sides.on = static_cast<std::uint8_t>(sides.on | static_cast<unsigned>(here == Side::on) << j);
+      }
+      return sides;
+    }
     for (int j = 0; j < N; ++j) {
       const double here = height(simplex[j]);
       sides.below = static_cast<std::uint8_t>(sides.below | static_cast<unsigned>(here < level_) << j);
@@ -265,14 +325,6 @@ class Cutter {
   [[nodiscard]] Buffer<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
     const auto is_merged = [&](Index v) { return !any_apart || !apart[on_(v)]; };
-    if (N < 5 && on_.empty()) {  // every touching simplex has vertices above and below, and gives one piece
-      Buffer<Piece> all(touching_.size());
-      for_each_item(all.size(), threads_, {}, [&](std::size_t i) {
-        visit_pieces<N>(contour_.simplices[touching_[i]], touching_[i], high(i),
-                        [&](const Piece& piece) { all[i] = piece; });
-      });
-      return all;
-    }
     std::vector<std::vector<Piece>> parts(block_count(touching_.size(), kBlock));
     for_each_block(touching_.size(), kBlock, threads_, {}, [&](std::size_t block, std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {
@@ -450,16 +502,29 @@ class Cutter {
     }
   }
 
-  /// Numbers the points in the order of their keys and replaces keys by numbers.
-  void number_points() {
-    keys_.reserve(corners_.size() / 3);  // about: a point is in several pieces
-    for (const Corner& corner : corners_) {
-      if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
-      pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;
+  void divide_pieces() {
+    parts_.resize(block_count(pieces_.size(), kBlock));
+    PartPoints points;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      Part& part = parts_[p / kBlock];
+      add(pieces_[p], points, part);
+      if (p % kBlock + 1 == kBlock || p + 1 == pieces_.size()) part.keys = points.take_keys();
     }
-    if (keys_.size() > std::numeric_limits<Index>::max())
-      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", keys_.size(),
-                                                   std::numeric_limits<Index>::max()));
+    pieces_ = {};
+    corners_ = {};
+  }
+
+  /// Numbers the points of all parts in the order of their keys.
+  void number_points() {
+    std::vector<std::span<const PointKey>> keys;
+    for (const Part& part : parts_) keys.push_back(part.keys);
+    std::size_t first = 0;
+    keys_ = number_points_of_parts(keys, numbers_);
+    for (Part& part : parts_) {
+      part.numbers = std::span<const Index>(numbers_).subspan(first, part.keys.size());
+      first += part.keys.size();
+      part.keys = {};
+    }
   }
 
   /// The edge of a point and the fraction at which it lies. If a vertex is on, both ends are that vertex.
@@ -522,56 +587,64 @@ class Cutter {
   }
 
   void emit(Contour<N - 1, Real>& result) const {
-    std::vector<Index> inherited;  // source simplex of each simplex of the cut
-    std::size_t count = 0;
-    for (const Piece& piece : pieces_) count += N == 4 ? static_cast<std::size_t>(piece.count - 2) : 1;
-    result.simplices.reserve(count);
-    const bool inherits = !contour_.simplex_attributes.empty();
-    if (inherits) inherited.reserve(count);
-    const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
-      std::array<Index, N - 1> simplex;
-      for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
-      if (!family_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
-      result.simplices.push_back(simplex);
-      if (inherits) inherited.push_back(piece.simplex);
-    };
-    for (const Piece& piece : pieces_) {
-      if constexpr (N == 3) {
-        add(piece, {0, 1});
-      } else if constexpr (N == 5) {
-        add(piece, {0, 1, 2, 3});
-      } else if (piece.count == 3) {
-        add(piece, {0, 1, 2});
-      } else if (splits_from_first(result, piece)) {
-        add(piece, {0, 1, 2});
-        add(piece, {0, 2, 3});
-      } else {
-        add(piece, {1, 2, 3});
-        add(piece, {1, 3, 0});
-      }
-    }
+    std::vector<std::size_t> first(1, 0);  // by part
+    for (const Part& part : parts_) first.push_back(first.back() + part.simplices);
+    result.simplices.resize(first.back());
+    Buffer<Index> sources(contour_.simplex_attributes.empty() ? 0 : first.back());
+    for_each_block(parts_.size(), 1, threads_, {},
+                   [&](std::size_t p, std::size_t, std::size_t) { emit_part(parts_[p], first[p], result, sources); });
     // copy the attributes of the source simplices
     for (const Attribute& attribute : contour_.simplex_attributes) {
       const auto width = static_cast<std::size_t>(attribute.width);
       Attribute& rows = result.simplex_attributes.emplace_back();
       rows = {attribute.name, attribute.unit, attribute.width, {}};
-      rows.values.reserve(inherited.size() * width);
-      for (const Index s : inherited) {
+      rows.values.reserve(sources.size() * width);
+      for (const Index s : sources) {
         const double* const row = attribute.values.data() + s * width;
         rows.values.insert(rows.values.end(), row, row + width);
       }
     }
   }
 
+  /// Writes the simplices of a part from place `next`, and their sources if these are wanted.
+  void emit_part(const Part& part, std::size_t next, Contour<N - 1, Real>& result, Buffer<Index>& sources) const {
+    const bool swaps = !family_.is_right_handed();
+    for (std::size_t p = 0; p < part.pieces.size(); ++p) {
+      std::array<Index, 4> points{};
+      int count = 0;
+      for (; count < 4 && part.pieces[p][count] != kNone; ++count) points[count] = part.numbers[part.pieces[p][count]];
+      const auto add = [&](const std::array<int, N - 1>& corners) {
+        std::array<Index, N - 1>& simplex = result.simplices[next];
+        for (int i = 0; i < N - 1; ++i) simplex[i] = points[corners[i]];
+        if (swaps) std::swap(simplex[N - 3], simplex[N - 2]);
+        if (!sources.empty()) sources[next] = part.sources[p];
+        ++next;
+      };
+      if constexpr (N == 3) {
+        add({0, 1});
+      } else if constexpr (N == 5) {
+        add({0, 1, 2, 3});
+      } else if (count == 3) {
+        add({0, 1, 2});
+      } else if (splits_from_first(result, points)) {
+        add({0, 1, 2});
+        add({0, 2, 3});
+      } else {
+        add({1, 2, 3});
+        add({1, 3, 0});
+      }
+    }
+  }
+
   /// Splits at the shorter diagonal. Of two equal ones, takes the one with the first end in lexicographic order of the
   /// coordinates, so that the choice depends only on the places of the points.
-  static bool splits_from_first(const Contour<N - 1, Real>& result, const Piece& piece) {
-    const auto corner = [&](int i) -> const std::array<Real, N - 1>& { return result.vertices[piece.points[i]]; };
+  static bool splits_from_first(const Contour<N - 1, Real>& result, const std::array<Index, 4>& points) {
+    const auto corner = [&](int i) -> const std::array<Real, N - 1>& { return result.vertices[points[i]]; };
     const auto length = [&](int i, int j) {
       double sum = 0.0;
       std::array<double, N - 1> to = widened_point<N - 1>(corner(j));
       const std::array<double, N - 1> from = widened_point<N - 1>(corner(i));
-      move_near(std::span<const Period<N - 1>>(result.periods), from, to);
+      if (!result.periods.empty()) move_near(std::span<const Period<N - 1>>(result.periods), from, to);
       for (int a = 0; a < N - 1; ++a) sum += (to[a] - from[a]) * (to[a] - from[a]);
       return sum;
     };
@@ -581,7 +654,7 @@ class Cutter {
     return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
   }
 
-  static constexpr std::size_t kBlock = std::size_t{1} << 13;  ///< simplices of a part of the work
+  static constexpr std::size_t kBlock = std::size_t{1} << 12;  ///< simplices of a part of the work
   static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart, to bound the time
 
   const Contour<N, Real>& contour_;
@@ -589,35 +662,38 @@ class Cutter {
   const double level_;
   const std::span<const Index> touching_;  ///< simplices not entirely on one side
   const unsigned threads_;
-  IndexMap on_;               ///< vertices of these simplices on the hyperplane
-  std::vector<bool> is_low_;  ///< by on vertex: whether it counts as below
+  const std::span<const Side> sides_of_vertices_;  ///< of the contour; if empty, heights are compared
+  IndexMap on_;                                    ///< vertices of these simplices on the hyperplane
+  std::vector<bool> is_low_;                       ///< by on vertex: whether it counts as below
   bool any_low_ = false;
   std::vector<Sides> sides_;  ///< by touching simplex
   Index most_ = 0;            ///< maximum number of their vertices
-  Buffer<Piece> pieces_;
-  Buffer<Corner> corners_;  ///< incidences of the pieces, sorted by key
-  std::vector<PointKey> keys_;
+  Buffer<Piece> pieces_;      ///< if there are vertices on the hyperplane
+  Buffer<Corner> corners_;    ///< incidences of the pieces, sorted by key
+  std::vector<Part> parts_;
+  std::vector<Index> numbers_;  ///< of the points of the parts, part by part
+  std::vector<PointKey> keys_;  ///< of the points of the cut
 };
 
 }  // namespace
 
 template <int N, class Real>
 Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
-                                   std::span<const Index> touching, unsigned threads) {
-  return Cutter<N, Real>(contour, family, level, touching, threads).cut();
+                                   std::span<const Index> touching, unsigned threads, std::span<const Side> sides) {
+  return Cutter<N, Real>(contour, family, level, touching, threads, sides).cut();
 }
 
 template Contour<2, float> cut_simplices(const Contour<3, float>&, const HyperplaneFamily<3>&, double,
-                                         std::span<const Index>, unsigned);
+                                         std::span<const Index>, unsigned, std::span<const Side>);
 template Contour<2, double> cut_simplices(const Contour<3, double>&, const HyperplaneFamily<3>&, double,
-                                          std::span<const Index>, unsigned);
+                                          std::span<const Index>, unsigned, std::span<const Side>);
 template Contour<3, float> cut_simplices(const Contour<4, float>&, const HyperplaneFamily<4>&, double,
-                                         std::span<const Index>, unsigned);
+                                         std::span<const Index>, unsigned, std::span<const Side>);
 template Contour<3, double> cut_simplices(const Contour<4, double>&, const HyperplaneFamily<4>&, double,
-                                          std::span<const Index>, unsigned);
+                                          std::span<const Index>, unsigned, std::span<const Side>);
 template Contour<4, float> cut_simplices(const Contour<5, float>&, const HyperplaneFamily<5>&, double,
-                                         std::span<const Index>, unsigned);
+                                         std::span<const Index>, unsigned, std::span<const Side>);
 template Contour<4, double> cut_simplices(const Contour<5, double>&, const HyperplaneFamily<5>&, double,
-                                          std::span<const Index>, unsigned);
+                                          std::span<const Index>, unsigned, std::span<const Side>);
 
 }  // namespace tegl::detail

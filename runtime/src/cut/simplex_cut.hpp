@@ -33,26 +33,47 @@ constexpr std::array<std::uint8_t, N> high_first(unsigned high) {
   if (odd && high_count < 2) std::swap(sorted[N - 2], sorted[N - 1]);
   return sorted;
 }
+
+/// The edges of a simplex, by the positions of their ends, that carry the cut points between the vertices in a set and
+/// the others: of a segment, or of a polygon in cyclic order.
+struct EdgesOfCut {
+  std::array<std::uint8_t, 4> above{};
+  std::array<std::uint8_t, 4> below{};
+  int count = 0;
+};
 template <int N>
-constexpr auto kHighFirst = [] {
-  std::array<std::array<std::uint8_t, N>, 1u << N> all{};
-  for (unsigned high = 0; high < all.size(); ++high) all[high] = high_first<N>(high);
+constexpr EdgesOfCut edges_of_cut(unsigned high) {
+  using Pairs = std::array<std::pair<int, int>, 4>;  // above and below, in the order of `high_first`
+  const int high_count = std::popcount(high);
+  EdgesOfCut edges;
+  Pairs pairs{};
+  if (N == 3) {
+    pairs = high_count == 1 ? Pairs{{{0, 2}, {0, 1}}} : Pairs{{{0, 2}, {1, 2}}};
+    edges.count = 2;
+  } else if (high_count == 1) {
+    pairs = {{{0, 1}, {0, 2}, {0, 3}}};
+    edges.count = 3;
+  } else if (high_count == 2) {
+    pairs = {{{0, 2}, {0, 3}, {1, 3}, {1, 2}}};
+    edges.count = 4;
+  } else {
+    pairs = {{{0, 3}, {1, 3}, {2, 3}}};
+    edges.count = 3;
+  }
+  const auto order = high_first<N>(high);
+  for (int i = 0; i < edges.count; ++i) {
+    edges.above[i] = order[pairs[i].first];
+    edges.below[i] = order[pairs[i].second];
+  }
+  return edges;
+}
+/// By set of the vertices above; neither none nor all.
+template <int N>
+constexpr auto kEdgesOfCut = [] {
+  std::array<EdgesOfCut, 1u << N> all{};
+  for (unsigned high = 1; high + 1 < all.size(); ++high) all[high] = edges_of_cut<N>(high);
   return all;
 }();
-
-/// The pairs (above, below) of positions, in the order of `high_first`, whose edges carry the cut points: a segment, or
-/// a polygon in cyclic order.
-using Pairs = std::array<std::pair<int, int>, 4>;
-template <int N>
-std::pair<Pairs, int> cut_pairs(int high_count) {
-  if constexpr (N == 3)
-    return high_count == 1 ? std::pair{Pairs{{{0, 2}, {0, 1}}}, 2} : std::pair{Pairs{{{0, 2}, {1, 2}}}, 2};
-  if constexpr (N == 4) {
-    if (high_count == 1) return {Pairs{{{0, 1}, {0, 2}, {0, 3}}}, 3};
-    if (high_count == 2) return {Pairs{{{0, 2}, {0, 3}, {1, 3}, {1, 2}}}, 4};
-    return {Pairs{{{0, 3}, {1, 3}, {2, 3}}}, 3};
-  }
-}
 
 /// The cut of a 4-simplex between `high_count` vertices and the others is a tetrahedron or a prism over a triangle. The
 /// prism is a product of two simplices, divided by its monotone paths: from the first pair of both to the last, one
@@ -127,11 +148,10 @@ void visit_pieces(const std::array<Index, N>& simplex, Index number, unsigned hi
   Piece piece;
   piece.simplex = number;
   if constexpr (N < 5) {
-    const auto& order = kHighFirst<N>[high];
-    const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
-    piece.count = count;
-    for (int i = 0; i < count; ++i)
-      piece.points[i] = edge_point(simplex[order[pairs[i].second]], simplex[order[pairs[i].first]]);
+    const EdgesOfCut& edges = kEdgesOfCut<N>[high];
+    piece.count = edges.count;
+    for (int i = 0; i < edges.count; ++i)
+      piece.points[i] = edge_point(simplex[edges.below[i]], simplex[edges.above[i]]);
     visit(piece);
   } else {
     const auto [sorted, odd] = sides_in_order(simplex, high);

@@ -12,59 +12,110 @@
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "cut/closed_cut.hpp"
+#include "cut/vertex_range.hpp"
 #include "mesh/validate.hpp"
 
 namespace tegl {
 namespace {
 
 using detail::HyperplaneFamily;
+using detail::Side;
 
 constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< vertices or simplices of a part of the work
+constexpr std::size_t kNeighbours = 256;              ///< simplices that are skipped together
+
+/// The sides of all vertices, and of ranges of them.
+class VertexSides {
+ public:
+  /// Throws InvalidArgument unless all coordinates are finite.
+  template <int N, class Real>
+  VertexSides(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level, const WorkOptions& work)
+      : sides_(contour.vertices.size()), of_groups_(detail::block_count(sides_.size(), kGroup)) {
+    static_assert(kBlock % kGroup == 0);
+    std::atomic<bool> finite = true;
+    detail::for_each_block(sides_.size(), kBlock, work.threads, work.progress,
+                           [&](std::size_t, std::size_t from, std::size_t to) {
+                             // copies, because the compiler must assume that writing a char changes anything that it
+                             // cannot see
+                             const HyperplaneFamily<N> heights = family;
+                             const auto* const points = contour.vertices.data();
+                             const double at = level;
+                             Side* const side = sides_.data();
+                             const std::span block_points(points + from, to - from);
+                             if (!detail::are_finite(detail::flat_rows<Real, N>(block_points))) finite = false;
+                             for (std::size_t v = from; v < to; ++v) {
+                               const double height = heights.height(points[v]);
+                               side[v] = height < at ? Side::below : height > at ? Side::above : Side::on;
+                             }
+                             for (std::size_t first = from; first < to; first += kGroup) {
+                               unsigned char all = 0;
+                               for (std::size_t v = first; v < std::min(first + kGroup, to); ++v)
+                                 all |= static_cast<unsigned char>(side[v]);
+                               of_groups_[first / kGroup] = static_cast<Side>(all);
+                             }
+                           });
+    if (!finite) detail::require_finite(contour);
+    find_runs();
+  }
+
+  [[nodiscard]] std::span<const Side> by_vertex() const noexcept { return sides_; }
+  /// Whether all vertices of the range are certainly on the same side, and none is on the level.
+  [[nodiscard]] bool are_alike(const detail::VertexRange& range) const {
+    const std::size_t first = range.least / kGroup;
+    return of_groups_[first] != Side::on && range.most / kGroup < run_ends_[first];
+  }
+
+ private:
+  static constexpr std::size_t kGroup = 128;  ///< vertices
+
+  /// The groups after each one that are alike with it end there.
+  void find_runs() {
+    run_ends_.resize(of_groups_.size());
+    for (std::size_t g = of_groups_.size(); g-- > 0;) {
+      const bool goes_on = g + 1 < of_groups_.size() && of_groups_[g + 1] == of_groups_[g];
+      run_ends_[g] = goes_on ? run_ends_[g + 1] : g + 1;
+    }
+  }
+
+  Buffer<Side> sides_;
+  std::vector<Side> of_groups_;        ///< by group of vertices: all their sides
+  std::vector<std::size_t> run_ends_;  ///< by group
+};
 
 /// The simplices that touch the level, ascending. Throws InvalidArgument unless all vertex numbers are below the number
 /// of vertices.
 template <int N, class Real>
-std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
+std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const VertexSides& sides,
                                       const WorkOptions& work) {
-  enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on: counts as both
-  Buffer<unsigned char> sides(contour.vertices.size());
-  detail::for_each_block(sides.size(), kBlock, work.threads, detail::part_of(work.progress, 0.0, 0.5),
-                         [&](std::size_t, std::size_t from, std::size_t to) {
-                           // copies, because the compiler must assume that writing a char changes anything that it
-                           // cannot see
-                           const HyperplaneFamily<N> heights = family;
-                           const auto* const points = contour.vertices.data();
-                           const double at = level;
-                           unsigned char* const side = sides.data();
-                           for (std::size_t v = from; v < to; ++v) {
-                             const double height = heights.height(points[v]);
-                             side[v] = height < at ? kBelow : height > at ? kAbove : kOn;
-                           }
-                         });
   // by block, then in a row
   const std::size_t count = contour.simplices.size();
   std::vector<std::vector<Index>> parts(detail::block_count(count, kBlock));
   std::atomic<bool> sound = true;
-  detail::for_each_block(count, kBlock, work.threads, detail::part_of(work.progress, 0.5, 1.0),
-                         [&](std::size_t block, std::size_t from, std::size_t to) {
-                           const auto* const simplices = contour.simplices.data();
-                           const unsigned char* const side = sides.data();
-                           // here, while the block is in the cache
-                           const std::span block_simplices(simplices + from, to - from);
-                           if (!detail::are_below(detail::flat_rows<Index, N>(block_simplices), sides.size())) {
-                             sound = false;
-                             return;
-                           }
-                           std::array<Index, kBlock> found;
-                           std::size_t size = 0;
-                           for (std::size_t s = from; s < to; ++s) {
-                             unsigned met = 0;
-                             for (const Index v : simplices[s]) met |= side[v];
-                             found[size] = static_cast<Index>(s);
-                             size += met == kOn ? 1 : 0;
-                           }
-                           parts[block].assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size));
-                         });
+  detail::for_each_block(
+      count, kBlock, work.threads, work.progress, [&](std::size_t block, std::size_t from, std::size_t to) {
+        const auto* const simplices = contour.simplices.data();
+        const Side* const side = sides.by_vertex().data();
+        std::array<Index, kBlock> found;
+        std::size_t size = 0;
+        // Most simplices have all vertices on one side, and so have those around them.
+        for (std::size_t first = from; first < to; first += kNeighbours) {
+          const std::size_t end = std::min(first + kNeighbours, to);
+          const std::span neighbours(simplices + first, end - first);
+          const detail::VertexRange range = detail::vertex_range(detail::flat_rows<Index, N>(neighbours));
+          if (range.most >= contour.vertices.size()) {
+            sound = false;
+            return;
+          }
+          if (sides.are_alike(range)) continue;
+          for (std::size_t s = first; s < end; ++s) {
+            unsigned met = 0;
+            for (const Index v : simplices[s]) met |= static_cast<unsigned>(side[v]);
+            found[size] = static_cast<Index>(s);
+            size += met == static_cast<unsigned>(Side::on) ? 1 : 0;
+          }
+        }
+        parts[block].assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size));
+      });
   if (!sound) detail::require_vertices(contour);
   std::vector<Index> touching;
   std::size_t all = 0;
@@ -178,12 +229,13 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const Hyperplane<N>& hyperplane,
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
-  detail::require_finite(contour);
-  detail::require_attributes(contour);
   const double level = family.template level<Real>(hyperplane.offset);
-  const Progress finding = detail::part_of(work.progress, 0.0, 0.8);
-  Contour<N - 1, Real> cut = detail::cut_simplices(
-      contour, family, level, touching_simplices(contour, family, level, {work.threads, finding}), work.threads);
+  const VertexSides sides(contour, family, level, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
+  detail::require_attributes(contour);
+  const Progress finding = detail::part_of(work.progress, 0.4, 0.8);
+  Contour<N - 1, Real> cut =
+      detail::cut_simplices(contour, family, level, touching_simplices(contour, sides, {work.threads, finding}),
+                            work.threads, sides.by_vertex());
   detail::tell(work.progress, 1.0, kCancelledSlice);
   return cut;
 }

@@ -16,6 +16,10 @@ void require_vertex_numbers(std::span<const Index> rows, std::size_t corners, st
 /// Whether all vertex numbers are below the number of vertices.
 bool are_below(std::span<const Index> rows, std::size_t vertices) noexcept;
 
+/// Whether all numbers are finite.
+bool are_finite(std::span<const float> numbers) noexcept;
+bool are_finite(std::span<const double> numbers) noexcept;
+
 /// Throws InvalidArgument unless all coordinates, `width` per vertex, are finite. O(#V).
 void require_finite_numbers(std::span<const float> coordinates, std::size_t width);
 void require_finite_numbers(std::span<const double> coordinates, std::size_t width);
