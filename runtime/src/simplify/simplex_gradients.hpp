@@ -10,10 +10,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <vector>
 
 #include "base/workers.hpp"
 #include "mesh/simplex_shapes.hpp"
+#include "simplify/corner_lanes.hpp"
 #include "simplify/placed_simplex.hpp"
 #include "simplify/simplex_corners.hpp"
 #include "tegl/contour.hpp"
@@ -47,11 +47,11 @@ class SimplexGradients {
     bool inside;  ///< whether none is negative; also for flat simplices, whose coordinates are not defined
   };
   [[nodiscard]] Weights weights(Index s, const Local& p) const {
-    const Row& row = rows_[s];
-    std::array<float, D> share{};
+    const auto& row = rows_[s].values;
+    std::array<float, N> share{};  // one more than needed: compilers make use of whole registers
     for (int a = 0; a < N; ++a) {
-      const float way = p[a] - row.corner[a];
-      for (int i = 0; i < D; ++i) share[i] += way * row.gradients[a][i];
+      const float way = p[a] - row[kCorner + a];
+      for (int i = 0; i < N; ++i) share[i] += way * row[a * D + i];
     }
     Weights result;
     result.of_corners[0] = 1.0f;
@@ -81,33 +81,43 @@ class SimplexGradients {
     }
     return norm(rest);
   }
+  /// The same for the corners of a simplex.
+  [[nodiscard]] std::array<double, N> distances(Index s, const CornerLanes<N>& points) const {
+    std::array<double, N> result;
+    if constexpr (N == 4)
+      if (distances_by_gradients(rows_[s].values, corners_[s], origin_, points, result)) return result;
+    for (int k = 0; k < N; ++k) {
+      const PointN<N> p = points[k];
+      result[k] = distance(s, p, weights(s, local(p)));
+    }
+    return result;
+  }
 
  private:
   static constexpr float kLargest = 1e30f;
 
-  struct Row {
-    std::array<float, N> corner;                    ///< corner 0, relative to the origin
-    std::array<std::array<float, D>, N> gradients;  ///< by axis; of the coordinates of the other corners
+  /// The gradients of the coordinates of corners 1 to D, axis by axis; then corner 0, relative to the origin.
+  struct alignas(N == 4 ? 64 : alignof(float)) Row {
+    std::array<float, N * D + N> values;
   };
+  static constexpr std::size_t kCorner = N * D;
 
   [[nodiscard]] Row row_of(const CornersN<N>& at) const {
-    Row row;
-    row.corner = local(at[0]);
+    Row row{};
     const PlacedSimplex<N> placed(at);
-    if (placed.is_flat()) {
-      row.corner.fill(std::numeric_limits<float>::quiet_NaN());
-      row.gradients = {};
-      return row;
-    }
+    const bool is_flat = placed.is_flat();
+    const Local corner = local(at[0]);
+    for (int a = 0; a < N; ++a) row.values[kCorner + a] = is_flat ? std::numeric_limits<float>::quiet_NaN() : corner[a];
+    if (is_flat) return row;
     const auto gradients = placed.gradients();
     for (int a = 0; a < N; ++a)
-      for (int i = 0; i < D; ++i) row.gradients[a][i] = static_cast<float>(gradients[i][a]);
+      for (int i = 0; i < D; ++i) row.values[a * D + i] = static_cast<float>(gradients[i][a]);
     return row;
   }
 
   SimplexCorners<N> corners_;
   PointN<N> origin_{};
-  std::vector<Row> rows_;
+  Buffer<Row> rows_;
 };
 
 }  // namespace tegl::detail

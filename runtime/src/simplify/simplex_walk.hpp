@@ -55,7 +55,7 @@ class SimplexWalk {
   /// A simplex, and points of the contour near its corners. `vertices`: the numbers of the corners in a contour that
   /// all calls with numbers have in common; kNone for others.
   struct Part {
-    CornersN<N> corners;
+    CornerLanes<N> corners;
     std::array<NearPoint, N> near;
     std::array<Index, N> vertices;
   };
@@ -81,7 +81,7 @@ class SimplexWalk {
         parts_.pop_back();
         continue;
       }
-      if (const NearPoint match = common_match(next, limit); match.distance <= limit) {
+      if (const NearPoint match = common_match(next); match.distance <= limit) {
         take(match);
         parts_.pop_back();
         continue;
@@ -89,10 +89,10 @@ class SimplexWalk {
       NearPoint middle = approach_middle(next, balls);
       // the walk may have missed it: other walks, then a search
       for (int i = 0; i < N && !(middle.distance <= limit); ++i)
-        if (const NearPoint other = approach_roughly(balls.middle, next.near[i].simplex); other.distance <= limit)
+        if (const NearPoint other = approach_roughly(balls.edge.middle, next.near[i].simplex); other.distance <= limit)
           middle = other;
       if (!(middle.distance <= limit) && tree_ != nullptr) {
-        const auto [distance, simplex] = tree_->nearest(balls.middle, middle.simplex);
+        const auto [distance, simplex] = tree_->nearest(balls.edge.middle, middle.simplex);
         middle = {distance, simplex};
       }
       if (const NearPoint match = match_of(next, balls, middle, limit); match.distance <= limit) {
@@ -102,8 +102,8 @@ class SimplexWalk {
       }
       if (++made > most || !(middle.distance <= limit)) return kFailed;
       Part half = next;
-      move_corner(half, balls.first, balls.middle, middle);
-      move_corner(next, balls.second, balls.middle, middle);
+      move_corner(half, balls.edge.first, balls.edge.middle, middle);
+      move_corner(next, balls.edge.second, balls.edge.middle, middle);
       parts_.push_back(half);
     }
     return result;
@@ -164,7 +164,7 @@ class SimplexWalk {
   }
 
   static void move_corner(Part& part, int corner, const PointN<N>& to, const NearPoint& near) {
-    part.corners[corner] = to;
+    part.corners.set(corner, to);
     part.near[corner] = near;
     part.vertices[corner] = kNone;
   }
@@ -178,26 +178,16 @@ class SimplexWalk {
   /// corners, so at most that plus the largest distance of a corner away from the contour. Jung's theorem bounds the
   /// radius by the longest edge.
   struct Balls {
-    explicit Balls(const CornersN<N>& part) {
-      std::tie(first, second) = ends_of_longest_edge<N>(part);
-      middle = between(part[first], part[second], 0.5);
-      double largest = 0.0, least = std::numeric_limits<double>::infinity();
-      for (int i = 0; i < N; ++i) {
-        const PointN<N> way = minus(part[i], middle);
-        const double apart = dot(way, way);
-        largest = std::max(largest, apart);
-        if (apart < least) nearest = i;
-        least = std::min(least, apart);
-      }
-      const PointN<N> edge = minus(part[first], part[second]);
-      square_of_middle = largest;
-      square = std::min(largest, dot(edge, edge) * (N - 1) / (2 * N));
+    explicit Balls(const CornerLanes<N>& part) : edge(longest_edge_of(part)) {
+      const auto [least, most] = std::minmax_element(edge.squares.begin(), edge.squares.end());
+      nearest = static_cast<int>(least - edge.squares.begin());
+      square_of_middle = *most;
+      square = std::min(square_of_middle, edge.square * (N - 1) / (2 * N));
     }
-    int first = 0, second = 1;  ///< the ends of the longest edge
-    PointN<N> middle;           ///< of the longest edge
-    int nearest = 0;            ///< the corner nearest to it
-    double square_of_middle;    ///< of the radius of the ball around that
-    double square;              ///< of a radius, at least that of the smallest ball
+    LongestEdge<N> edge;
+    int nearest = 0;          ///< the corner nearest to its middle
+    double square_of_middle;  ///< of the radius of the ball around that
+    double square;            ///< of a radius, at least that of the smallest ball
   };
   /// Whether the root of `square` is at most `room`.
   static bool is_within(double square, double room) { return room >= 0.0 && square <= room * room; }
@@ -205,9 +195,9 @@ class SimplexWalk {
   /// A point near the middle of the longest edge. The edges of a contour are in several simplices: their middles are
   /// kept, and found in a way that depends on the edge only. So results do not depend on what is kept.
   [[nodiscard]] NearPoint approach_middle(const Part& part, const Balls& balls) {
-    int first = balls.first, second = balls.second;
+    int first = balls.edge.first, second = balls.edge.second;
     if (part.vertices[first] == kNone || part.vertices[second] == kNone)
-      return approach_roughly(balls.middle, part.near[balls.nearest].simplex);
+      return approach_roughly(balls.edge.middle, part.near[balls.nearest].simplex);
     if (part.vertices[second] < part.vertices[first]) std::swap(first, second);
     const std::uint64_t key = std::uint64_t{part.vertices[first]} << 32 | part.vertices[second];
     if (middles_.empty()) middles_.resize(kKept);
@@ -217,9 +207,8 @@ class SimplexWalk {
     return kept.near;
   }
 
-  /// A simplex that is nearest to several corners, and the distance of the part from it: one above `limit` if there is
-  /// none within the limit.
-  [[nodiscard]] NearPoint common_match(const Part& part, double limit) const {
+  /// A simplex that is nearest to several corners, and the distance of the part from it; infinity if there is none.
+  [[nodiscard]] NearPoint common_match(const Part& part) const {
     NearPoint match;
     int most = 1;
     for (int i = 1; i < N; ++i) {
@@ -229,7 +218,7 @@ class SimplexWalk {
       most = times;
       match.simplex = part.near[i].simplex;
     }
-    if (most > 1) match.distance = largest_distance(part, match.simplex, limit);
+    if (most > 1) match.distance = largest_distance(part, match.simplex);
     return match;
   }
 
@@ -239,19 +228,15 @@ class SimplexWalk {
     if (is_within(balls.square_of_middle, limit - middle.distance))
       return {std::min(limit, middle.distance + std::sqrt(balls.square_of_middle)), middle.simplex};
     if (!is_within(balls.square_of_middle, kReach * limit)) return {kFailed, middle.simplex};
-    return {largest_distance(part, middle.simplex, limit), middle.simplex};
+    return {largest_distance(part, middle.simplex), middle.simplex};
   }
 
-  /// The largest distance of a corner from the simplex, or one above `limit`.
-  [[nodiscard]] double largest_distance(const Part& part, Index simplex, double limit) const {
+  /// The largest distance of a corner from the simplex.
+  [[nodiscard]] double largest_distance(const Part& part, Index simplex) const {
+    const std::array<double, N> distances = to_.distances(simplex, part.corners);
     double largest = 0.0;
-    for (int i = 0; i < N && largest <= limit; ++i) {
-      const PointN<N>& p = part.corners[i];
-      const double distance = part.near[i].simplex == simplex
-                                  ? part.near[i].distance
-                                  : to_.distance(simplex, p, to_.weights(simplex, to_.local(p)));
-      largest = std::max(largest, distance);
-    }
+    for (int i = 0; i < N; ++i)
+      largest = std::max(largest, part.near[i].simplex == simplex ? part.near[i].distance : distances[i]);
     return largest;
   }
 

@@ -5,14 +5,17 @@
 #include "simplify/simplex_walk.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "fields.hpp"
+#include "only_targets.hpp"
 #include "simplify/box_tree.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/vertex_distances.hpp"
@@ -118,6 +121,65 @@ TYPED_TEST(Walk, DistancesByGradientsAreUpperBounds) {
   EXPECT_GT(inside, 10);
 }
 
+/// Calls test() with each instruction set.
+template <class Test>
+void with_all_targets(const Test& test) {
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+    SCOPED_TRACE(hwy::TargetName(left & -left));
+    const test::OnlyTargets only(left & -left);
+    test();
+  }
+}
+
+TYPED_TEST(Walk, DistancesOfAllCornersAreThoseOfEach) {
+  constexpr int N = TypeParam::value;
+  std::mt19937 random(23);
+  std::vector<PointN<N>> points;
+  std::vector<std::array<Index, N>> simplices;
+  for (Index s = 0; s < 100; ++s) {
+    CornersN<N> corners = random_simplex<N>(random, 1.0);
+    if (s % 10 == 0) corners[1] = corners[0];                             // flat
+    if (s % 10 == 1) corners[1] = between(corners[0], corners[1], 1e-5);  // nearly
+    points.insert(points.end(), corners.begin(), corners.end());
+    for (int i = 0; i < N; ++i) simplices.resize(s + 1), simplices[s][i] = N * s + static_cast<Index>(i);
+  }
+  const SimplexGradients<N> gradients(SimplexCorners<N>(simplices, points), 1, {});
+  with_all_targets([&] {
+    for (Index s = 0; s < simplices.size(); ++s) {
+      // above, around, and at corners of the simplex; very far away
+      for (const double size : {0.1, 2.0, 1e3, 1e30, 1e35}) {
+        CornersN<N> part = random_simplex<N>(random, size);
+        if (size == 2.0) part[1] = points[simplices[s][1]];
+        const std::array<double, N> found = gradients.distances(s, part);
+        for (int k = 0; k < N; ++k)
+          ASSERT_EQ(found[k], gradients.distance(s, part[k], gradients.weights(s, gradients.local(part[k])))) << s;
+      }
+    }
+  });
+}
+
+TYPED_TEST(Walk, TheLongestEdgeIsTheFirstOfThem) {
+  constexpr int N = TypeParam::value;
+  std::mt19937 random(29);
+  with_all_targets([&] {
+    for (int trial = 0; trial < 1000; ++trial) {
+      CornersN<N> corners = random_simplex<N>(random, 1.0);
+      if (trial % 2 == 0)  // edges of equal length
+        for (PointN<N>& corner : corners)
+          for (double& x : corner) x = std::round(x);
+      const LongestEdge<N> found = longest_edge_of<N>(corners), expected = longest_edge_by_corners<N>(corners);
+      const auto [first, second] = ends_of_longest_edge<N>(corners);
+      ASSERT_EQ(found.first, first);
+      ASSERT_EQ(found.second, second);
+      ASSERT_EQ(std::sqrt(found.square), longest_edge<N>(corners));
+      ASSERT_EQ(found.middle, between(corners[first], corners[second], 0.5));
+      ASSERT_EQ(found.squares, expected.squares);
+      for (int k = 0; k < N; ++k)
+        ASSERT_NEAR(std::sqrt(found.squares[k]), norm(minus(corners[k], found.middle)), 1e-15);
+    }
+  });
+}
+
 TYPED_TEST(Walk, EndsAtTheNearestPointOfASmoothContour) {
   constexpr int N = TypeParam::value;
   const WalkedBall<N> ball(N == 4 ? 6 : 20, 1.0);
@@ -186,14 +248,12 @@ TYPED_TEST(Walk, BoundsAllPointsOfASimplex) {
   for (int trial = 0; trial < 300; ++trial) {
     const auto start = static_cast<Index>(random() % ball.simplices.size());
     const double size = 0.02 * std::pow(30.0, trial / 300.0);
-    typename SimplexWalk<N>::Part whole;
+    CornersN<N> part = random_simplex<N>(random, size);
+    for (PointN<N>& corner : part)
+      for (int a = 0; a < N; ++a) corner[a] += ball.corners()[start][0][a];
+    typename SimplexWalk<N>::Part whole{part, {}, {}};
     whole.vertices.fill(SimplexWalk<N>::kNone);
-    CornersN<N>& part = whole.corners;
-    for (int i = 0; i < N; ++i) {
-      part[i] = random_point<N>(random, size);
-      for (int a = 0; a < N; ++a) part[i][a] += ball.corners()[start][0][a];
-      whole.near[i] = walk.approach(part[i], start);
-    }
+    for (int i = 0; i < N; ++i) whole.near[i] = walk.approach(part[i], start);
     const double limit = trial % 2 == 0 ? 0.1 : 0.3;
     const double bound = walk.bound(whole, limit, 48);
     if (!(bound < std::numeric_limits<double>::infinity())) {
