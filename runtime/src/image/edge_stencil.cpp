@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads values around edges by registers (see edge_stencil.hpp). Highway's foreach_target compiles this file once per
-// instruction set.
+// Reads values around edges (see edge_stencil.hpp). Highway's foreach_target compiles this file once per instruction
+// set.
 #include "image/edge_stencil.hpp"
 
 #include <algorithm>
@@ -100,6 +100,27 @@ HWY_INLINE void pick_some(D d, const EdgesInRow<T, hn::TFromD<D>>& row, const Pi
   }
 }
 
+/// Whether all edges are in the same row in ascending order. Rows that overlap, or coincide by a stride of 0, may start
+/// at the same position; edges do not ascend then.
+template <class T, class Calc>
+HWY_INLINE bool is_row(const EdgesInRow<T, Calc>& row) {
+  const auto check = [&](auto d, const auto* values, std::size_t first, auto compare) HWY_ATTR {
+    constexpr std::size_t kLanes = hn::MaxLanes(d);
+    static_assert(kLanes < kEdgesAtOnce / 2);
+    auto good = hn::Eq(hn::Zero(d), hn::Zero(d));
+    for (std::size_t i = first; i < row.count; i += kLanes)
+      good = hn::And(good, compare(d, values + std::min(i, row.count - kLanes)));
+    return hn::AllTrue(d, good);
+  };
+  return check(hn::ScalableTag<std::int64_t>(), row.rows, 0,
+               [&](auto d, const std::ptrdiff_t* at) HWY_ATTR {
+                 return hn::Eq(hn::LoadU(d, reinterpret_cast<const std::int64_t*>(at)), hn::Set(d, row.rows[0]));
+               }) &&
+         check(hn::ScalableTag<std::uint32_t>(), row.at, 1, [&](auto d, const std::uint32_t* at) HWY_ATTR {
+           return hn::Lt(hn::LoadU(d, at - 1), hn::LoadU(d, at));
+         });
+}
+
 template <class T, class Calc>
 HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
   const hn::ScalableTag<Calc> d;
@@ -108,7 +129,7 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
   static_assert(kLanes <= kMostLanes);
   // Emulated registers save nothing.
   if (HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR) return false;
-  if (kEdgesPerRegister * (row.at[row.count - 1] - row.at[0]) >= kLanes * row.count) return false;
+  if (kEdgesPerRegister * (row.at[row.count - 1] - row.at[0]) >= kLanes * row.count || !is_row(row)) return false;
   // Sample indices are relative to the first edge, because registers cannot hold large numbers.
   const std::size_t origin = std::max<std::size_t>(row.at[0], row.begin);
   const std::size_t limit = std::min<std::size_t>(row.at[row.count - 1], row.end - 1) - origin;
@@ -130,7 +151,7 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
     for (std::size_t r = 0; r < count; ++r) {
       const auto begin = static_cast<std::ptrdiff_t>(x + r * kLanes);
       const std::ptrdiff_t first = std::min(begin, final);
-      picked.first[r] = first + static_cast<std::ptrdiff_t>(origin - row.begin);
+      picked.first[r] = first + row.rows[0] + static_cast<std::ptrdiff_t>(origin);
       picked.lanes[r] = lanes_from(d, hn::And(hn::Sub(edges, set(first)), set(kLanes - 1)));
       picked.chosen[r] = chosen_from(d, hn::Gt(edges, set(begin - 1)));
     }
@@ -152,6 +173,106 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
   return true;
 }
 
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+
+/// Four adjacent samples of each of four edges: of sample i those at i - 1, i, i + 1 and i + 2. One load for several
+/// values, and one store for four edges.
+template <class D>
+struct FourRows {
+  using V = hn::Vec<D>;
+  D d;
+  V lower01, lower23, upper01, upper23;
+
+  template <class T>
+  HWY_INLINE FourRows(D tag, const T* from, const std::array<std::ptrdiff_t, 4>& at) : d(tag) {
+    const auto values = [&](unsigned i) HWY_ATTR { return load_values(d, from + at[i] - 1); };
+    const V v0 = values(0), v1 = values(1), v2 = values(2), v3 = values(3);
+    lower01 = hn::InterleaveLower(d, v0, v1);
+    lower23 = hn::InterleaveLower(d, v2, v3);
+    upper01 = hn::InterleaveUpper(d, v0, v1);
+    upper23 = hn::InterleaveUpper(d, v2, v3);
+  }
+  HWY_INLINE V before() const { return hn::ConcatLowerLower(d, lower23, lower01); }
+  HWY_INLINE V here() const { return hn::ConcatUpperUpper(d, lower23, lower01); }
+  HWY_INLINE V next() const { return hn::ConcatLowerLower(d, upper23, upper01); }
+  HWY_INLINE V after_next() const { return hn::ConcatUpperUpper(d, upper23, upper01); }
+};
+
+/// Reads four edges, whose first samples are at `at`. `single`, `singles`: places of neighbours in rows of their own.
+template <bool kAlongRow, class T, class Calc>
+HWY_INLINE void gather_four(const T* const* from, std::size_t own, const std::uint8_t* single, std::size_t singles,
+                            const std::array<std::ptrdiff_t, 4>& at, Calc* out) {
+  const hn::FixedTag<Calc, 4> d;
+  using Rows = FourRows<hn::FixedTag<Calc, 4>>;
+  const auto store = [&](std::size_t place, auto values)
+                         HWY_ATTR { hn::StoreU(values, d, out + place * kEdgesAtOnce); };
+  if constexpr (kAlongRow) {
+    const Rows row(d, from[0] + 1, at);
+    store(0, row.before());
+    store(1, row.next());
+    store(2, row.here());
+    store(3, row.after_next());
+  } else {
+    const Rows row(d, from[own + 2], at);
+    store(0, row.before());
+    store(1, row.next());
+    store(own + 2, row.here());
+    const Rows other(d, from[own + 1], at);
+    store(2, other.before());
+    store(3, other.next());
+    store(own + 1, other.here());
+  }
+  for (std::size_t i = 0; i < singles; ++i) {
+    const std::size_t place = single[i];
+    const Rows beside(d, from[place], at);
+    store(place, beside.here());
+    if constexpr (kAlongRow) store(place + 2, beside.next());
+  }
+}
+
+template <bool kAlongRow, class T, class Calc>
+HWY_INLINE std::uint64_t gather_fours(const EdgesAnywhere<T, Calc>& edges) {
+  // local, because stores of vectors may change any memory
+  const std::size_t count = edges.count, own = 4 * edges.axis;
+  const std::ptrdiff_t* const rows = edges.rows;
+  const std::uint32_t* const at = edges.at;
+  const T* const* const from = edges.from;
+  Calc* const out = edges.out;
+  // along the row, places 4 a + 2 and 4 a + 3 are next to 4 a and 4 a + 1
+  std::array<std::uint8_t, 16> single;
+  std::size_t singles = 0;
+  for (std::size_t place = 4; place < edges.places; ++place)
+    if (kAlongRow ? place % 4 < 2 : place != own + 1 && place != own + 2)
+      single[singles++] = static_cast<std::uint8_t>(place);
+  const hn::FixedTag<std::uint32_t, 4> d;
+  const auto most = hn::Set(d, static_cast<std::uint32_t>(edges.row_size - 4));
+  std::uint64_t left = 0;
+  for (std::size_t i = 0; i < count; i += 4) {
+    const std::size_t first = std::min(i, count - 4);  // some edges are read twice
+    const auto inside = hn::Sub(hn::LoadU(d, at + first), hn::Set(d, 1u));
+    if (HWY_LIKELY(hn::AllTrue(d, hn::Eq(inside, hn::Min(inside, most))))) {
+      const auto sample = [&](std::size_t j) HWY_ATTR { return rows[j] + static_cast<std::ptrdiff_t>(at[j]); };
+      gather_four<kAlongRow>(from, own, single.data(), singles,
+                             {sample(first), sample(first + 1), sample(first + 2), sample(first + 3)}, out + first);
+    } else {
+      left |= std::uint64_t{15} << first;
+    }
+  }
+  return left;
+}
+
+#endif
+
+template <class T, class Calc>
+HWY_INLINE std::uint64_t gather(const EdgesAnywhere<T, Calc>& edges) {
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+  if constexpr (sizeof(Calc) == sizeof(float))
+    if (edges.count >= 4 && edges.row_size >= 4)
+      return edges.axis == 0 ? gather_fours<true>(edges) : gather_fours<false>(edges);
+#endif
+  return ~std::uint64_t{0} >> (kEdgesAtOnce - edges.count);
+}
+
 template <class T, class Calc>
 HWY_INLINE void convert(const T* from, std::size_t count, Calc* out) {
   const hn::ScalableTag<Calc> d;
@@ -162,8 +283,9 @@ HWY_INLINE void convert(const T* from, std::size_t count, Calc* out) {
 }
 
 // Highway's dispatch tables cannot hold templates.
-#define TEGL_PICK(T, Calc, name)                                  \
-  bool name(const EdgesInRow<T, Calc>& row) { return pick(row); } \
+#define TEGL_PICK(T, Calc, name)                                                             \
+  bool name(const EdgesInRow<T, Calc>& row) { return pick(row); }                            \
+  std::uint64_t name##_gather(const EdgesAnywhere<T, Calc>& edges) { return gather(edges); } \
   void name##_convert(const T* from, std::size_t count, Calc* out) { convert(from, count, out); }
 TEGL_FOR_VALUES(TEGL_PICK)
 #undef TEGL_PICK
@@ -181,6 +303,11 @@ namespace tegl::detail {
   template <>                                                                          \
   bool pick_values<T, Calc>(const EdgesInRow<T, Calc>& row) noexcept {                 \
     return HWY_DYNAMIC_DISPATCH(name)(row);                                            \
+  }                                                                                    \
+  HWY_EXPORT(name##_gather);                                                           \
+  template <>                                                                          \
+  std::uint64_t gather_values<T, Calc>(const EdgesAnywhere<T, Calc>& edges) noexcept { \
+    return HWY_DYNAMIC_DISPATCH(name##_gather)(edges);                                 \
   }                                                                                    \
   HWY_EXPORT(name##_convert);                                                          \
   template <>                                                                          \

@@ -159,8 +159,8 @@ void RowSource<T, N>::alphas_together(const CellsWithEdges<N, K>& cells,
 namespace {
 
 /// Locations of the values around edges along one axis. `from`, by place: the layer that contains the value, displaced
-/// so that the index of the edge's first sample finds it. Places along the row (0 ... 3) use `first` and `second`, the
-/// samples at the two ends of the edge.
+/// so that the index of the edge's first sample finds it. `first` and `second`: the samples at the two ends of the
+/// edge.
 template <Value T, int N>
 struct Places {
   const T* first;
@@ -206,35 +206,39 @@ bool may_be_row(const Places<T, N>& places, const EdgesInRows& edges) noexcept {
   constexpr std::size_t kLeast = kEdgesAtOnce / 2;  // with fewer, the preparation takes longer than it saves
   if (edges.count < kLeast) return false;
   const std::size_t last = edges.count - 1;
-  if (places.along != 1 || places.row_size < kMostLanes + 3 || edges.rows[0] != edges.rows[last] ||
-      !may_be_dense<Calc>(edges.at[last] - edges.at[0], edges.count))
-    return false;
-  // Rows that overlap, or coincide by a stride of 0, may start at the same position; edges do not ascend then.
-  bool ascend = true;
-  for (std::size_t i = 1; i < edges.count; ++i)
-    ascend &= edges.rows[i] == edges.rows[0] && edges.at[i] > edges.at[i - 1];
-  return ascend;
+  return places.along == 1 && places.row_size >= kMostLanes + 3 && edges.rows[0] == edges.rows[last] &&
+         may_be_dense<Calc>(edges.at[last] - edges.at[0], edges.count);
 }
 
-/// Reads the values of edges in one row: by registers if there are enough edges, except at the row's ends, where edges
-/// lack a neighbour and are read one by one.
+/// Reads the values of edges in one row by registers, except at the row's ends, where edges lack a neighbour and are
+/// read one by one. Returns false if there are too few edges or several rows; the output is then undefined.
 template <bool kAlongRow, Value T, int N, class Calc>
-std::uint64_t gather_row(const Places<T, N>& places, const EdgesInRows& edges, Calc* out) noexcept {
+bool gather_row(const Places<T, N>& places, const EdgesInRows& edges, Calc* out, std::uint64_t& at_ends) noexcept {
   const std::size_t last = edges.count - 1;
   const std::size_t end = places.row_size - (kAlongRow ? 2 : 1);
   const std::size_t before = edges.at[0] == 0 ? 1 : 0;
   const std::size_t behind = edges.at[last] == end ? 1 : 0;
-  auto from = places.from;
-  from[0] = places.first - 1;
-  from[1] = places.first + 1;
-  from[2] = places.second - 1;
-  from[3] = places.second + 1;
-  for (const T*& place : from) place += edges.rows[0] + 1;
-  if (!pick_values<T, Calc>({from.data(), from.size(), 1, end, edges.at, edges.count, out}))
-    return gather_each<kAlongRow>(places, edges, out);
+  if (!pick_values<T, Calc>({places.from.data(), kEdgeValues<N>, 1, end, edges.rows, edges.at, edges.count, out}))
+    return false;
   if (before != 0) gather_each<kAlongRow>(places, {edges.rows, edges.at, 1}, out);
   if (behind != 0) gather_each<kAlongRow>(places, {edges.rows + last, edges.at + last, 1}, out + last);
-  return std::uint64_t{before} | std::uint64_t{behind} << last;
+  at_ends = std::uint64_t{before} | std::uint64_t{behind} << last;
+  return true;
+}
+
+/// Reads the values of edges in any rows: four edges at a time, near the ends of rows one by one.
+template <bool kAlongRow, Value T, int N, class Calc>
+std::uint64_t gather_any(const Places<T, N>& places, unsigned axis, const EdgesInRows& edges, Calc* out) noexcept {
+  if (places.along != 1) return gather_each<kAlongRow>(places, edges, out);
+  std::uint64_t left = gather_values<T, Calc>(
+      {places.from.data(), kEdgeValues<N>, axis, places.row_size, edges.rows, edges.at, edges.count, out});
+  if (left == ~std::uint64_t{0} >> (kEdgesAtOnce - edges.count)) return gather_each<kAlongRow>(places, edges, out);
+  std::uint64_t at_ends = 0;
+  for (; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    at_ends |= gather_each<kAlongRow>(places, {edges.rows + i, edges.at + i, 1}, out + i) << i;
+  }
+  return at_ends;
 }
 
 }  // namespace
@@ -247,7 +251,8 @@ std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const E
   const T* const second = kAlongRow              ? first + strides()[0]
                           : around.axis == N - 1 ? layer(around.layer + 1)
                                                  : first + strides()[around.axis];
-  Places<T, N> places{first, second, {}, strides()[0], row_size_};
+  const std::ptrdiff_t along = strides()[0];
+  Places<T, N> places{first, second, {first - along, first + along, second - along, second + along}, along, row_size_};
   for (int a = 1; a < N; ++a) {
     const auto neighbour = [&](unsigned j, const T* sample) {
       if (!around.exists[a][j]) return sample;
@@ -260,8 +265,9 @@ std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const E
     places.from[4 * a + 2] = a == around.axis ? first : neighbour(2, second);
     places.from[4 * a + 3] = neighbour(3, second);
   }
-  if (may_be_row<Calc>(places, edges)) return gather_row<kAlongRow>(places, edges, out);
-  return gather_each<kAlongRow>(places, edges, out);
+  if (std::uint64_t at_ends; may_be_row<Calc>(places, edges) && gather_row<kAlongRow>(places, edges, out, at_ends))
+    return at_ends;
+  return gather_any<kAlongRow>(places, static_cast<unsigned>(around.axis), edges, out);
 }
 
 template <Value T, int N>

@@ -151,6 +151,7 @@ class NormalWriter {
     if constexpr (std::is_same_v<Calc, double>)
       if (mapped_) row.to_world = to_world_.data();
     if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
+    const bool all_read = !steps_[0].has_backward(0) && !steps_[0].has_forward(sizes_[0] - 1);
     for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
       // values, positions and weights
       row.count = std::min(kEdgesAtOnce, edges.count - i);
@@ -165,9 +166,25 @@ class NormalWriter {
       if (row.row_weights == nullptr || steps_[0].has_backward(0)) left |= at_ends;
       for (; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        row.out[j] = on_edge(start_of(i + j), axis, alphas[i + j]);
+        row.out[j] = all_read ? on_edge(start_of(i + j), axis, alphas[i + j], scratch.values.data() + j)
+                              : on_edge(start_of(i + j), axis, alphas[i + j]);
       }
     }
+  }
+
+  /// As on_edge for differences, from the values around the edge (kEdgesAtOnce apart).
+  template <class Calc>
+  [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha, const Calc* values) const noexcept {
+    const auto value = [&](unsigned place) { return static_cast<double>(values[place * kEdgesAtOnce]); };
+    const auto own = 4 * static_cast<unsigned>(axis);
+    std::array<std::array<double, N>, 2> at_end;
+    for (unsigned end = 0; end < 2; ++end, ++index[axis])
+      for (unsigned a = 0; a < N; ++a)
+        at_end[end][a] = derivative(value(4 * a + 2 * end), value(own + 2 - end), value(4 * a + 2 * end + 1),
+                                    steps_[a].at(index[a]));
+    std::array<double, N> gradient;
+    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * at_end[0][a] + alpha * at_end[1][a];
+    return normal(gradient);
   }
 
   /// Sets what all edges have in common: weights, and which neighbours exist.

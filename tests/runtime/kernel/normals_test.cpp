@@ -272,7 +272,8 @@ TEST(Normals, AreThoseOfPlainCode) {
   expect_plain_normals_of<float, 4>({21, 3, 3, 3});
 }
 
-/// Contiguous samples are read by vector registers if edges are dense, otherwise one by one.
+/// Contiguous samples are read by vector registers: of a row if its edges are dense, otherwise of four edges, except
+/// near the ends of rows. Others are read one by one.
 template <class Real, Value T, int N>
 void expect_the_same_normals_apart(const std::array<std::size_t, N>& sizes) {
   const auto image = noise<T, N>(sizes, 29);
@@ -288,8 +289,9 @@ void expect_the_same_normals_apart(const std::array<std::size_t, N>& sizes) {
 }
 
 TEST(Normals, AreTheSameBytesWhetherSamplesLieNextToEachOtherOrNot) {
-  for (const std::size_t size : {17u, 18u, 19u, 20u, 35u, 150u}) {
+  for (const std::size_t size : {3u, 4u, 5u, 6u, 9u, 17u, 18u, 19u, 20u, 35u, 150u}) {
     SCOPED_TRACE(testing::Message() << size << " samples along the row");
+    expect_the_same_normals_apart<float, float, 3>({size, 9, 7});
     expect_the_same_normals_apart<float, float, 2>({size, 9});
     expect_the_same_normals_apart<float, float, 3>({size, 4, 5});
     expect_the_same_normals_apart<double, float, 3>({size, 4, 3});
