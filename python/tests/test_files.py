@@ -3,6 +3,7 @@
 
 import base64
 import dataclasses
+import gzip
 import importlib.util
 import json
 import os
@@ -442,3 +443,46 @@ def test_what_brings_a_library_down_is_a_value_error(name):
         pytest.skip(f"no {path}")
     with pytest.raises(ValueError, match=name):
         (tegl.load if name.endswith(".vtkhdf") else tegl.read)(path, separate_process=True)
+
+
+def crystal(name):
+    path = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]).parent / "shared/data/lattice" / name
+    if not path.exists():
+        pytest.skip(f"no {path}")
+    return (gzip.open(path, "rt") if name.endswith(".gz") else open(path, encoding="ascii")).read()
+
+
+def test_a_density_in_a_crystal_is_closed_on_the_cubic_grid_and_on_fcc():
+    lines = crystal("CHGCAR_Si_fcc.vasp").splitlines()
+    vectors, n = np.array([line.split() for line in lines[2:5]], dtype=float), 28
+    density = np.array(" ".join(lines[11:]).split()[:n**3], dtype=float).reshape(n, n, n)
+    affine = np.column_stack([vectors[::-1].T / n, np.zeros(3)])
+    # The samples along the primitive vectors are a lattice fcc, whose axes are (1, 1, 0), (1, -1, 0) and (0, 0, 1). A box of
+    # 56 layers repeats itself, and has two primitive cells.
+    k, y, x = np.meshgrid(np.arange(2 * n), np.arange(n), np.arange(n), indexing="ij")
+    a, b, c = x + (k % 2 - k) // 2, (k - k % 2) // 2 - y, y + (k % 2 + k) // 2
+    layers, layer = density[c % n, b % n, a % n], vectors[0, 0] / n
+    for share, euler in ((0.2, -8), (0.5, -8), (0.7, 4), (0.9, 4)):
+        level = np.quantile(density, share)
+        cell = tegl.contour(density, level, periodic="all", affine=affine, dtype=float)
+        box = tegl.contour(layers, level, periodic="all", lattice="fcc", spacing=[layer, 2**0.5 * layer, 2**0.5 * layer],
+                           dtype=float)
+        for contour, count in ((cell, 1), (box, 2)):
+            report = contour.check()
+            assert report.is_closed and report.is_manifold and report.euler == count * euler
+        assert box.measure().size == pytest.approx(2 * cell.measure().size, rel=0.01)
+
+
+def test_fermi_surfaces_of_a_crystal_are_closed():
+    words = crystal("RhBulkFcc.bxsf.gz").split("BANDGRID_3D_BANDS")[1].split()
+    bands, n = int(words[0]), int(words[1])
+    affine = np.column_stack([np.array(words[7:16], dtype=float).reshape(3, 3).T / (n - 1), np.zeros(3)])
+    parts = []
+    for band in range(bands):
+        first = 16 + band * (n**3 + 2) + 2  # after "BAND:" and its number
+        energies = np.array(words[first:first + n**3], dtype=float).reshape(n, n, n)
+        assert np.array_equal(energies[0], energies[-1])  # the first samples are repeated at the end
+        report = tegl.contour(energies[:-1, :-1, :-1], 0.83511, periodic="all", affine=affine).check()
+        assert report.is_closed and report.is_manifold
+        parts.append((report.components, report.euler))
+    assert parts == [(3, 6), (7, 14), (1, 2)]

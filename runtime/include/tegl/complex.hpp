@@ -234,6 +234,15 @@ template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] ContourSize count(const Complex<N>& complex, double isovalue, const ExtractOptions& options = {});
 
+/// As `extract`, but writes to the caller's memory and returns the contour's size. `room` must hold at least that many
+/// rows; `count` returns the size. Vertices, normals and simplices equal those of `extract` byte by byte, except for
+/// the width of the numbers. If the contour touches itself beside missing values, it is made in memory of its own and
+/// copied. Errors: those of `extract`; InvalidArgument if `room` is too small, mostly before anything is written.
+template <int N, Coordinate Real, VertexNumber I>
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& complex, double isovalue,
+                                                              const ContourRoom<N, Real, I>& room,
+                                                              const ExtractOptions& options = {});
+
 /// Interpolates other numbers at the points of a complex to the vertices of its contour, as an attribute: a temperature
 /// surface with the pressure. `numbers`: #P x width, row = point of the complex (of one made by in_time, #T x #P x
 /// width); NaN: missing. The weights are those of the contour's coordinates, so that numbers which are linear in the

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Builds and searches the interval tree of a complex (see tegl/cell_index.hpp).
+// Builds and searches the interval tree of a complex, and extracts contours with it (see tegl/cell_index.hpp).
 #include "tegl/cell_index.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "base/progress.hpp"
+#include "base/stopwatch.hpp"
 #include "complex/cell_groups.hpp"
+#include "complex/contour_numbers.hpp"
+#include "complex/point_gradients.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl {
 
@@ -115,6 +121,37 @@ std::vector<Index> CellIndex::find(double isovalue) const {
   std::sort(cells.begin(), cells.end());
   return cells;
 }
+
+template <Coordinate Real, int N>
+requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex,
+                                                                          const CellIndex& index, double isovalue,
+                                                                          const ExtractOptions& options) {
+  if (index.cell_count() != complex.cell_count() || index.point_count() != complex.points().size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("an index of {} cells and {} points; the complex has {} and {}", index.cell_count(),
+                            index.point_count(), complex.cell_count(), complex.points().size()));
+  if (index.has_missing()) return extract_with_stats<Real>(complex, isovalue, options);
+  detail::check_complex_options(N, isovalue, options);
+  detail::Stopwatch watch;
+  const std::vector<Index> active = index.find(isovalue);
+  double seconds = 0;
+  watch.add_to(seconds);
+  detail::Surroundings<N> around;
+  around.active = &active;
+  Extraction<N, Real> result = detail::extract_in<Real>(complex, isovalue, options, around);
+  result.stats.find_seconds += seconds;
+  return result;
+}
+
+#define TEGL_INSTANTIATE_WITH_INDEX(N)                                                                      \
+  template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, const CellIndex&, double,   \
+                                                             const ExtractOptions&);                        \
+  template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, const CellIndex&, double, \
+                                                               const ExtractOptions&);
+TEGL_INSTANTIATE_WITH_INDEX(2)
+TEGL_INSTANTIATE_WITH_INDEX(3)
+TEGL_INSTANTIATE_WITH_INDEX(4)
+#undef TEGL_INSTANTIATE_WITH_INDEX
 
 template CellIndex::CellIndex(const Complex<2>&, const WorkOptions&);
 template CellIndex::CellIndex(const Complex<3>&, const WorkOptions&);

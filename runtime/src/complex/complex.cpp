@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/progress.hpp"
 #include "complex/border_facets.hpp"
+#include "complex/complex_caps.hpp"
 #include "complex/complex_edges.hpp"
 #include "complex/image_points.hpp"
 #include "tegl/error.hpp"
@@ -188,6 +190,36 @@ requires DimensionBetween<N, 2, 4> std::size_t Complex<N>::edge_count()
 const noexcept { return edges_ == nullptr ? 0 : edges_->ends.size(); }
 
 template <int N>
+requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, double isovalue,
+                                                     const ExtractOptions& options) {
+  detail::check_complex_options(N, isovalue, options);
+  ExtractStats stats;
+  const Progress& progress = options.work.progress;
+  const auto is_missing = [](double value) { return std::isnan(value); };
+  const bool may_extract =
+      progress != nullptr && std::any_of(complex.values().begin(), complex.values().end(), is_missing);
+  const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
+  const Progress counting = detail::part_of(progress, 0.0, may_extract ? 0.5 : 1.0);
+  const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
+                                       options, detail::part_of(counting, 0.0, options.close ? 0.5 : 1.0), stats);
+  // vertices where the contour touches itself at missing values are doubled
+  if (!numbers.vertices_at_missing(cells).empty()) {
+    ExtractOptions second_half = options;
+    second_half.work.progress = detail::part_of(progress, 0.5, 1.0);
+    const auto contour = extract<double>(complex, isovalue, second_half);
+    return {contour.vertices.size(), contour.simplices.size()};
+  }
+  ContourSize size = numbers.size();
+  if (const auto caps =
+          detail::find_caps<N>(complex, numbers, isovalue, options, detail::part_of(counting, 0.5, 1.0))) {
+    size.vertices += caps->vertex_count();
+    size.simplices += caps->simplices().size();
+  }
+  detail::tell(progress, 1.0);  // without shared points, the numbers end below it
+  return size;
+}
+
+template <int N>
 requires DimensionBetween<N, 2, 4> Attribute interpolate_points(const Complex<N>& complex, double isovalue,
                                                                 std::span<const double> numbers, std::string name,
                                                                 std::string unit, const ExtractOptions& options) {
@@ -201,6 +233,7 @@ requires DimensionBetween<N, 2, 4> Attribute interpolate_points(const Complex<N>
 }
 
 #define TEGL_INSTANTIATE_COMPLEXES(N)                                                                       \
+  template ContourSize count<N>(const Complex<N>&, double, const ExtractOptions&);                          \
   template Attribute interpolate_points<N>(const Complex<N>&, double, std::span<const double>, std::string, \
                                            std::string, const ExtractOptions&);
 TEGL_INSTANTIATE_COMPLEXES(2)

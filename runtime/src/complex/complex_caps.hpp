@@ -5,9 +5,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
+#include "base/stopwatch.hpp"
 #include "complex/border_facets.hpp"
 #include "complex/contour_numbers.hpp"
 #include "regions/region_divisions.hpp"
@@ -111,6 +114,47 @@ class ComplexCaps {
   std::vector<std::uint64_t> first_point_{0};
   std::vector<Between> between_;
   std::vector<Simplex> simplices_;
+};
+
+/// The caps of a contour, if they are requested. Errors: TooLarge, Cancelled.
+template <int N>
+[[nodiscard]] std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers,
+                                                      double isovalue, const ExtractOptions& options,
+                                                      const Progress& progress);
+
+/// Everything about a contour but its places: its numbers and its caps. Not movable.
+template <int N>
+class NumberedContour {
+ public:
+  /// Reports progress from 0 to 1 and adds times to `stats`. `active`: as of ContourNumbers. Errors: TooLarge,
+  /// Cancelled.
+  NumberedContour(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                  const std::vector<Index>* active, const Progress& progress, ExtractStats& stats)
+      : numbers_(ComplexAccess::cells(complex), ComplexAccess::edges(complex), complex.values(), isovalue, options,
+                 part_of(progress, 0.0, options.close ? 0.5 : 1.0), stats, active),
+        caps_(caps_of(complex, isovalue, options, part_of(progress, 0.5, 1.0), stats)) {
+    watch_.add_to(stats.close_seconds);
+  }
+  [[nodiscard]] const ContourNumbers& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] const ComplexCaps<N>* caps() const noexcept { return caps_ ? &*caps_ : nullptr; }
+  /// With caps.
+  [[nodiscard]] ContourSize size() const noexcept {
+    ContourSize size = numbers_.size();
+    if (caps_) size.vertices += caps_->vertex_count(), size.simplices += caps_->simplices().size();
+    return size;
+  }
+
+ private:
+  std::optional<ComplexCaps<N>> caps_of(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                                        const Progress& progress, ExtractStats& stats) {
+    watch_.add_to(stats.find_seconds);
+    stats.find_seconds -= stats.classify_seconds;
+    return find_caps<N>(complex, numbers_, isovalue, options, progress);
+  }
+
+  Stopwatch watch_;
+  ContourNumbers numbers_;
+  std::optional<ComplexCaps<N>> caps_;
 };
 
 }  // namespace tegl::detail

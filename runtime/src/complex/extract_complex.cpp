@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contour_room.hpp"
 #include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
@@ -20,7 +21,6 @@
 #include "complex/edge_alpha.hpp"
 #include "complex/point_gradients.hpp"
 #include "kernel/split_nonmanifold.hpp"
-#include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/error.hpp"
 
@@ -71,13 +71,14 @@ std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumb
   return points;
 }
 
-template <int N, class Real>
+/// Writes to memory that holds the contour and its caps.
+template <int N, class Real, class I>
 class ComplexWriter {
  public:
   /// `gradients`: null if the contour gets no normals. The arguments must outlive this object.
   ComplexWriter(const Complex<N>& complex, const ContourNumbers& numbers, const PointGradients<N>* gradients,
                 std::span<const Period<N>> periods, double isovalue, const ExtractOptions& options,
-                Contour<N, Real>& contour)
+                const ContourRoom<N, Real, I>& contour)
       : complex_(complex),
         cells_(ComplexAccess::cells(complex)),
         signs_(ComplexAccess::signs(complex)),
@@ -160,18 +161,17 @@ class ComplexWriter {
     });
   }
 
-  /// Appends caps.
+  /// Writes caps after the contour.
   void write_caps(const ComplexCaps<N>& caps) {
     std::size_t v = numbers_.size().vertices;
-    contour_.vertices.resize(v + caps.vertex_count());
-    if (gradients_ != nullptr) contour_.normals.resize(v + caps.vertex_count());
+    const std::size_t end = v + caps.vertex_count();
     for (const Index p : caps.corners()) {
       for (std::size_t i = 0; i < N; ++i) contour_.vertices[v][i] = static_cast<Real>(complex_.points()[p][i]);
       if (gradients_ != nullptr) contour_.normals[v] = normal_of(gradients_->at(p));
       ++v;
     }
     auto between = caps.between().begin();
-    for (std::size_t j = 0; v < contour_.vertices.size(); ++j, ++v) {
+    for (std::size_t j = 0; v < end; ++j, ++v) {
       Mean mean(*this);
       for (const CapVertex point : caps.points_of(j))
         if (point.is_corner())
@@ -186,10 +186,10 @@ class ComplexWriter {
       keep_inside(contour_.vertices[v]);
       ++between;
     }
-    contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
+    auto* numbers = contour_.simplices.data() + numbers_.size().simplices;
     for (const auto& simplex : caps.simplices()) {
-      auto& numbers = contour_.simplices.emplace_back();
-      for (std::size_t k = 0; k < N; ++k) numbers[k] = caps.number(simplex[k]);
+      for (std::size_t k = 0; k < N; ++k) (*numbers)[k] = caps.number(simplex[k]);
+      ++numbers;
     }
   }
 
@@ -303,8 +303,8 @@ class ComplexWriter {
 
   /// Writes the simplices of a segment, or of a loop as a cone from `apex` or a fan from its first vertex. Returns the
   /// end of what it has written.
-  static std::array<Index, N>* write_piece(std::span<const Index> vertices, bool is_coned, Index apex, bool flip,
-                                           std::array<Index, N>* simplex) noexcept {
+  static std::array<I, N>* write_piece(std::span<const Index> vertices, bool is_coned, Index apex, bool flip,
+                                       std::array<I, N>* simplex) noexcept {
     if constexpr (N == 2) {
       *simplex++ = {vertices[flip ? 1 : 0], vertices[flip ? 0 : 1]};
     } else if constexpr (N == 3) {
@@ -459,84 +459,58 @@ class ComplexWriter {
   std::span<const Period<N>> periods_;
   double isovalue_, epsilon_;
   bool is_layered_, descends_;
-  Contour<N, Real>& contour_;
+  ContourRoom<N, Real, I> contour_;
 };
 
-/// The caps of a contour, if they are requested. Errors: TooLarge, Cancelled.
-template <int N>
-std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers, double isovalue,
-                                        const ExtractOptions& options, const Progress& progress) {
-  if (!options.close) return std::nullopt;
-  const CellGroups& cells = ComplexAccess::cells(complex);
-  BorderFacets found;
-  const BorderFacets* border = ComplexAccess::border(complex);
-  if (border == nullptr) {
-    found = find_border(complex.points().size(), cells, {options.work.threads, part_of(progress, 0.0, 0.8)});
-    border = &found;
-  }
-  return std::optional<ComplexCaps<N>>(std::in_place, cells, ComplexAccess::signs(complex), *border, complex.values(),
-                                       isovalue, options, numbers, part_of(progress, 0.8, 1.0));
-}
-
 /// Writes normals and positions of vertices, and simplices.
-template <class Real, int N>
-void write_contour(const Complex<N>& complex, const ContourNumbers& numbers, const ComplexCaps<N>* caps,
-                   double isovalue, const ExtractOptions& options, const Surroundings<N>& around,
-                   const Progress& progress, Contour<N, Real>& contour) {
+template <class Real, class I, int N>
+void write_contour(const Complex<N>& complex, const NumberedContour<N>& numbered, double isovalue,
+                   const ExtractOptions& options, const Surroundings<N>& around, const Progress& progress,
+                   const ContourRoom<N, Real, I>& room) {
+  const ContourNumbers& numbers = numbered.numbers();
   const unsigned threads = options.work.threads;
   const double start = options.normals == Normals::none ? 0.0 : 0.5;
   std::optional<PointGradients<N>> gradients;
   if (options.normals != Normals::none) {
     std::vector<Index> others = corners_of_sides(complex, numbers);
-    if (caps != nullptr) others.insert(others.end(), caps->corners().begin(), caps->corners().end());
+    if (const auto* const caps = numbered.caps())
+      others.insert(others.end(), caps->corners().begin(), caps->corners().end());
     const WorkOptions work{threads, part_of(progress, 0.0, start)};
     if (around.gradient)
       gradients.emplace(complex, numbers.edge_ends(), others, around.gradient, work);
     else
       gradients.emplace(complex, numbers.edge_ends(), others, work);
-    contour.normals.resize(numbers.size().vertices);
   }
-  contour.direction = options.direction;
-  contour.vertices.resize(numbers.size().vertices);
-  contour.simplices.resize(numbers.size().simplices);
   const Progress rest = part_of(progress, start, 1.0);
-  ComplexWriter<N, Real> writer(complex, numbers, gradients ? &*gradients : nullptr, around.periods, isovalue, options,
-                                contour);
+  ComplexWriter<N, Real, I> writer(complex, numbers, gradients ? &*gradients : nullptr, around.periods, isovalue,
+                                   options, room);
   writer.write_edge_points({threads, part_of(rest, 0.0, 0.25)});
   writer.write_polygon_centres({threads, part_of(rest, 0.25, 0.4)});
   writer.write_cells({threads, part_of(rest, 0.4, 1.0)});
   writer.write_polytopes({threads, nullptr});
-  if (caps != nullptr) writer.write_caps(*caps);
+  if (numbered.caps() != nullptr) writer.write_caps(*numbered.caps());
 }
 
-/// Extracts the contour from all cells, or from those of `active`.
+/// Writes a numbered contour. `touching`: vertices at which it may touch itself beside missing values.
 template <class Real, int N>
-Extraction<N, Real> extract_cells(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
-                                  const std::vector<Index>* active, const Surroundings<N>& around = {}) {
-  Extraction<N, Real> result;
-  Contour<N, Real>& contour = result.contour;
-  const Progress& progress = options.work.progress;
-  // number
-  Stopwatch watch;
-  const CellGroups& cells = ComplexAccess::cells(complex);
-  const double numbered = options.close ? 0.3 : 0.6;
-  const ContourNumbers numbers(cells, ComplexAccess::edges(complex), complex.values(), isovalue, options,
-                               part_of(progress, 0.0, numbered), result.stats, active);
-  watch.add_to(result.stats.find_seconds);
-  result.stats.find_seconds -= result.stats.classify_seconds;
-  const auto caps = find_caps<N>(complex, numbers, isovalue, options, part_of(progress, numbered, 0.6));
-  watch.add_to(result.stats.close_seconds);
-  // write
-  write_contour<Real>(complex, numbers, caps ? &*caps : nullptr, isovalue, options, around, part_of(progress, 0.6, 1.0),
-                      contour);
+Contour<N, Real> contour_of(const Complex<N>& complex, const NumberedContour<N>& numbered, std::vector<Index> touching,
+                            double isovalue, const ExtractOptions& options, const Surroundings<N>& around,
+                            const Progress& progress) {
+  Contour<N, Real> contour;
+  const ContourSize size = numbered.size();
+  contour.direction = options.direction;
+  contour.vertices.resize(size.vertices);
+  contour.simplices.resize(size.simplices);
+  if (options.normals != Normals::none) contour.normals.resize(size.vertices);
+  write_contour<Real, Index, N>(complex, numbered, isovalue, options, around, progress,
+                                {contour.vertices, contour.simplices, contour.normals});
   contour.periods = around.periods;
-  if (auto touching = numbers.vertices_at_missing(cells); !touching.empty()) {
-    for (std::size_t v = numbers.size().vertices; v < contour.vertices.size(); ++v)
+  if (!touching.empty()) {
+    for (std::size_t v = numbered.numbers().size().vertices; v < size.vertices; ++v)
       touching.push_back(static_cast<Index>(v));
     split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
   }
-  watch.add_to(result.stats.generate_seconds);
-  return result;
+  return contour;
 }
 
 }  // namespace
@@ -546,7 +520,16 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
                                const Surroundings<N>& around) {
   check_complex_options(N, isovalue, options);
   check_range<Real>(complex);
-  return extract_cells<Real>(complex, isovalue, options, nullptr, around);
+  Extraction<N, Real> result;
+  const Progress& progress = options.work.progress;
+  const NumberedContour<N> numbered(complex, isovalue, options, around.active, part_of(progress, 0.0, 0.6),
+                                    result.stats);
+  Stopwatch watch;
+  result.contour =
+      contour_of<Real>(complex, numbered, numbered.numbers().vertices_at_missing(ComplexAccess::cells(complex)),
+                       isovalue, options, around, part_of(progress, 0.6, 1.0));
+  watch.add_to(result.stats.generate_seconds);
+  return result;
 }
 
 }  // namespace detail
@@ -557,56 +540,33 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
   return detail::extract_in<Real>(complex, isovalue, options, detail::Surroundings<N>());
 }
 
-template <Coordinate Real, int N>
-requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const Complex<N>& complex,
-                                                                          const CellIndex& index, double isovalue,
-                                                                          const ExtractOptions& options) {
-  if (index.cell_count() != complex.cell_count() || index.point_count() != complex.points().size())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("an index of {} cells and {} points; the complex has {} and {}", index.cell_count(),
-                            index.point_count(), complex.cell_count(), complex.points().size()));
-  if (index.has_missing()) return extract_with_stats<Real>(complex, isovalue, options);
+template <int N, Coordinate Real, VertexNumber I>
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& complex, double isovalue,
+                                                              const ContourRoom<N, Real, I>& room,
+                                                              const ExtractOptions& options) {
   detail::check_complex_options(N, isovalue, options);
   detail::check_range<Real>(complex);
+  const bool with_normals = options.normals != Normals::none;
+  ExtractedSize result;
+  const detail::NumberedContour<N> numbered(complex, isovalue, options, nullptr,
+                                            detail::part_of(options.work.progress, 0.0, 0.6), result.stats);
+  detail::check_room(room, result.size = numbered.size(), with_normals);
   detail::Stopwatch watch;
-  const std::vector<Index> active = index.find(isovalue);
-  double seconds = 0;
-  watch.add_to(seconds);
-  Extraction<N, Real> result = detail::extract_cells<Real>(complex, isovalue, options, &active);
-  result.stats.find_seconds += seconds;
+  const Progress writing = detail::part_of(options.work.progress, 0.6, 1.0);
+  if (auto touching = numbered.numbers().vertices_at_missing(detail::ComplexAccess::cells(complex)); touching.empty()) {
+    detail::write_contour<Real, I, N>(complex, numbered, isovalue, options, {}, writing, room);
+  } else {
+    const auto contour = detail::contour_of<Real, N>(complex, numbered, touching, isovalue, options, {}, writing);
+    detail::check_room(room, result.size = {contour.vertices.size(), contour.simplices.size()}, with_normals);
+    detail::copy_contour(contour, room);
+  }
+  watch.add_to(result.stats.generate_seconds);
   return result;
 }
 
-template <int N>
-requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, double isovalue,
-                                                     const ExtractOptions& options) {
-  detail::check_complex_options(N, isovalue, options);
-  ExtractStats stats;
-  const Progress& progress = options.work.progress;
-  const auto is_missing = [](double value) { return std::isnan(value); };
-  const bool may_extract =
-      progress != nullptr && std::any_of(complex.values().begin(), complex.values().end(), is_missing);
-  const detail::CellGroups& cells = detail::ComplexAccess::cells(complex);
-  const Progress counting = detail::part_of(progress, 0.0, may_extract ? 0.5 : 1.0);
-  const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
-                                       options, detail::part_of(counting, 0.0, options.close ? 0.5 : 1.0), stats);
-  // vertices where the contour touches itself at missing values are doubled
-  if (!numbers.vertices_at_missing(cells).empty()) {
-    ExtractOptions second_half = options;
-    second_half.work.progress = detail::part_of(progress, 0.5, 1.0);
-    const auto contour = extract<double>(complex, isovalue, second_half);
-    return {contour.vertices.size(), contour.simplices.size()};
-  }
-  ContourSize size = numbers.size();
-  if (const auto caps =
-          detail::find_caps<N>(complex, numbers, isovalue, options, detail::part_of(counting, 0.5, 1.0))) {
-    size.vertices += caps->vertex_count();
-    size.simplices += caps->simplices().size();
-  }
-  detail::tell(progress, 1.0);  // without shared points, the numbers end below it
-  return size;
-}
-
+#define TEGL_INSTANTIATE_INTO(N, Real, I)                                                                    \
+  template ExtractedSize extract_into<N, Real, I>(const Complex<N>&, double, const ContourRoom<N, Real, I>&, \
+                                                  const ExtractOptions&);
 #define TEGL_INSTANTIATE_COMPLEX(N)                                                                               \
   template Extraction<N, float> detail::extract_in<float, N>(const Complex<N>&, double, const ExtractOptions&,    \
                                                              const detail::Surroundings<N>&);                     \
@@ -614,14 +574,14 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
                                                                const detail::Surroundings<N>&);                   \
   template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, double, const ExtractOptions&);   \
   template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, double, const ExtractOptions&); \
-  template Extraction<N, float> extract_with_stats<float, N>(const Complex<N>&, const CellIndex&, double,         \
-                                                             const ExtractOptions&);                              \
-  template Extraction<N, double> extract_with_stats<double, N>(const Complex<N>&, const CellIndex&, double,       \
-                                                               const ExtractOptions&);                            \
-  template ContourSize count<N>(const Complex<N>&, double, const ExtractOptions&);
+  TEGL_INSTANTIATE_INTO(N, float, std::uint32_t)                                                                  \
+  TEGL_INSTANTIATE_INTO(N, float, std::uint64_t)                                                                  \
+  TEGL_INSTANTIATE_INTO(N, double, std::uint32_t)                                                                 \
+  TEGL_INSTANTIATE_INTO(N, double, std::uint64_t)
 TEGL_INSTANTIATE_COMPLEX(2)
 TEGL_INSTANTIATE_COMPLEX(3)
 TEGL_INSTANTIATE_COMPLEX(4)
 #undef TEGL_INSTANTIATE_COMPLEX
+#undef TEGL_INSTANTIATE_INTO
 
 }  // namespace tegl

@@ -27,6 +27,8 @@ struct Surroundings {
   std::function<std::array<double, N>(Index)> gradient = {};
   /// Corners of a cell are at the places nearest to each other modulo these; the contour is wrapped.
   std::vector<Period<N>> periods = {};
+  /// Numbers of the cells that may be active; null: any.
+  const std::vector<Index>* active = nullptr;
 };
 
 /// As `extract_with_stats` of a complex with surroundings.

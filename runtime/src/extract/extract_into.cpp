@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contour_room.hpp"
 #include "base/function_ref.hpp"
 #include "kernel/stream.hpp"
 #include "kernel/tableless.hpp"
@@ -31,14 +32,6 @@ class NoSink final : public ContourSink<N, Real> {
 constexpr const char* kVertices = "vertices";
 constexpr const char* kNormals = "normals";
 constexpr const char* kSimplices = "simplices";
-
-/// Throws unless `needed` items fit.
-void check_room(std::uint64_t room, std::uint64_t needed, const char* items) {
-  if (needed > room)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("room for {} {}; the contour has {} or more (tegl::count returns the number)", room, items,
-                            needed));
-}
 
 /// Counts only. It counts neither caps nor vertices doubled at missing values.
 template <int N, class Real>
@@ -106,9 +99,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
 
  private:
   void check(std::uint64_t vertices, std::uint64_t simplices) const {
-    check_room(room_.vertices.size(), vertices, kVertices);
-    if (with_normals_) check_room(room_.normals.size(), vertices, kNormals);
-    check_room(room_.simplices.size(), simplices, kSimplices);
+    check_room(room_, {vertices, simplices}, with_normals_);
   }
 
   ContourRoom<N, Real, I> room_;

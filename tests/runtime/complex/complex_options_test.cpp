@@ -4,7 +4,10 @@
 // image whose cells the complex has.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -404,6 +407,80 @@ TEST(ComplexOptions, MissingNumbersAtPointsAreMissingAtTheirVertices) {
   numbers.pop_back();
   expect_error(ErrorCode::InvalidArgument, "342 numbers; expected one or several for each of the 343 points",
                [&] { (void)interpolate_points(complex, 0.5, numbers, "p"); });
+}
+
+template <class I, class Real, int N>
+void expect_same_in_memory_of_the_caller(const Complex<N>& complex, const ExtractOptions& options) {
+  const auto contour = extract<Real>(complex, 0.5, options);
+  const ContourSize size = count(complex, 0.5, options);
+  EXPECT_EQ(size, (ContourSize{contour.vertices.size(), contour.simplices.size()}));
+  EXPECT_GT(size.simplices, 100u);
+  // room for one more of each, which must not change
+  std::array<Real, N> vertex;
+  vertex.fill(Real{-77});
+  std::array<I, N> simplex;
+  simplex.fill(I{77});
+  std::vector<std::array<Real, N>> vertices(size.vertices + 1, vertex);
+  std::vector<std::array<I, N>> simplices(size.simplices + 1, simplex);
+  auto normals = vertices;
+  const ContourRoom<N, Real, I> room{vertices, simplices, normals};
+  const ExtractedSize written = extract_into(complex, 0.5, room, options);
+  EXPECT_EQ(written.size, size);
+  EXPECT_GT(written.stats.active_tiles, 0u);
+  EXPECT_EQ(vertices.back(), vertex);
+  EXPECT_EQ(simplices.back(), simplex);
+  EXPECT_EQ(normals.back(), vertex);
+  EXPECT_TRUE(std::equal(contour.vertices.begin(), contour.vertices.end(), vertices.begin()));
+  EXPECT_TRUE(std::equal(contour.normals.begin(), contour.normals.end(), normals.begin()));
+  if (contour.normals.empty()) {
+    EXPECT_EQ(normals.front(), vertex);
+  }
+  for (std::size_t s = 0; s < size.simplices; ++s)
+    for (int j = 0; j < N; ++j) ASSERT_EQ(simplices[s][j], contour.simplices[s][j]) << "simplex " << s;
+
+  const auto is_short = [&](const ContourRoom<N, Real, I>& less, std::size_t rows, const std::string& items) {
+    expect_error(ErrorCode::InvalidArgument, "room for " + std::to_string(rows) + " " + items,
+                 [&] { (void)extract_into(complex, 0.5, less, options); });
+  };
+  is_short({room.vertices.first(size.vertices - 1), simplices, normals}, size.vertices - 1, "vertices");
+  is_short({vertices, room.simplices.first(size.simplices - 1), normals}, size.simplices - 1, "simplices");
+  if (options.normals != Normals::none)
+    is_short({vertices, simplices, room.normals.first(size.vertices - 1)}, size.vertices - 1, "normals");
+}
+
+template <int N>
+void expect_same_in_memory_of_the_caller(Complex<N> complex, std::vector<double> values) {
+  std::mt19937_64 random(8);
+  for (const bool has_missing : {false, true}) {
+    if (has_missing)
+      for (double& value : values) value = random() % 15 == 0 ? std::numeric_limits<double>::quiet_NaN() : value;
+    complex.set_values(values);
+    for (ExtractOptions options : fixed_rules())
+      for (const bool is_closed : {false, true}) {
+        options.close = is_closed;
+        options.normals = is_closed ? Normals::differences : Normals::none;
+        expect_same_in_memory_of_the_caller<std::uint32_t, float>(complex, options);
+        expect_same_in_memory_of_the_caller<std::uint64_t, double>(complex, options);
+      }
+    ExtractOptions mean;
+    mean.ambiguity = Ambiguity::mean;
+    mean.normals = Normals::differences;
+    expect_same_in_memory_of_the_caller<std::uint64_t, float>(complex, mean);
+    expect_same_in_memory_of_the_caller<std::uint32_t, double>(complex, mean);
+  }
+}
+
+TEST(ComplexOptions, ContoursInMemoryOfTheCallerAreTheSameBytes) {
+  const MeshData<2> plane = cube_mesh(grid_points<2>({20, 20}, 0.15), true);
+  expect_same_in_memory_of_the_caller(plane.complex(), open_noise(plane, 3));
+  const MeshData<3> mesh = mixed_mesh(grid_points<3>({8, 8, 8}, 0.15), 5);
+  expect_same_in_memory_of_the_caller(mesh.complex(), open_noise(mesh, 4));
+  const MeshData<3> small = mixed_mesh(grid_points<3>({5, 5, 5}, 0.15), 6);
+  const std::vector<double> times = {0.0, 1.0, 1.5};
+  std::vector<double> values;
+  for (std::uint64_t k = 0; k < times.size(); ++k)
+    for (const double value : open_noise(small, k)) values.push_back(value);
+  expect_same_in_memory_of_the_caller(in_time(small.complex(), times, values), values);
 }
 
 TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {

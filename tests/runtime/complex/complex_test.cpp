@@ -96,23 +96,30 @@ TEST(Complex, SpheresAndToriHaveTheirEulerCharacteristic) {
   }
 }
 
-TEST(Complex, AreaAndVolumeConvergeWithOrderTwo) {
-  const double volume = 4.0 / 3.0 * std::numbers::pi * 0.343, area = 4.0 * std::numbers::pi * 0.49;
-  const auto errors = [&](std::size_t samples) {
-    std::vector<std::pair<double, double>> result;
-    for (const auto& [name, mesh] : meshes(samples, 0.0)) {
-      Complex<3> complex = mesh.complex();
-      complex.set_values(values_of(mesh, test::ball<3>));
-      const Measures<3> measures = measure(extract<double>(complex, 0.0));
-      result.emplace_back(std::abs(measures.content.value() - volume), std::abs(measures.size - area));
-    }
-    return result;
-  };
-  const auto coarse = errors(12), fine = errors(34);  // steps 2/11 and 2/33
-  for (std::size_t i = 0; i < coarse.size(); ++i) {
-    EXPECT_NEAR(2.0, std::log(coarse[i].first / fine[i].first) / std::log(3.0), 0.35) << i;
-    EXPECT_NEAR(2.0, std::log(coarse[i].second / fine[i].second) / std::log(3.0), 0.35) << i;
+/// Errors of area and volume of the contour of `field` in meshes of every type.
+template <class Field>
+std::vector<std::array<double, 2>> errors_of(std::size_t samples, const Field& field, double area, double volume) {
+  std::vector<std::array<double, 2>> result;
+  for (const auto& [name, mesh] : meshes(samples, 0.0)) {
+    Complex<3> complex = mesh.complex();
+    complex.set_values(values_of(mesh, field));
+    const Measures<3> measures = measure(extract<double>(complex, 0.0));
+    result.push_back({std::abs(measures.size - area), std::abs(measures.content.value() - volume)});
   }
+  return result;
+}
+
+TEST(Complex, AreaAndVolumeConvergeWithOrderTwo) {
+  constexpr double kPi = std::numbers::pi, kRing = 0.55, kTube = 0.22;
+  const auto expect_order_two = [](const auto& coarse, const auto& fine, double refined) {
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+      for (const std::size_t k : {0u, 1u})
+        EXPECT_NEAR(2.0, std::log(coarse[i][k] / fine[i][k]) / std::log(refined), 0.35) << i << ", " << k;
+  };
+  const double area = 4 * kPi * 0.49, volume = 4.0 / 3.0 * kPi * 0.343;
+  expect_order_two(errors_of(12, test::ball<3>, area, volume), errors_of(34, test::ball<3>, area, volume), 3.0);
+  const double of_ring = 4 * kPi * kPi * kRing * kTube, in_ring = 2 * kPi * kPi * kRing * kTube * kTube;
+  expect_order_two(errors_of(21, ring, of_ring, in_ring), errors_of(41, ring, of_ring, in_ring), 2.0);
 }
 
 template <int N>
@@ -324,9 +331,9 @@ TEST(Complex, ContoursOfCellsWithFlatFacesDoNotIntersectThemselves) {
 }
 
 TEST(Complex, InFourDimensionsVolumesConvergeWithOrderTwo) {
-  const double volume = std::numbers::pi * std::numbers::pi / 2 * std::pow(0.8, 4);
+  const double volume = std::numbers::pi * std::numbers::pi / 2 * std::pow(0.8, 4), size = 4 * volume / 0.8;
   for (const bool simplices : {false, true}) {
-    std::array<double, 2> errors{};
+    std::array<double, 2> errors{}, of_size{};
     for (const std::size_t refined : {0u, 1u}) {
       const std::size_t samples = refined == 0 ? 7 : 13;
       const MeshData<4> points = grid_points<4>({samples, samples, samples, samples});
@@ -337,8 +344,10 @@ TEST(Complex, InFourDimensionsVolumesConvergeWithOrderTwo) {
       const auto ball = extract<double>(complex, 0.0);
       EXPECT_EQ(0, expect_closed_manifold(ball).euler);
       errors[refined] = volume - measure(ball).content.value();
+      of_size[refined] = size - measure(ball).size;
     }
     EXPECT_NEAR(2.0, std::log2(errors[0] / errors[1]), 0.3);
+    EXPECT_NEAR(2.0, std::log2(of_size[0] / of_size[1]), 0.3);
   }
 }
 

@@ -215,16 +215,30 @@ TEST(Delaunay, TheSmallestNumberOfPointsIsOneCell) {
   });
 }
 
-TEST(Delaunay, TheContentOfABallIsRight) {
+TEST(Delaunay, AreaAndVolumeConvergeWithOrderTwo) {
   if (!has_delaunay()) GTEST_SKIP() << "no Qhull";
-  const Points<3> points = random_points<3>(20000, 4);
-  Complex<3> complex = delaunay<3>(points);
-  std::vector<double> values;
-  for (const auto& p : points) values.push_back(0.7 - std::hypot(p[0], p[1], p[2]));
-  complex.set_values(values);
-  const auto sphere = extract<double>(complex, 0.0);
-  EXPECT_EQ(expect_closed_manifold(sphere).euler, 2);
-  EXPECT_NEAR(measure(sphere).content.value(), 4.0 / 3.0 * std::numbers::pi * 0.343, 0.02);
+  constexpr double kPi = std::numbers::pi;
+  const auto ball = [](const std::array<double, 3>& x) { return 0.7 - std::hypot(x[0], x[1], x[2]); };
+  const auto ring = [](const std::array<double, 3>& x) {
+    return 0.25 - std::hypot(std::hypot(x[0], x[1]) - 0.55, x[2]);
+  };
+  const auto errors = [&](std::size_t count, const auto& field, double area, double volume, int euler) {
+    const Points<3> points = random_points<3>(count, 4);
+    Complex<3> complex = delaunay<3>(points);
+    std::vector<double> values;
+    for (const auto& p : points) values.push_back(field(p));
+    complex.set_values(values);
+    const auto surface = extract<double>(complex, 0.0);
+    EXPECT_EQ(expect_closed_manifold(surface).euler, euler);
+    return std::array{area - measure(surface).size, volume - measure(surface).content.value()};
+  };
+  const auto expect_order_two = [&](const auto& field, double area, double volume, int euler) {
+    // 8 times as many points have half the distance
+    const auto coarse = errors(5000, field, area, volume, euler), fine = errors(40000, field, area, volume, euler);
+    for (const std::size_t k : {0u, 1u}) EXPECT_NEAR(2.0, std::log2(coarse[k] / fine[k]), 0.35) << k;
+  };
+  expect_order_two(ball, 4 * kPi * 0.49, 4.0 / 3.0 * kPi * 0.343, 2);
+  expect_order_two(ring, 4 * kPi * kPi * 0.55 * 0.25, 2 * kPi * kPi * 0.55 * 0.0625, 0);
 }
 
 TEST(Delaunay, BadPointsAreNamed) {
