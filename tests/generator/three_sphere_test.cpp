@@ -8,8 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
+#include <random>
 #include <stdexcept>
 #include <vector>
+
+#include "tegl/tile/disjoint_sets.hpp"
+#include "tegl/tile/facets.hpp"
 
 namespace tegl::tile {
 namespace {
@@ -88,6 +93,32 @@ TEST(ThreeSphereTest, RefusesWhatIsNoClosedManifold) {
   branching.push_back({0, 1, 4, 9});
   EXPECT_THROW(static_cast<void>(is_sphere(branching)), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(is_sphere(join_of_circles(130, 130))), std::length_error);
+}
+
+/// Components of Sigma in 5-cubes, spheres and others, against the slower test of complexes of any dimension.
+TEST(ThreeSphereTest, AgreesWithShapesOfAnyDimensionOnContoursOf5Cubes) {
+  std::mt19937_64 random(5);
+  FacetBuilder builder(FaceLattice::cube(5));
+  ThreeSphereTest is_sphere;
+  std::array<std::size_t, 2> found{};
+  for (int i = 0; i < 60; ++i) {
+    const Simplices& sigma = builder.build(random() & 0xffffffffu, {}, Geometry::without).sigma;
+    tegl::detail::BasicDisjointSets<VertexId> sets;
+    sets.reset(std::size_t{kNoVertex});
+    for (const Simplex& s : sigma)
+      for (std::size_t j = 1; j < 4; ++j) sets.join(s[0], s[j]);
+    std::map<VertexId, Simplices> components;
+    for (const Simplex& s : sigma) components[sets.find(s[0])].push_back(s);
+    for (const auto& [root, component] : components) {
+      Tetrahedra tetrahedra;
+      for (const Simplex& s : component) tetrahedra.push_back({s[0], s[1], s[2], s[3]});
+      const bool expected = shape_of(component) == Shape::sphere;
+      EXPECT_EQ(is_sphere(tetrahedra), expected);
+      ++found[expected ? 1 : 0];
+    }
+  }
+  EXPECT_GT(found[0], 5u);
+  EXPECT_GT(found[1], 30u);
 }
 
 }  // namespace

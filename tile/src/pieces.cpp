@@ -200,8 +200,8 @@ void PieceBuilder::collect_regions() {
   }
 }
 
-/// By construction Sigma is a closed manifold: a connected curve is a circle, and a surface is identified by its Euler
-/// characteristic.
+/// By construction Sigma is a closed manifold: a connected curve is a circle, a surface is identified by its Euler
+/// characteristic, and 3-manifolds have a test of their own.
 bool PieceBuilder::shown_to_be_sphere(const Component& component) {
   const std::span<const Simplex> simplices = sigma_of(component);
   const int vertices = size(simplices.front());
@@ -209,6 +209,11 @@ bool PieceBuilder::shown_to_be_sphere(const Component& component) {
   if (vertices == 3) {
     find_vertices(simplices);
     return closed_euler_characteristic(simplices, found_.size()) == 2;
+  }
+  if (vertices == 4) {
+    tetrahedra_.clear();
+    for (const Simplex& s : simplices) tetrahedra_.push_back({s[0], s[1], s[2], s[3]});
+    return three_sphere_test_(tetrahedra_);
   }
   if (!adjacency_.build(simplices)) return false;
   all_.resize(simplices.size());

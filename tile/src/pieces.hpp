@@ -12,6 +12,7 @@
 #include "shelling.hpp"
 #include "tegl/tile/disjoint_sets.hpp"
 #include "tegl/tile/facets.hpp"
+#include "tegl/tile/three_sphere.hpp"
 
 namespace tegl::tile {
 
@@ -138,6 +139,8 @@ class PieceBuilder {
   std::vector<std::uint32_t> all_;
   Adjacency adjacency_;
   Shelling shelling_;
+  ThreeSphereTest three_sphere_test_;
+  std::vector<ThreeSphereTest::Tetrahedron> tetrahedra_;
 };
 
 }  // namespace tegl::tile
