@@ -9,7 +9,8 @@ turns, so that what disturbs the machine meets all. tegl runs as a child process
 Prints medians of milliseconds as a table in Markdown: with one thread milliseconds of processor time, which other
 programs hardly influence. VTK: points merged, no normals, as tegl's vertices are shared, too;
 and with points not merged, its default. One thread: sequential processing; more: VTK's own number. With --json, also
-runs lattice_bench and mixed_meshes beside PROGRAM, and writes all figures to FILE.
+runs lattice_bench (of lattices, and of curved and periodic grids) and mixed_meshes beside PROGRAM, and writes all
+figures to FILE.
 """
 
 import argparse
@@ -182,7 +183,9 @@ def main() -> None:
         return
     folder = pathlib.Path(options.program).resolve().parent
     result = {"machine": machine.describe(folder.parent), "vtk": vtkVersion.GetVTKVersion(), "meshes": meshes,
-              "lattices": rows_of(folder / "lattice_bench", "160"), "types of cells": rows_of(folder / "mixed_meshes")}
+              "lattices": rows_of(folder / "lattice_bench", "160"),
+              "curved and periodic grids": rows_of(folder / "lattice_bench", "curved"),
+              "types of cells": rows_of(folder / "mixed_meshes")}
     options.json.write_text(json.dumps(result, indent=1) + "\n")
 
 

@@ -308,6 +308,16 @@ std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage
       });
 }
 
+std::vector<int> longitude_axes_any(const AnyImage& image, const CurvedAxes& given) {
+  const std::vector<CurvedAxis> curved = curved_axes(given);
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::vector<int> {
+    if constexpr (N <= 4)
+      return longitude_axes<N>(view.grid(), curved);
+    else
+      throw_dimension("periodic axes", N, "2 to 4 dimensions");
+  });
+}
+
 std::unique_ptr<AnyContour> extract_curved_any(const AnyImage& image, const CurvedAxes& given,
                                                const std::vector<int>& axes, const std::vector<double>& periods,
                                                double level, bool is_double, const py::dict& arguments,
@@ -474,6 +484,7 @@ void bind_extract(py::module_& m) {
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
   m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_curved);
+  m.def("longitude_axes", &longitude_axes_any, py::arg("image"), py::arg("curved"), doc::longitude_axes);
   m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
         doc::find_folds);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("custom"),

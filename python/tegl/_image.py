@@ -81,8 +81,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         Called repeatedly with the fraction done. If it returns False, the call raises `tegl.Cancelled`. Ctrl-C ends the
         call too.
     periodic
-        Axes that are periodic: a name or number, a list of these, "all", or a dict of axes and their periods. Otherwise
-        the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
+        Axes that are periodic: a name or number, a list of these, "all", a dict of axes and their periods, or "auto": the
+        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any. Without a dict, the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
         across the seam, and `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis
         are connected to the first ones: at their own places (O-grids), 360 further along longitudes, or by a given period
         along the axis's own coordinate, in the direction in which that grows. See docs/other-tilings.md.
@@ -165,7 +165,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                  if value is not None]
         if given not in (["positions", "curved"], ["lattice", "periodic"], ["periodic", "curved"]) and len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
-        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
+        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared, of_samples)
         if division is not None:
             core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
                                          options, progress)
@@ -182,7 +182,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         elif curved is not None:
             core = _tegl.extract_curved(prepared.image, of_samples, axes, periods, level, is_double, options, progress)
             _warn_of_folds(prepared, of_samples, axes, periods)
-        elif periodic is None:
+        elif not axes:
             core = _tegl.extract(prepared.image, level, is_double, options, progress)
         else:
             core = _tegl.extract_periodic(prepared.image, axes, periods, level, is_double, options, progress)

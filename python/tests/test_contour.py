@@ -338,6 +338,20 @@ def test_periods_are_positive_and_finite(period):
             function(values, 0.5, periodic={0: period})
 
 
+def test_longitudes_that_span_360_degrees_are_found():
+    lon, lat = np.meshgrid(np.arange(0.0, 360.0, 10.0), np.arange(-40.0, 41.0, 10.0))
+    spot = 30 - np.hypot(np.minimum(lon, 360 - lon), lat)
+    names = {"coords": [lat[:, 0], lon[0]], "axis_names": ("lat", "lon")}
+    units = {"axis_units": ("degrees_north", "degrees_east")}
+    found = tegl.contour(spot, 0.0, periodic="auto", **names, **units)
+    assert found.check().is_closed and found.check().components == 1
+    assert np.array_equal(found.vertices, tegl.contour(spot, 0.0, periodic="lon", **names, **units).vertices)
+    assert tegl.count(spot, 0.0, periodic="auto", **names, **units) == (len(found.vertices), len(found.simplices))
+    plain = tegl.contour(spot, 0.0, periodic="auto", **names)
+    assert plain.check().components == 2 and np.array_equal(plain.vertices, tegl.contour(spot, 0.0, **names).vertices)
+    assert tegl.count(spot, 0.0, periodic="auto", **names) == (len(plain.vertices), len(plain.simplices))
+
+
 def test_periodic_axes_by_name_number_and_period():
     image = np.add.outer(np.zeros(8), np.cos(2 * np.pi * np.arange(12) / 12))
     def edges(**arguments):

@@ -503,7 +503,7 @@ def test_curved_grids_are_periodic():
     lon, lat = np.meshgrid(np.arange(-175.0, 185.0, 10.0), np.arange(-80.0, 81.0, 10.0))
     away = lon - 180 - 360 * np.round((lon - 180) / 360)
     spot = 40 - np.hypot(away, lat)
-    for periodic in ("lon", {"lon": 360.0}):
+    for periodic in ("lon", {"lon": 360.0}, "auto"):
         around = tegl.contour(spot, 0.0, curved={"lon": lon, "lat": lat}, periodic=periodic, axis_names=("lat", "lon"),
                               axis_units=("degrees_north", "degrees_east"), dtype=np.float64)
         assert around.check().is_closed and around.check().components == 1
@@ -512,7 +512,7 @@ def test_curved_grids_are_periodic():
         assert abs(segments[:, 0] - segments[:, 1]).max() < 20
 
     # longitudes that descend
-    for periodic in ("lon", {"lon": 360.0}):
+    for periodic in ("lon", {"lon": 360.0}, "auto"):
         back = tegl.contour(spot[:, ::-1], 0.0, curved={"lon": lon[:, ::-1], "lat": lat}, periodic=periodic,
                             axis_names=("lat", "lon"), axis_units=("degrees_north", "degrees_east"), dtype=np.float64)
         assert back.check().is_closed and back.check().components == 1

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The command tegl contour: results for fields with known contours, options, formats and reports.
+// The command tegl contour: results for fields with known contours, options, formats and reports; attributes from the
+// points of meshes.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -462,6 +463,114 @@ TEST_F(Contour, OfACurvedGridIsCutAndSimplifiedAsASavedOne) {
   expect_same_file({"slice"}, {"--plane", "1,1,0=216.5"});
   expect_same_file({"simplify"}, {"--count", "12"});
   EXPECT_THAT(run_tegl({"slice", model, "--iso", "1.5", "--at", "lon=170", "-o", path("x.ply")}).err, HasSubstr("lon"));
+}
+
+/// A mesh of two tetrahedra with the arrays f and g = 10 f + z.
+std::string tetrahedra(const std::string& f, const std::string& g, const std::string& last = "0 0 1") {
+  return R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2"><PointData>
+<DataArray type="Float64" Name="f" format="ascii">)" +
+         f + R"(</DataArray><DataArray type="Float64" Name="g" format="ascii">)" + g +
+         R"(</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 -1 )" +
+         last + R"(</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 4 0 2 1 3</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4 8</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
+}
+
+class MeshAttribute : public ProgramTest {
+ protected:
+  /// Expects g = 10 f + z at the vertices of a contour of f.
+  static void expect_g(const std::string& file, double f) {
+    const Mesh mesh = read_mesh(file);
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    const Attribute& g = mesh.vertex_attributes[0];
+    EXPECT_EQ(g.name, "g");
+    ASSERT_GT(g.values.size(), 2u);
+    for (std::size_t v = 0; v < g.values.size(); ++v)
+      EXPECT_NEAR(g.values[v], 10 * f + mesh.coordinates[v * static_cast<std::size_t>(mesh.space_dim) + 2], 1e-6);
+  }
+  void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
+    arguments.insert(arguments.begin(), {"contour", first_, "--var", "f", "--iso", "0.5", "-o", path("none.vtkhdf")});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+  std::string first_ = "";
+};
+
+TEST_F(MeshAttribute, ArraysOfAMeshAreInterpolatedAtItsContour) {
+  first_ = write("first.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1"));
+  const std::string second = write("second.vtu", tetrahedra("2 1 1 1 1", "20 10 10 9 11"));
+  const std::string out = path("out.vtkhdf");
+  const auto run = [](const std::vector<std::string>& arguments) {
+    const RunResult done = run_tegl(arguments);
+    EXPECT_EQ(done.exit, 0) << done.err;
+  };
+  run({"contour", first_, "--var", "f", "--iso", "0.25", "--attribute", first_ + ":g", "-o", out});
+  expect_g(out, 0.25);
+  run({"contour", first_, "--var", "f", "--iso", "0.25", "--close", "--precision", "float", "--attribute",
+       first_ + ":g", "-o", out});
+  // over time, and slices of it
+  run({"contour", first_, second, "--var", "f", "--iso", "1.25", "--attribute", first_ + ":g", "-o", out});
+  expect_g(out, 1.25);
+  run({"slice", first_, second, "--var", "f", "--iso", "1.25", "--at", "t=0.75", "--attribute", first_ + ":g", "-o",
+       out});
+  expect_g(out, 1.25);
+  run({"elements", first_, "--var", "f", "--iso", "0.25", "--attribute", first_ + ":g", "-o", path("elements.dat")});
+  expect_refused({"--attribute", first_ + ":h"}, "has no array 'h'");
+  expect_refused({"--attribute", first_ + ":g", "--attribute", first_ + ":g"}, "already has an attribute 'g'");
+  const std::string other = write("other.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1", "0 0 2"));
+  expect_refused({"--attribute", other + ":g"}, "the mesh has other points than");
+}
+
+TEST_F(MeshAttribute, ErrorsOfFilesThatAnAttributeRefersToNameTheOption) {
+  first_ = write("image.nii",
+                 nifti_bytes(sample({3, 3, 3}, [](const std::vector<double>& x) { return x[0] / 2; }), {1, 1, 1}));
+  (void)write("cells.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1"));
+  const std::string collection = write("series.pvd",
+                                       R"(<VTKFile type="Collection"><Collection>
+<DataSet timestep="0" file="cells.vtu"/></Collection></VTKFile>)");
+  const RunResult run =
+      run_tegl({"contour", first_, "--iso", "0.25", "--attribute", collection + ":g", "-o", path("none.vtkhdf")});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("--attribute " + collection));
+  EXPECT_THAT(run.err, testing::Not(HasSubstr(first_)));
+}
+
+TEST_F(MeshAttribute, TheErrorOfAnUnknownFormatNamesMeshesAndTables) {
+  const std::string file = write("what.foo", "abc");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", file}, {"contour", file, "--iso", "1", "-o", path("none.ply")}}) {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr("meshes (.vtu, .vts, .pvd) and tables of points (.csv)"));
+  }
+}
+
+TEST_F(MeshAttribute, ColumnsOfATableAreInterpolatedToo) {
+  std::string table = "x,y,f,g\n";
+  for (int i = 0; i < 49; ++i) {
+    const int x = i % 7, y = i / 7;
+    table += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(x + 2 * y) + "," +
+             std::to_string(3 * x) + "\n";
+  }
+  const std::string file = write("points.csv", table), out = path("line.vtkhdf");
+  const RunResult run =
+      run_tegl({"contour", file, "--var", "f", "--iso", "7.5", "--attribute", file + ":g", "-o", out});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const Mesh mesh = read_mesh(out);
+  const auto line = to_contour<2>(mesh);
+  ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+  for (std::size_t v = 0; v < line.vertices.size(); ++v)
+    EXPECT_NEAR(mesh.vertex_attributes[0].values[v], 3 * line.vertices[v][0], 1e-5);
+  // as few points as possible, and points without area
+  const std::string few = write("few.csv", "x,y,v\n0,0,1\n1,0,0\n0,1,0\n");
+  EXPECT_EQ(run_tegl({"contour", few, "--iso", "0.5", "-o", path("few.ply")}).exit, 0);
+  const RunResult flat =
+      run_tegl({"contour", write("flat.csv", "x,y,v\n0,0,1\n1,1,0\n2,2,0\n"), "--iso", "0.5", "-o", path("f.ply")});
+  EXPECT_NE(flat.exit, 0);
+  EXPECT_THAT(flat.err, HasSubstr("3 points that lie in a line; expected points in 2 dimensions"));
 }
 
 }  // namespace

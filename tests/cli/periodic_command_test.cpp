@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// --periodic of tegl contour and of commands that contour an image, curved grids, and options of contours of meshes,
-// run as in a shell.
+// --periodic of tegl contour and of commands that contour an image, curved grids, lattices, and options of contours of
+// meshes, run as in a shell.
 #include <gmock/gmock.h>
 #include <netcdf.h>
 
@@ -524,7 +524,7 @@ TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
   }
   EXPECT_EQ(run_json({"contour", ball, "--iso", "0", "--stream", "-o", streamed})["tiles"],
             run_json({"contour", ball, "--iso", "0", "-o", in_memory})["tiles"]);
-  expect_refused_of(ball, {"--stream", "--close", "-o", streamed}, "close of a streamed contour on the lattice fcc");
+  expect_refused_of(ball, {"--stream", "--close", "-o", streamed}, "--close with --stream and the lattice fcc");
   expect_refused_of(ball, {"--stream", "--lattice", "fcc", "--periodic", "z", "-o", streamed}, "z with --stream");
   const std::string moving = path("moving.nrrd");
   (void)run_json({"sample", "ball", "--lattice", "d4", "--size", "9", "-o", moving});
@@ -538,7 +538,7 @@ TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {
   write_curved_globe(file);
   const std::string output = path("spot.vtkhdf");
   EXPECT_EQ(run_json({"components", file, "--iso", "0"})["count"], 2);
-  for (const char* const axis : {"lon", "i", "i=360"}) {
+  for (const char* const axis : {"lon", "i", "i=360", "auto"}) {
     const nlohmann::json report = run_json({"contour", file, "--iso", "0", "--periodic", axis, "-o", output});
     EXPECT_EQ(report["components"], 1) << axis;
     EXPECT_EQ(report["boundary_simplices"], 0) << axis;
@@ -551,6 +551,53 @@ TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {
   expect_refused_of(file, {"--periodic", "depth", "-o", output}, "expected one of i or lon, j or lat");
   expect_refused_of(file, {"--periodic", "lon", "--attribute", file, "-o", output}, "--periodic and a curved grid");
   expect_refused_of(file, {"--periodic", "lon", "--lattice", "triangular", "-o", output}, "--lattice triangular with");
+}
+
+TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {
+  // a spot around the date line, half of it at either end of the longitudes
+  OwnedImage<float, 2> image;
+  image.grid = Grid<2>::unit({36, 17});
+  image.grid.axes[0] = Axis::uniform(36, -175.0, 10.0);
+  image.grid.axes[1] = Axis::uniform(17, -80.0, 10.0);
+  for (std::size_t j = 0; j < 17; ++j)
+    for (std::size_t i = 0; i < 36; ++i)
+      image.values.push_back(
+          static_cast<float>(40.0 - std::hypot(180.0 - std::abs(image.grid.axes[0][i]), image.grid.axes[1][j])));
+  image.grid.axes[1].unit = "degrees_north";
+  const std::string file = path("globe.nc"), output = path("spot.vtkhdf");
+  const auto remarks = [&](const std::vector<std::string>& options, const std::string& to = "spot.vtkhdf") {
+    std::vector<std::string> arguments = {"contour", file, "--iso", "0", "-o", path(to)};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.err;
+  };
+  const auto components = [&](const std::string& periodic) {
+    return run_json({"components", file, "--iso", "0", "--periodic", periodic})["count"].get<int>();
+  };
+  // no longitudes
+  write_image(image.view(), file);
+  EXPECT_EQ(remarks({}), "");
+  EXPECT_THAT(remarks({"--periodic", "auto"}), HasSubstr("no longitudes span 360 degrees"));
+  EXPECT_EQ(components("auto"), 2);
+  // longitudes around the globe
+  image.grid.axes[0].name = "lon";
+  image.grid.axes[0].unit = "degrees_east";
+  write_image(image.view(), file);
+  EXPECT_EQ(remarks({"--periodic", "none"}), "");
+  EXPECT_EQ(components("none"), 2);
+  EXPECT_EQ(components("auto"), 1);
+  for (const char* const way : {"--no-check", "--stream", "--facets"}) {
+    const std::string to = std::string(way) == "--facets" ? "facets.vtu" : "spot.vtkhdf";
+    EXPECT_THAT(remarks({way}, to), HasSubstr("lon spans 360 degrees, and the contour ends at both its ends"));
+    EXPECT_THAT(remarks({way, "--periodic", "auto"}, to), HasSubstr("lon spans 360 degrees, so it is periodic"));
+  }
+  EXPECT_EQ(run_json({"contour", file, "--iso", "0", "--periodic", "auto", "-o", output})["boundary_simplices"], 0);
+  EXPECT_EQ(read_mesh(output).periods.size(), 5u);
+  expect_refused_of(file, {"--periodic", "auto,lat", "-o", output}, "expected auto without other axes");
+  expect_refused_of(file, {"--periodic", "lon,none", "-o", output}, "expected none without other axes");
+  expect_refused_of(file, {"--periodic", "auto", "--pick", "1,2", "-o", output}, "--periodic auto with --pick");
+  EXPECT_EQ(run_json({"contour", file, "--iso", "0", "--periodic", "none", "--pick", "170,0", "-o", output})["dim"], 1);
 }
 
 TEST_F(PeriodicCommand, CellsMayBeDivided) {
@@ -586,114 +633,6 @@ TEST_F(PeriodicCommand, MeshesAreClosedAndHaveNormalsFromTheGradient) {
   const RunResult run = run_tegl({"contour", file, "--iso", "0.25", "--normals", "sobel", "-o", saved});
   EXPECT_NE(run.exit, 0);
   EXPECT_THAT(run.err, HasSubstr("--normals sobel with"));
-}
-
-/// A mesh of two tetrahedra with the arrays f and g = 10 f + z.
-std::string tetrahedra(const std::string& f, const std::string& g, const std::string& last = "0 0 1") {
-  return R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="5" NumberOfCells="2"><PointData>
-<DataArray type="Float64" Name="f" format="ascii">)" +
-         f + R"(</DataArray><DataArray type="Float64" Name="g" format="ascii">)" + g +
-         R"(</DataArray></PointData>
-<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 -1 )" +
-         last + R"(</DataArray></Points>
-<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 4 0 2 1 3</DataArray>
-<DataArray type="Int64" Name="offsets" format="ascii">4 8</DataArray>
-<DataArray type="UInt8" Name="types" format="ascii">10 10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
-}
-
-class MeshAttribute : public ProgramTest {
- protected:
-  /// Expects g = 10 f + z at the vertices of a contour of f.
-  static void expect_g(const std::string& file, double f) {
-    const Mesh mesh = read_mesh(file);
-    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
-    const Attribute& g = mesh.vertex_attributes[0];
-    EXPECT_EQ(g.name, "g");
-    ASSERT_GT(g.values.size(), 2u);
-    for (std::size_t v = 0; v < g.values.size(); ++v)
-      EXPECT_NEAR(g.values[v], 10 * f + mesh.coordinates[v * static_cast<std::size_t>(mesh.space_dim) + 2], 1e-6);
-  }
-  void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
-    arguments.insert(arguments.begin(), {"contour", first_, "--var", "f", "--iso", "0.5", "-o", path("none.vtkhdf")});
-    const RunResult run = run_tegl(arguments);
-    EXPECT_NE(run.exit, 0);
-    EXPECT_THAT(run.err, HasSubstr(message));
-  }
-  std::string first_ = "";
-};
-
-TEST_F(MeshAttribute, ArraysOfAMeshAreInterpolatedAtItsContour) {
-  first_ = write("first.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1"));
-  const std::string second = write("second.vtu", tetrahedra("2 1 1 1 1", "20 10 10 9 11"));
-  const std::string out = path("out.vtkhdf");
-  const auto run = [](const std::vector<std::string>& arguments) {
-    const RunResult done = run_tegl(arguments);
-    EXPECT_EQ(done.exit, 0) << done.err;
-  };
-  run({"contour", first_, "--var", "f", "--iso", "0.25", "--attribute", first_ + ":g", "-o", out});
-  expect_g(out, 0.25);
-  run({"contour", first_, "--var", "f", "--iso", "0.25", "--close", "--precision", "float", "--attribute",
-       first_ + ":g", "-o", out});
-  // over time, and slices of it
-  run({"contour", first_, second, "--var", "f", "--iso", "1.25", "--attribute", first_ + ":g", "-o", out});
-  expect_g(out, 1.25);
-  run({"slice", first_, second, "--var", "f", "--iso", "1.25", "--at", "t=0.75", "--attribute", first_ + ":g", "-o",
-       out});
-  expect_g(out, 1.25);
-  run({"elements", first_, "--var", "f", "--iso", "0.25", "--attribute", first_ + ":g", "-o", path("elements.dat")});
-  expect_refused({"--attribute", first_ + ":h"}, "has no array 'h'");
-  expect_refused({"--attribute", first_ + ":g", "--attribute", first_ + ":g"}, "already has an attribute 'g'");
-  const std::string other = write("other.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1", "0 0 2"));
-  expect_refused({"--attribute", other + ":g"}, "the mesh has other points than");
-}
-
-TEST_F(MeshAttribute, ErrorsOfFilesThatAnAttributeRefersToNameTheOption) {
-  first_ = write("image.nii",
-                 nifti_bytes(sample({3, 3, 3}, [](const std::vector<double>& x) { return x[0] / 2; }), {1, 1, 1}));
-  (void)write("cells.vtu", tetrahedra("1 0 0 0 0", "10 0 0 -1 1"));
-  const std::string collection = write("series.pvd",
-                                       R"(<VTKFile type="Collection"><Collection>
-<DataSet timestep="0" file="cells.vtu"/></Collection></VTKFile>)");
-  const RunResult run =
-      run_tegl({"contour", first_, "--iso", "0.25", "--attribute", collection + ":g", "-o", path("none.vtkhdf")});
-  EXPECT_NE(run.exit, 0);
-  EXPECT_THAT(run.err, HasSubstr("--attribute " + collection));
-  EXPECT_THAT(run.err, testing::Not(HasSubstr(first_)));
-}
-
-TEST_F(MeshAttribute, TheErrorOfAnUnknownFormatNamesMeshesAndTables) {
-  const std::string file = write("what.foo", "abc");
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"info", file}, {"contour", file, "--iso", "1", "-o", path("none.ply")}}) {
-    const RunResult run = run_tegl(arguments);
-    EXPECT_NE(run.exit, 0);
-    EXPECT_THAT(run.err, HasSubstr("meshes (.vtu, .vts, .pvd) and tables of points (.csv)"));
-  }
-}
-
-TEST_F(MeshAttribute, ColumnsOfATableAreInterpolatedToo) {
-  std::string table = "x,y,f,g\n";
-  for (int i = 0; i < 49; ++i) {
-    const int x = i % 7, y = i / 7;
-    table += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(x + 2 * y) + "," +
-             std::to_string(3 * x) + "\n";
-  }
-  const std::string file = write("points.csv", table), out = path("line.vtkhdf");
-  const RunResult run =
-      run_tegl({"contour", file, "--var", "f", "--iso", "7.5", "--attribute", file + ":g", "-o", out});
-  ASSERT_EQ(run.exit, 0) << run.err;
-  const Mesh mesh = read_mesh(out);
-  const auto line = to_contour<2>(mesh);
-  ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
-  for (std::size_t v = 0; v < line.vertices.size(); ++v)
-    EXPECT_NEAR(mesh.vertex_attributes[0].values[v], 3 * line.vertices[v][0], 1e-5);
-  // as few points as possible, and points without area
-  const std::string few = write("few.csv", "x,y,v\n0,0,1\n1,0,0\n0,1,0\n");
-  EXPECT_EQ(run_tegl({"contour", few, "--iso", "0.5", "-o", path("few.ply")}).exit, 0);
-  const RunResult flat =
-      run_tegl({"contour", write("flat.csv", "x,y,v\n0,0,1\n1,1,0\n2,2,0\n"), "--iso", "0.5", "-o", path("f.ply")});
-  EXPECT_NE(flat.exit, 0);
-  EXPECT_THAT(flat.err, HasSubstr("3 points that lie in a line; expected points in 2 dimensions"));
 }
 
 }  // namespace

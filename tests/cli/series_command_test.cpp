@@ -273,14 +273,22 @@ TEST_F(SeriesCommand, OfMeshesIsSortedLikeOneOfImages) {
     return files;
   };
   run(contour({two, nine, ten}, {"--time-step", "0.5"}, "ordered.vtkhdf"));
-  run(contour({ten, two, nine}, {"--time-step", "0.5", "--sort", "name"}, "by_name.vtkhdf"));
+  const nlohmann::json in_order = {two, nine, ten};
+  EXPECT_EQ(run(contour({ten, two, nine}, {"--time-step", "0.5", "--sort", "name"}, "by_name.vtkhdf"))["input"],
+            in_order);
   expect_same_mesh("ordered.vtkhdf", "by_name.vtkhdf");
-  run(contour({ten, two, nine}, {"--times", "1,0,0.5", "--sort", "time"}, "by_time.vtkhdf"));
+  EXPECT_EQ(run(contour({ten, two, nine}, {"--times", "1,0,0.5", "--sort", "time"}, "by_time.vtkhdf"))["input"],
+            in_order);
+  EXPECT_EQ(run({"measure", ten, two, nine, "--times", "1,0,0.5", "--sort", "time", "--iso", "0"})["input"], in_order);
+  EXPECT_EQ(run({"slice", ten, two, nine, "--sort", "name", "--iso", "0", "--at", "t=0.5", "-o",
+                 path("cut.vtkhdf")})["input"],
+            in_order);
   expect_same_mesh("ordered.vtkhdf", "by_time.vtkhdf");
   expect_refused(2, contour({ten, two, nine}, {}, "out.vtkhdf"), {"as shells list names", "--sort name"});
   run(contour({ten, two, nine}, {"--sort", "given"}, "given.vtkhdf"));
-  expect_refused(2, contour({ten, two}, {"--sort", "time", "--time-step", "1"}, "out.vtkhdf"), {"time step"});
-  expect_refused(2, contour({ten}, {"--sort", "name"}, "out.vtkhdf"), {"one mesh"});
+  expect_refused(2, contour({ten, two}, {"--sort", "time", "--time-step", "1"}, "out.vtkhdf"),
+                 {"--sort time", "--time-step", "--times"});
+  expect_refused(2, contour({ten}, {"--sort", "name"}, "out.vtkhdf"), {"--sort name", "one mesh"});
   expect_refused(2, {"info", ten, "--sort", "name"}, {"--sort"});
 }
 

@@ -127,7 +127,6 @@ class ContourCommand final : public Command {
       stream(options, bar, results);
     else
       contour(options, bar, results);
-    // report
     bar.clear();
     for (const ContourResult& result : results) remark(result.lost.remark(result.output));
     return tell(streams, results);
@@ -387,7 +386,9 @@ class ContourCommand final : public Command {
   void contour_mesh(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     Stopwatch watch;
     const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), results.size() > 1);
-    for (const std::string& text : input.mesh.remarks) remark(text);
+    remark(input.mesh.remarks);
+    const auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);
+    take_order(input.mesh.files);
     require_output_holds(results.front().output, input.space_dim() - 1);
     for (ContourResult& result : results) {
       result.input = inputs();
@@ -396,7 +397,6 @@ class ContourCommand final : public Command {
       result.wording.no_size = kNoSizeInMeshes;
       require_mesh_contour(input.mesh, *result.isovalue, options_.allows_empty());
     }
-    const auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (ContourResult& result : results) {
@@ -609,7 +609,6 @@ class ContourCommand final : public Command {
   ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
                       const std::vector<std::string>& outputs, const ExtractOptions& options) {
     require_facets_options(outputs);
-    // read
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
@@ -625,16 +624,16 @@ class ContourCommand final : public Command {
       require_output_holds_facets(result.output, result.image_dim);
       require_contour(input, result.isovalue, options_.allows_empty());
     }
-    // extract and write
+    Tiling tiling = options_.tiling();
+    remark(take_longitudes(input.image, options_, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)
-      write_image_facets(input.image,
-                         {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression(),
-                          options_.tiling().periodic},
-                         bar, result, written);
+      write_image_facets(
+          input.image,
+          {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression(), tiling.periodic},
+          bar, result, written);
     written.keep();
-    // report
     bar.clear();
     for (const FacetsResult& result : results)
       if (result.facets[0] == 0) remark(remark_without_contour(input.image, result.isovalue));
@@ -665,6 +664,7 @@ class ContourCommand final : public Command {
     }
     Tiling tiling = options_.tiling();
     options_.take_lattice(input.info, file(), tiling);
+    remark(take_longitudes(input.layers, options_, tiling));
     options.work.progress = bar.stage("stream");
     const StreamOptions streaming{
         options,       options_.single_precision(), options_.allows_empty(), compress_.compression(), tiling.periodic,

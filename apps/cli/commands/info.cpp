@@ -17,7 +17,7 @@
 #include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
-#include "tegl/periodic.hpp"
+#include "tegl/curved.hpp"
 
 namespace tegl::cli {
 
@@ -52,9 +52,10 @@ template <int N>
 void describe_grid(const Grid<N>& grid, Description& description) {
   description.axes.assign(grid.axes.begin(), grid.axes.end());
   if constexpr (N <= 4) {
-    const AxisPeriods<N> longitudes = longitude_periods(grid);
-    for (std::size_t a = 0; a < N; ++a)
-      if (longitudes[a] != 0.0) description.around.push_back(axis_label(grid.axes[a].name, a));
+    for (const int axis : longitude_axes<N>(grid, description.info.curved)) {
+      const auto a = static_cast<std::size_t>(axis);
+      description.around.push_back(axis_label(grid.axes[a].name, a));
+    }
   }
   if (!grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
@@ -276,8 +277,8 @@ std::string to_text(const Console& console, const Description& description, cons
     text += report_line("lattice", fmt::format("{}: odd layers are shifted by half a step", name_of(*info.lattice)));
   if (!description.around.empty()) {
     const std::string names = fmt::format("{}", fmt::join(description.around, ","));
-    text += report_line("periodic",
-                        fmt::format("{} spans 360 degrees: --periodic {} continues across its ends", names, names));
+    text +=
+        report_line("periodic", fmt::format("{} spans 360 degrees: --periodic auto continues across its ends", names));
   }
   text += world_text(description);
   const ValueType stored = info.stored_type.value_or(description.value_type);

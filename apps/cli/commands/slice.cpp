@@ -553,6 +553,7 @@ class SliceCommand final : public Command {
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
     require_mesh_contour(input.mesh, isovalue, options_.allows_empty());
     auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);
+    take_order(input.mesh.files);
     for (PointArray& array : arrays) keep_times_of_cuts(array.mesh, results);
     keep_times_of_cuts(input.mesh, results);
     make_complex(input);

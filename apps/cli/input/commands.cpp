@@ -122,6 +122,7 @@ void Command::settle_lattice(const ImageInfo& info) const {
 }
 
 void Command::take_order(const std::vector<std::filesystem::path>& files) {
+  if (files.size() != worked_on_.size()) return;
   std::transform(files.begin(), files.end(), worked_on_.begin(),
                  [](const std::filesystem::path& file) { return file.string(); });
 }

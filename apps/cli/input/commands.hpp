@@ -110,9 +110,13 @@ class Command {
   void remark(std::string text) {
     if (!text.empty()) remarks_.push_back(std::move(text));
   }
+  void remark(std::vector<std::string> texts) {
+    for (std::string& text : texts) remark(std::move(text));
+  }
+  /// Takes the order in which the files were read. Files that a collection names are not taken.
+  void take_order(const std::vector<std::filesystem::path>& files);
 
  private:
-  void take_order(const std::vector<std::filesystem::path>& files);
   void settle_curved(ImageInfo& info, CurvedGrids curved) const;
   /// Leaves lattices of files out of account if the command has --lattice and it is cubic.
   void take_cubic();

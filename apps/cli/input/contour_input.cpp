@@ -61,16 +61,17 @@ CutAxis cut_axis_of(const CurvedAxis& one) {
 
 }  // namespace
 
-std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options, Tiling& tiling,
-                      std::optional<std::uint64_t>& folded_cells) {
+std::vector<std::string> take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
+                                   Tiling& tiling, std::optional<std::uint64_t>& folded_cells) {
   options.refuse_cells_with_tiling(input.info.samples_are_cells, file);
   if (options.samples_are_as_in_file()) tiling.of_cells = input.info.samples_are_cells;
   if (tiling.of_cells) tiling.cell_faces = input.info.cell_faces;
   options.take_lattice(input.info, file, tiling);
-  if (input.info.curved.empty()) return "";
+  if (input.info.curved.empty()) return {take_longitudes(input.image, options, tiling)};
   options.refuse_lattice(input.info, file, "the curved grid of " + file);
   options.refuse_other_tiling("the curved grid of " + file);
   tiling.curved = std::move(input.info.curved);
+  const std::string remark = take_longitudes(input.image, options, tiling);
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
     const GridFolds<N> folds =
         find_folds<N>(owned.grid, tiling.curved, {}, seams_of(owned.grid, tiling.curved, tiling.periodic));
@@ -80,7 +81,7 @@ std::string take_grid(ReadImageResult& input, const std::string& file, const Ext
         "the curved grid is folded in {}, the first at the sample ({}): the contour may overlap itself there",
         counted(folds.cells, "cell", "cells"), fmt::join(folds.first, ", "));
   };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image);
+  return {remark, std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image)};
 }
 
 CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved) {
@@ -270,8 +271,7 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
   refuse_options_of_images(file(), options_, images());
   ExtractOptions options = options_.library_options();
   const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), false);
-  for (const std::string& text : input.mesh.remarks) remark(text);
-  result.file = inputs();
+  remark(input.mesh.remarks);
   result.variable = input.mesh.variable;
   require_mesh_contour(input.mesh, *result.isovalue, allows_empty());
   result.single_precision = options_.single_precision();
@@ -281,6 +281,8 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
   std::vector<PointArray> arrays;
   if (attributes_of_meshes_ != nullptr)
     arrays = read_point_arrays(*attributes_of_meshes_, input.mesh, files(), images(), bar);
+  take_order(input.mesh.files);
+  result.file = inputs();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");
   result.contour = extract_mesh_and_use<AnyContour>(

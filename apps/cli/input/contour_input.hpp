@@ -46,10 +46,21 @@ decltype(auto) visit_to_4d(Any& contour, const F& f) {
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 
 /// Takes what the file says of its cells to the tiling: whether samples are cells, if the options ask for it, and the
-/// coordinates of a curved grid. Sets the number of folded cells of a curved grid, and returns a remark on them, or an
-/// empty text. Throws InvalidArgument for options that choose other tilings.
-std::string take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options, Tiling& tiling,
-                      std::optional<std::uint64_t>& folded_cells);
+/// coordinates of a curved grid, and longitudes for --periodic auto. Sets the number of folded cells of a curved grid,
+/// and returns remarks on them and on longitudes. Throws InvalidArgument for options that choose other tilings.
+std::vector<std::string> take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
+                                   Tiling& tiling, std::optional<std::uint64_t>& folded_cells);
+/// ExtractionOptions::take_longitudes for an image, or the readers of its layers.
+template <class Any>
+std::string take_longitudes(const Any& image, const ExtractionOptions& options, Tiling& tiling) {
+  const auto of_one = [&](const auto& one) {
+    if constexpr (requires { one.grid; })
+      return options.take_longitudes(one.grid, tiling);
+    else
+      return options.take_longitudes(one->grid(), tiling);
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_one, typed); }, image);
+}
 /// The space of an image with the ranges of its curved coordinates.
 CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved);
 /// As space_of, to the outer faces of cells. `faces`: as in the file.

@@ -21,6 +21,13 @@
 
 namespace tegl::cli {
 
+namespace {
+
+/// Whether the list is this word.
+bool is_only(const std::vector<std::string>& list, const char* word) { return list.size() == 1 && list[0] == word; }
+
+}  // namespace
+
 void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
   // Every command knows all values, for error messages about wrong ones; help lists the valid ones.
   CLI::Validator triangulations =
@@ -76,7 +83,8 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
 void ExtractionOptions::add_tiling_to(CLI::App& app) {
   options_.push_back(app.add_option("--periodic", periodic_,
                                     "axes that are periodic, by name, as in lon or x,y,z; or all; the period is the "
-                                    "number of samples x the step, or as in lon=360")
+                                    "number of samples x the step, or as in lon=360; auto: longitudes that span 360 "
+                                    "degrees; none: no axis, and no remark on such longitudes")
                          ->delimiter(',')
                          ->allow_extra_args(false)
                          ->type_name("AXES"));
@@ -113,7 +121,7 @@ Tiling ExtractionOptions::tiling() const {
     refuse_periodic_with("--division " + division_);
     refuse_lattice_with("--division " + division_);
   }
-  Tiling tiling{periodic_, std::nullopt, std::nullopt, {}, samples_ == "cells"};
+  Tiling tiling{periodic(), std::nullopt, std::nullopt, {}, samples_ == "cells"};
   for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid})
     if (name_of(division) == division_) tiling.division = division;
   tiling.lattice = parse_lattice(lattice_);
@@ -134,8 +142,42 @@ void ExtractionOptions::refuse_lattice(const ImageInfo& info, const std::string&
                           with, file, name_of(*info.lattice)));
 }
 
+std::vector<std::string> ExtractionOptions::periodic() const {
+  for (const char* const word : {"auto", "none"})
+    if (periodic_.size() > 1 && std::find(periodic_.begin(), periodic_.end(), word) != periodic_.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--periodic {}; expected {} without other axes", fmt::join(periodic_, ","), word));
+  return is_only(periodic_, "none") ? std::vector<std::string>() : periodic_;
+}
+
+template <int N>
+std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tiling) const {
+  const bool finds = is_only(periodic_, "auto");
+  const bool may_be_periodic = periodic_.empty() && !tiling.division && !tiling.of_cells;
+  if (!finds && !may_be_periodic) return "";
+  std::vector<std::string> names;
+  for (const int a : longitude_axes<N>(grid, tiling.curved)) {
+    const auto axis = static_cast<std::size_t>(a);
+    names.push_back(axis_label(grid.axes[axis].name, axis));
+  }
+  const std::string list = fmt::format("{}", fmt::join(names, ","));
+  if (finds) {
+    tiling.periodic = std::move(names);
+    return list.empty() ? "--periodic auto: no longitudes span 360 degrees, so no axis is periodic"
+                        : list + " spans 360 degrees, so it is periodic";
+  }
+  if (list.empty()) return "";
+  return list +
+         " spans 360 degrees, and the contour ends at both its ends: --periodic auto continues it across, "
+         "--periodic none leaves this remark out";
+}
+
+template std::string ExtractionOptions::take_longitudes(const Grid<2>&, Tiling&) const;
+template std::string ExtractionOptions::take_longitudes(const Grid<3>&, Tiling&) const;
+template std::string ExtractionOptions::take_longitudes(const Grid<4>&, Tiling&) const;
+
 void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
-  if (!periodic_.empty())
+  if (!periodic().empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--periodic {} with {}; expected one of the two", fmt::join(periodic_, ","), other));
 }
@@ -164,7 +206,7 @@ void ExtractionOptions::refuse_cells(bool samples_are_cells, const std::string& 
 void ExtractionOptions::refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const {
   if (!division_.empty()) refuse_cells(samples_are_cells, file, "--division " + division_);
   if (has_lattice()) refuse_cells(samples_are_cells, file, "--lattice " + lattice_);
-  if (!periodic_.empty()) refuse_cells(samples_are_cells, file, "--periodic");
+  if (!periodic().empty()) refuse_cells(samples_are_cells, file, "--periodic");
 }
 
 void ExtractionOptions::refuse_division_with(const std::string& other) const {
@@ -308,7 +350,8 @@ std::vector<NamedPeriod> named_periods(const std::vector<std::vector<std::string
     std::vector<std::string> all;
     for (const auto& of_axis : labels) all.push_back(fmt::format("{}", fmt::join(of_axis, " or ")));
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--periodic {} names no axis; expected one of {}, or all", name, fmt::join(all, ", ")));
+                fmt::format("--periodic {} names no axis; expected one of {}, or all, auto or none", name,
+                            fmt::join(all, ", ")));
   }
   return found;
 }

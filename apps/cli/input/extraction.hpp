@@ -62,7 +62,7 @@ class ExtractionOptions {
   void refuse_tiling(const std::string& with) const;
   /// As refuse_tiling, but allows --periodic.
   void refuse_other_tiling(const std::string& with) const;
-  /// Throws InvalidArgument with --periodic.
+  /// Throws InvalidArgument with --periodic, unless it is none.
   void refuse_periodic_with(const std::string& other) const;
   /// Takes the lattice that the file records to the tiling, unless --lattice is given. Throws InvalidArgument for
   /// options that choose other cells.
@@ -75,6 +75,10 @@ class ExtractionOptions {
   void refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const;
   /// Throws InvalidArgument with options that 5D contours do not have.
   void require_to_5d() const;
+  /// With --periodic auto, takes the longitudes that run around the globe to the tiling, of which curved axes are
+  /// known. Returns a remark on them, also on those that --periodic would continue, or an empty text.
+  template <int N>
+  [[nodiscard]] std::string take_longitudes(const Grid<N>& grid, Tiling& tiling) const;
   /// Whether the samples are on a lattice, of --lattice or of the file.
   [[nodiscard]] bool has_lattice(const ImageInfo& info) const {
     return lattice_.empty() ? info.lattice.has_value() : has_lattice();
@@ -115,6 +119,8 @@ class ExtractionOptions {
 
  private:
   [[nodiscard]] bool has_lattice() const { return !lattice_.empty() && lattice_ != "cubic"; }
+  /// The axes of --periodic; empty with none.
+  [[nodiscard]] std::vector<std::string> periodic() const;
   void refuse_lattice_with(const std::string& other) const;
   void refuse_division_with(const std::string& other) const;
 
@@ -163,7 +169,8 @@ std::string remark_without_contour(const Image& image, double isovalue) {
   return remark_without_contour(image, isovalue, isovalue);
 }
 
-/// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD. Throws InvalidArgument for other names.
+/// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD, but not auto or none. Throws InvalidArgument
+/// for other names.
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names);
 /// The seams that --periodic names on a curved grid: axes by their names or those of their coordinates, as periods_of.

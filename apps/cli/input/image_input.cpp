@@ -282,6 +282,13 @@ OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const
 CellMeshOptions ImageOptions::cell_mesh_options(const Progress& progress, const std::vector<std::string>& files) const {
   CellMeshOptions options;
   if (!sort_.empty()) options.order = order_of(sort_);
+  if (options.order != SeriesOrder::given && files.size() == 1 &&
+      !equal_ignoring_case(std::filesystem::path(files[0]).extension().string(), ".pvd"))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--sort {} with {}, which is one mesh; expected several", sort_, files[0]));
+  if (options.order == SeriesOrder::coordinate && !time_step_.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                "--sort time with --time-step, which follows the order of the files; expected --times");
   // several files: only the order of a shell is an error of the empty request
   if (sort_.empty() && files.size() > 1) (void)tegl::series_options(paths_of(files), {}, kWords);
   options.variable = variable_;

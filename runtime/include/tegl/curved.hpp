@@ -44,6 +44,14 @@ requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
                                                     std::span<const int> axes, std::span<const double> periods = {});
 
+/// The axes that run once around the globe: longitudes of `longitude_periods`, and axes along which curved longitudes
+/// (the same units) grow by 360 degrees from the first sample to one step behind the last one, in each row to half a
+/// step. `find_seams` makes their seams. Errors: InvalidGrid (as `extract_curved`). O(samples / samples along the axis)
+/// time.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] std::vector<int> longitude_axes(const Grid<N>& grid, std::span<const CurvedAxis> curved = {});
+
 /// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as
 /// `extract_curved`).
 template <int N>

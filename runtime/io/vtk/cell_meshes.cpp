@@ -294,7 +294,7 @@ void reorder(std::vector<Item>& list, const std::vector<std::size_t>& order) {
 void sort_files(CellMeshOptions& options, std::vector<fs::path>& files) {
   if (options.order == SeriesOrder::given) return;
   if (files.size() == 1)
-    fail(ErrorCode::InvalidArgument, files[0], "is one mesh; expected several for an order of files (--sort)");
+    fail(ErrorCode::InvalidArgument, files[0], "is one mesh; expected several for an order of files");
   if (options.order == SeriesOrder::coordinate && options.time_step)
     throw Error(ErrorCode::InvalidArgument,
                 "files in the order of their times and a time step, which follows the order; expected times");

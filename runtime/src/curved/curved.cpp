@@ -60,9 +60,7 @@ class Mover {
   [[nodiscard]] unsigned written() const noexcept { return map_.curved(); }
   /// Finds the places of points in the grid.
   void look_up(detail::CurvedBlock& block) const noexcept {
-    for (int a = 0; a < N && !is_straight_and_needed_; ++a)
-      if (steps_[a] != 0.0) detail::find_places(block, a, steps_[a]);
-    if (is_straight_and_needed_) locate_all(block);
+    is_straight_and_needed_ ? locate_all(block) : detail::find_places(block, steps_);
     map_.look_up(block);
   }
   /// Starts to load coordinates at the places of a block that was looked up.
@@ -113,7 +111,7 @@ class Mover {
   }
 
   detail::CurvedMap<N> map_;
-  std::array<double, N> steps_{};  ///< of the indices, 1 or -1; 0 along straight axes
+  detail::IndexSteps steps_{};  ///< of the indices, 1 or -1; 0 along straight axes
   Grid<N> indices_;
   detail::GridLocator<N> locator_;
   bool is_straight_and_needed_ = false;  ///< whether curved coordinates differ along an axis with its own coordinates

@@ -73,6 +73,16 @@ void ends(const CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::End
   }
 }
 
+void all_places(CurvedBlock& block, const IndexSteps& steps) {
+  for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a)
+    if (steps[a] != 0.0) places(block, a, steps[a]);
+}
+
+void all_ends(CurvedBlock& block, unsigned along, std::span<const CurvedArrays> arrays) {
+  edges(block, along);
+  for (std::size_t k = 0; k < arrays.size(); ++k) ends(block, arrays[k], block.ends[k]);
+}
+
 /// The coordinates between the values at the ends.
 void between(CurvedBlock& block, const CurvedBlock::Ends& ends, std::size_t k, std::size_t axis) {
   const BlockTag d;
@@ -82,6 +92,10 @@ void between(CurvedBlock& block, const CurvedBlock::Ends& ends, std::size_t k, s
     const auto here = hn::LoadU(d, block.here[k].data() + i), next = hn::LoadU(d, block.next[k].data() + i);
     hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d, block.point[axis].data() + i);
   }
+}
+
+void all_between(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends) {
+  for (std::size_t k = 0; k < arrays.count; ++k) between(block, ends, k, arrays.axis[k]);
 }
 
 /// Vectors of coordinates as doubles, and back.
@@ -181,21 +195,22 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-HWY_EXPORT(places);
-HWY_EXPORT(edges);
-HWY_EXPORT(ends);
-HWY_EXPORT(between);
+HWY_EXPORT(all_places);
+HWY_EXPORT(all_ends);
+HWY_EXPORT(all_between);
 HWY_EXPORT(finite);
 HWY_EXPORT(load_float);
 HWY_EXPORT(load_double);
 HWY_EXPORT(store_float);
 HWY_EXPORT(store_double);
 
-void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept {
-  HWY_DYNAMIC_DISPATCH(places)(block, axis, step);
+void find_places(CurvedBlock& block, const IndexSteps& steps) noexcept {
+  HWY_DYNAMIC_DISPATCH(all_places)(block, steps);
 }
 
-void find_edges(CurvedBlock& block, unsigned along) noexcept { HWY_DYNAMIC_DISPATCH(edges)(block, along); }
+void find_edges(CurvedBlock& block, unsigned along, std::span<const CurvedArrays> arrays) noexcept {
+  HWY_DYNAMIC_DISPATCH(all_ends)(block, along, arrays);
+}
 
 void load_points(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept {
   HWY_DYNAMIC_DISPATCH(load_float)(points, dim, axes, block);
@@ -211,10 +226,6 @@ void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, doub
 }
 
 bool are_finite(const CurvedBlock& block, unsigned axes) noexcept { return HWY_DYNAMIC_DISPATCH(finite)(block, axes); }
-
-void find_ends(CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& ends) noexcept {
-  HWY_DYNAMIC_DISPATCH(ends)(block, arrays, ends);
-}
 
 void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
   for (std::size_t i = 0; arrays.is_large && i < count; ++i)
@@ -247,7 +258,7 @@ void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlo
   // here, for the baseline: many processors load one by one faster than they gather
   constexpr std::array kRead = {&read_ends<1>, &read_ends<2>, &read_ends<3>, &read_ends<4>};
   kRead[arrays.count - 1](block, arrays, ends, next, arrays.is_large ? count : 0);
-  for (std::size_t k = 0; k < arrays.count; ++k) HWY_DYNAMIC_DISPATCH(between)(block, ends, k, arrays.axis[k]);
+  HWY_DYNAMIC_DISPATCH(all_between)(block, arrays, ends);
 }
 
 }  // namespace tegl::detail

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace tegl::detail {
 
@@ -40,10 +41,12 @@ struct CurvedArrays {
   std::array<std::size_t, CurvedBlock::kMostAxes> axis{};  ///< of each array's coordinates
 };
 
-/// Sets bases and shares along an axis of indices that are step, 2 step, ..., for a step of 1 or -1.
-void find_places(CurvedBlock& block, std::size_t axis, double step) noexcept;
-/// Sets edge_share and inside; `along`: bits of the axes that have shares.
-void find_edges(CurvedBlock& block, unsigned along) noexcept;
+/// Steps of indices by axis.
+using IndexSteps = std::array<double, CurvedBlock::kMostAxes>;
+/// Sets bases and shares along axes whose indices are step, 2 step, ..., for a step of 1 or -1; not along those with 0.
+void find_places(CurvedBlock& block, const IndexSteps& steps) noexcept;
+/// Sets edge_share and inside, and finds the ends of edges in arrays; `along`: bits of the axes that have shares.
+void find_edges(CurvedBlock& block, unsigned along, std::span<const CurvedArrays> arrays) noexcept;
 /// Loads block.count points of `dim` coordinates, or stores them: only those along axes with bits in `axes`.
 void load_points(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept;
 void load_points(const double* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept;
@@ -51,8 +54,6 @@ void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, floa
 void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) noexcept;
 /// Whether the coordinates of all points along the axes with bits in `axes` are finite.
 bool are_finite(const CurvedBlock& block, unsigned axes) noexcept;
-/// Finds the ends of edges in arrays.
-void find_ends(CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& ends) noexcept;
 /// Starts to load the values at `count` ends if the arrays are large.
 void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept;
 /// Replaces coordinates of points by those between the ends of their edges. Meanwhile requests the values at the first

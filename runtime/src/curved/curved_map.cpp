@@ -127,8 +127,7 @@ void CurvedMap<N>::request_corner(const SampleIndex& cell) const noexcept {
 
 template <int N>
 void CurvedMap<N>::look_up(CurvedBlock& block) const noexcept {
-  find_edges(block, along_);  // nearly all places are on an edge
-  for (std::size_t k = 0; k < arrays_.size(); ++k) find_ends(block, arrays_[k], block.ends[k]);
+  find_edges(block, along_, arrays_);  // nearly all places are on an edge
 }
 
 template <int N>

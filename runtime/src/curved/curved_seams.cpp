@@ -154,6 +154,26 @@ double mean_growth(const Grid<N>& grid, const CurvedAxis& one, int a) {
   return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Whether the coordinates along axis `a` grow by a full turn from the first one to one step behind the last one, in
+/// all rows with known ends, of which there must be one.
+template <int N>
+bool is_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  constexpr double kTurn = 360.0, kOfAStep = 0.5;
+  const std::size_t size = grid.axes[a].size();
+  if (size < 3) return false;
+  const std::size_t row = detail::size_along(one, grid, 0, a), block = row * size;
+  bool any = false;
+  for (std::size_t first = 0; first < one.values.size(); first += block)
+    for (std::size_t i = 0; i < row; ++i) {
+      const double growth = std::abs(one.values[first + block - row + i] - one.values[first + i]);
+      if (!std::isfinite(growth)) continue;
+      const double step = growth / static_cast<double>(size - 1);
+      if (!(std::abs(kTurn - growth - step) <= kOfAStep * step)) return false;
+      any = true;
+    }
+  return any;
+}
+
 /// A length along an axis's own coordinate, in the direction in which that grows.
 template <int N>
 double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
@@ -199,6 +219,22 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
   return seams;
 }
 
+template <int N>
+requires DimensionBetween<N, 2, 4> std::vector<int> longitude_axes(const Grid<N>& grid,
+                                                                   std::span<const CurvedAxis> curved) {
+  if (!curved.empty()) detail::require_curved<N>(grid, curved);
+  const AxisPeriods<N> straight = longitude_periods(grid);
+  std::vector<int> axes;
+  for (int a = 0; a < N; ++a) {
+    const auto continues = [&](const CurvedAxis& one) {
+      return (one.along >> a & 1u) != 0 && detail::is_longitude_unit(one.unit) && is_around(grid, one, a);
+    };
+    const bool is_straight = !detail::is_axis_curved(curved, a);
+    if ((is_straight && straight[a] != 0.0) || std::any_of(curved.begin(), curved.end(), continues)) axes.push_back(a);
+  }
+  return axes;
+}
+
 #define TEGL_INSTANTIATE_SEAMS(N)                                                                                      \
   namespace detail {                                                                                                   \
   template LongerCurved<N> longer_curved<N>(const Grid<N>&, std::span<const CurvedAxis>,                               \
@@ -207,6 +243,7 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
                                                       std::span<const CurvedSeam<N>>);                                 \
   }                                                                                                                    \
   template AxisPeriods<N> index_periods<N>(const Grid<N>&, std::span<const CurvedAxis>, const CurvedSeams<N>&);        \
+  template std::vector<int> longitude_axes<N>(const Grid<N>&, std::span<const CurvedAxis>);                            \
   template std::vector<CurvedSeam<N>> find_seams<N>(const Grid<N>&, std::span<const CurvedAxis>, std::span<const int>, \
                                                     std::span<const double>);
 TEGL_INSTANTIATE_SEAMS(2)

@@ -45,7 +45,7 @@ template <class Real, int N>
 void check_stream(const Grid<N>& grid, Lattice lattice, const ExtractOptions& options) {
   check_dimension(lattice, N);
   if (options.close)
-    refuse(fmt::format("close of a streamed contour on the lattice {}; expected none", name_of(lattice)));
+    refuse(fmt::format("close of a streamed contour on the lattice {}; expected an image in memory", name_of(lattice)));
   check_grid(grid, lattice, N - 1);
   for (int row = 0; row < N; ++row) {
     double most = std::abs(grid.offset[row]);

@@ -73,6 +73,8 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
     if (!nonmanifold.any_missing()) return;
     std::vector<Index> candidates;
     for (const std::uint64_t v : nonmanifold.vertices()) candidates.push_back(number(static_cast<Index>(v)));
+    // A vertex on several seams has copies with only some of its tiles each, so none of them is a candidate by itself.
+    for (const auto& pair : cells_.pairs()) candidates.push_back(number(pair.first));
     if (caps != nullptr)
       for (std::size_t i = 0; i < caps->vertices().size(); ++i)
         candidates.push_back(number(static_cast<Index>(all.end_vertex + i)));
@@ -92,7 +94,8 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
     const bool all = is_periodic(N - 1) && slabs_ + 2 == shape_.layers();
     const std::size_t last = shape_.size(0) - 2;
     for (std::size_t row = 0; row < shape_.rows(); ++row) {
-      if (slab.active_count[row] == 0) continue;
+      // The counts of the rows of a uniform chunk are those of a slab before.
+      if (slab.chunks[chunk_of(row)].active == 0 || slab.active_count[row] == 0) continue;
       bool whole = all;
       for (int a = 1; a < N - 1; ++a)
         whole = whole || (is_periodic(a) && shape_.index_of(row)[a] + 2 == shape_.size(a));
@@ -117,13 +120,25 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
     // the simplices of the vertices that moved: their part's, the next ones', and caps
     const auto part = std::find_if(parts_.begin(), parts_.end(),
                                    [&](const ContourPart& each) { return each.end_vertex > number.kept(); });
-    const std::uint64_t tail = part == parts_.end() ? all.end_simplex : part->first_simplex;
-    for (const Range& range : rows_) renumber(number, range.first, std::min(range.end, tail));
-    renumber(number, tail, contour.simplices.size());
+    std::uint64_t tail = part == parts_.end() ? all.end_simplex : part->first_simplex;
+    for (const Range& range : rows_) {
+      renumber_moved(number, tail, range.first);
+      renumber(number, range.first, range.end);
+      tail = std::max(tail, range.end);
+    }
+    renumber_moved(number, tail, all.end_simplex);
+    renumber(number, all.end_simplex, contour.simplices.size());
   }
   void renumber(const SeamNumbers& number, std::uint64_t first, std::uint64_t end) {
     for (std::uint64_t s = first; s < end; ++s)
       for (Index& v : this->contour().simplices[s]) v = number(v);
+  }
+  /// As `renumber`, for simplices without merged vertices.
+  void renumber_moved(const SeamNumbers& number, std::uint64_t first, std::uint64_t end) {
+    const std::size_t kept = number.kept();
+    for (std::uint64_t s = first; s < end; ++s)
+      for (Index& v : this->contour().simplices[s])
+        if (v >= kept) v = number(v);
   }
 
   const RowShape<N>& shape_;

@@ -40,6 +40,7 @@ void WrappedStream<N, Real>::number_vertices(const ContourPart& part) {
   std::size_t passed = 0;
   before_numbers_.swap(numbers_);
   numbers_.resize(count);
+  on_seam_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const Index set = sets.find(static_cast<Index>(i));
     if (!in_layer_0.empty() && in_layer_0[set] != kNone) {
@@ -55,6 +56,7 @@ void WrappedStream<N, Real>::number_vertices(const ContourPart& part) {
       numbers_[i] = numbers_[set];
       if (part.first_vertex + i < numbers_of_layer_0_.size()) numbers_of_layer_0_[part.first_vertex + i] = numbers_[i];
     }
+    if (options_.may_miss_samples) on_seam_.push_back(numbers_[i]);
     if (options_.close) merged_.emplace_back(part.first_vertex + i, numbers_[i]);
   }
   vertices.resize(passed);
@@ -76,6 +78,8 @@ void WrappedStream<N, Real>::keep_simplices(const ContourPart& part, const Nonma
   const std::vector<std::uint64_t>& all = nonmanifold.vertices();
   for (; candidates_taken_ < all.size(); ++candidates_taken_)
     candidates_.push_back(numbers_[all[candidates_taken_] - part.first_vertex]);
+  // Copies have only some of a vertex's tiles each, so that none of them may be a candidate by itself.
+  if (nonmanifold.any_missing()) candidates_.insert(candidates_.end(), on_seam_.begin(), on_seam_.end());
   std::sort(candidates_.begin(), candidates_.end());
   candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
   this->remember_around(part, candidates_);

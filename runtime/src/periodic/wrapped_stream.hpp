@@ -70,6 +70,7 @@ class WrappedStream final : public StreamOutput<N, Real> {
   std::size_t slabs_ = 0;
   std::vector<std::uint64_t> numbers_, before_numbers_;  ///< by vertex of the current and the previous part
   std::vector<std::uint64_t> numbers_of_layer_0_;
+  std::vector<std::uint64_t> on_seam_;  ///< numbers of the part's vertices with copies before them
   std::vector<std::pair<std::uint64_t, std::uint64_t>> merged_;  ///< with `close`: (kernel's number, final number)
   std::size_t candidates_taken_ = 0;                             ///< of the kernel's candidates
   std::vector<std::uint64_t> candidates_;                        ///< their final numbers

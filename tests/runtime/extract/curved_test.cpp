@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "errors.hpp"
@@ -359,6 +360,36 @@ TEST(CurvedSeams, AThingThatCrossesTheDateLineIsOneClosedComponent) {
       longest = std::max(longest, std::abs(unrolled.vertices[simplex[0]][0] - unrolled.vertices[simplex[1]][0]));
     EXPECT_LT(longest, 20.0);
   }
+}
+
+TEST(CurvedSeams, LongitudesAroundTheGlobeAreFound) {
+  std::vector<CurvedAxis> curved;
+  auto image = globe(-175.0, curved);
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{0});
+  // one row ends early
+  const double last = std::exchange(curved[0].values[35], 160.0);
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{});
+  // a row with an unknown end says nothing, nor do none but such rows
+  curved[0].values[35] = std::nan("");
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{0});
+  for (std::size_t j = 0; j < 17; ++j) curved[0].values[36 * j + 35] = std::nan("");
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{});
+  // descending longitudes, another unit, the first sample repeated
+  image = globe(-175.0, curved);
+  EXPECT_EQ(curved[0].values[35], last);
+  for (double& lon : curved[0].values) lon = -lon;
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{0});
+  curved[0].unit = "degrees";
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{});
+  curved[0].unit = "degrees_east";
+  for (double& lon : curved[0].values) lon *= 36.0 / 35.0;
+  EXPECT_EQ(longitude_axes<2>(image.grid, curved), std::vector<int>{});
+  // straight axes
+  image.grid.axes[0] = Axis::uniform(36, 0.0, 10.0);
+  image.grid.axes[0].unit = "degree_east";
+  EXPECT_EQ(longitude_axes<2>(image.grid), std::vector<int>{0});
+  image.grid.axes[0].unit = "m";
+  EXPECT_EQ(longitude_axes<2>(image.grid), std::vector<int>{});
 }
 
 TEST(CurvedSeams, AStraightAxisBesideACurvedOneIsPeriodic) {

@@ -158,7 +158,7 @@ TEST(StreamedPeriodic, IsTheContourInMemoryRenumbered) {
 template <int N>
 void expect_streamed_beside_missing(const std::array<std::size_t, N>& sizes) {
   unsigned seed = 1;
-  for (const double missing : {0.03, 0.15})
+  for (const double missing : {0.01, 0.03, 0.15})
     for (unsigned axes = 1; axes < 1u << N; ++axes)
       for (const std::size_t batch : {1, 2, 100}) {
         ExtractOptions options;
@@ -186,6 +186,7 @@ TEST(StreamedPeriodic, BesideMissingValuesItIsAManifold) {
   expect_streamed_beside_missing<2>({8, 9});
   expect_streamed_beside_missing<3>({5, 4, 6});
   expect_streamed_beside_missing<4>({4, 5, 4, 4});
+  expect_streamed_beside_missing<4>({4, 3, 5, 4});
 }
 
 TEST(StreamedPeriodic, HasTheEulerCharacteristicsOfTori) {
