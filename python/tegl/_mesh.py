@@ -412,11 +412,30 @@ def _known_types() -> str:
     return ", ".join(map(repr, [*_TYPES, *_POLYTOPES]))
 
 
+def _is_list(value) -> bool:
+    if isinstance(value, np.ndarray):
+        return value.ndim > 0
+    return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+
+
+def _ring_of(name: str, ring) -> np.ndarray:
+    """A polygon or face as an array of numbers of points."""
+    if not _is_list(ring):
+        raise TypeError(f"{name} have {ring!r} in the place of a list; expected lists of numbers of points")
+    try:
+        array = np.asarray(ring)
+    except ValueError:  # lists of different lengths
+        array = np.empty((0, 0))
+    if array.ndim != 1:
+        raise TypeError(f"{name} have a list of lists, {ring!r}; expected lists of numbers of points")
+    return _numbers_of(name, array[np.newaxis])[0]
+
+
 def _rings_of(name: str, rings) -> list[np.ndarray]:
     """Polygons or faces as arrays of numbers of points."""
-    if isinstance(rings, (str, bytes)) or not isinstance(rings, (Sequence, np.ndarray)):
+    if not _is_list(rings):
         raise TypeError(f"{name} are {type(rings).__name__}; expected lists of numbers of points")
-    return [_numbers_of(name, np.asarray(ring)[np.newaxis])[0] for ring in rings]
+    return [_ring_of(name, ring) for ring in rings]
 
 
 def _ends_of(rings: Iterable) -> np.ndarray:
@@ -426,6 +445,9 @@ def _ends_of(rings: Iterable) -> np.ndarray:
 def _polytope_arrays(name: str, block) -> _CellArrays:
     """The cells of a block of polygons or polyhedra."""
     number, what = _number_of(name), f"cells of type {name!r}"
+    if not _is_list(block):
+        raise TypeError(f"{what} are {type(block).__name__}; expected a list of cells: " +
+                        ("lists of numbers of points" if number == 7 else "lists of faces"))
     if number == 7:
         rings = _rings_of(what, block)
         cells, faces, counts = rings, [], np.zeros(len(rings), dtype=np.uint64)

@@ -113,6 +113,13 @@ def test_files_of_polyhedra(tmp_path):
     ({"polyhedron": [[[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 0.5]]]}, TypeError, "expected integers"),
     ({"polyhedron": [[[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, -3]]]}, ValueError, "expected 0 or more"),
     ({"polyhedron": ["abc"]}, TypeError, "faces of cells of type 'polyhedron' are str; expected lists"),
+    ({"polyhedron": 5}, TypeError, "cells of type 'polyhedron' are int; expected a list of cells: lists of faces"),
+    ({"polygon": "abc"}, TypeError, "cells of type 'polygon' are str; expected a list of cells: lists of numbers"),
+    ({"polyhedron": [5]}, TypeError, "faces of cells of type 'polyhedron' are int; expected lists of numbers of points"),
+    ({"polyhedron": [[0, 1, 2, 3]]}, TypeError, "faces of cells of type 'polyhedron' have 0 in the place of a list"),
+    ({"polyhedron": [[[[0, 1, 2]]]]}, TypeError, "have a list of lists, [[0, 1, 2]]; expected lists of numbers"),
+    ({"polyhedron": [[[[0, 1], [2]]]]}, TypeError, "have a list of lists, [[0, 1], [2]]; expected lists of numbers"),
+    ({"polygon": [3, 4]}, TypeError, "cells of type 'polygon' have 3 in the place of a list"),
     ({"polygon": [[0, 1, 2, 3, 4]]}, ValueError, "cell 0: type 7 (polygon); expected a 3D cell"),
     ({"polyeder": [[0, 1, 2, 3, 4]]}, ValueError, "'polyhedron'"),
 ])
@@ -122,7 +129,15 @@ def test_bad_cells_are_errors_that_name_them(cells, error, text):
     assert text in str(raised.value)
 
 
-def test_polyhedra_over_time_are_refused():
-    points, cells = prisms(3)
-    with pytest.raises(ValueError, match="polyhedra over time"):
-        tegl.contour_mesh(points, {"polyhedron": cells}, [ball(points)] * 2, 0.0, times=[0, 1])
+def test_polyhedra_over_time():
+    points, cells = prisms(9)
+    values = [ball(points, r) for r in (-1, 3, 5, -1)]
+    hypersurface = tegl.contour_mesh(points, {"polyhedron": cells}, values, 0.0, times=[0, 1, 2, 3])
+    assert hypersurface.ndim == 4 and hypersurface.check().is_closed
+    assert hypersurface.slice(1.5).check().euler == 2
+    step = tegl.contour_mesh(points, {"polyhedron": cells}, values[2], 0.0)
+    at_step = hypersurface.slice(2)
+    assert np.array_equal(np.sort(at_step.vertices, axis=0), np.sort(step.vertices, axis=0))
+    assert len(at_step.simplices) == len(step.simplices)
+    moving = tegl.contour_mesh([points, points + 1], {"polyhedron": cells}, [ball(points)] * 2, 0.0, times=[0, 1])
+    assert moving.slice(0.5).measure().centroid[0] == pytest.approx(moving.slice(0).measure().centroid[0] + 0.5, abs=0.05)

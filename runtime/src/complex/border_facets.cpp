@@ -10,6 +10,7 @@
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
+#include "polytope/prism_facets.hpp"
 
 namespace tegl::detail {
 
@@ -22,9 +23,18 @@ struct FacetUse {
   std::uint64_t place;
 };
 
-/// The facets of a polytope: the edges of a polygon, the faces of a polyhedron.
-std::size_t facet_count(const PolytopeShape& shape) noexcept {
-  return shape.face_count() == 1 ? shape.corner_count() : shape.face_count();
+/// The points that name a facet of a polytope.
+std::vector<Index> points_known_by(const Polytopes& polytopes, std::size_t cell, std::size_t number) {
+  if (polytopes.shape(cell).dim() != 4) return facet_points(polytopes, cell, number);
+  const PrismFacet facet = facet_of_prism(polytopes.shape(cell), number);
+  std::vector<Index> points;
+  if (facet.is_tabled()) {
+    for (const std::uint8_t v : facet.corners) points.push_back(polytopes.cell(cell)[v]);
+  } else {
+    const auto key = key_of_facet(facet, polytopes.cell(cell));
+    points.assign(key.begin(), key.end());
+  }
+  return points;
 }
 
 template <std::size_t kCorners>
@@ -53,18 +63,22 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
         use.place = place++;
       }
   });
-  // Of a face of a polyhedron, the four smallest corners: different faces share two at most.
-  std::uint64_t of_polytopes = first.back();
-  std::vector<Index> points_of;
+  // Of a face of a polyhedron, the four smallest corners: different faces share two at most. Likewise of a facet of a
+  // prism (key_of_facet).
+  std::vector<std::uint64_t> first_of{first.back()};  // by polytope
   for (std::size_t c = 0; c < cells.polytopes.size(); ++c)
-    for (std::size_t f = 0; f < facet_count(cells.polytopes.shape(c)); ++f) {
-      points_of = facet_points(cells.polytopes, c, f);
+    first_of.push_back(first_of.back() + cells.polytopes.shape(c).facet_count());
+  uses.resize(first_of.back());
+  for_each_item(cells.polytopes.size(), work.threads, nullptr, [&](std::size_t c) {
+    for (std::size_t f = 0; f < cells.polytopes.shape(c).facet_count(); ++f) {
+      std::vector<Index> points_of = points_known_by(cells.polytopes, c, f);
       std::sort(points_of.begin(), points_of.end());
-      FacetUse<kCorners>& use = uses.emplace_back();
+      FacetUse<kCorners>& use = uses[first_of[c] + f];
       set_key(
           use, [&](std::size_t i) { return points_of[i]; }, std::min(points_of.size(), kCorners));
-      use.place = of_polytopes++;
+      use.place = first_of[c] + f;
     }
+  });
   // sort by the first corner, then those of each corner
   const auto bits = static_cast<unsigned>(std::bit_width(points));
   sort_by_bits(
@@ -85,13 +99,12 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
   BorderFacets border;
   std::uint32_t g = 0;
   const auto groups = static_cast<std::uint32_t>(cells.groups.size());
-  std::uint64_t before = first.back();  // facets before polytope c
   std::size_t c = 0;
   for (const std::uint64_t place : single) {
     while (g < groups && place >= first[g + 1]) ++g;
     if (g == groups) {
-      while (place - before >= facet_count(cells.polytopes.shape(c))) before += facet_count(cells.polytopes.shape(c++));
-      border.push_back({g, static_cast<Index>(c), static_cast<std::uint8_t>(place - before)});
+      while (place >= first_of[c + 1]) ++c;
+      border.push_back({g, static_cast<Index>(c), static_cast<std::uint8_t>(place - first_of[c])});
       continue;
     }
     const std::size_t count = facets_of(cells.groups[g].shape).size();

@@ -52,6 +52,12 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       const std::span<const Index> points = cells.polytopes.points_of(cell);
       if (std::any_of(points.begin(), points.end(), [&](Index p) { return std::isnan(values[p]); })) continue;
       const bool is_inverted = (signs[g][cell >> 6] >> (cell & 63u) & 1u) != 0;
+      if (N == 4) {
+        const PrismFacet facet = facet_of_prism(cells.polytopes.shape(cell), number);
+        const bool flip = (facet.is_inverted != is_inverted) != descends;
+        facet.is_tabled() ? add_tabled(facet, points.data(), flip) : add_solid(facet, points.data(), flip);
+        continue;
+      }
       // seen from outside, rings are counterclockwise; edges of polygons have the polygon on their left
       add_face(facet_points(cells.polytopes, cell, number), (is_inverted != descends) != (N == 3));
       continue;
@@ -120,30 +126,61 @@ void ComplexCaps<N>::add_face(const std::vector<Index>& points, bool flip) {
     };
     if (is_high(0) || is_high(1)) add_simplex({at(0), at(1)}, flip);
   } else if constexpr (N == 3) {
-    // runs of high corners with the points of the contour beside them: one part, or one for each run
-    std::size_t start = 0;
-    while (start < count && (is_high(start) || !is_high(start + 1))) ++start;
-    std::vector<std::vector<CapVertex>> runs(start == count ? 1 : 0);  // all are high, or none
-    for (std::size_t i = start % count, end = i + count; i < end; ++i) {
-      if (is_high(i)) runs.back().push_back(CapVertex::corner(points[i % count]));
-      if (is_high(i) == is_high(i + 1)) continue;
-      if (!is_high(i)) runs.emplace_back();
-      runs.back().push_back(on_edge(points[i % count], points[(i + 1) % count]));
-    }
-    std::vector<double> at;
-    for (const Index p : points) at.push_back(values_[p]);
-    const PolytopeRules rules = rules_of(options_, isovalue_);
-    if (runs.size() > 1 && is_face_high(rules, at)) {
-      for (std::size_t r = 1; r < runs.size(); ++r) runs[0].insert(runs[0].end(), runs[r].begin(), runs[r].end());
-      runs.resize(1);
-    }
-    for (auto& run : runs) {  // fans from a corner: other sides than those of the part are in this face alone
+    for (auto& run :
+         parts_around(points)) {  // fans from a corner: other sides than those of the part are in this face alone
       const auto corner = std::find_if(run.begin(), run.end(), [](CapVertex v) { return v.is_corner(); });
       if (corner == run.end()) continue;
       std::rotate(run.begin(), corner, run.end());
       for (std::size_t i = 2; i < run.size(); ++i) add_simplex({run[0], run[i - 1], run[i]}, flip);
     }
   }
+}
+
+/// The high parts of a polygon, in its direction: runs of high corners with the points of the contour beside them, one
+/// part for all or one for each.
+template <int N>
+std::vector<std::vector<CapVertex>> ComplexCaps<N>::parts_around(const std::vector<Index>& points) const {
+  const std::size_t count = points.size();
+  const auto is_high = [&](std::size_t i) { return values_[points[i % count]] >= isovalue_; };
+  std::size_t start = 0;
+  while (start < count && (is_high(start) || !is_high(start + 1))) ++start;
+  std::vector<std::vector<CapVertex>> runs(start == count ? 1 : 0);  // all are high, or none
+  for (std::size_t i = start % count, end = i + count; i < end; ++i) {
+    if (is_high(i)) runs.back().push_back(CapVertex::corner(points[i % count]));
+    if (is_high(i) == is_high(i + 1)) continue;
+    if (!is_high(i)) runs.emplace_back();
+    runs.back().push_back(on_edge(points[i % count], points[(i + 1) % count]));
+  }
+  std::vector<double> at;
+  for (const Index p : points) at.push_back(values_[p]);
+  if (runs.size() > 1 && is_face_high(rules_of(options_, isovalue_), at)) {
+    for (std::size_t r = 1; r < runs.size(); ++r) runs[0].insert(runs[0].end(), runs[r].begin(), runs[r].end());
+    runs.resize(1);
+  }
+  return runs;
+}
+
+/// A facet of a prism over a polyhedron that other cells have in their tables.
+template <int N>
+void ComplexCaps<N>::add_tabled(const PrismFacet& facet, const Index* points, bool flip) {
+  using tables::CellShape;
+  static constexpr CellFacet kWedge{CellShape::wedge, 6, {0, 1, 2, 3, 4, 5}, false};
+  static constexpr CellFacet kHexahedron{CellShape::hexahedron, 8, {0, 1, 2, 3, 4, 5, 6, 7}, false};
+  const bool is_wedge = facet.kind == PrismFacet::Kind::wedge;
+  Facet of{is_wedge ? kWedge : kHexahedron, {}, 0, flip};
+  for (unsigned v = 0; v < of.of.corner_count; ++v) {
+    of.points[v] = points[facet.corners[is_wedge ? v : unsigned{kHexahedronCorners[v]}]];
+    if (!(values_[of.points[v]] >= isovalue_)) continue;
+    of.high |= 1u << v;
+    corners_.push_back(of.points[v]);
+  }
+  if (of.high == 0) return;
+  of.is_compact = options_.triangulation == Triangulation::compact;
+  if (of.is_compact && of.high + 1 != 1u << of.of.corner_count) {
+    const FaceFillings fillings(of.of.shape, options_.ambiguity == Ambiguity::high);
+    of.triangles = fillings.triangles(of.high, fillings.choose(of.high, of.points.data()));
+  }
+  add_facet(of);
 }
 
 template <int N>

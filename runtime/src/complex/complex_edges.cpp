@@ -40,9 +40,9 @@ void append(const CellBlocks& from, CellBlocks& to) {
 
 ComplexEdges find_complex_edges(std::size_t points, const CellGroups& cells, const WorkOptions& work) {
   const std::vector<CellRange> ranges = ranges_of(cells);
-  SortedEdges sorted(points, ranges.size() + 1,
+  SortedEdges sorted(points, ranges.size() + cells.polytopes.part_count(),
                      [&](std::size_t part, const auto& add) {
-                       if (part == ranges.size()) return cells.polytopes.for_each_edge(add);
+                       if (part >= ranges.size()) return cells.polytopes.for_each_edge(part - ranges.size(), add);
                        const CellGroup& group = cells.groups[ranges[part].group];
                        const tables::CellTable& table = table_of(group.shape);
                        for (std::size_t c = ranges[part].from; c < ranges[part].to; ++c)

@@ -13,6 +13,7 @@
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "kernel/contour_output.hpp"
+#include "prisms/prism_contours.hpp"
 #include "tegl/error.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/normals.hpp"
@@ -28,14 +29,28 @@ bool has_cubes(tables::CellShape shape) {
                      [](const CellFacet& facet) { return facet.shape == tables::CellShape::hexahedron; });
 }
 
+bool has_cubes(const Polytopes& polytopes) {
+  if (polytopes.dim() != 4) return false;
+  for (std::size_t c = 0; c < polytopes.size(); ++c)
+    for (std::size_t f = 0; f < polytopes.shape(c).face_count(); ++f)
+      if (polytopes.shape(c).ring(f).size() == 4) return true;
+  return false;
+}
+
+/// Errors: InvalidArgument.
+void check_caps(const CellGroups& cells, const ExtractOptions& options) {
+  if (!options.close || !is_estimated(options.ambiguity) || face_rule(options.ambiguity).separates) return;
+  if (has_cubes(cells.polytopes) || std::any_of(cells.groups.begin(), cells.groups.end(),
+                                                [](const CellGroup& group) { return has_cubes(group.shape); }))
+    throw Error(ErrorCode::InvalidArgument,
+                "close and ambiguity by means or saddles in 4D cells with hexahedra as facets; expected low, high, "
+                "squares or decider");
+}
+
 CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOptions& options) {
+  check_caps(cells, options);
   CellTables tables;
   for (const CellGroup& group : cells.groups) {
-    if (options.close && has_cubes(group.shape) && is_estimated(options.ambiguity) &&
-        !face_rule(options.ambiguity).separates)
-      throw Error(ErrorCode::InvalidArgument,
-                  "close and ambiguity by means or saddles in 4D cells with hexahedra as facets; expected low, high, "
-                  "squares or decider");
     const tables::CellTable& table = tables::cell_table(group.shape, options.triangulation);
     std::shared_ptr<const ResolvedCells> resolved;
     const bool is_decided = is_estimated(options.ambiguity);
@@ -70,8 +85,10 @@ std::vector<PolytopeBlock> polytope_blocks(const CellGroups& cells, std::span<co
     for (auto at = std::lower_bound(active->begin(), active->end(), first); at != active->end(); ++at)
       listed.push_back(*at - first);
   }
-  return build_polytope_contours(cells.polytopes, values, rules, active == nullptr ? nullptr : &listed,
-                                 work_of(options, progress));
+  const auto* const of = active == nullptr ? nullptr : &listed;
+  if (cells.polytopes.dim() == 4)
+    return build_prism_contours(cells.polytopes, values, rules, of, work_of(options, progress));
+  return build_polytope_contours(cells.polytopes, values, rules, of, work_of(options, progress));
 }
 
 }  // namespace
@@ -120,15 +137,18 @@ ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edge
       polytopes_(polytope_blocks(cells, values, isovalue, options, active, part_of(progress, 0.4, 0.5))),
       crossings_(cells, tables_, blocks_, polytopes_, edges, values.size(),
                  work_of(options, part_of(progress, 0.5, 0.8))),
-      shared_(number_shared_points(cells, tables_, blocks_, crossings_, work_of(options, part_of(progress, 0.8, 1.0)))),
+      shared_(number_shared_points(cells, tables_, blocks_, polytopes_, crossings_,
+                                   work_of(options, part_of(progress, 0.8, 1.0)))),
       first_shared_(sums_before(blocks_, &ActiveBlock::shared)),
       first_own_(sums_before(blocks_, &ActiveBlock::own)),
       first_simplex_(sums_before(blocks_, &ActiveBlock::simplices)),
       own_base_(crossings_.ends().size() + shared_.keys.size()),
       vertex_count_(own_base_ + first_own_.back()),
       simplex_count_(first_simplex_.back()) {
-  separate_diagonals(polytopes_);
+  if (cells.polytopes.dim() != 4) separate_diagonals(polytopes_, options.work.threads);
+  std::uint64_t shared = first_shared_.back();
   for (const PolytopeBlock& block : polytopes_) {
+    polytope_shared_.push_back(std::exchange(shared, shared + block.shared.size()));
     polytope_own_.push_back(std::exchange(vertex_count_, vertex_count_ + block.own));
     polytope_simplex_.push_back(std::exchange(simplex_count_, simplex_count_ + block.simplices));
     stats.active_tiles += block.active;
@@ -144,6 +164,14 @@ Index ContourNumbers::polygon(std::span<const Index> vertices) const {
   if (vertices.size() > key.size()) return kNoPoint;
   std::copy(vertices.begin(), vertices.end(), key.begin());
   std::sort(key.begin(), key.end());
+  return number_of(key);
+}
+
+Index ContourNumbers::polygon_in(const std::array<Index, 4>& facet, std::span<const Index> vertices) const {
+  return number_of(key_of_loop(*std::min_element(vertices.begin(), vertices.end()), facet));
+}
+
+Index ContourNumbers::number_of(const PolygonKey& key) const {
   const auto found = std::lower_bound(shared_.keys.begin(), shared_.keys.end(), key);
   if (found == shared_.keys.end() || *found != key) return kNoPoint;
   return static_cast<Index>(edge_ends().size() + static_cast<std::size_t>(found - shared_.keys.begin()));

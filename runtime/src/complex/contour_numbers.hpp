@@ -38,6 +38,7 @@ class ContourNumbers {
   [[nodiscard]] const std::vector<PolygonKey>& polygons() const noexcept { return shared_.keys; }
   /// The shared vertices that are no barycentres of polygons; their numbers are in `polygons`.
   [[nodiscard]] const std::vector<CubePoint>& points_in_cubes() const noexcept { return shared_.in_cubes; }
+  [[nodiscard]] const std::vector<LoopPoint>& loops() const noexcept { return shared_.loops; }
   [[nodiscard]] const tables::CellTable& table(std::size_t group) const noexcept { return cases(group).table(); }
   [[nodiscard]] const CellCases& cases(std::size_t group) const noexcept { return tables_.of_group[group]; }
   /// The vertices on crossed edges of a block's cells: one cell after the other, by edge.
@@ -49,8 +50,18 @@ class ContourNumbers {
   [[nodiscard]] std::uint64_t first_simplex_of_polytopes(std::size_t block) const noexcept {
     return polytope_simplex_[block];
   }
+  /// The number of a vertex of the prisms in a block of polytopes (PolytopeBlock::tetrahedra).
+  [[nodiscard]] Index prism_vertex(std::size_t block, std::uint32_t vertex) const noexcept {
+    const PolytopeBlock& of = polytopes_[block];
+    if (vertex < PolytopeBlock::kShared) return of.numbers[of.vertices[vertex]];
+    if (vertex >= PolytopeBlock::kOwn) return static_cast<Index>(polytope_own_[block] + vertex - PolytopeBlock::kOwn);
+    const std::uint64_t number = shared_.numbers[polytope_shared_[block] + vertex - PolytopeBlock::kShared];
+    return static_cast<Index>(edge_ends().size() + number);
+  }
   /// The barycentre of the polygon with these vertices in a common 3-face, or kNoPoint.
   [[nodiscard]] Index polygon(std::span<const Index> vertices) const;
+  /// The same for a facet of prisms with a key (key_of_facet).
+  [[nodiscard]] Index polygon_in(const std::array<Index, 4>& facet, std::span<const Index> vertices) const;
 
   /// The vertices of an active cell: by edge, then by added vertex.
   using CellVertices = std::array<Index, 256>;
@@ -71,7 +82,9 @@ class ContourNumbers {
   std::vector<std::uint64_t> first_shared_, first_own_, first_simplex_;  ///< by block
   std::uint64_t own_base_ = 0;
   std::uint64_t vertex_count_ = 0, simplex_count_ = 0;
-  std::vector<std::uint64_t> polytope_own_, polytope_simplex_;  ///< first numbers, by block of polytopes
+  [[nodiscard]] Index number_of(const PolygonKey& key) const;
+
+  std::vector<std::uint64_t> polytope_own_, polytope_simplex_, polytope_shared_;  ///< first ones, by block of polytopes
 };
 
 template <class Visit>

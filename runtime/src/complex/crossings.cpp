@@ -80,11 +80,26 @@ void CrossingNumbers::sort(std::size_t points, std::vector<PolytopeBlock>& polyt
         for (Index& edge : of_blocks_[b]) edge = numbers[edge];
       });
   for_each_item(polytopes.size(), work.threads, nullptr, [&](std::size_t b) {
+    polytopes[b].numbers.reserve(polytopes[b].edges.size());
     for (const auto& [p, q] : polytopes[b].edges)
       polytopes[b].numbers.push_back(static_cast<Index>(sorted.number(p, q)));
   });
   ends_ = sorted.take_ends();
 }
+
+namespace {
+
+/// Sets the bits of crossed edges; other threads may do so at the same time unless `is_one`.
+void set_bits(std::vector<EdgeWord>& words, const Index* edges, std::size_t count, bool is_one) {
+  if (is_one) return set_crossed(words.data(), edges, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << (edges[i] & 63u);
+    std::atomic_ref<std::uint64_t> word(words[edges[i] >> 6].crossed);
+    if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
+  }
+}
+
+}  // namespace
 
 void CrossingNumbers::count_bits(std::vector<PolytopeBlock>& polytopes, const WorkOptions& work) {
   // set the bits of crossed edges
@@ -97,20 +112,17 @@ void CrossingNumbers::count_bits(std::vector<PolytopeBlock>& polytopes, const Wo
         listed.resize(block.crossings + kListedBeyond);
         list_crossed(tables_.of_group[block.group], edges_->of_cells[block.group], block.cells, listed.data());
         listed.resize(block.crossings);
-        if (is_one) return set_crossed(words.data(), listed.data(), listed.size());
-        for (const Index edge : listed) {
-          const std::uint64_t bit = std::uint64_t{1} << (edge & 63u);
-          std::atomic_ref<std::uint64_t> word(words[edge >> 6].crossed);
-          if ((word.load(std::memory_order_relaxed) & bit) == 0) word.fetch_or(bit, std::memory_order_relaxed);
-        }
+        set_bits(words, listed.data(), listed.size(), is_one);
       });
-  for (PolytopeBlock& block : polytopes) {
+  for_each_item(polytopes.size(), work.threads, nullptr, [&](std::size_t b) {
+    PolytopeBlock& block = polytopes[b];
+    block.numbers.reserve(block.edges.size());
     for (const EdgeEnds& edge : block.edges) {
       const auto found = std::lower_bound(edges_->ends.begin(), edges_->ends.end(), edge);
       block.numbers.push_back(static_cast<Index>(found - edges_->ends.begin()));
     }
-    set_crossed(words.data(), block.numbers.data(), block.numbers.size());
-  }
+    set_bits(words, block.numbers.data(), block.numbers.size(), is_one);
+  });
   // count
   const std::uint64_t count = count_before(words);
   require_numbers(count);
@@ -130,7 +142,9 @@ void CrossingNumbers::count_bits(std::vector<PolytopeBlock>& polytopes, const Wo
   // from edges to their numbers among the crossed ones
   for_each_item(blocks_.size(), work.threads, part_of(work.progress, 0.7, 1.0),
                 [&](std::size_t b) { number_edges(words.data(), of_blocks_[b].data(), of_blocks_[b].size()); });
-  for (PolytopeBlock& block : polytopes) number_edges(words.data(), block.numbers.data(), block.numbers.size());
+  for_each_item(polytopes.size(), work.threads, nullptr, [&](std::size_t b) {
+    number_edges(words.data(), polytopes[b].numbers.data(), polytopes[b].numbers.size());
+  });
 }
 
 }  // namespace tegl::detail

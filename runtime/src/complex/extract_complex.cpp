@@ -68,6 +68,12 @@ std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumb
   }
   for (const CubePoint& point : numbers.points_in_cubes())
     points.insert(points.end(), point.corners.begin(), point.corners.end());
+  for (const PolytopeBlock& block : numbers.polytopes())
+    for (const PolytopeBlock::InnerVertex& vertex : block.own_vertices)
+      if (vertex.kind == PolytopeBlock::InnerVertex::Kind::inwards) {
+        const std::span<const Index> corners = ComplexAccess::cells(complex).polytopes.points_of(vertex.cell);
+        points.insert(points.end(), corners.begin(), corners.end());
+      }
   return points;
 }
 
@@ -118,8 +124,14 @@ class ComplexWriter {
     const std::size_t first = numbers_.edge_ends().size();
     for_each_item(numbers_.points_in_cubes().size(), work.threads, nullptr,
                   [&](std::size_t i) { write_in_cube(numbers_.points_in_cubes()[i], first); });
+    for_each_item(numbers_.loops().size(), work.threads, nullptr, [&](std::size_t i) {
+      const LoopPoint& loop = numbers_.loops()[i];
+      Mean mean(*this);
+      for (const Index v : loop.vertices) mean.add_vertex(v);
+      write(first + loop.number, mean);
+    });
     for_each_item(polygons.size(), work.threads, work.progress, [&](std::size_t i) {
-      if (polygons[i].back() == kInCube) return;
+      if (polygons[i].back() == kInCube || polygons[i].back() == kInFacet) return;
       Mean mean(*this);
       for (const Index v : polygons[i])
         if (v != kNoPoint) mean.add_vertex(v);
@@ -146,6 +158,7 @@ class ComplexWriter {
   void write_polytopes(const WorkOptions& work) {
     const std::vector<PolytopeBlock>& blocks = numbers_.polytopes();
     for_each_item(blocks.size(), work.threads, work.progress, [&](std::size_t b) {
+      if constexpr (N == 4) return write_prisms(b);
       const PolytopeBlock& block = blocks[b];
       auto* simplex = contour_.simplices.data() + numbers_.first_simplex_of_polytopes(b);
       auto own = static_cast<Index>(numbers_.first_of_polytopes(b));
@@ -317,6 +330,35 @@ class ComplexWriter {
     return simplex;
   }
 
+  /// The tetrahedra of a block of prisms over polyhedra, and the cells' own vertices.
+  void write_prisms(std::size_t b) const noexcept {
+    const PolytopeBlock& block = numbers_.polytopes()[b];
+    auto* simplex = contour_.simplices.data() + numbers_.first_simplex_of_polytopes(b);
+    std::size_t i = 0;
+    for (const PolytopeBlock::Piece& piece : block.pieces) {
+      const bool is_inverted = (signs_.back()[piece.cell >> 6] >> (piece.cell & 63u) & 1u) != 0;
+      for (; i < piece.end; ++i, ++simplex) {
+        for (std::size_t k = 0; k < N; ++k) (*simplex)[k] = numbers_.prism_vertex(b, block.tetrahedra[i][k]);
+        if (is_inverted != descends_) std::swap((*simplex)[N - 1], (*simplex)[N - 2]);
+      }
+    }
+    auto number = static_cast<Index>(numbers_.first_of_polytopes(b));
+    std::vector<Index> vertices;
+    for (const PolytopeBlock::InnerVertex& own : block.own_vertices) {
+      vertices.clear();
+      for (std::uint32_t v = own.first_vertex; v < own.vertices_end; ++v)
+        vertices.push_back(numbers_.prism_vertex(b, block.inner_vertices[v]));
+      std::sort(vertices.begin(), vertices.end());
+      Mean mean(*this);
+      for (const Index v : vertices) mean.add_vertex(v);
+      for (std::uint32_t v = own.first_corner; v < own.corners_end; ++v) mean.add_corner(block.inner_corners[v]);
+      write(number, mean);
+      if (own.kind == PolytopeBlock::InnerVertex::Kind::inwards)
+        contour_.vertices[number] = inwards(cells_.polytopes.points_of(own.cell), mean, 0.5);
+      ++number;
+    }
+  }
+
   /// The barycentre of a loop. Ascending vertices, so that the sum does not depend on the cell's numbering.
   void write_barycentre(std::vector<Index>& vertices, Index number) const noexcept {
     std::sort(vertices.begin(), vertices.end());
@@ -376,7 +418,7 @@ class ComplexWriter {
         if ((mask >> v & 1u) != 0) mean.add_corner(corners[v]);
       write(number, mean);
       const bool is_collar = j >= list.added() - list.collar_vertices;
-      if (is_side) contour_.vertices[number] = inwards(table, corners, mean, is_collar ? 0.25 : 0.5);
+      if (is_side) contour_.vertices[number] = inwards({corners, table.corner_count}, mean, is_collar ? 0.25 : 0.5);
     }
   }
 
@@ -439,15 +481,14 @@ class ComplexWriter {
   }
 
   /// A part of the way from a point to the cell's centre.
-  [[nodiscard]] Vertex inwards(const tables::CellTable& table, const Index* corners, const Mean& point,
-                               double part) const noexcept {
+  [[nodiscard]] Vertex inwards(std::span<const Index> corners, const Mean& point, double part) const noexcept {
     Mean centre(*this);
-    for (std::uint32_t v = 0; v < table.corner_count; ++v) centre.add_corner(corners[v]);
+    for (const Index corner : corners) centre.add_corner(corner);
     const Point a = point.mean(), b = near(a, centre.mean());
     Vertex vertex;
     for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(a[i] * (1 - part) + b[i] * part);
     keep_inside(vertex);
-    if (is_layered_) keep_between(corners[0], corners[table.corner_count - 1], vertex);
+    if (is_layered_) keep_between(corners.front(), corners.back(), vertex);
     return vertex;
   }
 

@@ -39,11 +39,7 @@ detail::CellGroup prisms_over(const detail::CellGroup& group, std::size_t points
 
 /// Prisms over polygons are polyhedra.
 detail::Polytopes prisms_over(const detail::Polytopes& polytopes, std::size_t points, std::size_t intervals) {
-  if (polytopes.size() > 0 && polytopes.dim() == 3)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} polyhedra over time; expected tetrahedra, pyramids, wedges, hexahedra and octahedra",
-                            polytopes.size()));
-  for (std::size_t c = 0; c < polytopes.size(); ++c)
+  for (std::size_t c = 0; polytopes.dim() == 2 && c < polytopes.size(); ++c)
     if (const std::size_t corners = polytopes.points_of(c).size(); 2 * corners > detail::kPolytopeCorners)
       throw Error(ErrorCode::InvalidArgument, fmt::format("a polygon of {} corners over time; expected at most {}",
                                                           corners, detail::kPolytopeCorners / 2));

@@ -55,14 +55,14 @@ PointGradients<N>::PointGradients(const Complex<N>& complex, std::span<const Edg
       const auto add_marked = [&](Index p, Index q) {
         if (is_marked(p) || is_marked(q)) add(p, q);
       };
-      if (r == ranges.size()) return cells.polytopes.for_each_edge(add_marked);
+      if (r >= ranges.size()) return cells.polytopes.for_each_edge(r - ranges.size(), add_marked);
       const CellGroup& group = cells.groups[ranges[r].group];
       const tables::CellTable& table = table_of(group.shape);
       for (std::size_t c = ranges[r].from; c < ranges[r].to; ++c)
         for (std::uint32_t e = 0; e < table.edge_count; ++e)
           add_marked(group.cell(c)[table.edges[2 * e]], group.cell(c)[table.edges[2 * e + 1]]);
     };
-    found = SortedEdges(complex.points().size(), ranges.size() + 1, visit,
+    found = SortedEdges(complex.points().size(), ranges.size() + cells.polytopes.part_count(), visit,
                         {work.threads, part_of(work.progress, 0.0, 0.7)});
   }
   // sums, in the order of the edges

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
+#include <utility>
 
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
@@ -92,30 +94,67 @@ Index first_crossing(const CellGroup& group, const tables::CellTable& table, uns
   return first;
 }
 
-/// Keeps one of the cubes for each vertex.
-std::vector<CubePoint> distinct(const std::vector<std::vector<CubePoint>>& of_blocks) {
-  std::vector<CubePoint> points;
-  for (const std::vector<CubePoint>& of_block : of_blocks)
-    points.insert(points.end(), of_block.begin(), of_block.end());
-  std::stable_sort(points.begin(), points.end(),
-                   [](const CubePoint& a, const CubePoint& b) { return a.number < b.number; });
-  points.erase(std::unique(points.begin(), points.end(),
-                           [](const CubePoint& a, const CubePoint& b) { return a.number == b.number; }),
-               points.end());
+/// Keeps one of the cubes or loops for each vertex.
+template <class Point>
+std::vector<Point> distinct(std::vector<std::vector<Point>>& of_blocks) {
+  std::vector<Point> points;
+  for (std::vector<Point>& of_block : of_blocks)
+    points.insert(points.end(), std::make_move_iterator(of_block.begin()), std::make_move_iterator(of_block.end()));
+  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.number < b.number; });
+  points.erase(
+      std::unique(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.number == b.number; }),
+      points.end());
   return points;
+}
+
+/// The uses of shared vertices by the prisms of a block. Appends vertices in cubes, and loops, whose numbers are places
+/// in the block.
+void list_uses(const PolytopeBlock& block, std::uint64_t first, SharedUse* uses, std::vector<CubePoint>& in_cubes,
+               std::vector<LoopPoint>& loops) {
+  using Kind = PolytopeBlock::InnerVertex::Kind;
+  for (std::size_t i = 0; i < block.shared.size(); ++i) {
+    const PolytopeBlock::InnerVertex& of = block.shared[i];
+    const auto place = static_cast<Index>(i);
+    std::vector<Index> vertices;
+    for (std::uint32_t v = of.first_vertex; v < of.vertices_end; ++v)
+      vertices.push_back(block.numbers[block.vertices[block.inner_vertices[v]]]);
+    std::sort(vertices.begin(), vertices.end());
+    PolygonKey key;
+    if (of.kind == Kind::in_cube) {
+      key = key_of(in_cubes.emplace_back(CubePoint{of.points, of.mask, place}), vertices[0]);
+    } else if (of.kind == Kind::loop) {
+      key = key_of_loop(vertices[0], {of.points[0], of.points[1], of.points[2], of.points[3]});
+      loops.push_back({std::move(vertices), place});
+    } else {
+      key.fill(kNoPoint);
+      std::copy(vertices.begin(), vertices.end(), key.begin());
+    }
+    uses[i] = {key, first + i};
+  }
 }
 
 }  // namespace
 
+PolygonKey key_of_loop(Index smallest, const std::array<Index, 4>& facet) noexcept {
+  PolygonKey key;
+  key.fill(kNoPoint);
+  key[0] = smallest;
+  std::copy(facet.begin(), facet.end(), key.begin() + 1);
+  key.back() = kInFacet;
+  return key;
+}
+
 SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tables,
-                                  const std::vector<ActiveBlock>& blocks, const CrossingNumbers& crossings,
-                                  const WorkOptions& work) {
+                                  const std::vector<ActiveBlock>& blocks, const std::vector<PolytopeBlock>& polytopes,
+                                  const CrossingNumbers& crossings, const WorkOptions& work) {
   SharedPoints points;
-  const auto first = sums_before(blocks, &ActiveBlock::shared);
+  auto first = sums_before(blocks, &ActiveBlock::shared);
+  for (const PolytopeBlock& block : polytopes) first.push_back(first.back() + block.shared.size());
   if (first.back() == 0) return points;
   // list
   std::vector<SharedUse> uses(first.back());
-  std::vector<std::vector<CubePoint>> in_cubes(blocks.size());  // their numbers are places in the block
+  std::vector<std::vector<CubePoint>> in_cubes(first.size());  // their numbers are places in the block
+  std::vector<std::vector<LoopPoint>> loops(first.size());
   for_each_block(
       blocks.size(), 1, work.threads, part_of(work.progress, 0.0, 0.5), [&](std::size_t b, std::size_t, std::size_t) {
         const CellCases& cases = tables.of_group[blocks[b].group];
@@ -139,6 +178,10 @@ SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tab
           }
         }
       });
+  for_each_item(polytopes.size(), work.threads, nullptr, [&](std::size_t p) {
+    const std::size_t b = blocks.size() + p;
+    list_uses(polytopes[p], first[b], uses.data() + first[b], in_cubes[b], loops[b]);
+  });
   // sort by the first vertex, then among equal ones by the others
   const auto bits = static_cast<unsigned>(std::bit_width(crossings.ends().size()));
   sort_by_bits(uses, bits, [](const SharedUse& use) { return std::uint64_t{use.key[0]}; });
@@ -154,9 +197,12 @@ SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tab
     if (i == 0 || uses[i].key != uses[i - 1].key) points.keys.push_back(uses[i].key);
     points.numbers[uses[i].place] = static_cast<Index>(points.keys.size() - 1);
   }
-  for (std::size_t b = 0; b < blocks.size(); ++b)
+  for (std::size_t b = 0; b + 1 < first.size(); ++b) {
     for (CubePoint& point : in_cubes[b]) point.number = points.numbers[first[b] + point.number];
+    for (LoopPoint& point : loops[b]) point.number = points.numbers[first[b] + point.number];
+  }
   points.in_cubes = distinct(in_cubes);
+  points.loops = distinct(loops);
   tell(work.progress, 1.0);
   return points;
 }

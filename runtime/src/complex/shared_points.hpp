@@ -15,7 +15,7 @@ namespace tegl::detail {
 /// A barycentre by the vertices of its polygon: ascending numbers, unused entries at the end kNoPoint. The polygons of
 /// a complex have different vertices, whatever the numbering of the cells that they are in.
 using PolygonKey = std::array<Index, 12>;
-inline constexpr Index kNoPoint = ~Index{0}, kInCube = kNoPoint - 1;
+inline constexpr Index kNoPoint = ~Index{0}, kInCube = kNoPoint - 1, kInFacet = kNoPoint - 2;
 
 /// A vertex of the contour's own in a hexahedron between two cells, as in a cube of images.
 struct CubePoint {
@@ -24,17 +24,27 @@ struct CubePoint {
   Index number;        ///< in SharedPoints
 };
 
+/// The barycentre of a loop in a facet of prisms over polyhedra, which may have more vertices than a PolygonKey.
+struct LoopPoint {
+  std::vector<Index> vertices;  ///< ascending numbers
+  Index number;                 ///< in SharedPoints
+};
+/// Its key: the smallest vertex and the facet (key_of_facet). A facet has no two loops with a common vertex.
+[[nodiscard]] PolygonKey key_of_loop(Index smallest, const std::array<Index, 4>& facet) noexcept;
+
 /// The shared vertices of a contour, ordered by their keys: barycentres, and vertices in cubes. The key of the latter
-/// names the cube and the mask; its last entry is kInCube.
+/// names the cube and the mask; its last entry is kInCube, that of a loop kInFacet.
 struct SharedPoints {
   std::vector<PolygonKey> keys;
   std::vector<CubePoint> in_cubes;
-  std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell
+  std::vector<LoopPoint> loops;
+  std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell, those of polytopes last
 };
 
 /// Numbers the shared barycentres of all active cells. Errors: TooLarge, Cancelled.
 [[nodiscard]] SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tables,
                                                 const std::vector<ActiveBlock>& blocks,
+                                                const std::vector<PolytopeBlock>& polytopes,
                                                 const CrossingNumbers& crossings, const WorkOptions& work);
 
 }  // namespace tegl::detail

@@ -4,11 +4,13 @@
 #include "polytope/polytope_contours.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
 #include "ambiguity/face_decision.hpp"
 #include "base/progress.hpp"
+#include "base/radix_sort.hpp"
 #include "base/workers.hpp"
 
 namespace tegl::detail {
@@ -21,9 +23,6 @@ bool is_face_high(const PolytopeRules& rules, std::span<const double> values) {
 }
 
 namespace {
-
-/// Most edges of a polyhedron with so many corners.
-constexpr std::size_t kEdges = 3 * kPolytopeCorners - 6;
 
 /// Builds the contours of the cells of a block.
 class BlockBuilder {
@@ -45,58 +44,18 @@ class BlockBuilder {
     if (is_missing || high == 0 || high == corners.size()) return;
     ++block_.active;
     shape_ = &polytopes_.shape(cell);
-    for (std::size_t e = 0; e < shape_->edges().size(); ++e) next_[e] = kNone;
     cell_ = cell;
-    for (std::size_t f = 0; f < shape_->face_count(); ++f) add_segments(f);
-    for (std::size_t e = 0; e < shape_->edges().size(); ++e)
-      if (next_[e] != kNone) add_loop(e);
+    if (is_plane_)
+      for_each_segment(*shape_, 0, at_.data(), rules_,
+                       [&](std::size_t from, std::size_t to) { add_segment(from, to); });
+    else
+      loops_.for_each(*shape_, at_.data(), rules_, [&](std::span<const std::uint8_t> loop) { add_loop(loop); });
   }
 
-  /// Numbers the edges of the block.
-  void finish() {
-    std::vector<std::array<Index, 2>>& edges = block_.edges;
-    edges = crossed_;
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    block_.vertices.reserve(crossed_.size());
-    for (const auto& edge : crossed_)
-      block_.vertices.push_back(
-          static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()));
-  }
+  void finish() { set_edges(block_, crossed_); }
 
  private:
   [[nodiscard]] bool is_high(std::size_t v) const noexcept { return at_[v] >= rules_.isovalue; }
-
-  /// The segments of the contour in a face: from the edge where a run of high corners ends to the edge where a run
-  /// begins: its own one, or the following one if the high corners are joined. In the ring of the face that shares the
-  /// edge, ends are beginnings, so that the segments around a cell are loops.
-  void add_segments(std::size_t face) {
-    const std::span<const std::uint8_t> ring = shape_->ring(face), edges = shape_->ring_edges(face);
-    std::array<std::uint8_t, kPolytopeCorners> begins, ends;  // edges, in the order around the face
-    std::size_t begin_count = 0, end_count = 0;
-    bool ends_first = false;  // the first run begins before the ring does
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const bool before = is_high(ring[i]), after = is_high(ring[(i + 1) % ring.size()]);
-      if (before == after) continue;
-      if (begin_count + end_count == 0) ends_first = before;
-      (before ? ends[end_count++] : begins[begin_count++]) = edges[i];
-    }
-    if (end_count == 0) return;
-    bool joins = false;
-    if (end_count > 1) {
-      std::array<double, kPolytopeCorners> values;
-      for (std::size_t i = 0; i < ring.size(); ++i) values[i] = at_[ring[i]];
-      joins = is_face_high(rules_, {values.data(), ring.size()});
-    }
-    // the run of ends[k] begins at begins[k - 1] if the ring starts within a run, otherwise at begins[k]
-    const std::size_t shift = (ends_first ? end_count - 1 : 0) + (joins ? 1 : 0);
-    for (std::size_t k = 0; k < end_count; ++k) {
-      if (is_plane_)
-        add_segment(ends[k], begins[(k + shift) % end_count]);
-      else
-        next_[ends[k]] = begins[(k + shift) % end_count];
-    }
-  }
 
   void add_edge(std::size_t e) {
     const auto& ends = shape_->edges()[e];
@@ -112,34 +71,16 @@ class BlockBuilder {
     ++block_.simplices;
   }
 
-  void add_loop(std::size_t first) {
-    std::size_t size = 0;
-    for (std::size_t e = first; next_[e] != kNone; ++size) {
-      loop_[size] = static_cast<std::uint8_t>(e);
-      const std::size_t to = next_[e];
-      next_[e] = kNone;
-      e = to;
-    }
+  void add_loop(std::span<const std::uint8_t> loop) {
+    const std::size_t size = loop.size();
     std::size_t start = 0;
-    const bool is_coned = size > 3 && !(rules_.is_compact && find_fan(size, start));
-    for (std::size_t i = 0; i < size; ++i) add_edge(loop_[(start + i) % size]);
+    const bool is_coned = size > 3 && !(rules_.is_compact && find_fan(*shape_, loop, start));
+    if (is_coned) start = 0;
+    for (std::size_t i = 0; i < size; ++i) add_edge(loop[(start + i) % size]);
     block_.pieces.push_back({cell_, static_cast<std::uint32_t>(crossed_.size()), is_coned});
     block_.simplices += is_coned ? size : size - 2;
     block_.own += is_coned ? 1 : 0;
   }
-
-  /// Finds a vertex of a loop whose diagonals are in no face of the cell: the contour of a neighbour may have other
-  /// diagonals there.
-  bool find_fan(std::size_t size, std::size_t& start) const {
-    for (start = 0; start < size; ++start) {
-      std::size_t i = 2;
-      while (i + 1 < size && !shape_->share_a_face(loop_[start], loop_[(start + i) % size])) ++i;
-      if (i + 1 == size) return true;
-    }
-    return false;
-  }
-
-  static constexpr std::uint8_t kNone = 255;
 
   const Polytopes& polytopes_;
   bool is_plane_;  ///< polygons
@@ -149,8 +90,8 @@ class BlockBuilder {
   const PolytopeShape* shape_ = nullptr;  ///< of the current cell
   Index cell_ = 0;
   std::array<double, kPolytopeCorners> at_{};
-  std::array<std::uint8_t, kEdges> next_{}, loop_{};  ///< by edge: the following one of its loop
-  std::vector<std::array<Index, 2>> crossed_;         ///< of all pieces
+  Loops loops_;
+  std::vector<std::array<Index, 2>> crossed_;  ///< of all pieces
 };
 
 }  // namespace
@@ -158,37 +99,61 @@ class BlockBuilder {
 std::vector<PolytopeBlock> build_polytope_contours(const Polytopes& polytopes, std::span<const double> values,
                                                    const PolytopeRules& rules, const std::vector<Index>* listed,
                                                    const WorkOptions& work) {
-  constexpr std::size_t kCells = 4096;
-  const std::size_t count = listed == nullptr ? polytopes.size() : listed->size();
-  std::vector<PolytopeBlock> blocks(block_count(count, kCells));
-  for_each_item(blocks.size(), work.threads, work.progress, [&](std::size_t b) {
-    BlockBuilder builder(polytopes, values, rules, blocks[b]);
-    for (std::size_t i = kCells * b; i < std::min(count, kCells * (b + 1)); ++i)
-      builder.add(listed == nullptr ? static_cast<Index>(i) : (*listed)[i]);
-    builder.finish();
-  });
-  return blocks;
+  return build_blocks(4096, polytopes, listed, work,
+                      [&](PolytopeBlock& block) { return BlockBuilder(polytopes, values, rules, block); });
 }
 
-void separate_diagonals(std::vector<PolytopeBlock>& blocks) {
+void set_edges(PolytopeBlock& block, const std::vector<std::array<Index, 2>>& crossed) {
+  std::vector<std::array<Index, 2>>& edges = block.edges;
+  edges = crossed;
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  block.vertices.reserve(crossed.size());
+  for (const auto& edge : crossed)
+    block.vertices.push_back(
+        static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()));
+}
+
+void separate_diagonals(std::vector<PolytopeBlock>& blocks, unsigned threads) {
   struct Diagonal {
     std::uint64_t ends;
     std::uint32_t block, piece;
   };
-  std::vector<Diagonal> diagonals;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
+  const auto for_each_diagonal = [&](std::size_t b, const auto& visit) {
     const PolytopeBlock& block = blocks[b];
     std::uint32_t first = 0;
     for (std::size_t p = 0; p < block.pieces.size(); first = block.pieces[p++].end) {
       const auto vertex = [&](std::uint32_t i) { return block.numbers[block.vertices[i]]; };
       if (block.pieces[p].is_coned) continue;
-      for (std::uint32_t i = first + 2; i + 1 < block.pieces[p].end; ++i)
-        diagonals.push_back(
-            {std::uint64_t{std::min(vertex(first), vertex(i))} << 32 | std::max(vertex(first), vertex(i)),
-             static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(p)});
+      for (std::uint32_t i = first + 2; i + 1 < block.pieces[p].end; ++i) {
+        const Index v = vertex(first), w = vertex(i);
+        visit(Diagonal{std::uint64_t{std::min(v, w)} << 32 | std::max(v, w), static_cast<std::uint32_t>(b),
+                       static_cast<std::uint32_t>(p)});
+      }
     }
+  };
+  std::vector<std::uint64_t> first_of(blocks.size() + 1);
+  for_each_item(blocks.size(), threads, nullptr,
+                [&](std::size_t b) { for_each_diagonal(b, [&](const Diagonal&) { ++first_of[b + 1]; }); });
+  for (std::size_t b = 0; b < blocks.size(); ++b) first_of[b + 1] += first_of[b];
+  std::vector<Diagonal> diagonals(first_of.back());
+  Index most = 0;
+  for (const PolytopeBlock& block : blocks)
+    for (const Index number : block.numbers) most = std::max(most, number);
+  for_each_item(blocks.size(), threads, nullptr, [&](std::size_t b) {
+    std::uint64_t place = first_of[b];
+    for_each_diagonal(b, [&](const Diagonal& diagonal) { diagonals[place++] = diagonal; });
+  });
+  // sort by the smaller vertex, then the few that are equal
+  sort_by_bits(
+      diagonals, static_cast<unsigned>(std::bit_width(most)),
+      [](const Diagonal& diagonal) { return diagonal.ends >> 32; }, threads);
+  for (auto at = diagonals.begin(); at != diagonals.end();) {
+    const auto end =
+        std::find_if(at, diagonals.end(), [&](const Diagonal& other) { return other.ends >> 32 != at->ends >> 32; });
+    std::stable_sort(at, end, [](const Diagonal& a, const Diagonal& b) { return a.ends < b.ends; });
+    at = end;
   }
-  std::sort(diagonals.begin(), diagonals.end(), [](const Diagonal& a, const Diagonal& b) { return a.ends < b.ends; });
   const auto cone = [&](const Diagonal& at) {
     PolytopeBlock& block = blocks[at.block];
     if (std::exchange(block.pieces[at.piece].is_coned, true)) return;

@@ -4,6 +4,7 @@
 #include "polytope/polytopes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -33,6 +34,18 @@ PolytopeShape::PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::u
   for (const std::uint8_t corner : rings_) corner_count_ = std::max(corner_count_, std::size_t{corner} + 1);
 }
 
+PolytopeShape PolytopeShape::prism_over(PolytopeShape base) {
+  PolytopeShape prism = std::move(base);
+  const auto count = static_cast<std::uint8_t>(prism.corner_count_);
+  const std::size_t edges = prism.edges_.size();
+  for (std::size_t e = 0; e < edges; ++e)
+    prism.edges_.push_back(
+        {static_cast<std::uint8_t>(prism.edges_[e][0] + count), static_cast<std::uint8_t>(prism.edges_[e][1] + count)});
+  for (std::uint8_t v = 0; v < count; ++v) prism.edges_.push_back({v, static_cast<std::uint8_t>(v + count)});
+  prism.is_prism_ = true;
+  return prism;
+}
+
 void Polytopes::add(std::span<const Index> corners, Lattice lattice) {
   const auto [at, is_new] = numbers_.try_emplace(std::move(lattice), static_cast<std::uint32_t>(shapes_.size()));
   if (is_new) shapes_.emplace_back(at->first.first, at->first.second);
@@ -53,7 +66,63 @@ void Polytopes::add_polyhedron(std::span<const Index> corners, std::vector<std::
   add(corners, {std::move(rings), std::move(ends)});
 }
 
+std::vector<Index> Polytopes::find_entangled() const {
+  // cells at each point
+  Index points = 0;
+  for (const Index p : corners_) points = std::max(points, p + 1);
+  std::vector<std::uint64_t> first(std::size_t{points} + 1);
+  for (const Index p : corners_) ++first[p + 1];
+  for (std::size_t p = 0; p < points; ++p) first[p + 1] += first[p];
+  std::vector<Index> cells_at(corners_.size());
+  std::vector<std::uint64_t> next(first.begin(), first.end() - 1);
+  for (std::size_t c = 0; c < size(); ++c)
+    for (const Index p : points_of(c)) cells_at[next[p]++] = static_cast<Index>(c);
+  // common corners of a cell and each other one, as bits
+  std::vector<std::uint8_t> is_found(size());
+  for_each_item(size(), 0, {}, [&](std::size_t c) {
+    const std::span<const Index> corners = points_of(c);
+    std::vector<std::pair<Index, std::uint64_t>> common;
+    for (std::size_t v = 0; v < corners.size(); ++v)
+      for (std::uint64_t i = first[corners[v]]; i < first[corners[v] + 1]; ++i)
+        if (cells_at[i] != c) common.emplace_back(cells_at[i], std::uint64_t{1} << v);
+    std::sort(common.begin(), common.end());
+    std::vector<std::uint64_t> faces(shape(c).face_count());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (const std::uint8_t v : shape(c).ring(f)) faces[f] |= std::uint64_t{1} << v;
+    for (std::size_t i = 0; i < common.size();) {
+      std::uint64_t of_both = 0;
+      const Index other = common[i].first;
+      for (; i < common.size() && common[i].first == other; ++i) of_both |= common[i].second;
+      // two edges have three points or more
+      if (std::popcount(of_both) > 2 &&
+          std::none_of(faces.begin(), faces.end(), [&](std::uint64_t face) { return (of_both & ~face) == 0; }))
+        is_found[c] = 1;
+    }
+  });
+  std::vector<Index> found;
+  for (std::size_t c = 0; c < size(); ++c)
+    if (is_found[c] != 0) found.push_back(static_cast<Index>(c));
+  return found;
+}
+
+Polytopes Polytopes::solids_in_time(std::size_t points, std::size_t intervals) const {
+  Polytopes prisms;
+  prisms.entangled_ = find_entangled();
+  prisms.is_entangled_.resize(size());
+  for (const Index c : prisms.entangled_) prisms.is_entangled_[c] = true;
+  for (const PolytopeShape& shape : shapes_) prisms.shapes_.push_back(PolytopeShape::prism_over(shape));
+  for (std::size_t k = 0; k < intervals; ++k)
+    for (std::size_t c = 0; c < size(); ++c) {
+      prisms.shape_of_.push_back(shape_of_[c]);
+      prisms.first_.push_back(prisms.corners_.size());
+      for (const std::size_t layer : {k, k + 1})
+        for (const Index p : points_of(c)) prisms.corners_.push_back(static_cast<Index>(layer * points + p));
+    }
+  return prisms;
+}
+
 Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
+  if (dim() == 3) return solids_in_time(points, intervals);
   Polytopes prisms;
   std::vector<Index> corners;
   for (std::size_t k = 0; k < intervals; ++k)
@@ -88,23 +157,29 @@ void Polytopes::renumber(std::span<const Index> number) {
 namespace {
 
 /// The volume (3D) or area (2D) inside rings, times a positive factor, relative to the box around the corners; 0 if
-/// the cell is flat up to rounding.
-template <int N>
+/// the cell is flat up to rounding. Of a prism: of its cross-section in the middle.
+template <int N, int M>
 double relative_volume(const PolytopeShape& shape, const Index* corners,
-                       const std::vector<std::array<double, N>>& points) {
+                       const std::vector<std::array<double, M>>& points) {
   using Point = std::array<double, N>;
   constexpr double kFlat = 0x1p-30;
+  const std::size_t count = shape.base_corners();
   std::array<Point, kPolytopeCorners> at;
-  Point lowest = points[corners[0]], highest = lowest;
-  for (std::size_t v = 0; v < shape.corner_count(); ++v)
+  for (std::size_t v = 0; v < count; ++v)
     for (std::size_t i = 0; i < N; ++i) {
-      lowest[i] = std::min(lowest[i], points[corners[v]][i]);
-      highest[i] = std::max(highest[i], points[corners[v]][i]);
+      at[v][i] = points[corners[v]][i];
+      if constexpr (M > N) at[v][i] = 0.5 * at[v][i] + 0.5 * points[corners[v + count]][i];
     }
-  for (std::size_t v = 0; v < shape.corner_count(); ++v)
+  Point lowest = at[0], highest = lowest;
+  for (std::size_t v = 0; v < count; ++v)
+    for (std::size_t i = 0; i < N; ++i) {
+      lowest[i] = std::min(lowest[i], at[v][i]);
+      highest[i] = std::max(highest[i], at[v][i]);
+    }
+  for (std::size_t v = 0; v < count; ++v)
     for (std::size_t i = 0; i < N; ++i) {
       const double extent = highest[i] - lowest[i];
-      at[v][i] = extent > 0 ? (points[corners[v]][i] - lowest[i]) / extent : 0.0;
+      at[v][i] = extent > 0 ? (at[v][i] - lowest[i]) / extent : 0.0;
     }
   double volume = 0.0;
   for (std::size_t f = 0; f < shape.face_count(); ++f) {
@@ -130,20 +205,18 @@ template <int N>
 std::vector<std::uint64_t> find_polytope_signs(const Polytopes& polytopes,
                                                const std::vector<std::array<double, N>>& points) {
   std::vector<std::uint64_t> inverted(block_count(polytopes.size(), 64));
-  if constexpr (N < 4) {
-    std::vector<std::uint64_t> kept(inverted.size());
-    for_each_item(inverted.size(), 0, {}, [&](std::size_t w) {
-      for (std::size_t c = 64 * w; c < std::min(polytopes.size(), 64 * w + 64); ++c) {
-        const double volume = relative_volume<N>(polytopes.shape(c), polytopes.cell(c), points);
-        inverted[w] |= std::uint64_t{volume < 0} << (c & 63u);
-        kept[w] |= std::uint64_t{volume > 0} << (c & 63u);
-      }
-    });
-    const auto is_empty = [](const auto& words) {
-      return std::all_of(words.begin(), words.end(), [](std::uint64_t word) { return word == 0; });
-    };
-    if (is_empty(kept) && !is_empty(inverted)) std::fill(inverted.begin(), inverted.end(), ~std::uint64_t{0});
-  }
+  std::vector<std::uint64_t> kept(inverted.size());
+  for_each_item(inverted.size(), 0, {}, [&](std::size_t w) {
+    for (std::size_t c = 64 * w; c < std::min(polytopes.size(), 64 * w + 64); ++c) {
+      const double volume = relative_volume<std::min(N, 3), N>(polytopes.shape(c), polytopes.cell(c), points);
+      inverted[w] |= std::uint64_t{volume < 0} << (c & 63u);
+      kept[w] |= std::uint64_t{volume > 0} << (c & 63u);
+    }
+  });
+  const auto is_empty = [](const auto& words) {
+    return std::all_of(words.begin(), words.end(), [](std::uint64_t word) { return word == 0; });
+  };
+  if (is_empty(kept) && !is_empty(inverted)) std::fill(inverted.begin(), inverted.end(), ~std::uint64_t{0});
   return inverted;
 }
 

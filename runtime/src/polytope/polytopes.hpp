@@ -3,6 +3,7 @@
 // The polygons and polyhedra of a complex, by the faces around them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,15 +19,28 @@ namespace tegl::detail {
 inline constexpr std::size_t kPolytopeCorners = 64;
 
 /// The faces of a polytope as rings of its corners. Along each ring of a polyhedron, seen from outside, the corners are
-/// counterclockwise if the cell is not inverted; a polygon has one ring.
+/// counterclockwise if the cell is not inverted; a polygon has one ring. A prism over a polyhedron (4D) has the rings
+/// of the polyhedron, its base; corner v of the base is corner v at the lower end and corner v + base_corners() at the
+/// upper one (PrismFacets has its facets).
 class PolytopeShape {
  public:
   PolytopeShape() = default;
   /// `rings`: one face after the other; `ends`: the end of each face. The faces of a polyhedron must be checked.
   PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
+  /// The prism over a polyhedron. Its edges: those of the base at the lower end, at the upper end, and between the ends
+  /// by corner.
+  [[nodiscard]] static PolytopeShape prism_over(PolytopeShape base);
 
-  [[nodiscard]] std::size_t corner_count() const noexcept { return corner_count_; }
+  [[nodiscard]] int dim() const noexcept { return is_prism_ ? 4 : face_count() == 1 ? 2 : 3; }
+  [[nodiscard]] std::size_t corner_count() const noexcept { return is_prism_ ? 2 * corner_count_ : corner_count_; }
+  /// Number of corners, and of edges, of a polyhedron or of the base of a prism.
+  [[nodiscard]] std::size_t base_corners() const noexcept { return corner_count_; }
+  [[nodiscard]] std::size_t base_edges() const noexcept { return faces_of_.size(); }
   [[nodiscard]] std::size_t face_count() const noexcept { return ends_.size(); }
+  /// Number of facets: edges of a polygon, faces of a polyhedron, polyhedra around a prism.
+  [[nodiscard]] std::size_t facet_count() const noexcept {
+    return is_prism_ ? face_count() + 2 : face_count() == 1 ? corner_count_ : face_count();
+  }
   [[nodiscard]] std::span<const std::uint8_t> ring(std::size_t face) const noexcept { return part(rings_, face); }
   /// The edges of a face: edge i is between corners i and i + 1 of its ring.
   [[nodiscard]] std::span<const std::uint8_t> ring_edges(std::size_t face) const noexcept {
@@ -34,7 +48,9 @@ class PolytopeShape {
   }
   /// The ends of the edges.
   [[nodiscard]] const std::vector<std::array<std::uint8_t, 2>>& edges() const noexcept { return edges_; }
-  /// Whether two different edges are in a common face.
+  /// The two faces at an edge, of a polyhedron or of the base of a prism.
+  [[nodiscard]] const std::array<std::uint8_t, 2>& faces_at(std::size_t edge) const noexcept { return faces_of_[edge]; }
+  /// Whether two different edges are in a common face, of a polyhedron or of the base of a prism.
   [[nodiscard]] bool share_a_face(std::size_t edge, std::size_t other) const noexcept {
     const auto &a = faces_of_[edge], &b = faces_of_[other];
     return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
@@ -46,18 +62,20 @@ class PolytopeShape {
     return {of.data() + begin, ends_[face] - begin};
   }
 
-  std::size_t corner_count_ = 0;
+  std::size_t corner_count_ = 0;  ///< of the base
+  bool is_prism_ = false;
   std::vector<std::uint8_t> rings_, ring_edges_;
   std::vector<std::uint16_t> ends_;
   std::vector<std::array<std::uint8_t, 2>> edges_, faces_of_;  ///< by edge
 };
 
-/// The polygons (of a 2D complex) or polyhedra (3D) of a complex, in the order of the input.
+/// The polygons (of a 2D complex), polyhedra (3D) or prisms over polyhedra (4D) of a complex, in the order of the
+/// input.
 class Polytopes {
  public:
   [[nodiscard]] std::size_t size() const noexcept { return shape_of_.size(); }
   /// The dimension of the cells; 3 if there are none.
-  [[nodiscard]] int dim() const noexcept { return !shapes_.empty() && shapes_[0].face_count() == 1 ? 2 : 3; }
+  [[nodiscard]] int dim() const noexcept { return shapes_.empty() ? 3 : shapes_[0].dim(); }
   [[nodiscard]] const PolytopeShape& shape(std::size_t cell) const noexcept { return shapes_[shape_of_[cell]]; }
   /// The points at the corners of a cell.
   [[nodiscard]] const Index* cell(std::size_t i) const noexcept { return corners_.data() + first_[i]; }
@@ -71,27 +89,40 @@ class Polytopes {
   void add_polygon(std::span<const Index> corners);
   /// Appends a polyhedron with the rings of its faces, checked, in the numbers of its corners.
   void add_polyhedron(std::span<const Index> corners, std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
-  /// The prisms over the polygons in the intervals between layers of `points` points each.
+  /// The prisms over the polygons or polyhedra in the intervals between layers of `points` points each.
   [[nodiscard]] Polytopes in_time(std::size_t points, std::size_t intervals) const;
+  /// Of prisms over polyhedra: number of polyhedra. Prism c + k * base_count() is over polyhedron c in interval k.
+  [[nodiscard]] std::size_t base_count() const noexcept { return is_entangled_.size(); }
+  /// The polyhedra, ascending, that have corners in common with another one which are not all in one face: both cells
+  /// may have the same diagonals between edges.
+  [[nodiscard]] const std::vector<Index>& entangled() const noexcept { return entangled_; }
+  [[nodiscard]] bool is_entangled(std::size_t prism) const noexcept { return is_entangled_[prism % base_count()]; }
   /// Replaces each point p by number[p].
   void renumber(std::span<const Index> number);
 
-  /// Calls visit(p, q) for the edges of all cells.
+  /// Number of parts of all cells, the units of parallel work.
+  [[nodiscard]] std::size_t part_count() const noexcept { return (size() + kCellsOfPart - 1) / kCellsOfPart; }
+  /// Calls visit(p, q) for the edges of the cells in a part.
   template <class Visit>
-  void for_each_edge(const Visit& visit) const {
-    for (std::size_t c = 0; c < size(); ++c)
+  void for_each_edge(std::size_t part, const Visit& visit) const {
+    for (std::size_t c = kCellsOfPart * part; c < std::min(size(), kCellsOfPart * (part + 1)); ++c)
       for (const auto& [a, b] : shape(c).edges()) visit(cell(c)[a], cell(c)[b]);
   }
 
  private:
+  static constexpr std::size_t kCellsOfPart = 4096;
   using Lattice = std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>>;
   void add(std::span<const Index> corners, Lattice lattice);
+  [[nodiscard]] Polytopes solids_in_time(std::size_t points, std::size_t intervals) const;
+  [[nodiscard]] std::vector<Index> find_entangled() const;
 
   std::vector<PolytopeShape> shapes_;
   std::map<Lattice, std::uint32_t> numbers_;  ///< of the shapes
   std::vector<std::uint32_t> shape_of_;       ///< by cell
   std::vector<std::uint64_t> first_;          ///< by cell: its first corner in corners_
   std::vector<Index> corners_;
+  std::vector<Index> entangled_;  ///< of prisms over polyhedra
+  std::vector<bool> is_entangled_;
 };
 
 /// Whether each polytope is oriented against its rings: by the sign of its volume or area. Flat ones are as the others

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Compact contours in the 3D faces of 4D cells: neighbours, which number a face's corners in different ways, agree.
-#include "complex/face_fillings.hpp"
+#include "regions/face_fillings.hpp"
 
 #include <gtest/gtest.h>
 

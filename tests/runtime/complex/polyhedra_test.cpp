@@ -346,6 +346,37 @@ TEST(Polyhedra, SpheresAndToriHaveTheirEulerCharacteristic) {
   }
 }
 
+// Minutes: only with `ctest -C long`.
+TEST(Polyhedra, DISABLED_MeshesOf100000CellsHaveClosedOrientedManifolds) {
+  const MeshData<3> points = grid_points<3>({45, 45, 45}, 0.1);
+  std::vector<std::pair<std::string, FacedMesh>> large;
+  large.emplace_back("truncated octahedra", truncated_octahedra(37, 0.1));
+  large.emplace_back("Voronoi", voronoi_cells(110000, 5));
+  large.emplace_back("merged mixed", merged(faced(mixed_mesh(points, 5)), 0.5, 3));
+  for (const auto& [name, mesh] : large) {
+    Complex<3> complex = mesh.complex();
+    EXPECT_GT(complex.cell_count(), 95000u) << name;
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : kAllRules) {
+        SCOPED_TRACE(name);
+        complex.set_values(closed_noise(mesh, 7));
+        const auto noise = extract(complex, 0.5, polyhedra_options(t, a));
+        EXPECT_GT(noise.simplices.size(), 300000u);
+        expect_closed_manifold(noise);
+        EXPECT_EQ((ContourSize{noise.vertices.size(), noise.simplices.size()}),
+                  count(complex, 0.5, polyhedra_options(t, a)));
+        complex.set_values(values_of(mesh, test::ball<3>));
+        const MeshReport sphere = expect_closed_manifold(extract(complex, 0.0, polyhedra_options(t, a)));
+        EXPECT_EQ(1u, sphere.components);
+        EXPECT_EQ(2, sphere.euler);
+      }
+    const auto one = extract(complex, 0.0, polyhedra_options(Triangulation::compact, Ambiguity::low, 1));
+    complex.find_edges();
+    const auto other = extract(complex, 0.0, polyhedra_options(Triangulation::compact, Ambiguity::low, 3));
+    EXPECT_TRUE(one.vertices == other.vertices && one.simplices == other.simplices) << name;
+  }
+}
+
 TEST(Polyhedra, AreaAndVolumeConvergeWithOrderTwo) {
   const double volume = 4.0 / 3.0 * std::numbers::pi * 0.343, area = 4.0 * std::numbers::pi * 0.49;
   const auto errors = [&](int count) {

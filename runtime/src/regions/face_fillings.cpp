@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Chooses the compact contours of 3D faces.
-#include "complex/face_fillings.hpp"
+#include "regions/face_fillings.hpp"
 
 #include <algorithm>
 #include <utility>

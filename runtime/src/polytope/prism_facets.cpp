@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Lists the facets of prisms over polyhedra.
+#include "polytope/prism_facets.hpp"
+
+#include <algorithm>
+
+namespace tegl::detail {
+
+namespace {
+
+/// The prism over a polygon, seen from outside as the polygon: base clockwise, top counterclockwise.
+PolytopeShape prism_over_polygon(std::size_t count) {
+  std::vector<std::uint8_t> rings;
+  std::vector<std::uint16_t> ends;
+  const auto push = [&](std::size_t v) { rings.push_back(static_cast<std::uint8_t>(v)); };
+  const auto end_face = [&] { ends.push_back(static_cast<std::uint16_t>(rings.size())); };
+  for (std::size_t v = count; v-- > 0;) push(v);
+  end_face();
+  for (std::size_t v = 0; v < count; ++v) push(count + v);
+  end_face();
+  for (std::size_t v = 0; v < count; ++v) {
+    const std::size_t next = (v + 1) % count;
+    for (const std::size_t corner : {v, next, count + next, count + v}) push(corner);
+    end_face();
+  }
+  return {std::move(rings), std::move(ends)};
+}
+
+const PolytopeShape& prism_of_corners(std::size_t count) {
+  static const auto kPrisms = [] {
+    std::vector<PolytopeShape> prisms(3);
+    while (prisms.size() <= kPolytopeCorners) prisms.push_back(prism_over_polygon(prisms.size()));
+    return prisms;
+  }();
+  return kPrisms[count];
+}
+
+PrismFacet end_of(const PolytopeShape& shape, std::size_t end) {
+  PrismFacet facet{&shape, PrismFacet::Kind::end, {}, {}, end == 1};
+  for (std::size_t v = 0; v < shape.base_corners(); ++v)
+    facet.corners.push_back(static_cast<std::uint8_t>(v + end * shape.base_corners()));
+  for (std::size_t e = 0; e < shape.base_edges(); ++e)
+    facet.edges.push_back(static_cast<std::uint16_t>(e + end * shape.base_edges()));
+  return facet;
+}
+
+PrismFacet side_of(const PolytopeShape& shape, std::size_t face) {
+  const std::span<const std::uint8_t> ring = shape.ring(face), edges = shape.ring_edges(face);
+  const std::size_t count = ring.size(), corners = shape.base_corners(), base = shape.base_edges();
+  PrismFacet facet{&prism_of_corners(count), PrismFacet::Kind::prism, {}, {}, false};
+  if (count < 5) facet.kind = count == 3 ? PrismFacet::Kind::wedge : PrismFacet::Kind::hexahedron;
+  for (const std::size_t end : {0u, 1u})
+    for (const std::uint8_t v : ring) facet.corners.push_back(static_cast<std::uint8_t>(v + end * corners));
+  for (const auto& [a, b] : facet.shape->edges()) {
+    if (b == a + count) {
+      facet.edges.push_back(static_cast<std::uint16_t>(2 * base + ring[a]));
+      continue;
+    }
+    const std::size_t end = a < count ? 0 : 1, first = a % count, second = b % count;
+    const std::size_t along = second == first + 1 ? first : second;  // the edge from here to the next corner
+    facet.edges.push_back(static_cast<std::uint16_t>(edges[along] + end * base));
+  }
+  return facet;
+}
+
+}  // namespace
+
+PrismFacet facet_of_prism(const PolytopeShape& shape, std::size_t facet) {
+  return facet < 2 ? end_of(shape, facet) : side_of(shape, facet - 2);
+}
+
+std::vector<PrismFacet> facets_of_prism(const PolytopeShape& shape) {
+  std::vector<PrismFacet> facets;
+  for (std::size_t f = 0; f < shape.facet_count(); ++f) facets.push_back(facet_of_prism(shape, f));
+  return facets;
+}
+
+std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points) {
+  const auto point = [&](std::uint8_t corner) { return points[facet.corners[corner]]; };
+  std::vector<std::uint8_t> corners(facet.corners.size());
+  for (std::size_t v = 0; v < corners.size(); ++v) corners[v] = static_cast<std::uint8_t>(v);
+  std::sort(corners.begin(), corners.end(), [&](std::uint8_t a, std::uint8_t b) { return point(a) < point(b); });
+  // three corners are in one polygon at most
+  std::size_t fourth = 3;
+  for (std::size_t f = 0; f < facet.shape->face_count(); ++f) {
+    const std::span<const std::uint8_t> ring = facet.shape->ring(f);
+    const auto is_in = [&](std::uint8_t v) { return std::find(ring.begin(), ring.end(), v) != ring.end(); };
+    if (!is_in(corners[0]) || !is_in(corners[1]) || !is_in(corners[2])) continue;
+    while (is_in(corners[fourth])) ++fourth;
+    break;
+  }
+  return {point(corners[0]), point(corners[1]), point(corners[2]), point(corners[fourth])};
+}
+
+}  // namespace tegl::detail

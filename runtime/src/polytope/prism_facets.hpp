@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The 3D facets of prisms over polyhedra: the polyhedron at both ends, and a prism over each face.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "polytope/polytopes.hpp"
+
+namespace tegl::detail {
+
+/// A facet of a prism. Its own orientation is that of its rings.
+struct PrismFacet {
+  enum class Kind : std::uint8_t { end, wedge, hexahedron, prism };
+
+  const PolytopeShape* shape;         ///< of an end: the prism itself, whose rings are those of its base
+  Kind kind;                          ///< wedges and hexahedra have tables in other cells; `prism` has a larger base
+  std::vector<std::uint8_t> corners;  ///< of the cell, by corner of the facet
+  std::vector<std::uint16_t> edges;   ///< of the cell, by edge of the facet
+  /// Whether the facet's own orientation, followed by a direction into the cell, is not that of the cell.
+  bool is_inverted;
+
+  [[nodiscard]] bool is_tabled() const noexcept { return kind == Kind::wedge || kind == Kind::hexahedron; }
+};
+
+/// The facets of a prism: both ends, then by face of the base. A prism over a face has the corners around the face at
+/// the lower end, then those at the upper end. `shape` must outlive the facets.
+[[nodiscard]] std::vector<PrismFacet> facets_of_prism(const PolytopeShape& shape);
+/// One of these facets.
+[[nodiscard]] PrismFacet facet_of_prism(const PolytopeShape& shape, std::size_t facet);
+
+/// The corners of a hexahedron in the order of the tables, as corners of a facet: bit i of the place is a coordinate.
+inline constexpr std::array<std::uint8_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
+
+/// Four points of a facet that is not tabled, which no other facet of a complex has, whatever the numbering of the
+/// cell: the smallest ones that are not in one polygon, three of them the smallest of all. `points`: at the cell's
+/// corners.
+[[nodiscard]] std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points);
+
+}  // namespace tegl::detail

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The contour of one prism over a polyhedron, in space and time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "polytope/loops.hpp"
+#include "polytope/prism_facets.hpp"
+#include "regions/cube_frame.hpp"
+#include "regions/face_fillings.hpp"
+#include "regions/sigma_pieces.hpp"
+#include "tile/tesseract_fill.hpp"
+
+namespace tegl::detail {
+
+/// The vertex of a loop in a facet at which its fan of triangles starts, as a place in the loop; none: a cone from its
+/// barycentre. Both cells at a facet have the same fan: at an end of a prism by the order of the edges, elsewhere by
+/// the numbers of the points. `points`: at the corners of the cell. `loop`: edges of the facet.
+[[nodiscard]] std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const PrismFacet& facet,
+                                                     std::span<const std::uint8_t> loop, const Index* points);
+
+/// What is special about a prism over a polyhedron of Polytopes::entangled.
+struct EntangledPrism {
+  bool is_one = false;  ///< spheres are coned from their barycentres: a diagonal may be in the other cell as well
+  /// By end: the first edges, ascending, of loops there that are coned in any case.
+  std::array<std::span<const std::uint8_t>, 2> coned{};
+};
+
+/// Builds the contours of prisms, one after the other. In each facet the contour is that of the polyhedron, wedge or
+/// hexahedron there, so that it is the same in any cell with the facet. Components of Sigma that are spheres are coned:
+/// in compact contours from one of their vertices if every triangle in a facet with that vertex has it, otherwise from
+/// their barycentre. Others are filled with copies of the regions of one side, moved towards the centre of the cell.
+class PrismCell {
+ public:
+  /// A vertex of the cell: its edges have the first numbers.
+  using Local = std::uint16_t;
+  static constexpr Local kShared = 512, kCones = 2048, kCorners = 2304, kCentres = 2432, kSides = 8192, kLocals = 16384;
+  using Tetrahedron = std::array<Local, 4>;
+
+  /// A vertex that is not on an edge.
+  struct Inner {
+    std::vector<Local>
+        points{};             ///< edges and corners whose mean it is; of a hexahedron's own, all crossed edges there
+    std::uint8_t facet = 0;   ///< of shared ones
+    bool is_in_cube = false;  ///< a hexahedron's own
+    std::uint32_t mask = 0;   ///< of these: corners (bit v) and edges (bit 8 + e) of the cube of images
+  };
+
+  /// `rules` must outlive this object.
+  explicit PrismCell(const PolytopeRules& rules);
+
+  /// Builds the contour of an active cell with these points and values at its corners.
+  void build(const PolytopeShape& shape, const Index* points, const double* values,
+             const EntangledPrism& entangled = {});
+
+  /// With their positive sides towards high corners if the cell is not inverted.
+  [[nodiscard]] const std::vector<Tetrahedron>& tetrahedra() const noexcept { return tetrahedra_; }
+  [[nodiscard]] const std::vector<PrismFacet>& facets() const noexcept { return facets_; }
+  [[nodiscard]] const std::vector<Inner>& shared() const noexcept { return shared_; }  ///< from kShared
+  [[nodiscard]] const std::vector<Inner>& cones() const noexcept { return cones_; }    ///< from kCones
+  [[nodiscard]] const std::vector<Inner>& sides() const noexcept { return sides_; }    ///< from kSides
+
+ private:
+  using Triangle = std::array<Local, 3>;
+  using Square = std::array<Local, 4>;
+  using Piece = SigmaPiece<Local>;
+  using Component = std::vector<Piece>;
+  using Components = std::map<Index, Component>;
+  /// A contour in a hexahedron, as the hexahedron's frame sees it.
+  struct CubeContour {
+    CubeFrame frame;
+    std::uint16_t list;
+    Local first_own;
+  };
+
+  [[nodiscard]] static bool has(const Triangle& t, Local v) noexcept { return t[0] == v || t[1] == v || t[2] == v; }
+
+  // Sigma
+  void load(const PolytopeShape& shape);
+  void add_contour(std::size_t f);
+  void add_loop(std::size_t f, std::span<const std::uint8_t> loop);
+  void add_filling(std::size_t f, unsigned signature);
+  void add_cube(std::size_t f, unsigned signature);
+  [[nodiscard]] Local on_edge(std::size_t f, unsigned p, unsigned q) const noexcept;
+  [[nodiscard]] Local corner_of(std::size_t f, unsigned v) const noexcept;
+  [[nodiscard]] std::vector<Local> points_of(std::size_t f, const CubeFrame& frame, std::uint32_t mask) const;
+  [[nodiscard]] bool has_tunnel(std::size_t f) const noexcept;
+
+  // filling
+  [[nodiscard]] static std::vector<Local> vertices_of(const Component& component);
+  [[nodiscard]] bool is_in_facet(Local edge, std::size_t f) const noexcept;
+  [[nodiscard]] Local apex_of(const Component& component, const std::vector<Local>& vertices);
+  void add_sphere(const Component& component, const std::vector<Local>& vertices);
+  [[nodiscard]] Tetrahedron cone_of(const Piece& piece, Local apex) const noexcept;
+  void copy_regions(bool high, Components& components);
+
+  // regions
+  void find_regions(bool high);
+  void add_regions(std::size_t f, bool high);
+  void add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
+                 std::vector<Triangle>& triangles) const;
+  void add_cube_regions(std::size_t f, bool high);
+  void join_fans(const std::vector<Triangle>& a, const std::vector<Triangle>& b);
+  [[nodiscard]] bool is_in_square(Local v, const Square& square) const noexcept;
+  [[nodiscard]] Local add_centre(std::vector<Local> points);
+  [[nodiscard]] Local copy_of(Local v);
+
+  const PolytopeRules& rules_;
+  FaceFillings fillings_;  ///< of hexahedra, by fixed rules
+  const ResolvedCubes& cubes_;
+  const CubeRegions& regions_of_;
+  Loops loops_;
+  const PolytopeShape* shape_ = nullptr;
+  std::vector<PrismFacet> facets_;
+  std::vector<std::uint64_t> corners_of_face_;  ///< of the base, as bits
+  // The current cell:
+  const Index* points_ = nullptr;
+  const double* values_ = nullptr;
+  EntangledPrism entangled_;
+  Component sigma_;
+  std::vector<Tetrahedron> tetrahedra_, regions_;
+  std::vector<Inner> shared_, cones_, sides_;
+  std::vector<std::optional<CubeContour>> contours_;  ///< by facet
+  std::vector<std::vector<Local>> centres_;
+  std::map<Square, std::vector<Triangle>> fans_;  ///< by corners of the quadrilateral: its triangles, sorted
+  std::vector<Local> side_of_;                    ///< 0: no copy yet
+  std::vector<std::uint16_t> around_;             ///< by vertex of a sphere: number of its triangles
+};
+
+}  // namespace tegl::detail

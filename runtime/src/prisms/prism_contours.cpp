@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Builds the contours of prisms over polyhedra, block by block.
+#include "prisms/prism_contours.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/workers.hpp"
+#include "prisms/prism_cell.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+/// The loops that are coned though they have a fan, as in the contour of the polyhedra at one time: one of its
+/// diagonals is in another cell as well (separate_diagonals). By polyhedron and layer.
+using ConedLoops = std::map<std::pair<Index, Index>, std::vector<std::uint8_t>>;
+
+ConedLoops find_coned_loops(const Polytopes& prisms, std::span<const double> values, const PolytopeRules& rules) {
+  struct Diagonal {
+    std::array<Index, 4> ends;  ///< of both edges
+    std::pair<Index, Index> at;
+    std::uint8_t loop;
+    auto operator<=>(const Diagonal&) const = default;
+  };
+  ConedLoops coned;
+  if (!rules.is_compact || prisms.entangled().empty()) return coned;
+  std::vector<Diagonal> diagonals;
+  Loops loops;
+  std::array<double, kPolytopeCorners> at;
+  const auto layers = static_cast<Index>(prisms.size() / prisms.base_count() + 1);
+  for (const Index c : prisms.entangled())
+    for (Index k = 0; k < layers; ++k) {
+      const std::size_t prism = c + std::size_t{k > 0 ? k - 1 : 0} * prisms.base_count();
+      const PolytopeShape& shape = prisms.shape(prism);
+      const Index* const points = prisms.cell(prism) + (k > 0 ? shape.base_corners() : 0);
+      for (std::size_t v = 0; v < shape.base_corners(); ++v) at[v] = values[points[v]];
+      if (std::any_of(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(shape.base_corners()),
+                      [](double value) { return std::isnan(value); }))
+        continue;
+      loops.for_each(shape, at.data(), rules, [&](std::span<const std::uint8_t> loop) {
+        std::size_t start = 0;
+        if (loop.size() < 4 || !find_fan(shape, loop, start)) return;
+        const auto ends = [&](std::size_t i) -> std::array<Index, 2> {
+          const auto& [a, b] = shape.edges()[loop[(start + i) % loop.size()]];
+          return {std::min(points[a], points[b]), std::max(points[a], points[b])};
+        };
+        for (std::size_t i = 2; i + 1 < loop.size(); ++i) {
+          const auto first = std::min(ends(0), ends(i)), second = std::max(ends(0), ends(i));
+          diagonals.push_back({{first[0], first[1], second[0], second[1]}, {c, k}, loop[0]});
+        }
+      });
+    }
+  std::sort(diagonals.begin(), diagonals.end());
+  for (std::size_t i = 1; i < diagonals.size(); ++i)
+    if (diagonals[i].ends == diagonals[i - 1].ends)
+      for (const Diagonal& diagonal : {diagonals[i - 1], diagonals[i]}) coned[diagonal.at].push_back(diagonal.loop);
+  for (auto& [at_end, of] : coned) std::sort(of.begin(), of.end());
+  return coned;
+}
+
+/// Builds the contours of the cells of a block.
+class PrismBlockBuilder {
+ public:
+  PrismBlockBuilder(const Polytopes& prisms, std::span<const double> values, const PolytopeRules& rules,
+                    const ConedLoops& coned, PolytopeBlock& block)
+      : prisms_(prisms), values_(values), rules_(rules), coned_(coned), block_(block), cell_(rules) {}
+
+  void add(Index cell) {
+    const std::span<const Index> points = prisms_.points_of(cell);
+    std::size_t high = 0;
+    bool is_missing = false;
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      at_[v] = values_[points[v]];
+      high += at_[v] >= rules_.isovalue ? 1 : 0;
+      is_missing = is_missing || std::isnan(at_[v]);
+    }
+    if (is_missing) block_.missing.push_back(cell);
+    if (is_missing || high == 0 || high == points.size()) return;
+    ++block_.active;
+    const PolytopeShape& shape = prisms_.shape(cell);
+    cell_.build(shape, points.data(), at_.data(), entangled(cell));
+    for (std::size_t e = 0; e < shape.edges().size(); ++e) {
+      const auto& [a, b] = shape.edges()[e];
+      if ((at_[a] >= rules_.isovalue) == (at_[b] >= rules_.isovalue)) continue;
+      vertex_on_[e] = static_cast<std::uint32_t>(crossed_.size());
+      crossed_.push_back({std::min(points[a], points[b]), std::max(points[a], points[b])});
+    }
+    write(cell, points);
+  }
+
+  void finish() {
+    set_edges(block_, crossed_);
+    block_.simplices = block_.tetrahedra.size();
+    block_.own = block_.own_vertices.size();
+  }
+
+ private:
+  using Kind = PolytopeBlock::InnerVertex::Kind;
+
+  [[nodiscard]] EntangledPrism entangled(Index cell) const {
+    EntangledPrism result;
+    result.is_one = prisms_.is_entangled(cell);
+    const auto c = static_cast<Index>(cell % prisms_.base_count()), k = static_cast<Index>(cell / prisms_.base_count());
+    for (const Index end : {0u, 1u})
+      if (const auto found = coned_.find({c, k + end}); result.is_one && found != coned_.end())
+        result.coned[end] = found->second;
+    return result;
+  }
+
+  /// Appends the contour of a cell.
+  void write(Index cell, std::span<const Index> points) {
+    const auto shared = static_cast<std::uint32_t>(block_.shared.size());
+    const auto cones = static_cast<std::uint32_t>(block_.own_vertices.size());
+    const auto sides = static_cast<std::uint32_t>(cones + cell_.cones().size());
+    for (const PrismCell::Inner& inner : cell_.shared()) add_shared(cell, inner, points);
+    for (const PrismCell::Inner& inner : cell_.cones()) add_inner(block_.own_vertices, Kind::mean, cell, inner, points);
+    for (const PrismCell::Inner& inner : cell_.sides())
+      add_inner(block_.own_vertices, Kind::inwards, cell, inner, points);
+    for (const PrismCell::Tetrahedron& t : cell_.tetrahedra()) {
+      auto& to = block_.tetrahedra.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t v = t[k];
+        to[k] = v >= PrismCell::kSides    ? PolytopeBlock::kOwn | (sides + v - PrismCell::kSides)
+                : v >= PrismCell::kCones  ? PolytopeBlock::kOwn | (cones + v - PrismCell::kCones)
+                : v >= PrismCell::kShared ? PolytopeBlock::kShared | (shared + v - PrismCell::kShared)
+                                          : vertex_on_[v];
+      }
+    }
+    block_.pieces.push_back({cell, static_cast<std::uint32_t>(block_.tetrahedra.size()), false});
+  }
+
+  void add_shared(Index cell, const PrismCell::Inner& inner, std::span<const Index> points) {
+    const PrismFacet& facet = cell_.facets()[inner.facet];
+    const Kind kind = inner.is_in_cube ? Kind::in_cube : facet.is_tabled() ? Kind::polygon : Kind::loop;
+    PolytopeBlock::InnerVertex& vertex = add_inner(block_.shared, kind, cell, inner, points);
+    vertex.mask = inner.mask;
+    if (kind == Kind::in_cube) {
+      for (std::size_t v = 0; v < 8; ++v) vertex.points[v] = points[facet.corners[kHexahedronCorners[v]]];
+    } else if (kind == Kind::loop) {
+      const std::array<Index, 4> key = key_of_facet(facet, points.data());
+      std::copy(key.begin(), key.end(), vertex.points.begin());
+    }
+  }
+
+  PolytopeBlock::InnerVertex& add_inner(std::vector<PolytopeBlock::InnerVertex>& to, Kind kind, Index cell,
+                                        const PrismCell::Inner& inner, std::span<const Index> points) {
+    PolytopeBlock::InnerVertex& vertex = to.emplace_back();
+    vertex.kind = kind;
+    vertex.cell = cell;
+    vertex.first_vertex = static_cast<std::uint32_t>(block_.inner_vertices.size());
+    vertex.first_corner = static_cast<std::uint32_t>(block_.inner_corners.size());
+    for (const PrismCell::Local v : inner.points)
+      if (v < PrismCell::kShared)
+        block_.inner_vertices.push_back(vertex_on_[v]);
+      else if (v >= PrismCell::kCorners)
+        block_.inner_corners.push_back(points[v - std::size_t{PrismCell::kCorners}]);
+    vertex.vertices_end = static_cast<std::uint32_t>(block_.inner_vertices.size());
+    vertex.corners_end = static_cast<std::uint32_t>(block_.inner_corners.size());
+    return vertex;
+  }
+
+  const Polytopes& prisms_;
+  std::span<const double> values_;
+  const PolytopeRules& rules_;
+  const ConedLoops& coned_;
+  PolytopeBlock& block_;
+  PrismCell cell_;
+  std::array<double, 2 * kPolytopeCorners> at_{};
+  std::array<std::uint32_t, PrismCell::kShared> vertex_on_{};  ///< by edge of the cell: position in crossed_
+  std::vector<std::array<Index, 2>> crossed_;
+};
+
+}  // namespace
+
+std::vector<PolytopeBlock> build_prism_contours(const Polytopes& prisms, std::span<const double> values,
+                                                const PolytopeRules& rules, const std::vector<Index>* listed,
+                                                const WorkOptions& work) {
+  const ConedLoops coned = find_coned_loops(prisms, values, rules);
+  return build_blocks(512, prisms, listed, work,
+                      [&](PolytopeBlock& block) { return PrismBlockBuilder(prisms, values, rules, coned, block); });
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,505 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Polyhedra over time: single prisms against the general engine, and meshes with invariants and cuts.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare.hpp"
+#include "complex/cell_groups.hpp"
+#include "complex/complex_cases.hpp"
+#include "errors.hpp"
+#include "invariants.hpp"
+#include "polyhedral_meshes.hpp"
+#include "prisms/prism_cell.hpp"
+#include "tegl/cell_index.hpp"
+#include "tegl/complex.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/tile/facets.hpp"
+
+namespace tegl {
+namespace {
+
+using namespace test;
+using detail::PrismCell;
+
+ExtractOptions prism_options(Triangulation triangulation, Ambiguity ambiguity = Ambiguity::low, unsigned threads = 0) {
+  ExtractOptions options;
+  options.triangulation = triangulation;
+  options.ambiguity = ambiguity;
+  options.work.threads = threads;
+  return options;
+}
+
+// ---------------------------------------------------------------------------------------------------- single cells
+
+/// A vertex as the crossed edges around it: its own, or those whose barycentre it is.
+using Around = std::set<std::array<unsigned, 2>>;
+/// A tetrahedron by its sorted vertices; the last entry is 1 for an odd order.
+using Named = std::pair<std::array<Around, 4>, int>;
+
+Named named(std::array<Around, 4> t, bool flip) {
+  const int sign = tile::sort_vertices(t) * (flip ? -1 : 1);
+  return {t, sign < 0 ? 1 : 0};
+}
+
+/// Tetrahedra by numbers of their vertices, and how they are called.
+struct CellContourOf {
+  std::vector<std::array<std::size_t, 4>> tetrahedra = {};
+  std::map<std::size_t, Around> around = {};
+  bool has_sides = false;
+
+  [[nodiscard]] std::multiset<Named> named_tetrahedra(bool flip) const {
+    std::multiset<Named> result;
+    for (const auto& t : tetrahedra)
+      result.insert(named({around.at(t[0]), around.at(t[1]), around.at(t[2]), around.at(t[3])}, flip));
+    return result;
+  }
+  /// The triangles of one tetrahedron only, oriented, by names.
+  [[nodiscard]] std::map<std::array<Around, 3>, int> boundary(bool flip) const {
+    std::map<std::array<std::size_t, 3>, std::pair<int, int>> triangles;  // count and sum of signs
+    for (const auto& t : tetrahedra)
+      for (std::size_t i = 0; i < 4; ++i) {
+        std::array<std::size_t, 3> triangle{};
+        for (std::size_t k = 0, j = 0; k < 4; ++k)
+          if (k != i) triangle[j++] = t[k];
+        const int sign = tile::sort_vertices(triangle) * (i % 2 == 0 ? 1 : -1);
+        auto& [count, sum] = triangles[triangle];
+        ++count;
+        sum += sign;
+      }
+    std::map<std::array<Around, 3>, int> result;
+    for (const auto& [triangle, uses] : triangles) {
+      EXPECT_LE(uses.first, 2);
+      EXPECT_EQ(uses.first == 2, uses.second == 0);
+      if (uses.first != 1) continue;
+      std::array<Around, 3> t{around.at(triangle[0]), around.at(triangle[1]), around.at(triangle[2])};
+      const int sign = tile::sort_vertices(t) * uses.second * (flip ? -1 : 1);
+      EXPECT_TRUE(result.emplace(t, sign).second);
+    }
+    return result;
+  }
+  [[nodiscard]] int euler() const {
+    std::array<std::set<std::vector<std::size_t>>, 4> faces;
+    for (auto t : tetrahedra) {
+      std::sort(t.begin(), t.end());
+      for (unsigned s = 1; s < 16; ++s) {
+        std::vector<std::size_t> face;
+        for (unsigned i = 0; i < 4; ++i)
+          if ((s >> i & 1u) != 0) face.push_back(t[i]);
+        faces[face.size() - 1].insert(face);
+      }
+    }
+    const auto count = [&](std::size_t d) { return static_cast<int>(faces[d].size()); };
+    return count(0) - count(1) + count(2) - count(3);
+  }
+};
+
+CellContourOf by_engine(tile::FacetBuilder& builder, tile::Signature signature, const tile::Resolution& resolution) {
+  const tile::TileFacets& facets = builder.build(signature, resolution);
+  CellContourOf contour;
+  const auto edge = [&](std::size_t v) {
+    const tile::Signature corners = builder.lattice().faces()[facets.vertices[v].face].corners;
+    return std::array{static_cast<unsigned>(std::countr_zero(corners)),
+                      63u - static_cast<unsigned>(std::countl_zero(corners))};
+  };
+  const auto is_on_edge = [&](std::size_t v) { return facets.vertices[v].kind == tile::VertexKind::edge; };
+  for (std::size_t v = 0; v < facets.vertices.size(); ++v) {
+    Around& around = contour.around[v];
+    if (is_on_edge(v)) around.insert(edge(v));
+    if (facets.vertices[v].kind != tile::VertexKind::barycentre) continue;
+    for (const auto& simplex : facets.vertices[v].of)
+      for (int i = 0; i < tile::size(simplex); ++i)
+        if (is_on_edge(simplex[static_cast<std::size_t>(i)])) around.insert(edge(simplex[static_cast<std::size_t>(i)]));
+  }
+  for (const tile::Facet& facet : facets.facets) {
+    contour.has_sides = contour.has_sides || facet.filling == tile::Filling::side;
+    for (const auto& s : facet.simplices) contour.tetrahedra.push_back({s[0], s[1], s[2], s[3]});
+  }
+  return contour;
+}
+
+CellContourOf by_library(const PrismCell& cell, const detail::PolytopeShape& shape) {
+  CellContourOf contour;
+  contour.has_sides = !cell.sides().empty();
+  const auto edge = [&](PrismCell::Local v) {
+    const auto& [a, b] = shape.edges()[v];
+    return std::array{unsigned{std::min(a, b)}, unsigned{std::max(a, b)}};
+  };
+  for (const auto& t : cell.tetrahedra()) {
+    auto& to = contour.tetrahedra.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      to[k] = t[k];
+      Around& around = contour.around[t[k]];
+      if (t[k] < PrismCell::kShared) {
+        around.insert(edge(t[k]));
+      } else if (t[k] < PrismCell::kSides) {
+        const bool is_shared = t[k] < PrismCell::kCones;
+        const auto& inner = is_shared ? cell.shared()[t[k] - std::size_t{PrismCell::kShared}]
+                                      : cell.cones()[t[k] - std::size_t{PrismCell::kCones}];
+        for (const PrismCell::Local v : inner.points) around.insert(edge(v));
+      }
+    }
+  }
+  return contour;
+}
+
+/// Compares contours of the prism over a polyhedron, which may be one with a table. Returns how many have copied sides.
+std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, std::uint64_t step) {
+  // the lattice
+  std::vector<tile::Signature> facets;
+  tile::Signature all = (tile::Signature{1} << corners) - 1;
+  facets.push_back(all);
+  facets.push_back(all << corners);
+  detail::Polytopes polyhedra;
+  std::vector<std::uint8_t> rings;
+  std::vector<std::uint16_t> ends;
+  std::vector<Index> points;
+  for (Index v = 0; v < corners; ++v) points.push_back(v);
+  for (const FaceRing& ring : faces) {
+    tile::Signature bits = 0;
+    for (const Index v : ring) {
+      bits |= tile::Signature{1} << v;
+      rings.push_back(static_cast<std::uint8_t>(v));
+    }
+    ends.push_back(static_cast<std::uint16_t>(rings.size()));
+    facets.push_back(bits | bits << corners);
+  }
+  polyhedra.add_polyhedron(points, rings, ends);
+  const detail::Polytopes prisms = polyhedra.in_time(corners, 1);
+  tile::FacetBuilder builder(tile::FaceLattice(4, facets));
+  const std::uint64_t count = std::uint64_t{1} << (2 * corners);
+  std::mt19937_64 random(corners);
+  std::size_t compared = 0, reversed = 0, sides = 0, fewer = 0;
+  for (const bool high : {false, true}) {
+    detail::PolytopeRules rules;
+    rules.joins_high = high;
+    rules.is_compact = false;
+    detail::PolytopeRules compact_rules = rules;
+    compact_rules.is_compact = true;
+    PrismCell cell(rules), compact(compact_rules);
+    for (std::uint64_t s = step == 1 ? 1 : 1 + random() % step; s + 1 < count; s += step) {
+      std::vector<double> values;
+      for (std::size_t v = 0; v < 2 * corners; ++v) values.push_back((s >> v & 1u) != 0 ? 1.0 : -1.0);
+      cell.build(prisms.shape(0), prisms.cell(0), values.data());
+      const auto alternative = high ? tile::Alternative::high : tile::Alternative::low;
+      const CellContourOf expected = by_engine(builder, s, {{}, alternative});
+      const CellContourOf contour = by_library(cell, prisms.shape(0));
+      const auto sigma = expected.boundary(false);
+      const bool flip = contour.boundary(false) != sigma;
+      EXPECT_EQ(sigma, contour.boundary(flip)) << s;
+      EXPECT_EQ(expected.has_sides, contour.has_sides) << s;
+      EXPECT_EQ(expected.euler(), contour.euler()) << s;
+      ++compared;
+      reversed += flip ? 1 : 0;
+      sides += contour.has_sides ? 1 : 0;
+      compact.build(prisms.shape(0), prisms.cell(0), values.data());
+      const CellContourOf other = by_library(compact, prisms.shape(0));
+      if (!contour.has_sides) {
+        EXPECT_EQ(expected.named_tetrahedra(false), contour.named_tetrahedra(flip)) << s;
+        fewer += other.tetrahedra.size() < contour.tetrahedra.size() ? 1 : 0;
+        EXPECT_LE(other.tetrahedra.size(), contour.tetrahedra.size()) << s;
+      }
+      // compact: other diagonals, the same topology
+      EXPECT_EQ(expected.euler(), other.euler()) << s;
+      (void)other.boundary(false);  // tests the neighbours of triangles
+      if (::testing::Test::HasFailure()) return sides;
+    }
+  }
+  EXPECT_TRUE(reversed == 0 || reversed == compared);  // the lattice has one orientation
+  EXPECT_GT(3 * fewer, 2 * (compared - sides));
+  return sides;
+}
+
+CellFaces3 oriented_faces(CellType type) {
+  std::vector<Index> corners(corner_count(type));
+  for (Index v = 0; v < corners.size(); ++v) corners[v] = v;
+  CellFaces3 faces = faces_of(type, corners.data());
+  // faces_of does not orient: as the library does, by neighbours
+  std::vector<Index> all;
+  std::vector<std::uint64_t> ends;
+  for (const FaceRing& ring : faces) {
+    all.insert(all.end(), ring.begin(), ring.end());
+    ends.push_back(all.size());
+  }
+  std::set<std::pair<Index, Index>> along;
+  std::vector<bool> done(faces.size());
+  for (std::size_t left = faces.size(); left > 0;)
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (done[f]) continue;
+      bool same = false, opposite = left == faces.size();
+      for (std::size_t i = 0; i < faces[f].size(); ++i) {
+        const Index a = faces[f][i], b = faces[f][(i + 1) % faces[f].size()];
+        same = same || along.count({a, b}) != 0;
+        opposite = opposite || along.count({b, a}) != 0;
+      }
+      if (!same && !opposite) continue;
+      if (same) std::reverse(faces[f].begin(), faces[f].end());
+      for (std::size_t i = 0; i < faces[f].size(); ++i)
+        along.insert({faces[f][i], faces[f][(i + 1) % faces[f].size()]});
+      done[f] = true;
+      --left;
+    }
+  return faces;
+}
+
+TEST(Prisms, AllContoursOverTetrahedraPyramidsAndWedgesAreThoseOfTheEngine) {
+  EXPECT_EQ(0u, compare_with_engine(oriented_faces(CellType::tetrahedron), 4, 1));
+  EXPECT_EQ(24u, compare_with_engine(oriented_faces(CellType::pyramid), 5, 1));
+  EXPECT_EQ(96u, compare_with_engine(oriented_faces(CellType::wedge), 6, 1));
+}
+
+/// The faces of a cell as the library orients and numbers them.
+CellFaces3 library_faces(const FacedMesh& mesh, std::size_t& corners) {
+  const Complex<3> complex = mesh.complex();
+  const detail::PolytopeShape& shape = detail::ComplexAccess::cells(complex).polytopes.shape(0);
+  corners = shape.corner_count();
+  CellFaces3 faces;
+  for (std::size_t f = 0; f < shape.face_count(); ++f) faces.emplace_back(shape.ring(f).begin(), shape.ring(f).end());
+  return faces;
+}
+
+TEST(Prisms, ContoursOverLargerPolyhedraAreThoseOfTheEngine) {
+  for (const auto& [points, step] :
+       {std::pair{prism_points(5), std::uint64_t{2003}}, std::pair{prism_points(6), std::uint64_t{50021}},
+        std::pair{dodecahedron_points(), std::uint64_t{8000000011}},
+        std::pair{truncated_octahedron_points(), std::uint64_t{4000000000039}}}) {
+    std::size_t corners = 0;
+    const CellFaces3 faces = library_faces(hull(points), corners);
+    (void)compare_with_engine(faces, corners, step);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------- meshes
+
+const std::vector<double> kTimes = {0.0, 0.7, 1.0, 2.5};
+
+std::vector<std::pair<std::string, FacedMesh>> meshes() {
+  const MeshData<3> points = grid_points<3>({7, 7, 7}, 0.1);
+  return {{"truncated octahedra", truncated_octahedra(4, 0.1)},
+          {"Voronoi", voronoi_cells(500, 3)},
+          {"merged hexahedra", merged(faced(cube_mesh(points, true)), 0.7, 1)},
+          {"merged wedges", merged(faced(wedge_mesh(points)), 0.7, 2)},
+          {"merged mixed", merged(faced(mixed_mesh(points, 5)), 0.5, 3)}};
+}
+
+/// Noise at the inner times, -1 at the first and the last one and on the border.
+std::vector<double> noise_in_time(const FacedMesh& mesh, std::uint64_t seed) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < kTimes.size(); ++k) {
+    const auto layer =
+        k == 0 || k + 1 == kTimes.size() ? std::vector<double>(mesh.points.size(), -1.0) : closed_noise(mesh, seed + k);
+    values.insert(values.end(), layer.begin(), layer.end());
+  }
+  return values;
+}
+
+std::vector<double> layer_of(const std::vector<double>& values, std::size_t points, std::size_t k) {
+  return {values.begin() + static_cast<std::ptrdiff_t>(k * points),
+          values.begin() + static_cast<std::ptrdiff_t>((k + 1) * points)};
+}
+
+TEST(Prisms, NoiseHasAClosedOrientedManifoldWithEveryRule) {
+  for (const auto& [name, mesh] : meshes()) {
+    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, noise_in_time(mesh, 11));
+    EXPECT_GT(detail::ComplexAccess::cells(swept).polytopes.size(), 90u);
+    EXPECT_EQ(3 * mesh.cells.size(), swept.cell_count());
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : kAllRules) {
+        SCOPED_TRACE(name + (t == Triangulation::compact ? " compact " : " barycentric ") +
+                     std::to_string(static_cast<int>(a)));
+        const auto contour = extract(swept, 0.5, prism_options(t, a));
+        EXPECT_GT(contour.simplices.size(), 1000u);
+        EXPECT_EQ(0u, expect_closed_manifold(contour).degenerate_simplices);
+        EXPECT_GT(measure(contour).content.value(), 0.0);
+        EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}),
+                  count(swept, 0.5, prism_options(t, a)));
+      }
+  }
+}
+
+TEST(Prisms, CutsAtStepsAreTheContoursOfTheSteps) {
+  for (const auto& [name, mesh] : meshes()) {
+    Complex<3> complex = mesh.complex();
+    const std::vector<double> values = noise_in_time(mesh, 21);
+    const Complex<4> swept = in_time<3>(complex, kTimes, values);
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : kAllRules) {
+        SCOPED_TRACE(name);
+        const auto contour = extract<double>(swept, 0.5, prism_options(t, a));
+        for (const std::size_t k : {1u, 2u}) {
+          complex.set_values(layer_of(values, mesh.points.size(), k));
+          const auto step = extract<double>(complex, 0.5, prism_options(t, a));
+          EXPECT_GT(step.simplices.size(), 100u);
+          EXPECT_TRUE(same_surface(step, slice(contour, Hyperplane<4>::across(3, kTimes[k]))));
+        }
+        for (const double at : {0.64, 0.93, 1.2}) {
+          const auto cut = slice(contour, Hyperplane<4>::across(3, at));
+          EXPECT_GT(cut.simplices.size(), 100u);
+          expect_closed_manifold(cut);
+        }
+      }
+  }
+}
+
+TEST(Prisms, ResultsAreTheSameBytesWithAnyThreadsKnownEdgesAndAnIndex) {
+  for (const auto& [name, mesh] : meshes()) {
+    SCOPED_TRACE(name);
+    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, noise_in_time(mesh, 4));
+    Complex<4> known = swept;
+    known.find_edges({3, {}});
+    const CellIndex index(swept);
+    const auto one = extract(swept, 0.5, prism_options(Triangulation::compact, Ambiguity::saddle, 1));
+    for (const unsigned threads : {1u, 3u}) {
+      const auto options = prism_options(Triangulation::compact, Ambiguity::saddle, threads);
+      for (const auto& other : {extract(swept, 0.5, options), extract(known, 0.5, options),
+                                extract(swept, index, 0.5, options), extract(known, index, 0.5, options)}) {
+        EXPECT_TRUE(one.vertices == other.vertices);
+        EXPECT_TRUE(one.simplices == other.simplices);
+      }
+    }
+  }
+}
+
+TEST(Prisms, CapsCloseContoursAtTheBorder) {
+  for (const auto& [name, mesh] : meshes()) {
+    if (name == "Voronoi") continue;  // its border touches itself
+    std::mt19937_64 random(5);
+    std::vector<double> values;
+    for (std::size_t p = 0; p < kTimes.size() * mesh.points.size(); ++p)
+      values.push_back(static_cast<double>(random() >> 11) * 0x1p-53);
+    Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : kAllRules) {
+        SCOPED_TRACE(name);
+        ExtractOptions options = prism_options(t, a);
+        options.close = true;
+        if (a == Ambiguity::mean || a == Ambiguity::saddle ||
+            (t == Triangulation::compact && a != Ambiguity::low && a != Ambiguity::high)) {
+          expect_error(ErrorCode::InvalidArgument, {"close"}, [&] { (void)extract(swept, 0.5, options); });
+          continue;
+        }
+        const auto contour = extract(swept, 0.5, options);
+        expect_closed_manifold(contour);
+        EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(swept, 0.5, options));
+      }
+    // all high: the caps are the border, with the volume of the mesh
+    swept.set_values(std::vector<double>(values.size(), 1.0));
+    ExtractOptions options;
+    options.close = true;
+    Complex<3> at_once = mesh.complex();
+    at_once.set_values(std::vector<double>(mesh.points.size(), 1.0));
+    // the hexagons of moved truncated octahedra are not plane: their triangles are others in the prisms
+    EXPECT_NEAR(2.5 * measure(extract<double>(at_once, 0.5, options)).content.value(),
+                measure(extract<double>(swept, 0.5, options)).content.value(),
+                name == "truncated octahedra" ? 1e-2 : 1e-9)
+        << name;
+  }
+}
+
+TEST(Prisms, MissingValuesLeaveAManifoldWithBoundary) {
+  for (const auto& [name, mesh] : meshes()) {
+    SCOPED_TRACE(name);
+    std::vector<double> values = noise_in_time(mesh, 31);
+    std::mt19937_64 random(9);
+    for (double& value : values)
+      if (random() % 50 == 0) value = std::numeric_limits<double>::quiet_NaN();
+    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    for (const Ambiguity a : {Ambiguity::low, Ambiguity::mean}) {
+      const auto contour = extract(swept, 0.5, prism_options(Triangulation::compact, a));
+      EXPECT_GT(expect_oriented_manifold(contour).boundary_simplices, 100u);
+      EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}),
+                count(swept, 0.5, prism_options(Triangulation::compact, a)));
+    }
+  }
+}
+
+TEST(Prisms, LinearFunctionsHaveTheirHyperplaneAndNormals) {
+  const auto plane = [](const std::array<double, 4>& x) {
+    return 0.3 * x[0] - 0.5 * x[1] + 0.8 * x[2] + 0.4 * (x[3] - 1.3) + 0.013;
+  };
+  const double length = std::sqrt(0.09 + 0.25 + 0.64 + 0.16);
+  for (const auto& [name, mesh] : meshes()) {
+    SCOPED_TRACE(name);
+    std::vector<double> values;
+    for (const double t : kTimes)
+      for (const auto& p : mesh.points) values.push_back(plane({p[0], p[1], p[2], t}));
+    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
+      ExtractOptions options = prism_options(t);
+      options.normals = Normals::differences;
+      const auto contour = extract<double>(swept, 0.0, options);
+      EXPECT_GT(contour.vertices.size(), 100u);
+      for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+        EXPECT_NEAR(0.0, plane(contour.vertices[v]), 1e-12);
+        EXPECT_NEAR(-0.8 / length, contour.normals[v][2], 1e-9);
+      }
+    }
+  }
+}
+
+// Minutes: only with `ctest -C long`.
+TEST(Prisms, DISABLED_MeshesOf100000PrismsHaveClosedOrientedManifolds) {
+  const MeshData<3> points = grid_points<3>({31, 31, 31}, 0.1);
+  std::vector<std::pair<std::string, FacedMesh>> large;
+  large.emplace_back("truncated octahedra", truncated_octahedra(26, 0.1));
+  large.emplace_back("Voronoi", voronoi_cells(40000, 5));
+  large.emplace_back("merged mixed", merged(faced(mixed_mesh(points, 5)), 0.5, 3));
+  for (const auto& [name, mesh] : large) {
+    const std::vector<double> values = noise_in_time(mesh, 3);
+    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    EXPECT_GT(swept.cell_count(), 95000u) << name;
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : {Ambiguity::low, Ambiguity::saddle}) {
+        SCOPED_TRACE(name);
+        const auto contour = extract<double>(swept, 0.5, prism_options(t, a));
+        EXPECT_GT(contour.simplices.size(), 1000000u);
+        expect_closed_manifold(contour);
+        Complex<3> step = mesh.complex();
+        step.set_values(layer_of(values, mesh.points.size(), 1));
+        EXPECT_TRUE(same_surface(extract<double>(step, 0.5, prism_options(t, a)),
+                                 slice(contour, Hyperplane<4>::across(3, kTimes[1]))));
+      }
+  }
+}
+
+/// A ball whose mesh moves with it has the same cut at all times, moved.
+TEST(Prisms, PointsMayMove) {
+  for (const FacedMesh& mesh : {truncated_octahedra(10, 0.1), voronoi_cells(6000, 8)}) {
+    const Complex<3> complex = mesh.complex();
+    std::vector<double> values;
+    std::vector<std::array<double, 3>> points;
+    for (const double t : kTimes)
+      for (const auto& point : mesh.points) {
+        values.push_back(0.5 - std::hypot(point[0], point[1], point[2]));
+        points.push_back({point[0] + 2 * t, point[1] - t, point[2]});
+      }
+    const auto contour = extract<double>(in_time<3>(complex, kTimes, values, points), 0.0);
+    Complex<3> still = complex;
+    still.set_values(layer_of(values, mesh.points.size(), 0));
+    const double volume = measure(extract<double>(still, 0.0)).content.value();
+    for (const double t : {0.2, 0.7, 2.0}) {
+      const auto cut = slice(contour, Hyperplane<4>::across(3, t));
+      EXPECT_EQ(2, expect_closed_manifold(cut).euler);
+      const Measures<3> measures = measure(cut);
+      EXPECT_NEAR(volume, measures.content.value(), 3e-3);
+      EXPECT_NEAR(2 * t, measures.centroid[0], 2e-2);
+      EXPECT_NEAR(-t, measures.centroid[1], 2e-2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tegl
