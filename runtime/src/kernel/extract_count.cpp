@@ -380,15 +380,14 @@ template <int N>
       count.own_vertices += filling.own_vertices;
       // record its cubes that own vertices, each by one tile only
       if (found == nullptr || tile.with_vertices == 0) continue;
-      const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
-        if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
-          plane.add(row, at, callers ? tile.cubes[cube] : cubes.key(tile.lists[cube]), own);
-      };
-      take(found->in_slab[0], 0, base[0]);
-      if (base[0] + 2 == shape_.size(0)) take(found->in_slab[0], 1, base[0] + 1);
-      take(found->in_slab[1], 2, base[0]);
-      take(found->in_slab[2], 4, base[0]);
-      take(found->in_layer, 7, base[0]);
+      const bool is_last = base[0] + 2 == shape_.size(0);
+      for (unsigned rest = tile.with_vertices & (is_last ? 0b10010111u : 0b10010101u); rest != 0; rest &= rest - 1) {
+        const auto cube = static_cast<unsigned>(std::countr_zero(rest));
+        CubePlane& plane = cube == 7 ? found->in_layer : found->in_slab[cube / 2];
+        const unsigned list = tile.lists[cube];
+        plane.add(row, base[0] + (cube == 1 ? 1 : 0), callers ? tile.cubes[cube] : cubes.key(list),
+                  cubes.own_vertices(list));
+      }
     }
   }
 }
