@@ -92,20 +92,20 @@ struct Connections {
   HWY_INLINE Sides along(Sides reached) const {
     return hn::And(hn::Or(reached, ends_along<Axis>(reached)), corners);
   }
-  template <unsigned Pair>
-  HWY_INLINE Sides across(Sides reached) const {
-    return hn::And(hn::Or(reached, opposite<Pair>(reached)), corners);
-  }
+  /// Adds corners that are connected with those reached: along each axis after the other, then across all squares at
+  /// once, and in all cubes at once.
   HWY_INLINE Sides grown(Sides reached) const {
     const SideTag d;
     reached = along<3>(along<2>(along<1>(along<0>(reached))));
-    reached = across<2>(across<1>(across<0>(reached)));
-    reached = across<5>(across<4>(across<3>(reached)));
-    for (const auto& cube : cubes) {
-      const auto meets = hn::Ne(hn::And(reached, cube), hn::Zero(d));
-      reached = hn::Or(reached, hn::IfThenElseZero(meets, cube));
-    }
-    return reached;
+    const auto lower = hn::Or(opposite<0>(reached), hn::Or(opposite<1>(reached), opposite<2>(reached)));
+    const auto upper = hn::Or(opposite<3>(reached), hn::Or(opposite<4>(reached), opposite<5>(reached)));
+    reached = hn::And(hn::Or(reached, hn::Or(lower, upper)), corners);
+    std::array<Sides, 8> joined;
+    for (std::size_t f = 0; f < 8; ++f)
+      joined[f] = hn::IfThenElseZero(hn::Ne(hn::And(reached, cubes[f]), hn::Zero(d)), cubes[f]);
+    const auto along_0 = hn::Or(hn::Or(joined[0], joined[1]), hn::Or(joined[2], joined[3]));
+    const auto along_2 = hn::Or(hn::Or(joined[4], joined[5]), hn::Or(joined[6], joined[7]));
+    return hn::Or(reached, hn::Or(along_0, along_2));
   }
   /// The corners that are connected with no other.
   HWY_INLINE Sides isolated() const {

@@ -14,6 +14,7 @@
 #include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
+#include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
 
@@ -224,30 +225,35 @@ std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, u
   return values;
 }
 
-/// Decides the centres of cubes by the trilinear interpolant. `entries`: of the table of resolved cubes. Returns those
-/// that rounding could decide.
-Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, double isovalue, const RowTable& table,
-          TilesOfWord& tiles) noexcept {
+/// Tiles of a word that are being resolved.
+struct Resolved {
+  std::array<std::uint8_t, kWordBits> bits;      ///< positions in the word
+  std::array<std::uint16_t, kWordBits> entries;  ///< of the table of resolved cubes
+  std::array<std::uint8_t, kWordBits> choices;   ///< of the centres, as numbers
+  std::size_t count;
+};
+
+/// Decides the centres of cubes by the trilinear interpolant. Returns those that rounding could decide.
+Word join(const FaceBlock<3>& block, double isovalue, Resolved& tiles) noexcept {
   const auto& joins = cube_joins();
   // list the cubes with one pair of edges, without branches
   std::array<std::uint8_t, kWordBits> numbers, bits;
-  std::array<const tables::CubeJoin*, kWordBits> asked{};
+  std::array<const tables::CubeJoin*, kWordBits> asked;
+  asked[0] = nullptr;  // the others are not cleared, which would take longer than to list them
   std::size_t count = 0;
   Word with_more = 0;  // pairs of edges
-  for (std::size_t j = 0; j < entries.size(); ++j) {
-    const tables::CubeJoin& cube = joins[entries[j]];
+  for (std::size_t j = 0; j < tiles.count; ++j) {
+    const tables::CubeJoin& cube = joins[tiles.entries[j]];
     numbers[count] = static_cast<std::uint8_t>(j);
     bits[count] = tiles.bits[j];
     asked[count] = &cube;
     count += static_cast<std::size_t>(cube.pairs == 1);
     with_more |= Word{cube.pairs > 1} << j;
   }
-  const auto decide = [&](std::size_t j, tile::Choice centre) {
-    tiles.variants[j] = table.variant(entries[j], static_cast<unsigned>(centre));
-  };
   for (Word rest = with_more; rest != 0; rest &= rest - 1) {
     const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-    decide(j, detail::decide_centre(corners_of_cube<3, 7>(block, tiles.bits[j], 0), isovalue, entries[j]));
+    const auto values = corners_of_cube<3, 7>(block, tiles.bits[j], 0);
+    tiles.choices[j] = static_cast<std::uint8_t>(detail::decide_centre(values, isovalue, tiles.entries[j]));
   }
   JoinQuestions questions;
   ask(block, {bits.data(), count}, asked.data(), questions);
@@ -255,7 +261,8 @@ Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, dou
   Word unsure = 0;
   for (std::size_t q = 0; q < count; ++q) {
     const unsigned joined = 1u + unsigned{asked[q]->high};  // choices as numbers: separate, low, high
-    decide(numbers[q], static_cast<tile::Choice>(joined * unsigned{questions.answers[q] == JoinQuestions::yes}));
+    const auto is_joined = unsigned{questions.answers[q] == JoinQuestions::yes};
+    tiles.choices[numbers[q]] = static_cast<std::uint8_t>(joined * is_joined);
     unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << numbers[q];
   }
   return unsure;
@@ -263,26 +270,49 @@ Word join(const FaceBlock<3>& block, std::span<const std::uint16_t> entries, dou
 
 }  // namespace
 
-void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
+Word resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
              TilesOfWord& tiles) noexcept {
-  const auto& resolved = tables::kTile3Resolved;
   // Cubes are decided by means, by the interpolant, or not at all.
   const bool by_means = estimator.is_by_means() && !estimator.separates();
   const bool by_joins = estimator.is_by_saddles() && !estimator.separates();
-  std::array<std::uint16_t, kWordBits> entries;
-  Word unsure = 0;  // number in `tiles`
-  for (std::size_t j = 0; j < tiles.count; ++j) {
-    const unsigned bit = tiles.bits[j], signature = tiles.signatures[j];
-    const auto high = static_cast<unsigned>(block.high[bit]);
-    const unsigned entry =
-        resolved.first_entry[signature] + packed_squares(high, unsigned{resolved.ambiguous_squares[signature]});
-    entries[j] = static_cast<std::uint16_t>(entry);
-    tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
+  const unsigned first_choice = by_means ? 1 : 0, centre = by_means ? 1 : 0;
+  // By local pointers: bytes may alias the members, which would be read again after each.
+  const std::uint32_t* const numbers = tiles.numbers;
+  const std::uint16_t* const at = tiles.at;
+  std::uint16_t* const keys = tiles.keys;
+  const std::uint64_t* const highs = block.high.data();
+  const std::size_t count = tiles.count;
+  std::int32_t simplices = 0, own_vertices = 0;
+  const auto apply = [&](std::size_t j, unsigned entry, unsigned choice) {
+    const Variant& variant = table.variant(entry, choice);
+    simplices += variant.more_simplices;
+    own_vertices += variant.more_own_vertices;
+    keys[numbers[j]] = variant.key;
+  };
+  Word unsure = 0;
+  if (!by_joins) {
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto high = static_cast<unsigned>(highs[at[numbers[j]] % kWordBits]);
+      apply(j, ResolvedCubes::entry(keys[numbers[j]], high & 63u), first_choice + (high >> kFirstCube<3> & centre));
+    }
+  } else {
+    Resolved resolved;
+    resolved.count = count;
+    for (std::size_t j = 0; j < count; ++j) {
+      const unsigned bit = at[numbers[j]] % kWordBits;
+      const auto high = static_cast<unsigned>(highs[bit]);
+      resolved.bits[j] = static_cast<std::uint8_t>(bit);
+      resolved.entries[j] = static_cast<std::uint16_t>(ResolvedCubes::entry(keys[numbers[j]], high & 63u));
+    }
+    resolved.choices.fill(0);
+    unsure = join(block, estimator.isovalue(), resolved);
+    for (std::size_t j = 0; j < count; ++j) apply(j, resolved.entries[j], resolved.choices[j]);
   }
-  for (std::size_t j = 0; block.unsure != 0 && j < tiles.count; ++j)
-    unsure |= (block.unsure >> tiles.bits[j] & 1u) << j;
-  if (by_joins) unsure |= join(block, {entries.data(), tiles.count}, estimator.isovalue(), table, tiles);
-  for (; unsure != 0; unsure &= unsure - 1) tiles.variants[std::countr_zero(unsure)] = {};
+  for (std::size_t j = 0; block.unsure != 0 && j < count; ++j)
+    unsure |= (block.unsure >> (at[numbers[j]] % kWordBits) & 1u) << j;
+  tiles.more_simplices = simplices;
+  tiles.more_own_vertices = own_vertices;
+  return unsure;
 }
 
 }  // namespace tegl::detail

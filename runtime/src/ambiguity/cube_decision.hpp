@@ -45,14 +45,18 @@ class RowFaces {
   FaceBlock<N> block_;
 };
 
-/// The ambiguous tiles of a word, and their variants. A variant with key 0 must be resolved individually.
+/// The ambiguous tiles of a word, among those of a row.
 struct TilesOfWord {
-  std::size_t count = 0;
-  std::array<std::uint8_t, kWordBits> bits, signatures;
-  std::array<Variant, kWordBits> variants;
+  const std::uint32_t* numbers;                            ///< of the tiles in the row
+  std::size_t count;                                       ///< up to 64
+  const std::uint16_t* at;                                 ///< of the row: positions of its tiles
+  std::uint16_t* keys;                                     ///< of the row: signatures, to be replaced by keys
+  std::int32_t more_simplices = 0, more_own_vertices = 0;  ///< than without resolution
 };
-void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
-             TilesOfWord& tiles) noexcept;
+/// Replaces the tiles' signatures by their keys. Returns the tiles that rounding could decide, as bits: these must be
+/// resolved individually.
+[[nodiscard]] Word resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
+                           TilesOfWord& tiles) noexcept;
 
 /// Key of an ambiguous tile.
 template <int N>

@@ -76,41 +76,64 @@ HWY_INLINE RayPolynomials<5> tesseract_polynomials(const std::array<double, 16>&
   (std::make_index_sequence<16>());
 }
 
+/// Searches last_root in the lanes `wanted`.
+template <std::size_t Count>
+class RootSearch {
+ public:
+  HWY_INLINE RootSearch(const RayPolynomials<Count>& polynomials, RayMask wanted) : polynomials_(polynomials) {
+    const RayTag d;
+    above_ = hn::Set(d, 1.0);
+    auto at_above = polynomials.value(above_);
+    is_high_ = hn::Ge(at_above, hn::Zero(d));
+    // the last fourth at whose ends the signs differ
+    auto at_below = at_above, last = above_, at_last = at_above;
+    below_ = above_;
+    found_ = hn::And(is_high_, hn::Not(is_high_));
+    for (double start = 0.75; start >= 0.0; start -= 0.25) {
+      const auto x = hn::Set(d, start), at = polynomials.value(x);
+      const auto here = hn::AndNot(found_, is_beyond(at));
+      below_ = hn::IfThenElse(here, x, below_), at_below = hn::IfThenElse(here, at, at_below);
+      above_ = hn::IfThenElse(here, last, above_), at_above = hn::IfThenElse(here, at_last, at_above);
+      found_ = hn::Or(found_, here);
+      last = x, at_last = at;
+    }
+    x_ = hn::Add(below_, hn::Mul(hn::Sub(above_, below_), hn::Div(at_below, hn::Sub(at_below, at_above))));
+    active_ = hn::And(found_, wanted);
+  }
+
+  HWY_INLINE bool has_ended() const { return hn::AllFalse(RayTag(), active_); }
+  /// One step of Newton's method in the lanes that have not ended.
+  HWY_INLINE void step() {
+    const RayTag d;
+    const auto at = polynomials_.value(x_);
+    const auto beyond = is_beyond(at);
+    above_ = hn::IfThenElse(beyond, above_, x_);
+    below_ = hn::IfThenElse(beyond, x_, below_);
+    auto next = hn::Sub(x_, hn::Div(at, polynomials_.slope(x_)));
+    const auto is_between = hn::And(hn::Ge(next, below_), hn::Le(next, above_));
+    next = hn::IfThenElse(is_between, next, hn::Mul(hn::Set(d, 0.5), hn::Add(below_, above_)));
+    const auto moved = hn::Abs(hn::Sub(next, x_));
+    x_ = hn::IfThenElse(active_, next, x_);
+    active_ = hn::AndNot(hn::Lt(moved, hn::Set(d, kEnoughOfRay<Count>)), active_);
+  }
+  HWY_INLINE RayLanes root() const { return hn::IfThenElse(found_, x_, hn::Set(RayTag(), -1.0)); }
+
+ private:
+  HWY_INLINE RayMask is_beyond(RayLanes at) const { return hn::Xor(hn::Ge(at, hn::Zero(RayTag())), is_high_); }
+
+  const RayPolynomials<Count>& polynomials_;
+  RayLanes x_, above_, below_;
+  RayMask is_high_, found_, active_;
+};
+
+constexpr int kMostSteps = 8;
+
 /// last_root in the lanes `wanted`.
 template <std::size_t Count>
 HWY_INLINE RayLanes last_roots(const RayPolynomials<Count>& polynomials, RayMask wanted) {
-  const RayTag d;
-  const auto zero = hn::Zero(d);
-  auto above = hn::Set(d, 1.0), at_above = polynomials.value(above);
-  const auto is_high = hn::Ge(at_above, zero);
-  const auto is_beyond = [&](RayLanes at) HWY_ATTR { return hn::Xor(hn::Ge(at, zero), is_high); };
-  // the last fourth at whose ends the signs differ
-  auto below = above, at_below = at_above, last = above, at_last = at_above;
-  auto found = hn::And(is_high, hn::Not(is_high));
-  for (double start = 0.75; start >= 0.0; start -= 0.25) {
-    const auto x = hn::Set(d, start), at = polynomials.value(x);
-    const auto here = hn::AndNot(found, is_beyond(at));
-    below = hn::IfThenElse(here, x, below), at_below = hn::IfThenElse(here, at, at_below);
-    above = hn::IfThenElse(here, last, above), at_above = hn::IfThenElse(here, at_last, at_above);
-    found = hn::Or(found, here);
-    last = x, at_last = at;
-  }
-  // Newton's method in the lanes that have not ended
-  auto x = hn::Add(below, hn::Mul(hn::Sub(above, below), hn::Div(at_below, hn::Sub(at_below, at_above))));
-  auto active = hn::And(found, wanted);
-  for (int step = 0; step < 8 && !hn::AllFalse(d, active); ++step) {
-    const auto at = polynomials.value(x);
-    const auto beyond = is_beyond(at);
-    above = hn::IfThenElse(beyond, above, x);
-    below = hn::IfThenElse(beyond, x, below);
-    auto next = hn::Sub(x, hn::Div(at, polynomials.slope(x)));
-    const auto is_between = hn::And(hn::Ge(next, below), hn::Le(next, above));
-    next = hn::IfThenElse(is_between, next, hn::Mul(hn::Set(d, 0.5), hn::Add(below, above)));
-    const auto moved = hn::Abs(hn::Sub(next, x));
-    x = hn::IfThenElse(active, next, x);
-    active = hn::AndNot(hn::Lt(moved, hn::Set(d, kEnoughOfRay<Count>)), active);
-  }
-  return hn::IfThenElse(found, x, hn::Set(d, -1.0));
+  RootSearch<Count> search(polynomials, wanted);
+  for (int step = 0; step < kMostSteps && !search.has_ended(); ++step) search.step();
+  return search.root();
 }
 
 /// level_inside for some levels.
@@ -167,15 +190,56 @@ HWY_INLINE RayLanes quadratic_levels(RayLanes a, const RayLanes (&sums)[4]) {
   return hn::IfThenElseZero(hn::Ge(discriminant, zero), level);
 }
 
-/// Levels of rays to corners.
-HWY_INLINE RayLanes cubic_levels(RayLanes a, const RayLanes (&sums)[4], RayMask wanted) {
+/// The interpolant on rays to corners.
+HWY_INLINE RayPolynomials<4> cube_polynomials(RayLanes a, const RayLanes (&sums)[4]) {
   const RayTag d;
   const auto three = hn::Set(d, 3.0);
   const auto& [s0, s1, s2, s3] = sums;
-  const RayPolynomials<4> polynomials = {{a, hn::Sub(hn::Add(hn::Mul(three, hn::Sub(s0, s3)), s1), s2),
-                                          hn::Sub(hn::Sub(hn::Mul(three, hn::Add(s0, s3)), s1), s2),
-                                          hn::Sub(hn::Add(hn::Sub(s0, s1), s2), s3)}};
-  return last_roots(polynomials, wanted);
+  return {{a, hn::Sub(hn::Add(hn::Mul(three, hn::Sub(s0, s3)), s1), s2),
+           hn::Sub(hn::Sub(hn::Mul(three, hn::Add(s0, s3)), s1), s2), hn::Sub(hn::Add(hn::Sub(s0, s1), s2), s3)}};
+}
+
+/// Sums of the heights of a register of rays: at each distance from the end, and of all.
+struct HeightSums {
+  RayLanes at_distance[4];
+  RayLanes all;
+
+  HWY_INLINE HeightSums(const CubeRays& rays, unsigned degree, std::size_t i) {
+    // By degree: the number of corners at each distance from the end.
+    static constexpr std::uint8_t kCorners[4][4] = {{8, 0, 0, 0}, {4, 4, 0, 0}, {2, 4, 2, 0}, {1, 3, 3, 1}};
+    const RayTag d;
+    for (std::size_t distance = 0, corner = 0; distance < 4; ++distance) {
+      at_distance[distance] = hn::Zero(d);
+      for (unsigned count = kCorners[degree][distance]; count != 0; --count, ++corner)
+        at_distance[distance] = hn::Add(at_distance[distance], hn::Load(d, rays.heights[corner].data() + i));
+    }
+    all = hn::Add(hn::Add(hn::Add(at_distance[0], at_distance[1]), at_distance[2]), at_distance[3]);
+  }
+};
+
+/// Stores CubeHeights::level of a register of rays.
+HWY_INLINE void store_levels(RayLanes level, RayLanes sum, const LevelsInside& inside, double* out) {
+  const RayTag d;
+  const auto most = hn::Set(d, std::numeric_limits<double>::max() / 64);
+  const auto is_finite = hn::Le(hn::Abs(sum), most);
+  hn::StoreU(hn::IfThenElse(is_finite, inside(level), hn::Set(d, 0.5)), d, out);
+}
+
+/// Levels of rays to corners, of two registers at once: each step of a search waits for the one before.
+HWY_INLINE void cubic_levels(const CubeRays& rays, std::size_t i, const LevelsInside& inside, double* out) {
+  const RayTag d;
+  const std::size_t lanes = hn::Lanes(d), next = i + lanes;
+  const HeightSums sums(rays, 3, i), of_next(rays, 3, next);
+  const auto polynomials = cube_polynomials(sums.all, sums.at_distance);
+  const auto next_polynomials = cube_polynomials(of_next.all, of_next.at_distance);
+  RootSearch<4> search(polynomials, hn::FirstN(d, rays.count - i));
+  RootSearch<4> next_search(next_polynomials, hn::FirstN(d, rays.count - next));
+  for (int step = 0; step < kMostSteps && !(search.has_ended() && next_search.has_ended()); ++step) {
+    search.step();
+    next_search.step();
+  }
+  store_levels(search.root(), sums.all, inside, out + i);
+  store_levels(next_search.root(), of_next.all, inside, out + next);
 }
 
 /// CubeHeights::level of `rays`.
@@ -183,22 +247,18 @@ void levels_of_cubes(CubeRays& rays, unsigned degree, double epsilon, double* ou
   const RayTag d;
   const std::size_t lanes = hn::Lanes(d);
   const LevelsInside inside(epsilon);
-  const auto most = hn::Set(d, std::numeric_limits<double>::max() / 64);
   const std::size_t end = (rays.count + lanes - 1) / lanes * lanes;
   for (auto& heights : rays.heights) std::fill(heights.begin() + rays.count, heights.begin() + end, 0.0);
-  // By degree: the number of corners at each distance from the end.
-  static constexpr std::uint8_t kCorners[4][4] = {{8, 0, 0, 0}, {4, 4, 0, 0}, {2, 4, 2, 0}, {1, 3, 3, 1}};
-  for (std::size_t i = 0; i < end; i += lanes) {
-    RayLanes sums[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (std::size_t distance = 0, corner = 0; distance < 4; ++distance)
-      for (unsigned count = kCorners[degree][distance]; count != 0; --count, ++corner)
-        sums[distance] = hn::Add(sums[distance], hn::Load(d, rays.heights[corner].data() + i));
-    const auto a = hn::Add(hn::Add(hn::Add(sums[0], sums[1]), sums[2]), sums[3]);
-    const auto level = degree == 3   ? cubic_levels(a, sums, hn::FirstN(d, rays.count - i))
-                       : degree == 2 ? quadratic_levels(a, sums)
-                                     : linear_levels(a, sums);
-    const auto is_finite = hn::Le(hn::Abs(a), most);
-    hn::StoreU(hn::IfThenElse(is_finite, inside(level), hn::Set(d, 0.5)), d, out + i);
+  std::size_t i = 0;
+  if (degree == 3)
+    for (; i + lanes < end; i += 2 * lanes) cubic_levels(rays, i, inside, out);
+  for (; i < end; i += lanes) {
+    const HeightSums sums(rays, degree, i);
+    const auto wanted = hn::FirstN(d, rays.count - i);
+    const auto level = degree == 3   ? last_roots(cube_polynomials(sums.all, sums.at_distance), wanted)
+                       : degree == 2 ? quadratic_levels(sums.all, sums.at_distance)
+                                     : linear_levels(sums.all, sums.at_distance);
+    store_levels(level, sums.all, inside, out + i);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "ambiguity/tesseract_decision.hpp"
 #include "kernel/tile_selection.hpp"
@@ -235,128 +236,6 @@ TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const
   return count;
 }
 
-namespace {
-
-/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
-/// N < 4.
-template <int N>
-class TileResolver {
- public:
-  /// `base`: of the row; index 0 is ignored.
-  TileResolver(const FaceEstimator<N>& estimator, const RowTable& table, const typename RowShape<N>::Index& base,
-               const TileRoom& room, TileCount& count)
-      : estimator_(estimator), table_(table), base_(base), room_(room), count_(count) {}
-
-  /// Calls visit(word, count) for each word with ambiguous tiles, after listing these. Without branches on the tiles:
-  /// in smooth images few are ambiguous.
-  template <class Visit>
-  void for_words(const Visit& visit) {
-    const auto& ambiguous = ambiguous_signatures<N>();
-    std::array<std::uint32_t, kAtOnce> numbers;
-    for (std::uint32_t first = 0; first < count_.active; first += kAtOnce) {
-      const auto end = std::min<std::uint32_t>(count_.active, first + kAtOnce);
-      std::size_t found = 0;
-      for (std::uint32_t i = first; i < end; ++i) {
-        numbers[found] = i;
-        found += ambiguous[room_.signatures[i]] ? 1 : 0;
-      }
-      for (std::size_t j = 0; j < found; j += of_.count) {
-        numbers_ = numbers.data() + j;
-        const std::size_t count = list_word(found - j);
-        const std::size_t word = room_.at[numbers_[0]] / kWordBits;
-        of_.count = count;
-        visit(word, of_.count);
-      }
-    }
-  }
-
-  /// Resolves the listed tiles one by one.
-  void resolve_each(std::size_t word) {
-    for (std::size_t j = 0; j < of_.count; ++j) resolve(j, word);
-  }
-  /// Resolves the listed tiles together. N = 3.
-  void resolve_together(RowFaces<N>& faces, std::size_t word) {
-    detail::resolve(estimator_, table_, faces.look_at(word), of_);
-    // apply the variants; key 0: not resolved here
-    std::int32_t simplices = 0, own_vertices = 0;  // sums of up to 64 tiles, in registers
-    for (std::size_t j = 0; j < of_.count; ++j) {
-      const Variant variant = of_.variants[j];
-      if (variant.key == 0) {
-        resolve(j, word);
-        continue;
-      }
-      simplices += variant.more_simplices;
-      own_vertices += variant.more_own_vertices;
-      room_.signatures[numbers_[j]] = variant.key;
-    }
-    count_.simplices += static_cast<std::uint64_t>(std::int64_t{simplices});
-    count_.own_vertices += static_cast<std::uint32_t>(own_vertices);
-  }
-
- private:
-  /// Lists the tiles of one word, of the next `most` ambiguous ones. Returns their number. By local pointers: bytes may
-  /// alias the members, which would be read again after each.
-  std::size_t list_word(std::size_t most) {
-    const std::uint32_t* const numbers = numbers_;
-    const std::uint16_t* const at = room_.at;
-    const std::uint16_t* const signatures = room_.signatures;
-    const unsigned word = at[numbers[0]] / kWordBits;
-    std::uint8_t* const bits = of_.bits.data();
-    std::uint8_t* const listed = of_.signatures.data();
-    std::size_t count = 0;
-    for (; count < most; ++count) {
-      const unsigned place = at[numbers[count]];
-      if (place / kWordBits != word) break;
-      bits[count] = static_cast<std::uint8_t>(place % kWordBits);
-      listed[count] = static_cast<std::uint8_t>(signatures[numbers[count]]);
-    }
-    return count;
-  }
-  void resolve(std::size_t j, std::size_t word) {
-    const unsigned signature = of_.signatures[j];
-    base_[0] = word * kWordBits + of_.bits[j];
-    const unsigned key = resolved_key<N>(estimator_, base_, signature);
-    count_.simplices += table_.entry(key) & RowTable::kCountMask;
-    count_.simplices -= table_.entry(signature) & RowTable::kCountMask;
-    count_.own_vertices += table_.own_vertices(key) - table_.own_vertices(signature);
-    room_.signatures[numbers_[j]] = static_cast<std::uint16_t>(key);
-  }
-
-  const FaceEstimator<N>& estimator_;
-  const RowTable& table_;
-  typename RowShape<N>::Index base_;
-  const TileRoom& room_;
-  TileCount& count_;
-  static constexpr std::uint32_t kAtOnce = 1024;
-  TilesOfWord of_;                          ///< ambiguous tiles of the current word
-  const std::uint32_t* numbers_ = nullptr;  ///< theirs in the row
-};
-
-}  // namespace
-
-// Not inlined, so that the caller has a small stack frame if nothing is resolved. So is resolve_tesseracts.
-template <int N>
-[[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
-                                                 TileCount& count) const {
-  if constexpr (N < 4) {
-    auto base = shape_.index_of(row);
-    base[N - 1] = view.k;
-    TileResolver<N> resolver(*estimator_, *rows_, base, room, count);
-    if constexpr (N == 2) {
-      resolver.for_words([&](std::size_t word, std::size_t) { resolver.resolve_each(word); });
-    } else {
-      RowFaces<N> faces(*estimator_, base, shape_.size(0));
-      const bool at_once = RowFaces<N>::can_use(*estimator_);
-      resolver.for_words([&](std::size_t word, std::size_t listed) {
-        if (at_once && listed >= 2 * RowFaces<N>::kMany)  // one cube costs less than one tesseract
-          resolver.resolve_together(faces, word);
-        else
-          resolver.resolve_each(word);
-      });
-    }
-  }
-}
-
 /// Indices of tiles of a row, of up to 64 of them.
 using TilePlaces = std::array<std::uint32_t, kWordBits>;
 
@@ -372,6 +251,88 @@ static std::uint32_t list_tiles(const TileRoom& room, std::uint32_t first, std::
     found += wanted(room.signatures[i]) ? 1 : 0;
   }
   return found;
+}
+
+namespace {
+
+/// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
+/// N < 4.
+template <int N>
+class TileResolver {
+ public:
+  /// `base`: of the row; index 0 is ignored.
+  TileResolver(const FaceEstimator<N>& estimator, const RowTable& table, const typename RowShape<N>::Index& base,
+               const TileRoom& room, TileCount& count)
+      : estimator_(estimator), table_(table), base_(base), room_(room), count_(count) {}
+
+  /// Resolves tile number `i` of the row, which is in this word, individually. It may have been resolved.
+  void resolve(std::uint32_t i, std::size_t word) {
+    const unsigned before = room_.signatures[i];
+    base_[0] = word * kWordBits + room_.at[i] % kWordBits;
+    const unsigned key = resolved_key<N>(estimator_, base_, signature_of<N>(before));
+    count_.simplices += table_.entry(key) & RowTable::kCountMask;
+    count_.simplices -= table_.entry(before) & RowTable::kCountMask;
+    count_.own_vertices += table_.own_vertices(key) - table_.own_vertices(before);
+    room_.signatures[i] = static_cast<std::uint16_t>(key);
+  }
+
+  /// Resolves these tiles, all in one word, together. N = 3.
+  void resolve_together(RowFaces<N>& faces, std::size_t word, std::span<const std::uint32_t> numbers) {
+    TilesOfWord tiles{numbers.data(), numbers.size(), room_.at, room_.signatures};
+    Word unsure = detail::resolve(estimator_, table_, faces.look_at(word), tiles);
+    count_.simplices += static_cast<std::uint64_t>(std::int64_t{tiles.more_simplices});
+    count_.own_vertices += static_cast<std::uint32_t>(tiles.more_own_vertices);
+    for (; unsure != 0; unsure &= unsure - 1) resolve(numbers[static_cast<unsigned>(std::countr_zero(unsure))], word);
+  }
+
+ private:
+  const FaceEstimator<N>& estimator_;
+  const RowTable& table_;
+  typename RowShape<N>::Index base_;
+  const TileRoom& room_;
+  TileCount& count_;
+};
+
+}  // namespace
+
+// Not inlined, so that the caller has a small stack frame if nothing is resolved. So is resolve_tesseracts.
+template <int N>
+[[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
+                                                 TileCount& count) const {
+  if constexpr (N < 4) {
+    constexpr std::uint32_t kMany = 2 * RowFaces<3>::kMany;  // one cube costs less than one tesseract
+    const auto& ambiguous = ambiguous_signatures<N>();
+    auto base = shape_.index_of(row);
+    base[N - 1] = view.k;
+    TileResolver<N> resolver(*estimator_, *rows_, base, room, count);
+    // calls visit(word, numbers of its ambiguous tiles)
+    const auto for_words = [&](const auto& visit) {
+      TilePlaces places;
+      std::uint32_t first = 0;  // of the word's tiles
+      for (std::size_t word = 0; first < count.active; ++word) {
+        const std::uint32_t end = first + static_cast<std::uint32_t>(std::popcount(room.active[word]));
+        const std::uint32_t found =
+            list_tiles(room, first, end, places, [&](unsigned signature) { return ambiguous[signature]; });
+        if (found != 0) visit(word, std::span<const std::uint32_t>(places.data(), found));
+        first = end;
+      }
+    };
+    const auto resolve_each = [&](std::size_t word, std::span<const std::uint32_t> numbers) {
+      for (const std::uint32_t i : numbers) resolver.resolve(i, word);
+    };
+    if constexpr (N == 2) {
+      for_words(resolve_each);
+    } else {
+      RowFaces<N> faces(*estimator_, base, shape_.size(0));
+      const bool at_once = RowFaces<N>::can_use(*estimator_);
+      for_words([&](std::size_t word, std::span<const std::uint32_t> numbers) {
+        if (at_once && numbers.size() >= kMany)
+          resolver.resolve_together(faces, word, numbers);
+        else
+          resolve_each(word, numbers);
+      });
+    }
+  }
 }
 
 /// Counts the sizes of the tiles that the data do not affect. Returns the number of these tiles.
@@ -419,15 +380,14 @@ template <int N>
       count.own_vertices += filling.own_vertices;
       // record its cubes that own vertices, each by one tile only
       if (found == nullptr || tile.with_vertices == 0) continue;
-      const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
-        if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
-          plane.add(row, at, callers ? tile.cubes[cube] : cubes.key(tile.lists[cube]), own);
-      };
-      take(found->in_slab[0], 0, base[0]);
-      if (base[0] + 2 == shape_.size(0)) take(found->in_slab[0], 1, base[0] + 1);
-      take(found->in_slab[1], 2, base[0]);
-      take(found->in_slab[2], 4, base[0]);
-      take(found->in_layer, 7, base[0]);
+      const bool is_last = base[0] + 2 == shape_.size(0);
+      for (unsigned rest = tile.with_vertices & (is_last ? 0b10010111u : 0b10010101u); rest != 0; rest &= rest - 1) {
+        const auto cube = static_cast<unsigned>(std::countr_zero(rest));
+        CubePlane& plane = cube == 7 ? found->in_layer : found->in_slab[cube / 2];
+        const unsigned list = tile.lists[cube];
+        plane.add(row, base[0] + (cube == 1 ? 1 : 0), callers ? tile.cubes[cube] : cubes.key(list),
+                  cubes.own_vertices(list));
+      }
     }
   }
 }

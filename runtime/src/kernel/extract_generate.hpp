@@ -83,25 +83,31 @@ class TileWriter {
     typename RowShape<N>::Index index;  ///< of the current tile
     VertexRun<Vertex> vertices;
     BitWalk active;
-    const std::uint16_t* listed;                ///< positions of the tiles; null: `active` has them
-    Index next;                                 ///< number of the next own vertex
-    RowOfTesseracts* tesseracts = nullptr;      ///< N = 4, if resolved from the data without a caller's estimator
-    const AssembledTiles* assembled = nullptr;  ///< with `tesseracts`: the row's first tiles may be kept here
-    std::size_t at = 0, end = 0;                ///< offset of the next one, and the end
-    CubesOfTiles* cubes = nullptr;              ///< N = 4, if resolved from the data
+    const std::uint16_t* listed;                  ///< positions of the tiles; null: `active` has them
+    Index next;                                   ///< number of the next own vertex
+    RowOfTesseracts* tesseracts = nullptr;        ///< N = 4, if resolved from the data without a caller's estimator
+    const AssembledTiles* assembled = nullptr;    ///< with `tesseracts`: the row's first tiles may be kept here
+    std::size_t at = 0, end = 0;                  ///< offset of the next one, and the end
+    CubesOfTiles* cubes = nullptr;                ///< N = 4, if resolved from the data
+    const ResolvedCubes* cubes_of_key = nullptr;  ///< N = 3, if resolved from the data
 
     static Index first_own(void* self, unsigned key, std::size_t ordinal) noexcept requires(N == 3) {
       auto& own = *static_cast<TilesWithOwnVertices*>(self);
       own.index[0] = own.listed != nullptr ? own.listed[ordinal] : own.active.place_of(ordinal);
-      const SimplexList<N> list(own.writer.table_, key);
       const Index first = own.next;
-      own.next += list.own_vertices();
-      if (own.cells != nullptr && list.list().cone_vertices == 0) {
-        own.cells->add(list, own.index, kAll, first);
-      } else {
-        SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), nullptr);
-        own.writer.write_own(list, places, own.index, first, own.vertices);
+      if (own.cubes_of_key != nullptr && !CubeKey(key).is_plain()) {
+        // by the number of its list: the lists by key are larger than the nearest caches
+        const unsigned number = list_of_key(CubeKey(key));
+        if (own.cubes_of_key->summary(number).barycentres == 0) {
+          own.next += own.cubes_of_key->own_vertices(number);
+          own.cells->add(*own.cubes_of_key, number, own.index, kAll, first);
+          return first;
+        }
       }
+      const SimplexList<N> list(own.writer.table_, key);
+      own.next += list.own_vertices();
+      SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), nullptr);
+      own.writer.write_own(list, places, own.index, first, own.vertices);
       return first;
     }
     static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids, Simplex* out) noexcept {
@@ -117,8 +123,8 @@ class TileWriter {
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
           return own.writer.write_resolved(*own.cubes, own.index, key, tile,
-                                           own.scratch.tesseract->find(tile.key, tile.lists, tile.apart),
-                                           edge_ids, own.next, *own.cells, out);
+                                           own.scratch.tesseract->find(tile.key, tile.lists, tile.apart), edge_ids,
+                                           own.next, *own.cells, out);
         }
       Ids ids;
       std::copy_n(edge_ids, tables::edge_count(N), ids.data());
@@ -150,10 +156,12 @@ class TileWriter {
     // 4D tiles resolved from the data
     if constexpr (N == 4)
       if (estimator_ != nullptr) return write_tesseracts(output, start, tiles, own);
-    if constexpr (N == 3)
+    if constexpr (N == 3) {
+      if (cells != nullptr) own.cubes_of_key = &ResolvedCubes::instance(estimator_->triangulation());
       write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::first_own, &own});
-    else
+    } else {
       write_tile_row<N>(output, *rows_, {&TilesWithOwnVertices::write, &own});
+    }
   }
 
   /// write_tile_row for tiles resolved from the data. Not inlined, because its stack frame is large.
@@ -204,8 +212,8 @@ class TileWriter {
           if (is_estimated_tile(signature)) {
             const ResolvedTile tile = tile_of(scratch.answers, index, signature);
             out = write_resolved(*resolved_cubes, index, signature, tile,
-                                 scratch.tesseract->find(tile.key, tile.lists, tile.apart), ids.data(), own,
-                                 *own_cells, out);
+                                 scratch.tesseract->find(tile.key, tile.lists, tile.apart), ids.data(), own, *own_cells,
+                                 out);
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));

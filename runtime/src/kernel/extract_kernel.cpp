@@ -436,10 +436,6 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     finish_vertices(scratch);
   }
 
-  [[nodiscard]] const tables::TileTable& cubes_by_key() const {
-    return variant_table<3>(estimator_->triangulation()).tile;
-  }
-
   void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
                             [[maybe_unused]] VertexRun<Vertex> vertices,
                             [[maybe_unused]] OwnCells* own_cells) noexcept {
@@ -447,8 +443,9 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
       if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
         const Layer<N>& here = layer(k);
         if (counter_.lists_cubes())
-          return generate_listed_cubes<7u>(source_, cubes_by_key(), placement_, {&shape_, {&here, nullptr}, nullptr},
-                                           here.cubes, row, k, vertices, *own_cells);
+          return generate_listed_cubes<7u>(source_, estimator_->triangulation(), placement_,
+                                           {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k, vertices,
+                                           *own_cells);
         generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
                            vertices);
       }
@@ -461,8 +458,8 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         const auto& cubes = around.slab->cubes;
         if (counter_.lists_cubes()) {
           const auto list = [&]<unsigned Axes>(std::integral_constant<unsigned, Axes>, const CubePlane& plane) {
-            generate_listed_cubes<Axes>(source_, cubes_by_key(), placement_, around, plane, row, k, vertices,
-                                        *own_cells);
+            generate_listed_cubes<Axes>(source_, estimator_->triangulation(), placement_, around, plane, row, k,
+                                        vertices, *own_cells);
           };
           list(std::integral_constant<unsigned, 14u>(), cubes[0]);
           list(std::integral_constant<unsigned, 13u>(), cubes[1]);

@@ -40,12 +40,12 @@ class CellVertices {
     for (unsigned kind = 0; kind < rays_.size(); ++kind) write_rays(kind);
   }
 
-  /// Adds the own vertices of the cube along `axes` based at `base`. Requires that none is a barycentre. `first`:
-  /// number of the first.
-  void add(const SimplexList<3>& list, const Base& base, unsigned axes, Index first) noexcept {
+  /// Adds the own vertices of a list of the cube along `axes` based at `base`. Requires that none is a barycentre.
+  /// `first`: number of the first.
+  void add(const ResolvedCubes& cubes, unsigned list, const Base& base, unsigned axes, Index first) noexcept {
     std::optional<CubeHeights> heights;
-    for (unsigned j = 0; j < list.own_vertices(); ++j) {
-      const auto mask = static_cast<std::uint32_t>(list.side_mask(j));
+    for (unsigned j = 0; j < cubes.own_vertices(list); ++j) {
+      const std::uint32_t mask = cubes.mask(list, j);
       if (!is_on_ray(mask)) {
         add_mean(in_cubes_, mask >> 8, base, axes, first + j);
         continue;
@@ -227,25 +227,27 @@ void generate_cubes(const EdgeCrossings<4>& source, const tables::TileTable& tab
 }
 
 /// Writes the vertices of a row's listed cubes, or adds those that are no barycentres to `together`, to be written
-/// later. `table`: by key.
+/// later.
 template <unsigned Axes, class Real>
-void generate_listed_cubes(const EdgeCrossings<4>& source, const tables::TileTable& table,
+void generate_listed_cubes(const EdgeCrossings<4>& source, Triangulation triangulation,
                            const Placement<4, Real>& placement, const SlabView<4>& view, const CubePlane& plane,
                            std::size_t row, std::size_t layer, VertexRun<typename Placement<4, Real>::Vertex> vertices,
                            CellVertices<4, Real>& together) noexcept {
   if (plane.count[row] == 0) return;
+  const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
   auto index = view.shape->index_of(row);
   index[3] = layer;
   std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points;
   Index next = plane.first(row);
   for (const ListedCube& cube : plane.lists.row(row)) {
     index[0] = cube.at;
-    const SimplexList<3> list(table, cube.key);
-    if (list.list().cone_vertices == 0) {
-      together.add(list, index, Axes, next);
-      next += list.own_vertices();
+    const unsigned number = list_of_key(CubeKey(cube.key));
+    if (cubes.summary(number).barycentres == 0) {
+      together.add(cubes, number, index, Axes, next);
+      next += cubes.own_vertices(number);
       continue;
     }
+    const SimplexList<3> list(variant_table<3>(triangulation).tile, cube.key);
     const EdgePlaces<4, Axes> places(source, index, signature_of<3>(cube.key));
     own_places<3>(list, false, places, points.data(), places.rays());
     for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
