@@ -40,6 +40,24 @@ HWY_INLINE auto to_real(D /*d*/, hn::Vec<D> value) {
     return hn::DemoteTo(hn::Rebind<Real, D>(), value);
 }
 
+/// Positions on as many edges as D has lanes.
+template <class D>
+HWY_INLINE hn::Vec<D> load_alphas(D d, const double* from) {
+  if constexpr (std::is_same_v<hn::TFromD<D>, double>) {
+    return hn::LoadU(d, from);
+#if HWY_TARGET == HWY_SCALAR
+  } else {
+    return hn::Set(d, static_cast<float>(*from));
+#else
+  } else {
+    const hn::Half<D> half;
+    const hn::Rebind<double, decltype(half)> wide;
+    const auto some = [&](std::size_t i) HWY_ATTR { return hn::DemoteTo(half, hn::LoadU(wide, from + i)); };
+    return hn::Combine(d, some(hn::MaxLanes(half)), some(0));
+#endif
+  }
+}
+
 /// Gradients in axis coordinates of as many edges as D has lanes, starting at edge `i`.
 template <class D, int N, class Real>
 HWY_INLINE std::array<hn::Vec<D>, N> gradients(D d, const NormalRow<N, Real, hn::TFromD<D>>& row, std::size_t i) {
@@ -47,7 +65,7 @@ HWY_INLINE std::array<hn::Vec<D>, N> gradients(D d, const NormalRow<N, Real, hn:
   const auto axis = static_cast<unsigned>(row.axis);
   const auto first = value(4 * axis + 2);
   const auto second = value(4 * axis + 1);
-  const auto alpha = value(kEdgeValues<N>);
+  const auto alpha = load_alphas(d, row.alphas + i);
   std::array<hn::Vec<D>, N> result;
   for (unsigned a = 0; a < N; ++a) {
     const auto weight = [&](unsigned j) {

@@ -17,9 +17,8 @@ namespace tegl::detail {
 template <int N, class Real, class Calc>
 struct NormalRow {
   using Vertex = std::array<Real, N>;
-  /// (kEdgeValues + 1) x kEdgesAtOnce: the samples around each edge and its vertex's position on it. Undefined from
-  /// `count` on.
-  const Calc* values;
+  const Calc* values;    ///< kEdgeValues x kEdgesAtOnce: the samples around each edge; undefined from `count` on
+  const double* alphas;  ///< by edge: its vertex's position on it; up to 15 entries past the end are read
   std::size_t count;
   int axis;
   /// By axis: weights of the backward and forward difference at the first end, then at the second.

@@ -126,7 +126,7 @@ class EdgeWriter {
   }
 
  private:
-  static constexpr std::size_t kMargin = 16;   ///< entries that vector code writes past the end of lists
+  static constexpr std::size_t kMargin = 16;   ///< entries that vector code reads or writes past the end of lists
   static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
   static constexpr std::size_t kAtOnce = 8;    ///< values per store
   static constexpr std::size_t kPiece = 4096;  ///< maximum edges of one row processed at a time

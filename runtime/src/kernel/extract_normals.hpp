@@ -26,7 +26,7 @@ namespace tegl::detail {
 /// Values around edges. Vector code reads whole registers; entries past the last are zero or left over.
 template <class Calc>
 struct EdgeValues {
-  std::array<Calc, (kEdgeValues<4> + 1) * kEdgesAtOnce> values{};
+  std::array<Calc, kEdgeValues<4> * kEdgesAtOnce> values{};
   std::array<Calc, 4 * kEdgesAtOnce> row_weights{};
 };
 
@@ -75,7 +75,8 @@ class NormalWriter {
   }
 
   /// Writes the normals on edges along `axis`. They start in the row of `start`, or in several rows that are inside,
-  /// one of which is the row of `start` (start[0] is ignored). `start_of(i)`: index of edge i's first sample.
+  /// one of which is the row of `start` (start[0] is ignored). `start_of(i)`: index of edge i's first sample. Up to 15
+  /// entries past the end of `alphas` are read.
   template <class StartOf>
   void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
              Vertex* out, const StartOf& start_of) const noexcept {
@@ -146,19 +147,19 @@ class NormalWriter {
   void edges_by(AroundEdges<N, Calc> around_edges, const Index& start, int axis, const EdgesInRows& edges,
                 const double* alphas, EdgeValues<Calc>& scratch, Vertex* out, const StartOf& start_of) const noexcept {
     EdgeSurroundings<N> around{start[N - 1], axis, {}};
-    NormalRow<N, Real, Calc> row{scratch.values.data(), 0, axis, {}, nullptr, nullptr, static_cast<Calc>(sign_), out};
+    NormalRow<N, Real, Calc> row{scratch.values.data(),    alphas, 0, axis, {}, nullptr, nullptr,
+                                 static_cast<Calc>(sign_), out};
     describe(start, around, row);
     if constexpr (std::is_same_v<Calc, double>)
       if (mapped_) row.to_world = to_world_.data();
     if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
     const bool all_read = !steps_[0].has_backward(0) && !steps_[0].has_forward(sizes_[0] - 1);
     for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
-      // values, positions and weights
+      // values and weights
       row.count = std::min(kEdgesAtOnce, edges.count - i);
       const Word at_ends =
           around_edges(source_, around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
-      Calc* const places = scratch.values.data() + kEdgeValues<N> * kEdgesAtOnce;
-      for (std::size_t j = 0; j < row.count; ++j) places[j] = static_cast<Calc>(alphas[i + j]);
+      row.alphas = alphas + i;
       if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
       // normals
       Word left = write_normals(row);
