@@ -11,7 +11,7 @@ import sys
 from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOPLY import vtkPLYReader
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLUnstructuredGridReader
 
 
 def read(reader, path):
@@ -87,6 +87,26 @@ def expect_near(name, actual, expected):
         sys.exit(f"{name}: {actual}; expected {expected}")
 
 
+# An image, and its contours: plain, across the seam of a periodic axis, unrolled, and on a lattice.
+image = read(vtkXMLImageDataReader(), folder / "ball.vti")
+expect("sizes of the image", image.GetDimensions(), (12, 14, 16))
+expect("steps of the image", image.GetSpacing(), (1 / 12, 1 / 14, 1 / 16))
+samples = image.GetPointData().GetScalars()
+expect("number of samples", samples.GetNumberOfTuples(), 12 * 14 * 16)
+for i in range(0, samples.GetNumberOfTuples(), 37):
+    distance = sum((x - 0.5)**2 for x in image.GetPoint(i))**0.5
+    expect(f"sample {i}", abs(samples.GetValue(i) - (0.3 - distance)) < 1e-12, True)
+ball, wrapped, unrolled, fcc = (read(vtkHDFReader(), folder / f"{name}.vtkhdf")
+                                for name in ("ball", "wrapped", "unrolled", "fcc"))
+area = total(ball, "Area")
+expect("area of a ball", 0.95 * 1.13 < area < 1.14, True)
+expect("number of triangles across the seam", wrapped.GetNumberOfCells(), ball.GetNumberOfCells())
+expect("number of points across the seam", wrapped.GetNumberOfPoints(), ball.GetNumberOfPoints())
+expect("period", values(wrapped.GetFieldData().GetArray("periods"))[:3], [(1.0,), (0.0,), (0.0,)])
+expect_near("area of the unrolled ball", total(unrolled, "Area"), area)
+expect("more points", unrolled.GetNumberOfPoints() > wrapped.GetNumberOfPoints(), True)
+expect("types of cells on a lattice", {fcc.GetCellType(i) for i in range(fcc.GetNumberOfCells())}, {5})
+
 # The contour is a plane, and its facets are what the tiles cut it into: together they have the size of the plane over 4,
 # 4 x 4 and 4 x 4 x 4 cells, the polyhedra in the three dimensions that VTK sees of them.
 segments = read(vtkXMLUnstructuredGridReader(), folder / "segments.vtu")
@@ -155,4 +175,4 @@ for name in ("polyhedra_float", "polyhedra_float_packed"):
     expect(f"type of points of {name}", single.GetPoints().GetDataType(), FLOAT)
 nothing = read(vtkXMLUnstructuredGridReader(), folder / "nothing_packed.vtu")
 expect("cells of nothing_packed", nothing.GetNumberOfCells(), 0)
-print("VTK reads 20 files as written")
+print("VTK reads 25 files as written")

@@ -245,7 +245,8 @@ FileMesh read_table(const fs::path& path, const CellMeshOptions& options, const 
                    : mesh.dim == 3 ? delaunay_of<3>(mesh.points)
                                    : delaunay_of<4>(mesh.points);
   } catch (const Error& error) {
-    fail(error.code(), path, "{}", error.what());
+    const bool is_of_points = error.code() == ErrorCode::InvalidArgument;  // in a line, too near to each other
+    fail(is_of_points ? ErrorCode::MalformedFile : error.code(), path, "{}", error.what());
   }
   constexpr std::array kTypes = {CellType::triangle, CellType::tetrahedron, CellType::simplex4};
   mesh.types.assign(mesh.corners.size() / static_cast<std::size_t>(mesh.dim + 1),

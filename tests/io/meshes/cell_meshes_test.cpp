@@ -474,7 +474,7 @@ TEST(PointTable, WrongRowsAreErrorsWithTheirLine) {
   }
   if (!has_delaunay()) return;
   write_file(dir / "wrong.csv", "0,0,1\n1,0,2\n2,0,3\n");  // all on a line
-  EXPECT_THAT(error_of([&] { read(dir / "wrong.csv"); }).what(), testing::HasSubstr("wrong.csv"));
+  expect_error(ErrorCode::MalformedFile, {"wrong.csv", "in a line"}, [&] { read(dir / "wrong.csv"); });
 }
 
 }  // namespace

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Writes small meshes of every kind into a folder, for the readers of other programs.
+// Writes small meshes of every kind, an image and contours of other tilings into a folder, for the readers of other
+// programs.
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <random>
 
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
+#include "tegl/lattice.hpp"
+#include "tegl/periodic.hpp"
 
 namespace {
 
@@ -55,6 +59,31 @@ tegl::Contour<3, double> closed_noise() {
   return tegl::extract<double>(image.view(), 0.0, options);
 }
 
+/// A ball of radius 0.3 around (x, 0.5, 0.5) in 12 x 14 x 16 samples of the unit cube, of which the first axis is
+/// periodic.
+tegl::OwnedImage<double, 3> ball_at(double x) {
+  tegl::OwnedImage<double, 3> image;
+  for (const std::size_t size : {12u, 14u, 16u})
+    image.grid.axes[(size - 12) / 2] = tegl::Axis::uniform(size, 0.0, 1.0 / static_cast<double>(size));
+  for (std::size_t i = 0; i < 12 * 14 * 16; ++i) {
+    const double dx = static_cast<double>(i % 12) / 12 - x, dy = static_cast<double>(i / 12 % 14) / 14 - 0.5;
+    image.values.push_back(0.3 - std::hypot(dx - std::round(dx), dy, static_cast<double>(i / 168) / 16 - 0.5));
+  }
+  return image;
+}
+
+/// An image, and its contours: plain, wrapped, unrolled, and on a lattice.
+void write_ball(const std::filesystem::path& folder) {
+  const auto plain = ball_at(0.5), across = ball_at(0.0);
+  tegl::write_image(plain.view(), folder / "ball.vti");
+  tegl::write_mesh(tegl::to_mesh(tegl::extract<double>(plain.view(), 0.0)), folder / "ball.vtkhdf");
+  const auto wrapped = tegl::extract_periodic<double>(across.view(), {1.0, 0.0, 0.0}, 0.0);
+  tegl::write_mesh(tegl::to_mesh(wrapped), folder / "wrapped.vtkhdf");
+  tegl::write_mesh(tegl::to_mesh(tegl::unroll(wrapped).contour), folder / "unrolled.vtkhdf");
+  tegl::write_mesh(tegl::to_mesh(tegl::extract_lattice<double>(plain.view(), tegl::Lattice::fcc, 0.0)),
+                   folder / "fcc.vtkhdf");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -85,6 +114,7 @@ int main(int argc, char** argv) {
       tegl::write_mesh(closed_noise(), folder / name);
     tegl::write_mesh(lines, folder / "lines.obj");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.stl");
+    write_ball(folder);
     tegl::write_facets(facets_of_plane<2>(), folder / "segments.vtu");
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtu");
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtkhdf");
