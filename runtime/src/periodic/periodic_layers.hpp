@@ -141,8 +141,8 @@ class LongerLayers {
     for (std::size_t i = before + size; i < sizes_[0]; ++i) to[i] = at(i - before - size);
   }
 
-  /// Requests the samples 4 KiB behind those of a row: processors fetch ahead by themselves, but not across the end of a
-  /// page, and rows of a layer mostly follow one another in memory. The address may be past the end of the image.
+  /// Requests the samples 4 KiB behind those of a row: processors fetch ahead by themselves, but not across the end of
+  /// a page, and rows of a layer mostly follow one another in memory. The address may be past the end of the image.
   template <class T>
   static void request_ahead(const T* from, std::size_t size) noexcept {
     constexpr std::size_t kLine = 64, kPage = 4096;
