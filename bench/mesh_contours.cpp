@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of a tetrahedral mesh, once per line of the standard input: the other side of mesh_contours.py, which takes
+// Contours of a mesh of tetrahedra or polyhedra, once per line of the standard input: the other side of mesh_contours.py, which takes
 // turns with it.
 //
 //     mesh_contours MESH THREADS < COMMANDS
 //
-// MESH: the numbers of points P and cells C as 64-bit integers, 3 P doubles, 4 C 32-bit integers, P floats. Commands:
+// MESH: the numbers of points P, cells C and F as 64-bit integers, 3 P doubles, 4 C 32-bit integers, P floats. Polyhedra
+// (F > 0) have F integers instead of 4 C: of each cell the number of faces, of each face the number of corners and the
+// corners. Commands:
 // `plain` extracts at 0 without known edges, `known` with known edges, `edges` finds the edges of a new complex. Each
 // answers with a line: milliseconds, vertices, simplices.
 #include <array>
@@ -30,6 +32,21 @@ std::vector<T> read(std::ifstream& in, std::size_t count) {
   return result;
 }
 
+/// Polyhedra from the numbers of a file.
+tegl::CellLists polyhedra_of(const std::vector<tegl::Index>& numbers) {
+  tegl::CellLists lists;
+  for (std::size_t at = 0; at < numbers.size();) {
+    for (tegl::Index faces = numbers[at++]; faces > 0; --faces) {
+      for (tegl::Index corners = numbers[at++]; corners > 0; --corners) lists.face_corners.push_back(numbers[at++]);
+      lists.face_ends.push_back(lists.face_corners.size());
+    }
+    lists.types.push_back(tegl::CellType::polyhedron);
+    lists.ends.push_back(0);
+    lists.face_lists_ends.push_back(lists.face_ends.size());
+  }
+  return lists;
+}
+
 /// Processor time of this program with one thread, which other programs on the machine hardly influence; else time.
 double now(unsigned threads) {
   std::timespec time{};
@@ -45,11 +62,13 @@ int main(int argc, char** argv) {
     std::cerr << "mesh_contours: expected a mesh that mesh_contours.py wrote, and a number of threads\n";
     return 2;
   }
-  const auto sizes = read<std::uint64_t>(in, 2);
+  const auto sizes = read<std::uint64_t>(in, 3);
   auto points = read<std::array<double, 3>>(in, sizes[0]);
-  const auto corners = read<tegl::Index>(in, 4 * sizes[1]);
+  const auto corners = read<tegl::Index>(in, sizes[2] > 0 ? sizes[2] : 4 * sizes[1]);
   const auto values = read<float>(in, sizes[0]);
-  tegl::Complex<3> plain(std::move(points), tegl::CellType::tetrahedron, corners);
+  tegl::Complex<3> plain = sizes[2] > 0
+                               ? tegl::Complex<3>(std::move(points), polyhedra_of(corners))
+                               : tegl::Complex<3>(std::move(points), tegl::CellType::tetrahedron, corners);
   plain.set_values<float>(values);
   tegl::Complex<3> known = plain;
   tegl::ExtractOptions options;

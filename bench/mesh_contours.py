@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contours of tetrahedral meshes: tegl against VTK's vtkContour3DLinearGrid and vtkContourFilter.
+"""Contours of tetrahedral meshes: tegl against VTK's vtkContour3DLinearGrid and vtkContourFilter; with --polyhedra of
+truncated octahedra that fill space, against vtkContourFilter.
 
-    bench/mesh_contours.py [--program PROGRAM] [--cubes N] [--turns N] [--threads N] [--json FILE]
+    bench/mesh_contours.py [--program PROGRAM] [--cubes N | --polyhedra N] [--turns N] [--threads N] [--json FILE]
 
-All sides get the same mesh (N^3 cubes of 6 tetrahedra each, points moved at random) with the same float values, and take
-turns, so that what disturbs the machine meets all. tegl runs as a child process (mesh_contours.cpp) and measures itself.
+All sides get the same mesh (N^3 cubes of 6 tetrahedra each, points moved at random; or 2 N^3 truncated octahedra) with the
+same float values, and take turns, so that what disturbs the machine meets all. tegl runs as a child process (mesh_contours.cpp) and measures itself.
 Prints medians of milliseconds as a table in Markdown: with one thread milliseconds of processor time, which other
 programs hardly influence. VTK: points merged, no normals, as tegl's vertices are shared, too;
 and with points not merged, its default. One thread: sequential processing; more: VTK's own number. With --json, also
@@ -51,6 +52,28 @@ def kuhn(cubes: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
     return points.reshape(-1, 3), np.stack(cells, axis=1).reshape(-1, 4).astype(np.uint32)
 
 
+def truncated_octahedra(count: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Points in [-1, 1]^3, moved by up to 0.1 edges, and of each cell its faces in one row, as VTK wants them."""
+    signs = [(s, t, u) for s in (1, -1) for t in (1, -1) for u in (1, -1)]
+    ring = [(0, 1, 2), (1, 0, 2), (2, 0, 1), (2, 1, 0), (1, 2, 0), (0, 2, 1)]
+    faces = [np.array(ring) * sign for sign in signs]
+    square = np.array([(0, 1), (1, 0), (0, -1), (-1, 0)])
+    for axis in range(3):
+        faces += [np.insert(square, axis, side, axis=1) for side in (2, -2)]
+    i, j, k = np.meshgrid(*[np.arange(2 * count)] * 3, indexing="ij")
+    same = (i % 2 == j % 2) & (i % 2 == k % 2)
+    centres = 2 * np.stack([i[same], j[same], k[same]], axis=-1)
+    corners = (centres[:, None] + np.concatenate(faces)[None]).reshape(-1, 3)
+    places, numbers = np.unique(corners, axis=0, return_inverse=True)
+    numbers = numbers.reshape(len(centres), -1)
+    columns, at = [np.full((len(centres), 1), len(faces))], 0
+    for face in faces:
+        columns += [np.full((len(centres), 1), len(face)), numbers[:, at:at + len(face)]]
+        at += len(face)
+    points = (places - (2 * count - 1)) + np.random.default_rng(seed).uniform(-0.1, 0.1, places.shape)
+    return points / (2 * count + 1), np.hstack(columns).astype(np.uint32)
+
+
 FIELDS = {
     "sphere": lambda p: 0.7 - np.linalg.norm(p, axis=1),
     "gyroid": lambda p: sum(np.sin(12 * p[:, i]) * np.cos(12 * p[:, (i + 1) % 3]) for i in range(3)),
@@ -65,17 +88,33 @@ def vtk_grid(points: np.ndarray, cells: np.ndarray, values: np.ndarray):
     coordinates = vtkPoints()
     coordinates.SetData(numpy_to_vtk(points.astype(np.float32), deep=True))
     grid.SetPoints(coordinates)
+    if cells.shape[1] > 4:
+        from vtkmodules.vtkCommonCore import vtkIdList
+        from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
+        grid.Allocate(len(cells))
+        stream = vtkIdList()
+        stream.SetNumberOfIds(cells.shape[1])
+        for cell in cells.tolist():
+            for place, number in enumerate(cell):
+                stream.SetId(place, number)
+            grid.InsertNextCell(VTK_POLYHEDRON, stream)
+        return with_scalars(grid, values)
     array = vtkCellArray()
     offsets = numpy_to_vtkIdTypeArray(np.arange(0, 4 * len(cells) + 1, 4, dtype=np.int64), deep=True)
     array.SetData(offsets, numpy_to_vtkIdTypeArray(cells.astype(np.int64).ravel(), deep=True))
     grid.SetCells(VTK_TETRA, array)
+    return with_scalars(grid, values)
+
+
+def with_scalars(grid, values: np.ndarray):
+    from vtkmodules.util.numpy_support import numpy_to_vtk
     scalars = numpy_to_vtk(values, deep=True)
     scalars.SetName("f")
     grid.GetPointData().SetScalars(scalars)
     return grid
 
 
-def vtk_sides(grid, threads: int) -> dict:
+def vtk_sides(grid, threads: int, has_polyhedra: bool) -> dict:
     from vtkmodules.vtkFiltersCore import vtkContour3DLinearGrid, vtkContourFilter
 
     def linear(merge: bool):
@@ -93,6 +132,8 @@ def vtk_sides(grid, threads: int) -> dict:
     plain.SetValue(0, 0.0)
     plain.ComputeNormalsOff()
     plain.ComputeScalarsOff()
+    if has_polyhedra:
+        return {"vtkContourFilter": plain}
     return {"vtkContour3DLinearGrid": linear(True), "vtkContour3DLinearGrid, points not merged": linear(False),
             "vtkContourFilter": plain}
 
@@ -112,7 +153,8 @@ class Tegl:
 
     def __init__(self, program: str, points: np.ndarray, cells: np.ndarray, values: np.ndarray, threads: int):
         with tempfile.NamedTemporaryFile(delete=False) as file:
-            np.array([len(points), len(cells)], dtype=np.uint64).tofile(file)
+            has_polyhedra = cells.shape[1] > 4
+            np.array([len(points), len(cells), cells.size if has_polyhedra else 0], dtype=np.uint64).tofile(file)
             points.astype(np.float32).astype(np.float64).tofile(file)
             cells.tofile(file)
             values.tofile(file)
@@ -135,7 +177,7 @@ class Tegl:
 def measure(options: argparse.Namespace, name: str, points: np.ndarray, cells: np.ndarray) -> dict:
     values = FIELDS[name](points).astype(np.float32)
     tegl = Tegl(options.program, points, cells, values, options.threads)
-    vtk = vtk_sides(vtk_grid(points, cells, values), options.threads)
+    vtk = vtk_sides(vtk_grid(points, cells, values), options.threads, cells.shape[1] > 4)
     sides = {label: lambda command=command: tegl.run(command)
              for label, command in (("tegl", "plain"), ("tegl, edges known", "known"), ("tegl, finding edges", "edges"))}
     sides |= {label: lambda contour=contour: run_vtk(contour, options.threads) for label, contour in vtk.items()}
@@ -149,13 +191,14 @@ def measure(options: argparse.Namespace, name: str, points: np.ndarray, cells: n
                 times[label].append(elapsed)
     tegl.close()
     median = {label: statistics.median(of) for label, of in times.items()}
-    print(f"\n{name}: {len(cells)} tetrahedra, {options.threads} thread(s), medians of {options.turns}\n")
+    kind = "polyhedra" if cells.shape[1] > 4 else "tetrahedra"
+    print(f"\n{name}: {len(cells)} {kind}, {options.threads} thread(s), medians of {options.turns}\n")
     print("| side | ms | quartiles | vertices | triangles | tegl is as fast | with edges known |\n|---|---|---|---|---|---|---|")
     for label, of in times.items():
         low, _, high = statistics.quantiles(of, n=4)
         print(f"| {label} | {median[label]:.2f} | {low:.2f} – {high:.2f} | {sizes[label][0]} | {sizes[label][1]} | "
               f"{median[label] / median['tegl']:.1f}x | {median[label] / median['tegl, edges known']:.1f}x |")
-    return {"field": name, "tetrahedra": len(cells), "threads": options.threads, "turns": options.turns,
+    return {"field": name, kind: len(cells), "threads": options.threads, "turns": options.turns,
             "sides": [{"side": label, "ms": round(median[label], 3), "vertices": sizes[label][0],
                        "triangles": sizes[label][1]} for label in sides]}
 
@@ -171,11 +214,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build/release/bench/mesh_contours"))
     parser.add_argument("--cubes", type=int, default=60)
+    parser.add_argument("--polyhedra", type=int)
     parser.add_argument("--turns", type=int, default=11)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--json", type=pathlib.Path)
     options = parser.parse_args()
-    points, cells = kuhn(options.cubes)
+    points, cells = truncated_octahedra(options.polyhedra) if options.polyhedra else kuhn(options.cubes)
     from vtkmodules.vtkCommonCore import vtkVersion
     print(f"VTK {vtkVersion.GetVTKVersion()}")
     meshes = [measure(options, name, points, cells) for name in FIELDS]

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "meshes.hpp"
+#include "polyhedral_meshes.hpp"
 #include "tegl/complex.hpp"
 #include "timing.hpp"
 
@@ -25,7 +26,8 @@ double gyroid(const std::array<double, 3>& p) {
   return sum;
 }
 
-void measure(const char* name, const test::MeshData<3>& mesh, int runs) {
+template <class Mesh>
+void measure(const char* name, const Mesh& mesh, int runs) {
   ExtractOptions options;
   options.work.threads = 1;
   Complex<3> complex = mesh.complex();
@@ -62,5 +64,6 @@ int main(int argc, char** argv) {
   measure("wedges", test::wedge_mesh(points(64)), runs);
   measure("pyramids", test::pyramid_mesh(points(45)), runs);
   measure("mixed", test::mixed_mesh(points(56), 5), runs);
+  measure("truncated octahedra", test::truncated_octahedra(32, 0.1), runs);
   return 0;
 }

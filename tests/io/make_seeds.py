@@ -6,9 +6,11 @@ writer lays out its headers in its own way. The files are kept in the tree, as w
 they were made. It needs Debian's python3-h5py, python3-nibabel, python3-netcdf4, python3-pydicom, python3-meshio,
 python3-vtk9, python3-scipy, teem-apps and assimp-utils."""
 
+import itertools
 import pathlib
 import subprocess
 import sys
+import xml.etree.ElementTree
 
 import h5py
 import meshio
@@ -238,6 +240,34 @@ def write_meshes(folder):
     (folder / "assimp.mtl").unlink()
 
 
+def listed_faces(source, target):
+    """The polyhedra of a file in the arrays of VTK 9.4 and later: each face once, for both of its cells."""
+    root = xml.etree.ElementTree.parse(source)
+    cells = root.find(".//Cells")
+    arrays = {array.get("Name"): array for array in cells}
+    stream, ends = ([int(number) for number in arrays[name].text.split()] for name in ("faces", "faceoffsets"))
+    numbers, of_cells, at = {}, [], 0  # by face: its corners
+    for end in ends:
+        of_cells.append([])
+        at += 1 if end >= 0 else 0
+        while at < end:
+            face = stream[at + 1:at + 1 + stream[at]]
+            of_cells[-1].append(numbers.setdefault(frozenset(face), (len(numbers), face))[0])
+            at += 1 + stream[at]
+    faces = [face for _, face in numbers.values()]
+    for name in ("faces", "faceoffsets"):
+        cells.remove(arrays[name])
+    for name, rows in (("face", faces), ("polyhedron", of_cells)):
+        flat = [number for row in rows for number in row]
+        sums = list(itertools.accumulate(map(len, rows)))
+        for array, values in (("face_connectivity" if name == "face" else "polyhedron_to_faces", flat),
+                              (f"{name}_offsets", sums)):
+            element = xml.etree.ElementTree.SubElement(cells, "DataArray", type="Int64", Name=array, format="ascii")
+            element.text = " ".join(map(str, values))
+    root.getroot().set("version", "2.3")
+    root.write(target)
+
+
 def write_vtk_xml(folder):
     """Images, meshes of cells, in all encodings."""
     def write(writer, data, name, set_mode, compress=False, big=False, wide=False):
@@ -289,6 +319,7 @@ def write_vtk_xml(folder):
     values.SetName("f")
     polyhedra.GetPointData().AddArray(values)
     write(vtk.vtkXMLUnstructuredGridWriter(), polyhedra, "vtk_polyhedra.vtu", "SetDataModeToAscii")
+    listed_faces(folder / "vtk_polyhedra.vtu", folder / "vtk_listed_faces.vtu")
     write(vtk.vtkXMLUnstructuredGridWriter(), mesh, "vtk_raw_zlib.vtu", "SetDataModeToAppended", True, False, True)
 
 

@@ -452,6 +452,25 @@ def over_time():
     # the same from a list of files
     names = [FOLDER / f"ball_{k}.vtu" for k in range(4)]
     expect("a list of files", contour_vtkhdf(names, "--times", "0,0.5,1,2"), report(path, 0.0)["simplices"])
+    polyhedra_over_time(times)
+
+
+def polyhedra_over_time(times):
+    points, cells = truncated_octahedra(4)
+    for k, t in enumerate(times):
+        ball = 4.5 + 0.4 * t - numpy.linalg.norm(points - 7.1, axis=1)
+        written(vtkXMLUnstructuredGridWriter(), polyhedra_of(points + 0.1 * t, cells, ball), f"polyhedra_{k}.vtu")
+    path = collection("polyhedra.pvd", [(t, f"polyhedra_{k}.vtu") for k, t in enumerate(times)])
+    found = report(path, 0.0)
+    expect("dimension of polyhedra in time", found["image_dim"], 4)
+    expect("manifold of polyhedra in time",
+           (found["nonmanifold_simplices"], found["bad_links"], found["orientation_conflicts"], found["components"]),
+           (0, 0, 0, 1))
+    cut = json.loads(tegl("slice", path, "--iso", 0, "--at", "t=1", "-o", FOLDER / "cut.ply", "--json"))
+    step = report(FOLDER / "polyhedra_2.vtu", 0.0)
+    for key in ("vertices", "simplices", "boundary_simplices"):
+        expect(f"{key} of polyhedra at a time", cut[key], step[key])
+    expect("track of polyhedra", len(json.loads(tegl("track", path, "--iso", 0, "--json"))["graph"]["tracks"]), 1)
 
 
 def contour_vtkhdf(names, *more):

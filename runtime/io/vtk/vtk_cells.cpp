@@ -121,17 +121,79 @@ VtkArray points_array(const VtkFile& file, const XmlElement& piece) {
   return array;
 }
 
+constexpr std::uint8_t kPolyhedron = 42;
+
+/// Appends the faces of a piece's polyhedra as VTK 9.4 and later write them: `face_connectivity` has the corners of all
+/// faces, `face_offsets` the end of each face in it, `polyhedron_to_faces` the faces of each polyhedron and
+/// `polyhedron_offsets` the end of each cell in it; cells of other types have no faces.
+void append_listed_faces(const VtkFile& file, const XmlElement& piece, std::uint64_t points, std::size_t first_cell,
+                         std::int64_t first_point, StoredCells& all) {
+  const std::size_t cells = all.types.size() - first_cell;
+  const auto read = [&](const char* name, std::optional<std::uint64_t> count = std::nullopt) {
+    return file.read_integers(file.array(piece, "Cells", name), count);
+  };
+  const auto corners = read("face_connectivity"), face_ends = read("face_offsets"), faces = read("polyhedron_to_faces");
+  const auto ends = read("polyhedron_offsets", cells);
+  const auto size = [](const auto& numbers) { return static_cast<std::int64_t>(numbers.size()); };
+  for (std::size_t f = 0; f < face_ends.size(); ++f)
+    if (const std::int64_t from = f == 0 ? 0 : face_ends[f - 1]; face_ends[f] < from || face_ends[f] > size(corners))
+      fail(ErrorCode::MalformedFile, file.path(),
+           "face {} has the corners {} to {} of {}; expected ascending face_offsets", f, from, face_ends[f],
+           corners.size());
+  std::vector<std::uint8_t> uses(face_ends.size());  // limits the memory for what a small file can name
+  for (std::size_t c = 0; c < cells; ++c) {
+    const std::size_t cell = first_cell + c;
+    const std::int64_t begin = c == 0 ? 0 : ends[c - 1];
+    if (ends[c] < begin || ends[c] > size(faces))
+      fail(ErrorCode::MalformedFile, file.path(),
+           "cell {} has the faces {} to {} of {}; expected ascending polyhedron_offsets", cell, begin, ends[c],
+           faces.size());
+    if (all.types[cell] != kPolyhedron && ends[c] != begin)
+      fail(ErrorCode::MalformedFile, file.path(), "cell {} is a {} with {} faces; expected faces of polyhedra only",
+           cell, name_of_type(all.types[cell]), ends[c] - begin);
+    for (std::int64_t i = begin; i < ends[c]; ++i) {
+      const std::int64_t face = faces[static_cast<std::size_t>(i)];
+      if (face < 0 || face >= size(face_ends))
+        fail(ErrorCode::MalformedFile, file.path(), "cell {} has the face {}; expected 0 to {}, the last face", cell,
+             face, size(face_ends) - 1);
+      if (++uses[static_cast<std::size_t>(face)] > 2)
+        fail(ErrorCode::MalformedFile, file.path(),
+             "cell {} has the face {}, which two others have; expected a face "
+             "of at most two cells",
+             cell, face);
+      const std::int64_t to = face_ends[static_cast<std::size_t>(face)];
+      for (std::int64_t k = face == 0 ? 0 : face_ends[static_cast<std::size_t>(face) - 1]; k < to; ++k) {
+        const std::int64_t corner = corners[static_cast<std::size_t>(k)];
+        if (corner < 0 || corner >= static_cast<std::int64_t>(points))
+          fail(ErrorCode::MalformedFile, file.path(), "face {} has the point {}; expected 0 to {}, the last point",
+               face, corner, static_cast<std::int64_t>(points) - 1);
+        all.face_corners.push_back(first_point + corner);
+      }
+      all.face_ends.push_back(all.face_corners.size());
+    }
+    all.face_lists_ends.push_back(all.face_ends.size());
+  }
+}
+
 /// Appends the faces of a piece's polyhedra: `faces` has for each of them the number of faces, then of each face the
 /// number of corners and the corners; `faceoffsets` has the end of each cell in it, or -1.
 void append_faces(const VtkFile& file, const XmlElement& piece, std::uint64_t points, std::size_t first_cell,
                   std::int64_t first_point, StoredCells& all) {
-  constexpr std::uint8_t kPolyhedron = 42;
   const std::size_t cells = all.types.size() - first_cell;
   const auto begin = all.types.begin() + static_cast<std::ptrdiff_t>(first_cell);
   if (std::find(begin, all.types.end(), kPolyhedron) == all.types.end()) {
     all.face_lists_ends.resize(all.types.size(), all.face_ends.size());
     return;
   }
+  const auto arrays = file.arrays(piece.child("Cells"));
+  const auto has_array = [&](std::string_view name) {
+    return std::any_of(arrays.begin(), arrays.end(), [&](const VtkArray& array) { return array.name == name; });
+  };
+  if (has_array("face_connectivity")) return append_listed_faces(file, piece, points, first_cell, first_point, all);
+  if (!has_array("faces"))
+    fail(ErrorCode::MalformedFile, file.path(),
+         "polyhedra without the array 'faces'; expected 'faces' and 'faceoffsets', or 'face_connectivity', "
+         "'face_offsets', 'polyhedron_to_faces' and 'polyhedron_offsets'");
   const auto faces = file.read_integers(file.array(piece, "Cells", "faces"), std::nullopt);
   const auto ends = file.read_integers(file.array(piece, "Cells", "faceoffsets"), cells);
   std::int64_t at = 0;

@@ -117,8 +117,14 @@ void CrossingNumbers::count_bits(std::vector<PolytopeBlock>& polytopes, const Wo
   for_each_item(polytopes.size(), work.threads, nullptr, [&](std::size_t b) {
     PolytopeBlock& block = polytopes[b];
     block.numbers.reserve(block.edges.size());
-    for (const EdgeEnds& edge : block.edges) {
-      const auto found = std::lower_bound(edges_->ends.begin(), edges_->ends.end(), edge);
+    auto found = edges_->ends.begin();
+    for (const EdgeEnds& edge : block.edges) {  // ascending: each is searched from the one before, in growing steps
+      std::ptrdiff_t step = 1;
+      while (step < edges_->ends.end() - found && found[step] < edge) {
+        found += step;
+        step *= 2;
+      }
+      found = std::lower_bound(found, found + std::min(step + 1, edges_->ends.end() - found), edge);
       block.numbers.push_back(static_cast<Index>(found - edges_->ends.begin()));
     }
     set_bits(words, block.numbers.data(), block.numbers.size(), is_one);

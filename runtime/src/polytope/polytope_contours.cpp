@@ -104,14 +104,32 @@ std::vector<PolytopeBlock> build_polytope_contours(const Polytopes& polytopes, s
 }
 
 void set_edges(PolytopeBlock& block, const std::vector<std::array<Index, 2>>& crossed) {
-  std::vector<std::array<Index, 2>>& edges = block.edges;
-  edges = crossed;
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  block.vertices.reserve(crossed.size());
-  for (const auto& edge : crossed)
-    block.vertices.push_back(
-        static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin()));
+  struct Crossing {
+    std::uint64_t ends;
+    std::uint32_t place;
+  };
+  std::vector<Crossing> crossings(crossed.size());
+  Index most = 0;
+  for (std::size_t i = 0; i < crossed.size(); ++i) {
+    const auto& [p, q] = crossed[i];
+    crossings[i] = {std::uint64_t{p} << 32 | q, static_cast<std::uint32_t>(i)};
+    most = std::max(most, p);
+  }
+  // by the smaller end, then the few with the same one
+  sort_by_bits(crossings, static_cast<unsigned>(std::bit_width(most)), [](const Crossing& c) { return c.ends >> 32; });
+  for (auto at = crossings.begin(); at != crossings.end();) {
+    const auto end =
+        std::find_if(at, crossings.end(), [&](const Crossing& c) { return c.ends >> 32 != at->ends >> 32; });
+    std::sort(at, end, [](const Crossing& a, const Crossing& b) { return a.ends < b.ends; });
+    at = end;
+  }
+  block.vertices.resize(crossed.size());
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const std::uint64_t ends = crossings[i].ends;
+    if (i == 0 || ends != crossings[i - 1].ends)
+      block.edges.push_back({static_cast<Index>(ends >> 32), static_cast<Index>(ends)});
+    block.vertices[crossings[i].place] = static_cast<std::uint32_t>(block.edges.size() - 1);
+  }
 }
 
 void separate_diagonals(std::vector<PolytopeBlock>& blocks, unsigned threads) {

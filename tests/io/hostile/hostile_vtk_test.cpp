@@ -105,7 +105,7 @@ TEST(HostileVtk, FilesThatEndEarlyAreRefused) {
   TempDir dir;
   const fs::path seeds = TEGL_SOURCE_DIR "/tests/io/seeds";
   for (const char* const name : {"vtk_ascii.vti", "vtk_binary_zlib.vti", "vtk_base64_zlib.vtr", "vtk_ascii.vtu",
-                                 "vtk_raw_zlib.vtu", "vtk_base64.vts", "vtk_polyhedra.vtu"}) {
+                                 "vtk_raw_zlib.vtu", "vtk_base64.vts", "vtk_polyhedra.vtu", "vtk_listed_faces.vtu"}) {
     SCOPED_TRACE(name);
     const std::string whole = read_file(seeds / name);
     const bool is_image = std::string(name).ends_with(".vti") || std::string(name).ends_with(".vtr");

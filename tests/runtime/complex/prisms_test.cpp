@@ -107,7 +107,8 @@ struct CellContourOf {
   }
 };
 
-CellContourOf by_engine(tile::FacetBuilder& builder, tile::Signature signature, const tile::Resolution& resolution) {
+CellContourOf prism_by_engine(tile::FacetBuilder& builder, tile::Signature signature,
+                              const tile::Resolution& resolution) {
   const tile::TileFacets& facets = builder.build(signature, resolution);
   CellContourOf contour;
   const auto edge = [&](std::size_t v) {
@@ -131,7 +132,7 @@ CellContourOf by_engine(tile::FacetBuilder& builder, tile::Signature signature, 
   return contour;
 }
 
-CellContourOf by_library(const PrismCell& cell, const detail::PolytopeShape& shape) {
+CellContourOf prism_by_library(const PrismCell& cell, const detail::PolytopeShape& shape) {
   CellContourOf contour;
   contour.has_sides = !cell.sides().empty();
   const auto edge = [&](PrismCell::Local v) {
@@ -195,8 +196,8 @@ std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, st
       for (std::size_t v = 0; v < 2 * corners; ++v) values.push_back((s >> v & 1u) != 0 ? 1.0 : -1.0);
       cell.build(prisms.shape(0), prisms.cell(0), values.data());
       const auto alternative = high ? tile::Alternative::high : tile::Alternative::low;
-      const CellContourOf expected = by_engine(builder, s, {{}, alternative});
-      const CellContourOf contour = by_library(cell, prisms.shape(0));
+      const CellContourOf expected = prism_by_engine(builder, s, {{}, alternative});
+      const CellContourOf contour = prism_by_library(cell, prisms.shape(0));
       const auto sigma = expected.boundary(false);
       const bool flip = contour.boundary(false) != sigma;
       EXPECT_EQ(sigma, contour.boundary(flip)) << s;
@@ -206,7 +207,7 @@ std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, st
       reversed += flip ? 1 : 0;
       sides += contour.has_sides ? 1 : 0;
       compact.build(prisms.shape(0), prisms.cell(0), values.data());
-      const CellContourOf other = by_library(compact, prisms.shape(0));
+      const CellContourOf other = prism_by_library(compact, prisms.shape(0));
       if (!contour.has_sides) {
         EXPECT_EQ(expected.named_tetrahedra(false), contour.named_tetrahedra(flip)) << s;
         fewer += other.tetrahedra.size() < contour.tetrahedra.size() ? 1 : 0;
@@ -262,7 +263,7 @@ TEST(Prisms, AllContoursOverTetrahedraPyramidsAndWedgesAreThoseOfTheEngine) {
 }
 
 /// The faces of a cell as the library orients and numbers them.
-CellFaces3 library_faces(const FacedMesh& mesh, std::size_t& corners) {
+CellFaces3 faces_by_library(const FacedMesh& mesh, std::size_t& corners) {
   const Complex<3> complex = mesh.complex();
   const detail::PolytopeShape& shape = detail::ComplexAccess::cells(complex).polytopes.shape(0);
   corners = shape.corner_count();
@@ -277,16 +278,16 @@ TEST(Prisms, ContoursOverLargerPolyhedraAreThoseOfTheEngine) {
         std::pair{dodecahedron_points(), std::uint64_t{8000000011}},
         std::pair{truncated_octahedron_points(), std::uint64_t{4000000000039}}}) {
     std::size_t corners = 0;
-    const CellFaces3 faces = library_faces(hull(points), corners);
+    const CellFaces3 faces = faces_by_library(hull(points), corners);
     (void)compare_with_engine(faces, corners, step);
   }
 }
 
 // ---------------------------------------------------------------------------------------------------------- meshes
 
-const std::vector<double> kTimes = {0.0, 0.7, 1.0, 2.5};
+const std::vector<double> kPrismTimes = {0.0, 0.7, 1.0, 2.5};
 
-std::vector<std::pair<std::string, FacedMesh>> meshes() {
+std::vector<std::pair<std::string, FacedMesh>> prism_meshes() {
   const MeshData<3> points = grid_points<3>({7, 7, 7}, 0.1);
   return {{"truncated octahedra", truncated_octahedra(4, 0.1)},
           {"Voronoi", voronoi_cells(500, 3)},
@@ -298,9 +299,9 @@ std::vector<std::pair<std::string, FacedMesh>> meshes() {
 /// Noise at the inner times, -1 at the first and the last one and on the border.
 std::vector<double> noise_in_time(const FacedMesh& mesh, std::uint64_t seed) {
   std::vector<double> values;
-  for (std::size_t k = 0; k < kTimes.size(); ++k) {
-    const auto layer =
-        k == 0 || k + 1 == kTimes.size() ? std::vector<double>(mesh.points.size(), -1.0) : closed_noise(mesh, seed + k);
+  for (std::size_t k = 0; k < kPrismTimes.size(); ++k) {
+    const auto layer = k == 0 || k + 1 == kPrismTimes.size() ? std::vector<double>(mesh.points.size(), -1.0)
+                                                             : closed_noise(mesh, seed + k);
     values.insert(values.end(), layer.begin(), layer.end());
   }
   return values;
@@ -312,8 +313,8 @@ std::vector<double> layer_of(const std::vector<double>& values, std::size_t poin
 }
 
 TEST(Prisms, NoiseHasAClosedOrientedManifoldWithEveryRule) {
-  for (const auto& [name, mesh] : meshes()) {
-    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, noise_in_time(mesh, 11));
+  for (const auto& [name, mesh] : prism_meshes()) {
+    const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, noise_in_time(mesh, 11));
     EXPECT_GT(detail::ComplexAccess::cells(swept).polytopes.size(), 90u);
     EXPECT_EQ(3 * mesh.cells.size(), swept.cell_count());
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
@@ -331,10 +332,10 @@ TEST(Prisms, NoiseHasAClosedOrientedManifoldWithEveryRule) {
 }
 
 TEST(Prisms, CutsAtStepsAreTheContoursOfTheSteps) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : prism_meshes()) {
     Complex<3> complex = mesh.complex();
     const std::vector<double> values = noise_in_time(mesh, 21);
-    const Complex<4> swept = in_time<3>(complex, kTimes, values);
+    const Complex<4> swept = in_time<3>(complex, kPrismTimes, values);
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : kAllRules) {
         SCOPED_TRACE(name);
@@ -343,7 +344,7 @@ TEST(Prisms, CutsAtStepsAreTheContoursOfTheSteps) {
           complex.set_values(layer_of(values, mesh.points.size(), k));
           const auto step = extract<double>(complex, 0.5, prism_options(t, a));
           EXPECT_GT(step.simplices.size(), 100u);
-          EXPECT_TRUE(same_surface(step, slice(contour, Hyperplane<4>::across(3, kTimes[k]))));
+          EXPECT_TRUE(same_surface(step, slice(contour, Hyperplane<4>::across(3, kPrismTimes[k]))));
         }
         for (const double at : {0.64, 0.93, 1.2}) {
           const auto cut = slice(contour, Hyperplane<4>::across(3, at));
@@ -355,9 +356,9 @@ TEST(Prisms, CutsAtStepsAreTheContoursOfTheSteps) {
 }
 
 TEST(Prisms, ResultsAreTheSameBytesWithAnyThreadsKnownEdgesAndAnIndex) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : prism_meshes()) {
     SCOPED_TRACE(name);
-    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, noise_in_time(mesh, 4));
+    const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, noise_in_time(mesh, 4));
     Complex<4> known = swept;
     known.find_edges({3, {}});
     const CellIndex index(swept);
@@ -374,13 +375,13 @@ TEST(Prisms, ResultsAreTheSameBytesWithAnyThreadsKnownEdgesAndAnIndex) {
 }
 
 TEST(Prisms, CapsCloseContoursAtTheBorder) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : prism_meshes()) {
     if (name == "Voronoi") continue;  // its border touches itself
     std::mt19937_64 random(5);
     std::vector<double> values;
-    for (std::size_t p = 0; p < kTimes.size() * mesh.points.size(); ++p)
+    for (std::size_t p = 0; p < kPrismTimes.size() * mesh.points.size(); ++p)
       values.push_back(static_cast<double>(random() >> 11) * 0x1p-53);
-    Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, values);
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : kAllRules) {
         SCOPED_TRACE(name);
@@ -410,13 +411,13 @@ TEST(Prisms, CapsCloseContoursAtTheBorder) {
 }
 
 TEST(Prisms, MissingValuesLeaveAManifoldWithBoundary) {
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : prism_meshes()) {
     SCOPED_TRACE(name);
     std::vector<double> values = noise_in_time(mesh, 31);
     std::mt19937_64 random(9);
     for (double& value : values)
       if (random() % 50 == 0) value = std::numeric_limits<double>::quiet_NaN();
-    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, values);
     for (const Ambiguity a : {Ambiguity::low, Ambiguity::mean}) {
       const auto contour = extract(swept, 0.5, prism_options(Triangulation::compact, a));
       EXPECT_GT(expect_oriented_manifold(contour).boundary_simplices, 100u);
@@ -431,12 +432,12 @@ TEST(Prisms, LinearFunctionsHaveTheirHyperplaneAndNormals) {
     return 0.3 * x[0] - 0.5 * x[1] + 0.8 * x[2] + 0.4 * (x[3] - 1.3) + 0.013;
   };
   const double length = std::sqrt(0.09 + 0.25 + 0.64 + 0.16);
-  for (const auto& [name, mesh] : meshes()) {
+  for (const auto& [name, mesh] : prism_meshes()) {
     SCOPED_TRACE(name);
     std::vector<double> values;
-    for (const double t : kTimes)
+    for (const double t : kPrismTimes)
       for (const auto& p : mesh.points) values.push_back(plane({p[0], p[1], p[2], t}));
-    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, values);
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
       ExtractOptions options = prism_options(t);
       options.normals = Normals::differences;
@@ -459,7 +460,7 @@ TEST(Prisms, DISABLED_MeshesOf100000PrismsHaveClosedOrientedManifolds) {
   large.emplace_back("merged mixed", merged(faced(mixed_mesh(points, 5)), 0.5, 3));
   for (const auto& [name, mesh] : large) {
     const std::vector<double> values = noise_in_time(mesh, 3);
-    const Complex<4> swept = in_time<3>(mesh.complex(), kTimes, values);
+    const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, values);
     EXPECT_GT(swept.cell_count(), 95000u) << name;
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : {Ambiguity::low, Ambiguity::saddle}) {
@@ -470,7 +471,7 @@ TEST(Prisms, DISABLED_MeshesOf100000PrismsHaveClosedOrientedManifolds) {
         Complex<3> step = mesh.complex();
         step.set_values(layer_of(values, mesh.points.size(), 1));
         EXPECT_TRUE(same_surface(extract<double>(step, 0.5, prism_options(t, a)),
-                                 slice(contour, Hyperplane<4>::across(3, kTimes[1]))));
+                                 slice(contour, Hyperplane<4>::across(3, kPrismTimes[1]))));
       }
   }
 }
@@ -481,12 +482,12 @@ TEST(Prisms, PointsMayMove) {
     const Complex<3> complex = mesh.complex();
     std::vector<double> values;
     std::vector<std::array<double, 3>> points;
-    for (const double t : kTimes)
+    for (const double t : kPrismTimes)
       for (const auto& point : mesh.points) {
         values.push_back(0.5 - std::hypot(point[0], point[1], point[2]));
         points.push_back({point[0] + 2 * t, point[1] - t, point[2]});
       }
-    const auto contour = extract<double>(in_time<3>(complex, kTimes, values, points), 0.0);
+    const auto contour = extract<double>(in_time<3>(complex, kPrismTimes, values, points), 0.0);
     Complex<3> still = complex;
     still.set_values(layer_of(values, mesh.points.size(), 0));
     const double volume = measure(extract<double>(still, 0.0)).content.value();
