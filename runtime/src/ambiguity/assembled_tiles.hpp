@@ -15,8 +15,8 @@
 
 namespace tegl::detail {
 
-/// Tiles of a chunk of rows, in order. A tile is a record of 64-bit words: its lists, in two words; the cubes with
-/// vertices and the numbers of own vertices and of simplices; the masks; the simplices, two per word.
+/// Tiles of a chunk of rows, in order. A tile is a record of 64-bit words: six of its lists; the other two, the cubes
+/// with vertices, the numbers of own vertices and of simplices; the masks; the simplices, two per word.
 class AssembledTiles {
  public:
   /// Removes all tiles. Memory is kept.
@@ -37,28 +37,33 @@ class AssembledTiles {
     if (end > words_.capacity()) words_.reserve(std::min(most, end + words_.capacity() / 4));
     words_.resize(end);
     std::uint64_t* const to = words_.data() + first;
-    std::memcpy(to, tile.lists.data(), sizeof tile.lists);
-    to[2] = std::uint64_t{tile.with_vertices} | std::uint64_t{filling.own_vertices} << kOwnAt |
-            std::uint64_t{filling.simplex_count} << kSimplicesAt;
-    for (std::uint32_t j = 0; j < filling.own_vertices; ++j) to[kHead + j] = filling.masks[j];
+    const std::uint64_t sizes = std::uint64_t{filling.own_vertices} << kOwnAt | std::uint64_t{filling.simplex_count}
+                                                                                    << kSimplicesAt;
+    to[0] = to[1] = 0;
+    for (unsigned f = 0; f < 6; ++f) to[0] |= std::uint64_t{tile.lists[f]} << (kListBits * f);
+    to[1] = std::uint64_t{tile.lists[6]} | std::uint64_t{tile.lists[7]} << kListBits |
+            std::uint64_t{tile.with_vertices} << kCubesAt | sizes;
+    if (filling.own_vertices != 0) std::memcpy(to + kHead, filling.masks, filling.own_vertices * sizeof *to);
     std::memcpy(to + kHead + filling.own_vertices, filling.simplices, 4 * std::size_t{filling.simplex_count});
   }
 
   /// The tile at offset `at`, which is advanced to the next one: its lists, its cubes with vertices and its filling.
   ResolvedView read(std::size_t& at, ResolvedTile& tile) const noexcept {
+    constexpr unsigned kMask = (1u << kListBits) - 1;
     const std::uint64_t* const from = words_.data() + at;
-    std::memcpy(tile.lists.data(), from, sizeof tile.lists);
-    tile.with_vertices = static_cast<std::uint8_t>(from[2]);
-    const auto own = static_cast<std::uint32_t>(from[2] >> kOwnAt & 0xffu);
-    const auto simplices = static_cast<std::uint32_t>(from[2] >> kSimplicesAt);
+    for (unsigned f = 0; f < 8; ++f)
+      tile.lists[f] = static_cast<std::uint16_t>(from[f / 6] >> (kListBits * (f % 6)) & kMask);
+    tile.with_vertices = static_cast<std::uint8_t>(from[1] >> kCubesAt);
+    const auto own = static_cast<std::uint32_t>(from[1] >> kOwnAt & 0xffu);
+    const auto simplices = static_cast<std::uint32_t>(from[1] >> kSimplicesAt);
     at += kHead + own + (simplices + 1) / 2;
     return {reinterpret_cast<const std::uint8_t*>(from + kHead + own), simplices, own, from + kHead};
   }
 
  private:
-  static constexpr std::size_t kHead = 3;  ///< words before the masks
-  static constexpr unsigned kOwnAt = 8, kSimplicesAt = 16;
-  static_assert(sizeof(ResolvedCubes::Lists) == 2 * sizeof(std::uint64_t));
+  static constexpr std::size_t kHead = 2;  ///< words before the masks
+  static constexpr unsigned kListBits = 10, kCubesAt = 20, kOwnAt = 28, kSimplicesAt = 36;
+  static_assert(ResolvedCubes::kNone < 1u << kListBits);
 
   Buffer<std::uint64_t> words_;
   bool is_full_ = false;

@@ -288,6 +288,23 @@ struct Conditions {
   }
 };
 
+/// Stores the answers to the questions from `i` on. Up to the next whole register more are written.
+HWY_INLINE void store_answers(hn::Mask<D> is_yes, hn::Mask<D> is_no, std::size_t i, JoinQuestions& questions) {
+#if HWY_TARGET <= HWY_AVX3
+  const auto yes = static_cast<__mmask16>(is_yes.raw), known = static_cast<__mmask16>(is_yes.raw | is_no.raw);
+  const __m128i answers = _mm_mask_mov_epi8(_mm_set1_epi8(JoinQuestions::unsure), known, _mm_maskz_set1_epi8(yes, 1));
+  static_assert(JoinQuestions::no == 0 && JoinQuestions::yes == 1);
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(questions.answers.data() + i), answers);
+#else
+  const D d;
+  alignas(64) double result[hn::MaxLanes(d)];
+  const auto of_others = hn::IfThenElse(is_no, hn::Zero(d), hn::Set(d, 2.0));
+  hn::Store(hn::IfThenElse(is_yes, hn::Set(d, 1.0), of_others), d, result);
+  for (std::size_t j = 0; j < hn::Lanes(d) && i + j < questions.count; ++j)
+    questions.answers[i + j] = static_cast<JoinQuestions::Answer>(static_cast<int>(result[j]));
+#endif
+}
+
 /// Answers as many questions as there are lanes, from `i` on. Same test as PairQuestion (saddle.cpp), without branches.
 HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size_t i) {
   const D d;
@@ -343,11 +360,7 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
     is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, is_yes));
     is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, is_no));
   }
-  // write
-  alignas(64) double result[hn::MaxLanes(d)];
-  hn::Store(hn::IfThenElse(is_yes, hn::Set(d, 1.0), hn::IfThenElse(is_no, zero, hn::Set(d, 2.0))), d, result);
-  for (std::size_t j = 0; j < hn::Lanes(d) && i + j < questions.count; ++j)
-    questions.answers[i + j] = static_cast<JoinQuestions::Answer>(static_cast<int>(result[j]));
+  store_answers(is_yes, is_no, i, questions);
 }
 
 void answer_all(JoinQuestions& questions, double isovalue) {

@@ -136,6 +136,19 @@ HWY_INLINE RayLanes last_roots(const RayPolynomials<Count>& polynomials, RayMask
   return search.root();
 }
 
+/// last_root of two registers of polynomials. Each step of a search waits for the one before, so the searches take
+/// turns.
+template <std::size_t Count>
+HWY_INLINE std::array<RayLanes, 2> last_roots(const std::array<RayPolynomials<Count>, 2>& polynomials,
+                                              const std::array<RayMask, 2>& wanted) {
+  RootSearch<Count> first(polynomials[0], wanted[0]), second(polynomials[1], wanted[1]);
+  for (int step = 0; step < kMostSteps && !(first.has_ended() && second.has_ended()); ++step) {
+    first.step();
+    second.step();
+  }
+  return {first.root(), second.root()};
+}
+
 /// level_inside for some levels.
 struct LevelsInside {
   RayLanes least, most;
@@ -159,15 +172,27 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
   const LevelsInside inside(epsilon);
   const std::size_t end = (rays.count + lanes - 1) / lanes * lanes;
   for (auto& ends : rays.ends) std::fill(ends.begin() + rays.count, ends.begin() + end, 0.0);
-  for (std::size_t i = 0; i < end; i += lanes) {
+  const auto polynomials_at = [&](std::size_t i) HWY_ATTR {
     RayLanes u[4];
     for (std::size_t a = 0; a < 4; ++a) u[a] = hn::Sub(hn::Mul(two, hn::Load(d, rays.ends[a].data() + i)), one);
-    const RayPolynomials<5> polynomials = tesseract_polynomials(products, u);
-    auto level = last_roots(polynomials, hn::FirstN(d, rays.count - i));
+    return tesseract_polynomials(products, u);
+  };
+  const auto wanted_at = [&](std::size_t i) HWY_ATTR { return hn::FirstN(d, rays.count - i); };
+  const auto store = [&](std::size_t i, const RayPolynomials<5>& polynomials, RayLanes level) HWY_ATTR {
     const auto is_nearer = hn::Lt(hn::Abs(polynomials.value(one)), hn::Abs(polynomials.of[0]));
     level = hn::IfThenElse(hn::Lt(level, zero), hn::IfThenElseZero(is_nearer, one), level);
     hn::Store(inside(level), d, rays.levels.data() + i);
+  };
+  std::size_t i = 0;
+  for (; i + lanes < end; i += 2 * lanes) {
+    const std::array<RayPolynomials<5>, 2> polynomials = {polynomials_at(i), polynomials_at(i + lanes)};
+    const auto levels = last_roots<5>(polynomials, {wanted_at(i), wanted_at(i + lanes)});
+    store(i, polynomials[0], levels[0]);
+    store(i + lanes, polynomials[1], levels[1]);
   }
+  if (i == end) return;
+  const RayPolynomials<5> polynomials = polynomials_at(i);
+  store(i, polynomials, last_roots(polynomials, wanted_at(i)));
 }
 
 /// Levels of rays to squares, on which the interpolant is linear. `a`: sum of all heights.
@@ -225,21 +250,16 @@ HWY_INLINE void store_levels(RayLanes level, RayLanes sum, const LevelsInside& i
   hn::StoreU(hn::IfThenElse(is_finite, inside(level), hn::Set(d, 0.5)), d, out);
 }
 
-/// Levels of rays to corners, of two registers at once: each step of a search waits for the one before.
+/// Levels of rays to corners, of two registers.
 HWY_INLINE void cubic_levels(const CubeRays& rays, std::size_t i, const LevelsInside& inside, double* out) {
   const RayTag d;
-  const std::size_t lanes = hn::Lanes(d), next = i + lanes;
+  const std::size_t next = i + hn::Lanes(d);
   const HeightSums sums(rays, 3, i), of_next(rays, 3, next);
-  const auto polynomials = cube_polynomials(sums.all, sums.at_distance);
-  const auto next_polynomials = cube_polynomials(of_next.all, of_next.at_distance);
-  RootSearch<4> search(polynomials, hn::FirstN(d, rays.count - i));
-  RootSearch<4> next_search(next_polynomials, hn::FirstN(d, rays.count - next));
-  for (int step = 0; step < kMostSteps && !(search.has_ended() && next_search.has_ended()); ++step) {
-    search.step();
-    next_search.step();
-  }
-  store_levels(search.root(), sums.all, inside, out + i);
-  store_levels(next_search.root(), of_next.all, inside, out + next);
+  const std::array<RayPolynomials<4>, 2> polynomials = {cube_polynomials(sums.all, sums.at_distance),
+                                                        cube_polynomials(of_next.all, of_next.at_distance)};
+  const auto levels = last_roots<4>(polynomials, {hn::FirstN(d, rays.count - i), hn::FirstN(d, rays.count - next)});
+  store_levels(levels[0], sums.all, inside, out + i);
+  store_levels(levels[1], of_next.all, inside, out + next);
 }
 
 /// CubeHeights::level of `rays`.

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "ambiguity/tesseract_decision.hpp"
+#include "hwy/cache_control.h"
 #include "kernel/tile_selection.hpp"
 
 namespace tegl::detail {
@@ -335,32 +336,50 @@ template <int N>
   }
 }
 
-/// Counts the sizes of the tiles that the data do not affect. Returns the number of these tiles.
-static std::uint32_t count_tiles_of_table(const FaceEstimator<4>& estimator, const RowTable& table,
-                                          const TileRoom& room, TileCount& count) {
-  std::uint32_t tiles = 0;
-  for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
-    TilePlaces places;
-    const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
-    const std::uint32_t found = list_tiles(room, first, end, places,
-                                           [&](unsigned signature) { return !is_put_together(estimator, signature); });
-    for (std::uint32_t j = 0; j < found; ++j) {
-      const unsigned signature = room.signatures[places[j]];
-      const std::uint32_t entry = table.entries[signature];
-      count.simplices += entry & RowTable::kCountMask;
-      if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += table.own_vertices(signature);
-    }
-    tiles += found;
+namespace {
+
+/// Counts the sizes of 4D tiles that the data do not affect. Their entries are seldom in a cache. So those of a row are
+/// requested first, and read after its other tiles are assembled.
+class TilesOfTable {
+ public:
+  TilesOfTable(const RowTable& table, TileCount& count) noexcept : table_(table), count_(count) {}
+  void count(unsigned signature) noexcept {
+    const std::uint32_t entry = table_.entries[signature];
+    count_.simplices += entry & RowTable::kCountMask;
+    if ((entry & RowTable::kOwnFlag) != 0) count_.own_vertices += table_.own_vertices(signature);
   }
-  return tiles;
-}
+  void request(unsigned signature) noexcept {
+    if (requests_ == requested_.size()) count_requested();
+    hwy::Prefetch(table_.entries + signature);
+    requested_[requests_++] = static_cast<std::uint16_t>(signature);
+  }
+  void count_requested() noexcept {
+    for (std::size_t i = 0; i < requests_; ++i) count(requested_[i]);
+    requests_ = 0;
+  }
+
+ private:
+  const RowTable& table_;
+  TileCount& count_;
+  std::array<std::uint16_t, kWordBits> requested_;
+  std::size_t requests_ = 0;
+};
+
+}  // namespace
 
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
                                                       TileCount& count, CountScratch& scratch,
                                                       AssembledTiles* assembled, const FoundCubes* found) const {
   if constexpr (N == 4) {
-    if (count_tiles_of_table(*estimator_, *rows_, room, count) == count.active) return;  // as in most smooth rows
+    TilesOfTable of_table(*rows_, count);
+    std::uint32_t put_together = 0;
+    for (std::uint32_t i = 0; i < count.active; ++i)
+      put_together += is_put_together(*estimator_, room.signatures[i]) ? 1 : 0;
+    if (put_together == 0) {  // as in most smooth rows
+      for (std::uint32_t i = 0; i < count.active; ++i) of_table.count(room.signatures[i]);
+      return;
+    }
     const bool is_listed = shape_.size(0) <= kMostListed;
     BitWalk walk(room.active);
     auto base = shape_.index_of(row);
@@ -371,7 +390,10 @@ template <int N>
                           *scratch.of_word);
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
-      if (!is_put_together(*estimator_, signature)) continue;
+      if (!is_put_together(*estimator_, signature)) {
+        of_table.request(signature);
+        continue;
+      }
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile& tile = tiles.resolve(base, i, signature);
       // add the filling's size
@@ -389,6 +411,7 @@ template <int N>
                   cubes.own_vertices(list));
       }
     }
+    of_table.count_requested();
   }
 }
 

@@ -168,6 +168,14 @@ std::uint32_t* cone_local(const ResolvedCubes::Triangles* triangles, std::size_t
   for (const ResolvedCubes::Triangles* end = triangles + count; triangles != end; ++triangles) {
     const auto order = hn::LoadDup128(bytes, kOrders[ResolvedCubes::is_reversed(triangles->cube) ? 1 : 0]);
     const auto lifted = hn::LoadDup128(bytes, ResolvedCubes::lifted(triangles->cube).data());
+    if (apex >= ResolvedCubes::kVertices) {  // the tile's own vertex, which no triangle has
+      for (std::uint32_t t = 0; t < triangles->count; t += kLanes) {
+        const auto local = hn::TableLookupBytes(hn::LoadU(bytes, triangles->words + 4 * std::size_t{t}), order);
+        hn::StoreU(hn::Or(hn::BitCast(words, hn::TableLookupBytesOr0(lifted, local)), first), words, out + t);
+      }
+      out += triangles->count;
+      continue;
+    }
     for (std::uint32_t t = 0; t < triangles->count; t += kLanes) {
       const auto local = hn::TableLookupBytes(hn::LoadU(bytes, triangles->words + 4 * std::size_t{t}), order);
       const auto mapped = hn::TableLookupBytesOr0(lifted, local);
