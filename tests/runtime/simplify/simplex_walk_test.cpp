@@ -45,6 +45,27 @@ CornersN<N> random_simplex(std::mt19937& random, double size) {
   return corners;
 }
 
+/// Simplices with vertices of their own, near (shift, …, shift). Every tenth one is flat, and the next one
+/// nearly if they are not shifted.
+template <int N>
+struct LooseSimplices {
+  std::vector<PointN<N>> points;
+  std::vector<std::array<Index, N>> simplices;
+
+  LooseSimplices(Index count, double shift, std::mt19937& random) : simplices(count) {
+    for (Index s = 0; s < count; ++s) {
+      CornersN<N> corners = random_simplex<N>(random, 1.0);
+      if (s % 10 == 0) corners[1] = corners[0];
+      if (s % 10 == 1 && shift == 0.0) corners[1] = between(corners[0], corners[1], 1e-5);
+      for (int i = 0; i < N; ++i) {
+        for (double& x : corners[i]) x += shift;
+        simplices[s][i] = static_cast<Index>(points.size());
+        points.push_back(corners[i]);
+      }
+    }
+  }
+};
+
 /// A ball's contour, with all that walks need.
 template <int N>
 struct WalkedBall {
@@ -92,22 +113,11 @@ TYPED_TEST(Walk, APlaceIsTheNearestPointInsideAndAnUpperBoundOutside) {
 TYPED_TEST(Walk, DistancesByGradientsAreUpperBounds) {
   constexpr int N = TypeParam::value;
   std::mt19937 random(17);
-  std::vector<PointN<N>> points;
-  std::vector<std::array<Index, N>> simplices;
-  for (Index trial = 0; trial < 500; ++trial) {
-    CornersN<N> corners = random_simplex<N>(random, 1.0);
-    if (trial % 10 == 0) corners[1] = corners[0];  // flat
-    for (int i = 0; i < N; ++i) {
-      for (double& x : corners[i]) x += 1e6;
-      points.push_back(corners[i]);
-      simplices.resize(trial + 1);
-      simplices[trial][i] = N * trial + static_cast<Index>(i);
-    }
-  }
-  const SimplexCorners<N> corners(simplices, points);
+  const LooseSimplices<N> loose(500, 1e6, random);
+  const SimplexCorners<N> corners(loose.simplices, loose.points);
   const SimplexGradients<N> gradients(corners, 1, {});
   int inside = 0;
-  for (Index s = 0; s < simplices.size(); ++s) {
+  for (Index s = 0; s < corners.size(); ++s) {
     PointN<N> p = random_point<N>(random, 1.0);
     for (double& x : p) x += 1e6;
     const auto weights = gradients.weights(s, gradients.local(p));
@@ -134,22 +144,15 @@ void with_all_targets(const Test& test) {
 TYPED_TEST(Walk, DistancesOfAllCornersAreThoseOfEach) {
   constexpr int N = TypeParam::value;
   std::mt19937 random(23);
-  std::vector<PointN<N>> points;
-  std::vector<std::array<Index, N>> simplices;
-  for (Index s = 0; s < 100; ++s) {
-    CornersN<N> corners = random_simplex<N>(random, 1.0);
-    if (s % 10 == 0) corners[1] = corners[0];                             // flat
-    if (s % 10 == 1) corners[1] = between(corners[0], corners[1], 1e-5);  // nearly
-    points.insert(points.end(), corners.begin(), corners.end());
-    for (int i = 0; i < N; ++i) simplices.resize(s + 1), simplices[s][i] = N * s + static_cast<Index>(i);
-  }
-  const SimplexGradients<N> gradients(SimplexCorners<N>(simplices, points), 1, {});
+  const LooseSimplices<N> loose(100, 0.0, random);
+  const SimplexCorners<N> corners(loose.simplices, loose.points);
+  const SimplexGradients<N> gradients(corners, 1, {});
   with_all_targets([&] {
-    for (Index s = 0; s < simplices.size(); ++s) {
+    for (Index s = 0; s < corners.size(); ++s) {
       // above, around, and at corners of the simplex; very far away
       for (const double size : {0.1, 2.0, 1e3, 1e30, 1e35}) {
         CornersN<N> part = random_simplex<N>(random, size);
-        if (size == 2.0) part[1] = points[simplices[s][1]];
+        if (size == 2.0) part[1] = corners[s][1];
         const std::array<double, N> found = gradients.distances(s, part);
         for (int k = 0; k < N; ++k)
           ASSERT_EQ(found[k], gradients.distance(s, part[k], gradients.weights(s, gradients.local(part[k])))) << s;
