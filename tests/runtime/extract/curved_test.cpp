@@ -137,36 +137,41 @@ TEST(Curved, HasTheContourOfTheMeshOfItsCells) {
   expect_the_mesh_of_its_cells<3>({11, 9, 10});
 }
 
-/// Errors of size and content of a ball in a bent cube.
-template <int N>
-std::array<double, 2> errors_of_ball(std::size_t samples, double size, double content) {
+/// Errors of size and content of a contour in a bent cube.
+template <int N, class F>
+std::array<double, 2> errors_of(std::size_t samples, F field, double size, double content, std::ptrdiff_t euler) {
   std::array<std::size_t, N> sizes;
   sizes.fill(samples);
-  const CurvedImage<N> image = curved_image<N>(sizes, &bent<N>, &ball<N>);
+  const CurvedImage<N> image = curved_image<N>(sizes, &bent<N>, field);
   EXPECT_EQ(find_folds<N>(image.image.grid, image.curved).cells, 0U);
   const auto contour = extract_curved<double>(image.image.view(), image.curved, 0.0);
   const MeshReport report = check(contour);
   EXPECT_TRUE(is_closed_oriented_manifold(report));
-  EXPECT_EQ(report.euler, N == 3 ? 2 : 0);
+  EXPECT_EQ(report.euler, euler);
   const Measures<N> measures = measure(contour);
   return {std::abs(measures.size - size), std::abs(measures.content.value() - content)};
 }
 
-template <int N>
-void expect_order_two(std::size_t samples, double size, double content) {
-  const auto coarse = errors_of_ball<N>(samples, size, content);
-  const auto fine = errors_of_ball<N>(2 * samples - 1, size, content);
+template <int N, class F>
+void expect_order_two(std::size_t samples, F field, double size, double content, std::ptrdiff_t euler) {
+  const auto coarse = errors_of<N>(samples, field, size, content, euler);
+  const auto fine = errors_of<N>(2 * samples - 1, field, size, content, euler);
   for (int i : {0, 1}) {
     EXPECT_LT(fine[i], 0.35 * coarse[i]) << N << "D, " << (i == 0 ? "size" : "content");
     EXPECT_GT(coarse[i], 0.0);
   }
 }
 
-TEST(Curved, MeasuresOfABallAreOfOrderTwo) {
+TEST(Curved, MeasuresOfBallsAndOfATorusAreOfOrderTwo) {
   const double r = 0.6;
-  expect_order_two<2>(25, 2.0 * kPi * r, kPi * r * r);
-  expect_order_two<3>(17, 4.0 * kPi * r * r, 4.0 / 3.0 * kPi * r * r * r);
-  expect_order_two<4>(11, 2.0 * kPi * kPi * r * r * r, 0.5 * kPi * kPi * r * r * r * r);
+  expect_order_two<2>(25, &ball<2>, 2.0 * kPi * r, kPi * r * r, 0);
+  expect_order_two<3>(17, &ball<3>, 4.0 * kPi * r * r, 4.0 / 3.0 * kPi * r * r * r, 2);
+  expect_order_two<4>(11, &ball<4>, 2.0 * kPi * kPi * r * r * r, 0.5 * kPi * kPi * r * r * r * r, 0);
+  const double ring = 0.45, tube = 0.2;
+  const auto torus = [=](const std::array<double, 3>& x) {
+    return tube - std::hypot(std::hypot(x[0], x[1]) - ring, x[2]);
+  };
+  expect_order_two<3>(33, torus, 4.0 * kPi * kPi * ring * tube, 2.0 * kPi * kPi * ring * tube * tube, 0);
 }
 
 TEST(Curved, FacesTheSameSideOnMirroredGrids) {

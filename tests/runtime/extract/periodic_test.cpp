@@ -318,6 +318,34 @@ TEST(Periodic, ABallAcrossTheSeamHasTheMeasuresOfABall) {
   EXPECT_NEAR(parts[0].highest[0] - parts[0].lowest[0], 0.6, 1e-2);
 }
 
+TEST(Periodic, SizesAndContentsAcrossAllSeamsAreOfOrderTwo) {
+  constexpr double kPi = std::numbers::pi, kBall = 0.3, kRing = 0.28, kTube = 0.12;
+  const auto wrap = [](const std::array<double, 3>& x) {
+    return std::array{x[0] - std::round(x[0]), x[1] - std::round(x[1]), x[2] - std::round(x[2])};
+  };
+  const auto ball = [&](const std::array<double, 3>& x) {
+    const auto [a, b, c] = wrap(x);
+    return kBall - std::hypot(a, b, c);
+  };
+  const auto torus = [&](const std::array<double, 3>& x) {
+    const auto [a, b, c] = wrap(x);
+    return kTube - std::hypot(std::hypot(a, b) - kRing, c);
+  };
+  const auto expect_order_two = [](const auto& field, double size, double content, std::ptrdiff_t euler) {
+    std::array<std::array<double, 2>, 2> errors;
+    for (const std::size_t fine : {0u, 1u}) {
+      const std::size_t n = fine != 0 ? 64 : 32;
+      const auto contour = wrapped<double>(torus_image<3>({n, n + n / 8, n + n / 4}, field), all_periodic<3>(), 0.0);
+      EXPECT_TRUE(is_closed(check(contour)));
+      EXPECT_EQ(check(contour).euler, euler);
+      errors[fine] = {size - measure(contour).size, content - measure(contour).content.value()};
+    }
+    for (const std::size_t k : {0u, 1u}) EXPECT_NEAR(errors[0][k] / errors[1][k], 4.0, 1.2) << euler << ", " << k;
+  };
+  expect_order_two(ball, 4 * kPi * kBall * kBall, 4.0 / 3.0 * kPi * kBall * kBall * kBall, 2);
+  expect_order_two(torus, 4 * kPi * kPi * kRing * kTube, 2 * kPi * kPi * kRing * kTube * kTube, 0);
+}
+
 TEST(Periodic, AThingThatCrossesTheDateLineIsOneTrack) {
   const auto image =
       torus_image<4>({24, 24, 24, 12}, [](const auto& x) { return moving_ball(x[0], x[1], x[2], 2 * x[3]); });
