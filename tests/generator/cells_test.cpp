@@ -18,6 +18,7 @@
 #include "cells/cell_embedding.hpp"
 #include "cells/cell_tables.hpp"
 #include "cells/face_fillings.hpp"
+#include "cells/region_tables.hpp"
 #include "cells/shape_tables.hpp"
 #include "tegl/generated/cells.hpp"
 
@@ -349,7 +350,6 @@ TEST(ShapeTables, TheEmittedOnesAreThoseThatWereCertified) {
     const auto same_sides = [](const auto& a, const auto& b) { return a.above == b.above && a.below == b.below; };
     EXPECT_EQ(std::size_t{table.symmetry_count} * (cell.corner_count + cell.edge_count), of.symmetries.size());
     expect_same(table.symmetries, of.symmetries, std::equal_to<>());
-    expect_same(table.planes_of_three, of.planes_of_three, same_sides);
     EXPECT_EQ(table.plane_count, of.planes.size());
     expect_same(table.planes, of.planes, same_sides);
   }
@@ -404,8 +404,6 @@ TEST(ShapeTables, TheCertificateNamesEveryKindOfFault) {
   EXPECT_EQ(wedge([](ShapeTables& t) { t.symmetries.resize(t.symmetries.size() - 15); }), symmetries);
   EXPECT_EQ(wedge([](ShapeTables& t) { std::swap(t.symmetries[20], t.symmetries[21]); }), symmetries);
   EXPECT_EQ(wedge([](ShapeTables& t) { std::swap(t.symmetries[25], t.symmetries[26]); }), symmetries);
-  EXPECT_EQ(wedge([](ShapeTables& t) { t.planes_of_three[1 * 8 + 2].above ^= 1u << 3; }),
-            "wedge: the sign of a tetrahedron");
   EXPECT_EQ(prism([](ShapeTables& t) { t.planes.pop_back(); }),
             "tetrahedron_prism: hyperplanes other than those through four corners");
   EXPECT_EQ(prism([](ShapeTables& t) { t.planes.back().below |= 1u << 15; }),
@@ -415,6 +413,77 @@ TEST(ShapeTables, TheCertificateNamesEveryKindOfFault) {
   EXPECT_EQ(verdict_with(CellShape::triangle, [](ShapeTables& t) { t.planes.resize(1); }),
             "triangle: a table of 4D shapes");
   EXPECT_EQ(verdict_with(CellShape::triangle, [](ShapeTables& t) { std::swap(t.facets[0], t.facets[1]); }), "");
+}
+
+CapTables regions_of_wedges() {
+  const CellTables wedge = make_cell_tables(mesh_cell("wedge"), Triangulation::compact);
+  const std::array fillings = {make_face_fillings(wedge, false), make_face_fillings(wedge, true)};
+  return make_region_tables(mesh_cell("wedge"), make_all_shape_tables()[static_cast<std::size_t>(CellShape::wedge)],
+                            fillings);
+}
+
+TEST(RegionTables, TheEmittedOnesAreThoseThatWereCertified) {
+  const CapTables of = regions_of_wedges();
+  EXPECT_EQ(of.unproved, 0u);
+  const tables::RegionDivisionTable& table = *tables::region_division_table(CellShape::wedge);
+  ASSERT_EQ(table.count, of.records.size());
+  for (std::size_t i = 0; i < of.records.size(); ++i) {
+    const tables::RegionRecord &a = table.records[i], &b = of.records[i];
+    ASSERT_EQ(a.first_triangle, b.first_triangle);
+    ASSERT_EQ(a.first_tetrahedron, b.first_tetrahedron);
+    ASSERT_EQ(a.triangles, b.triangles);
+    ASSERT_EQ(a.tetrahedra, b.tetrahedra);
+    ASSERT_EQ(a.own, b.own);
+    ASSERT_EQ(a.near, b.near);
+  }
+  for (std::size_t i = 0; i < of.triangles.size(); ++i)
+    ASSERT_TRUE(std::equal(of.triangles[i].begin(), of.triangles[i].end(), table.triangles + 3 * i));
+  for (std::size_t i = 0; i < of.tetrahedra.size(); ++i)
+    ASSERT_TRUE(std::equal(of.tetrahedra[i].begin(), of.tetrahedra[i].end(), table.tetrahedra + 4 * i));
+  ASSERT_TRUE(std::equal(of.own.begin(), of.own.end(), table.own));
+  for (std::size_t i = 0; i < of.near.size(); ++i) ASSERT_EQ(table.near[i].first_seen, of.near[i].first_seen);
+  EXPECT_EQ(tables::region_division_table(CellShape::triangle), nullptr);
+}
+
+TEST(RegionTables, TheCertificateNamesEveryKindOfFault) {
+  const Cell wedge = mesh_cell("wedge");
+  const CapTables regions = regions_of_wedges();
+  const auto first = [&](const auto& holds) {
+    return static_cast<std::size_t>(std::find_if(regions.records.begin(), regions.records.end(), holds) -
+                                    regions.records.begin());
+  };
+  const auto expect_fault = [&](std::size_t region, const char* fault, const auto& change) {
+    CapTables changed = regions;
+    change(changed, changed.records[region]);
+    try {
+      certify_region_tables(wedge, changed);
+      ADD_FAILURE() << fault;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.what(), "wedge, region " + std::to_string(region) + ": " + fault);
+    }
+  };
+  using Record = tables::RegionRecord;
+  const std::size_t several = first([](const Record& r) { return r.tetrahedra > 2 && r.own == 0; });
+  expect_fault(several, "triangles that do not ascend", [](CapTables& t, const Record& r) {
+    std::swap(t.triangles[r.first_triangle], t.triangles[r.first_triangle + 1]);
+  });
+  expect_fault(several, "a boundary of no single region", [](CapTables&, Record& r) { --r.triangles; });
+  expect_fault(several, "tetrahedra with another boundary", [](CapTables&, Record& r) { --r.tetrahedra; });
+  expect_fault(several, "a tetrahedron that may be negative", [](CapTables& t, const Record& r) {
+    std::swap(t.tetrahedra[r.first_tetrahedron][2], t.tetrahedra[r.first_tetrahedron][3]);
+  });
+  expect_fault(several, "a vertex that does not exist",
+               [](CapTables& t, const Record& r) { t.tetrahedra[r.first_tetrahedron][0] = 28; });
+  expect_fault(several + 1, "a boundary that does not follow the one before",
+               [&](CapTables& t, Record&) { std::swap(t.records[several], t.records[several + 1]); });
+  // the mean of one point of the boundary does not see the triangles around that point
+  const std::size_t coned = first([](const Record& r) { return r.own == 1 && r.near == 0; });
+  expect_fault(coned, "a tetrahedron that may be negative",
+               [](CapTables& t, const Record& r) { t.own[r.first_own] = 1u << t.triangles[r.first_triangle][0]; });
+  const std::size_t near = first([](const Record& r) { return r.near == 1; });
+  ASSERT_LT(near, regions.records.size());
+  expect_fault(near, "a tetrahedron that may be negative",
+               [](CapTables& t, const Record& r) { t.near[r.first_near].seen = 0; });
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/fnv.hpp"
 #include "cells/cell_tables.hpp"
 #include "cells/face_fillings.hpp"
+#include "cells/region_tables.hpp"
 #include "cells/shape_tables.hpp"
 #include "filling/position_search.hpp"
 #include "tables/emit_arrays.hpp"
@@ -131,10 +132,11 @@ std::string opening(const std::vector<CellTables>& tables, const std::string& co
 }
 
 EmittedFile source(const std::vector<CellTables>& tables, const std::vector<FaceFillings>& fillings,
-                   const std::vector<ShapeTables>& shapes) {
+                   const std::vector<ShapeTables>& shapes, const std::vector<CapTables>& regions) {
   std::string text = opening(tables, "gen --cells", "tegl/generated/cells.hpp");
   text += face_filling_arrays(fillings);
   text += shape_arrays(shapes);
+  text += region_arrays(regions);
   text += "\n// by shape: barycentric, compact (4D: barycentric)\n";
   fmt::format_to(Appender(text), "const CellTable kTables[{}][2] = {{\n", tables::kCellShapes);
   for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -146,7 +148,8 @@ EmittedFile source(const std::vector<CellTables>& tables, const std::vector<Face
   text +=
       "};\n\n}  // namespace\n\nconst CellTable& cell_table(CellShape shape, Triangulation triangulation) noexcept {\n"
       "  return kTables[static_cast<unsigned>(shape)][static_cast<unsigned>(triangulation)];\n}\n\n";
-  text += face_filling_function(fillings) + "\n" + shape_function(shapes) + "\n}  // namespace tegl::tables\n";
+  text += face_filling_function(fillings) + "\n" + shape_function(shapes) + "\n" + region_function(regions) +
+          "\n}  // namespace tegl::tables\n";
   return {"cells.cpp", std::move(text)};
 }
 
@@ -195,7 +198,8 @@ EmittedFile json_of_cell(const CellTables& table, const std::string& command) {
 }
 
 std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, const std::string& command,
-                     const std::vector<FaceFillings>& fillings = {}, const std::vector<ShapeTables>& shapes = {}) {
+                     const std::vector<FaceFillings>& fillings = {}, const std::vector<ShapeTables>& shapes = {},
+                     const std::vector<CapTables>& regions = {}) {
   std::string text = fmt::format("{{\n  \"cells\": {},\n  \"contract_version\": {},\n  \"command\": \"{}\",\n", cells,
                                  tables::kCellContractVersion, command);
   text += "  \"tables\": [";
@@ -215,6 +219,7 @@ std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, c
   text += "\n  ]";
   if (!fillings.empty()) text += ",\n  \"face_fillings\": [\n" + face_filling_manifest(fillings) + "\n  ]";
   if (!shapes.empty()) text += ",\n  \"shapes\": [\n" + shape_manifest(shapes) + "\n  ]";
+  if (!regions.empty()) text += ",\n  \"regions\": [\n" + region_manifest(regions) + "\n  ]";
   return text + "\n}\n";
 }
 
@@ -223,8 +228,9 @@ std::string manifest(const std::vector<CellTables>& tables, std::size_t cells, c
 std::vector<EmittedFile> emit_cells(const std::vector<CellTables>& tables) {
   const std::vector<FaceFillings> fillings = make_all_face_fillings(tables);
   const std::vector<ShapeTables> shapes = make_all_shape_tables();
-  return {source(tables, fillings, shapes),
-          {"cells_manifest.json", manifest(tables, tables::kCellShapes, "gen --cells", fillings, shapes)}};
+  const std::vector<CapTables> regions = make_all_region_tables(shapes, fillings);
+  return {source(tables, fillings, shapes, regions),
+          {"cells_manifest.json", manifest(tables, tables::kCellShapes, "gen --cells", fillings, shapes, regions)}};
 }
 
 std::vector<EmittedFile> emit_cell(const std::vector<CellTables>& tables, std::span<const Language> languages,

@@ -30,10 +30,7 @@ using tables::CellFacet;
 using tables::CellShape;
 using Vector = std::array<std::int64_t, 5>;
 using Masks = std::vector<unsigned>;
-template <class Corners>
-using Planes = std::vector<tables::PlaneSides<Corners>>;
-
-constexpr unsigned kStride = tables::kMostCornersIn3D;
+using Planes = std::vector<tables::PlaneSides>;
 
 /// The facets of the shapes that are no prisms of four dimensions, as bits of corners. Closed contours are listed in
 /// this order.
@@ -179,25 +176,6 @@ std::vector<std::uint8_t> make_symmetries(const Cell& cell) {
   return result;
 }
 
-Planes<std::uint8_t> make_planes_of_three(const Cell& cell) {
-  Planes<std::uint8_t> planes(std::size_t{kStride} * kStride * kStride);
-  const unsigned count = cell.tile.corner_count();
-  const auto place = [&](unsigned v) {
-    const Vector corner = corner_of(cell, v);
-    return std::array<std::int64_t, 3>{corner[0], corner[1], corner[2]};
-  };
-  for (unsigned a = 0; a < count; ++a)
-    for (unsigned b = 0; b < count; ++b)
-      for (unsigned c = 0; c < count; ++c)
-        for (unsigned d = 0; d < count; ++d) {
-          const std::int64_t volume = six_volumes(place(a), place(b), place(c), place(d));
-          auto& [above, below] = planes[(a * kStride + b) * kStride + c];
-          if (volume > 0) above = static_cast<std::uint8_t>(above | 1u << d);
-          if (volume < 0) below = static_cast<std::uint8_t>(below | 1u << d);
-        }
-  return planes;
-}
-
 /// Calls visit(corners) for all sets of four corners.
 template <class Visit>
 void for_each_four(unsigned count, const Visit& visit) {
@@ -219,7 +197,7 @@ Sides sides_of(unsigned count, const Side& side) {
   return std::minmax(sides[0], sides[1]);
 }
 
-Planes<std::uint16_t> make_planes(const Cell& cell) {
+Planes make_planes(const Cell& cell) {
   std::set<Sides> all;
   const unsigned count = cell.tile.corner_count();
   for_each_four(count, [&](const std::array<unsigned, 4>& four) {
@@ -233,7 +211,7 @@ Planes<std::uint16_t> make_planes(const Cell& cell) {
       return sign_of(std::inner_product(to.begin(), to.end(), normal.begin(), std::int64_t{0}));
     }));
   });
-  Planes<std::uint16_t> planes;
+  Planes planes;
   for (const auto& [above, below] : all) planes.push_back({above, below});
   return planes;
 }
@@ -296,25 +274,8 @@ const char* fault_of_symmetries(const Cell& cell, const std::vector<std::uint8_t
   return symmetries == expected ? nullptr : "symmetries other than all permutations that map facets to facets";
 }
 
-/// By determinants of four corners.
-const char* fault_of_planes_of_three(const Cell& cell, const Planes<std::uint8_t>& planes) {
-  const unsigned count = cell.tile.corner_count();
-  if (planes.size() != std::size_t{kStride} * kStride * kStride) return "another number of planes";
-  for (unsigned a = 0; a < kStride; ++a)
-    for (unsigned b = 0; b < kStride; ++b)
-      for (unsigned c = 0; c < kStride; ++c)
-        for (unsigned d = 0; d < kStride; ++d) {
-          const bool is_none = std::max({a, b, c, d}) >= count;
-          const int expected = is_none ? 0 : volume_sign(cell, std::array{a, b, c, d});
-          const auto& [above, below] = planes[(a * kStride + b) * kStride + c];
-          if (static_cast<int>(above >> d & 1u) - static_cast<int>(below >> d & 1u) != expected || (above & below) != 0)
-            return "the sign of a tetrahedron";
-        }
-  return nullptr;
-}
-
 /// By determinants of five corners: every hyperplane through four corners is listed, and no other one.
-const char* fault_of_planes(const Cell& cell, const Planes<std::uint16_t>& planes) {
+const char* fault_of_planes(const Cell& cell, const Planes& planes) {
   const unsigned count = cell.tile.corner_count();
   std::set<Sides> listed, found;
   for (const auto& [above, below] : planes) {
@@ -337,11 +298,8 @@ const char* fault_of(const Cell& cell, const ShapeTables& tables, std::span<cons
   const char* fault = fault_of_facets(cell, tables.facets, shapes);
   if (fault == nullptr) fault = fault_of_orientations(cell, tables.facets, all, shapes);
   if (fault != nullptr) return fault;
-  if (cell.tile.dim == 3) {
-    fault = fault_of_symmetries(cell, tables.symmetries);
-    return fault != nullptr ? fault : fault_of_planes_of_three(cell, tables.planes_of_three);
-  }
-  if (!tables.symmetries.empty() || !tables.planes_of_three.empty()) return "a table of 3D shapes";
+  if (cell.tile.dim == 3) return fault_of_symmetries(cell, tables.symmetries);
+  if (!tables.symmetries.empty()) return "a table of 3D shapes";
   if (cell.tile.dim == 4) return fault_of_planes(cell, tables.planes);
   return tables.planes.empty() ? nullptr : "a table of 4D shapes";
 }
@@ -354,21 +312,12 @@ std::uint64_t digest(const ShapeTables& of) {
     hash.add(static_cast<std::uint8_t>(f.is_inverted));
   }
   hash.add(of.symmetries);
-  for (const auto& p : of.planes_of_three) hash.add(p.above), hash.add(p.below);
   for (const auto& p : of.planes) hash.add(p.above), hash.add(p.below);
   return hash.value();
 }
 
 std::size_t symmetry_count(const Cell& cell, const ShapeTables& of) {
   return of.symmetries.size() / (cell.tile.corner_count() + cell.tile.edge_count());
-}
-
-template <class Corners>
-void write_planes(std::string& text, const char* type, const std::string& name, const char* comment,
-                  const Planes<Corners>& planes) {
-  if (planes.empty()) return;
-  write_records(text, fmt::format("PlaneSides<{}>", type).c_str(), name.c_str(), comment, planes,
-                [](const auto& p) { return fmt::format("{{{:#x},{:#x}}}", p.above, p.below); });
 }
 
 }  // namespace
@@ -378,10 +327,7 @@ std::vector<ShapeTables> make_all_shape_tables() {
   std::vector<ShapeTables> all;
   for (const Cell& cell : shapes) {
     ShapeTables& tables = all.emplace_back(ShapeTables{cell.name, make_facets(cell, shapes)});
-    if (cell.tile.dim == 3) {
-      tables.symmetries = make_symmetries(cell);
-      tables.planes_of_three = make_planes_of_three(cell);
-    }
+    if (cell.tile.dim == 3) tables.symmetries = make_symmetries(cell);
     if (cell.tile.dim == 4) tables.planes = make_planes(cell);
   }
   certify_shape_tables(all);
@@ -406,9 +352,9 @@ std::string shape_arrays(const std::vector<ShapeTables>& all) {
                              fmt::join(f.corners.begin(), f.corners.begin() + f.corner_count, ","), f.is_inverted);
         });
     write_array(text, "std::uint8_t", (name + "Symmetries").c_str(), "symmetry x (corners, edges)", of.symmetries);
-    write_planes(text, "std::uint8_t", name + "PlanesOfThree", "three corners -> corners above, below",
-                 of.planes_of_three);
-    write_planes(text, "std::uint16_t", name + "Planes", "corners above, below", of.planes);
+    if (!of.planes.empty())
+      write_records(text, "PlaneSides", (name + "Planes").c_str(), "corners above, below", of.planes,
+                    [](const auto& p) { return fmt::format("{{{:#x},{:#x}}}", p.above, p.below); });
   }
   return text;
 }
@@ -422,10 +368,9 @@ std::string shape_function(const std::vector<ShapeTables>& all) {
     const ShapeTables& of = all[i];
     const std::string name = "k" + upper_camel(of.name);
     const auto or_null = [&](bool is_empty, const char* what) { return is_empty ? "nullptr" : name + what; };
-    fmt::format_to(Appender(text), "      {{{}, {}, {}, {}, {},\n       {}, {}}},\n", of.facets.size(),
+    fmt::format_to(Appender(text), "      {{{}, {}, {}, {},\n       {}, {}}},\n", of.facets.size(),
                    symmetry_count(shapes[i], of), of.planes.size(), name + "Facets",
-                   or_null(of.symmetries.empty(), "Symmetries"), or_null(of.planes_of_three.empty(), "PlanesOfThree"),
-                   or_null(of.planes.empty(), "Planes"));
+                   or_null(of.symmetries.empty(), "Symmetries"), or_null(of.planes.empty(), "Planes"));
   }
   return text + "  };\n  return kShapes[static_cast<unsigned>(shape)];\n}\n";
 }

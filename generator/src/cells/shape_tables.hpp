@@ -18,8 +18,7 @@ struct ShapeTables {
   std::string name;  ///< of the shape
   std::vector<tables::CellFacet> facets = {};
   std::vector<std::uint8_t> symmetries = {};
-  std::vector<tables::PlaneSides<std::uint8_t>> planes_of_three = {};
-  std::vector<tables::PlaneSides<std::uint16_t>> planes = {};
+  std::vector<tables::PlaneSides> planes = {};
 };
 
 /// The tables of all shapes in the order of tables::CellShape, certified.
@@ -27,8 +26,8 @@ struct ShapeTables {
 
 /// Certifies tables of all shapes in the order of tables::CellShape. Facets: those of the lattice, each once, of the
 /// named shape; their orientations cancel at each face between two of them, and one is that of a determinant.
-/// Symmetries: all permutations of corners that map facets to facets. Planes: the signs of all determinants of four or
-/// five corners. Errors: CertificateFailed.
+/// Symmetries: all permutations of corners that map facets to facets. Planes: the signs of all determinants of five
+/// corners. Errors: CertificateFailed.
 void certify_shape_tables(std::span<const ShapeTables> all);
 
 /// The arrays of the tables as C++, within namespace tegl::tables.

@@ -18,10 +18,10 @@
 #include "complex/edge_alpha.hpp"
 #include "image/tile_heights.hpp"
 #include "regions/separating_planes.hpp"
-#include "regions/shape_volumes.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
+#include "tegl/tile/shape_places.hpp"
 #include "tile/extract_tables.hpp"
 #include "tile/tesseract_fill.hpp"
 

@@ -192,8 +192,8 @@ CapVertex ComplexCaps<N>::on_edge(Index p, Index q) const {
 
 template <int N>
 CapVertex ComplexCaps<N>::vertex(const Facet& facet, unsigned local) const {
-  if (local < RegionVertices::kFirstEdge) return CapVertex::corner(facet.points[local]);
-  const std::uint8_t* const ends = table_of(facet.of.shape).edges + 2 * (local - RegionVertices::kFirstEdge);
+  if (local < ShapeVertices::kFirstEdge) return CapVertex::corner(facet.points[local]);
+  const std::uint8_t* const ends = table_of(facet.of.shape).edges + 2 * (local - ShapeVertices::kFirstEdge);
   return on_edge(facet.points[ends[0]], facet.points[ends[1]]);
 }
 
@@ -215,7 +215,7 @@ void ComplexCaps<N>::cut(const Facet& facet, std::span<const std::uint8_t> aroun
   const auto is_high = [&](std::size_t i) { return facet.is_high(around[i % count]); };
   const auto edge = [&](std::size_t i) {
     const unsigned e = edge_between(table_of(facet.of.shape), around[i % count], around[(i + 1) % count]);
-    return static_cast<Local>(RegionVertices::kFirstEdge + e);
+    return static_cast<Local>(ShapeVertices::kFirstEdge + e);
   };
   const bool is_ambiguous =
       count == 4 && is_high(0) == is_high(2) && is_high(1) == is_high(3) && is_high(0) != is_high(1);
@@ -273,7 +273,7 @@ void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& ta
 template <int N>
 std::size_t ComplexCaps<N>::fan_start(const Facet& facet, const Part& part) {
   const std::size_t size = part.size();
-  const auto is_corner = [&](std::size_t i) { return part[i % size] < RegionVertices::kFirstEdge; };
+  const auto is_corner = [&](std::size_t i) { return part[i % size] < ShapeVertices::kFirstEdge; };
   std::size_t corners = 0, start = size;
   for (std::size_t i = 0; i < size; ++i) {
     if (!is_corner(i)) continue;
@@ -311,7 +311,7 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
 
 template <int N>
 void ComplexCaps<N>::add_polygons(const Facet& facet, Segments next, Boundary& to) const {
-  for (Local v = RegionVertices::kFirstEdge; v < RegionVertices::kFirstCentre; ++v) {
+  for (Local v = ShapeVertices::kFirstEdge; v < ShapeVertices::kFirstCentre; ++v) {
     Part loop;
     std::vector<Index> key;
     for (Local at = v; next[at] != at; at = std::exchange(next[at], at)) {
@@ -324,7 +324,7 @@ void ComplexCaps<N>::add_polygons(const Facet& facet, Segments next, Boundary& t
       to.triangles.push_back({loop[0], loop[1], loop[2]});
       continue;
     }
-    const auto number = static_cast<Local>(RegionVertices::kFirstCentre + to.centres.size());
+    const auto number = static_cast<Local>(ShapeVertices::kFirstCentre + to.centres.size());
     to.centres.push_back(CapVertex::of_contour(centre));
     to.polygons.push_back(loop);
     for (std::size_t i = 0; i < loop.size(); ++i)
@@ -339,7 +339,7 @@ void ComplexCaps<N>::add_compact(const Facet& facet, const Segments& next,
   const std::size_t first = triangles.size();
   for (const FaceFillings::Triangle& edges : facet.triangles) {
     auto& t = triangles.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i) t[i] = static_cast<Local>(RegionVertices::kFirstEdge + edges[i]);
+    for (std::size_t i = 0; i < 3; ++i) t[i] = static_cast<Local>(ShapeVertices::kFirstEdge + edges[i]);
   }
   const auto is_along = [&](const auto& t) { return next[t[0]] == t[1] || next[t[1]] == t[2] || next[t[2]] == t[0]; };
   const auto is_reversed = [&](const auto& t) {
@@ -363,7 +363,7 @@ ShapePlaces ComplexCaps<N>::places_of(const Facet& facet, const Boundary& bounda
     places.set_alpha(e, p < q ? alpha : 1 - alpha);
   }
   for (std::size_t i = 0; i < boundary.polygons.size(); ++i)
-    places.set_centre(static_cast<unsigned>(RegionVertices::kFirstCentre + i), boundary.polygons[i]);
+    places.set_centre(static_cast<unsigned>(ShapeVertices::kFirstCentre + i), boundary.polygons[i]);
   return places;
 }
 
@@ -371,12 +371,12 @@ template <int N>
 void ComplexCaps<N>::add_regions(const Facet& facet) {
   Boundary boundary = boundary_of(facet);
   const RegionDivision& division = divisions_.of(facet.of.shape, std::move(boundary.triangles));
-  std::array<CapVertex, RegionVertices::kEnd> vertices;
+  std::array<CapVertex, ShapeVertices::kEnd> vertices;
   for (std::size_t i = 0; i < boundary.centres.size(); ++i)
-    vertices[RegionVertices::kFirstCentre + i] = boundary.centres[i];
+    vertices[ShapeVertices::kFirstCentre + i] = boundary.centres[i];
   std::uint64_t known = 0;
   const auto at = [&](unsigned v) {
-    if (v < RegionVertices::kFirstCentre && (known >> v & 1u) == 0) vertices[v] = vertex(facet, v);
+    if (v < ShapeVertices::kFirstCentre && (known >> v & 1u) == 0) vertices[v] = vertex(facet, v);
     known |= std::uint64_t{1} << v;
     return vertices[v];
   };
@@ -385,7 +385,7 @@ void ComplexCaps<N>::add_regions(const Facet& facet) {
     for (std::uint32_t rest = division.own[j]; rest != 0; rest &= rest - 1)
       points.push_back(at(static_cast<unsigned>(std::countr_zero(rest))));
     std::sort(points.begin(), points.end());
-    vertices[RegionVertices::kFirstOwn + j] = add_mean(points);
+    vertices[ShapeVertices::kFirstOwn + j] = add_mean(points);
   }
   for (const RegionDivision::Near& near : division.near)
     between_.push_back({static_cast<std::size_t>(vertices[near.own].number()), facet.points[near.corner],

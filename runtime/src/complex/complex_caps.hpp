@@ -72,7 +72,7 @@ class ComplexCaps {
  private:
   /// A facet's corners and what is known about them.
   struct Facet;
-  /// Vertices of a facet, numbered as RegionVertices; parts of polygons are convex and in the order around it.
+  /// Vertices of a facet, numbered as ShapeVertices; parts of polygons are convex and in the order around it.
   using Local = std::uint8_t;
   using Part = std::vector<Local>;
   /// The boundary of a facet's high part, facing outwards, and the barycentres of the contour's polygons in it.
@@ -92,7 +92,7 @@ class ComplexCaps {
   void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
   /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.
-  using Segments = std::array<Local, RegionVertices::kFirstCentre>;
+  using Segments = std::array<Local, ShapeVertices::kFirstCentre>;
   void add_polygons(const Facet& facet, Segments next, Boundary& to) const;
   void add_compact(const Facet& facet, const Segments& next, std::vector<RegionDivision::Triangle>& triangles) const;
   void add_regions(const Facet& facet);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Divides the regions of 3D shapes, which close 4D contours, into tetrahedra that do not overlap.
+// Divides the regions of 3D shapes, which close 4D contours, into tetrahedra that do not overlap, by emitted tables.
 #pragma once
 
 #include <array>
@@ -9,17 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "regions/shape_volumes.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/tile/region_boundary.hpp"
 
 namespace tegl::detail {
 
 /// The high part of a shape, divided.
 struct RegionDivision {
-  using Triangle = std::array<std::uint8_t, 3>;
+  using Triangle = RegionTriangle;
 
   /// The first vertex sees the others as the boundary's triangles are seen from inside.
-  std::vector<ShapeVolumes::Tetrahedron> tetrahedra;
+  std::vector<RegionTetrahedron> tetrahedra;
   /// The corners (bit v) and points (bit kFirstEdge + e) whose mean a vertex from kFirstOwn on is.
   std::vector<std::uint32_t> own;
   /// A vertex from kFirstOwn on that is not a mean, but lies between a corner and the mean, so near to the corner that
@@ -44,18 +44,17 @@ class RegionDivisions {
 
   /// The division of the high part of a shape with this boundary, whose triangles face outwards. It has the boundary's
   /// triangles. The division depends on the boundary alone.
-  [[nodiscard]] const RegionDivision& of(tables::CellShape shape, std::vector<RegionDivision::Triangle> boundary);
+  [[nodiscard]] const RegionDivision& of(tables::CellShape shape, RegionTriangles boundary);
 
  private:
-  using Boundary = std::vector<RegionDivision::Triangle>;
+  using Boundary = RegionTriangles;
   using Divisions = std::map<std::pair<tables::CellShape, Boundary>, RegionDivision>;
 
   [[nodiscard]] const RegionDivision& of_region(tables::CellShape shape, const Boundary& boundary);
 
   const tables::RegionTable& cube_;
-  Divisions known_;            ///< of shapes
-  Divisions regions_;          ///< of single regions
-  Divisions representatives_;  ///< of single regions, one of those that a symmetry of the shape maps to each other
+  Divisions known_;    ///< of shapes
+  Divisions regions_;  ///< of single regions
 };
 
 }  // namespace tegl::detail

@@ -31,7 +31,7 @@ class SeparatingPlanes {
   [[nodiscard]] bool are_divided(std::span<const Tetrahedron> a, std::span<const Tetrahedron> b) const noexcept;
   [[nodiscard]] bool faces_may_meet(const Tetrahedron& a, const Tetrahedron& b) const noexcept;
 
-  std::span<const tables::PlaneSides<std::uint16_t>> planes_;
+  std::span<const tables::PlaneSides> planes_;
 };
 
 }  // namespace tegl::detail

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -59,13 +60,19 @@ std::vector<Ring> faces_of(CellShape shape) {
   return faces;
 }
 
+/// Numbers of the points at the corners.
+using Points = std::array<unsigned, 8>;
+
 /// The high parts of a face, low-connected, as fans: from the corner between two others, else from the smallest.
-void add_face(CellShape shape, const Ring& face, unsigned signature, Triangles& boundary) {
+void add_face(CellShape shape, const Ring& face, unsigned signature, const Points& points, Triangles& boundary) {
+  const auto smallest = [&](const Ring& corners) {
+    return *std::min_element(corners.begin(), corners.end(), [&](auto a, auto b) { return points[a] < points[b]; });
+  };
   const tables::CellTable& table = compact_table(shape);
   const std::size_t size = face.size();
   const auto high = [&](std::size_t i) { return (signature >> face[i % size] & 1u) != 0; };
   const auto point = [&](std::size_t i) {  // between corners i and i + 1
-    return static_cast<std::uint8_t>(RegionVertices::kFirstEdge +
+    return static_cast<std::uint8_t>(ShapeVertices::kFirstEdge +
                                      edge_between(table, face[i % size], face[(i + 1) % size]));
   };
   const auto add_fan = [&](Ring ring, std::uint8_t from) {
@@ -74,7 +81,7 @@ void add_face(CellShape shape, const Ring& face, unsigned signature, Triangles& 
   };
   bool all = true;
   for (std::size_t i = 0; i < size; ++i) all = all && high(i);
-  if (all) return add_fan(face, *std::min_element(face.begin(), face.end()));
+  if (all) return add_fan(face, smallest(face));
   for (std::size_t i = 0; i < size; ++i) {
     if (!high(i) || high(i + size - 1)) continue;
     Ring corners;
@@ -82,24 +89,23 @@ void add_face(CellShape shape, const Ring& face, unsigned signature, Triangles& 
     Ring ring = corners;
     ring.push_back(point(i + corners.size() - 1));
     ring.push_back(point(i + size - 1));
-    add_fan(ring, corners.size() == 3 ? corners[1] : *std::min_element(corners.begin(), corners.end()));
+    add_fan(ring, corners.size() == 3 ? corners[1] : smallest(corners));
   }
 }
 
 /// The boundary of the high part of a cell; empty if the contour has vertices inside the cell.
-Triangles boundary_of(CellShape shape, unsigned signature) {
+Triangles boundary_of(CellShape shape, unsigned signature, const Points& points) {
   const tables::CellTable& table = compact_table(shape);
   const CellContour contour(table, signature, false);
   Triangles boundary;
   if (contour.list().added() > 0) return boundary;
   for (unsigned i = 0; i < contour.list().simplex_count; ++i) {
     Triangle t;
-    for (unsigned k = 0; k < 3; ++k)
-      t[k] = static_cast<std::uint8_t>(RegionVertices::kFirstEdge + contour.vertex(i, k));
+    for (unsigned k = 0; k < 3; ++k) t[k] = static_cast<std::uint8_t>(ShapeVertices::kFirstEdge + contour.vertex(i, k));
     if (!contour.reverses()) std::swap(t[1], t[2]);  // tables face high
     boundary.push_back(t);
   }
-  for (const Ring& face : faces_of(shape)) add_face(shape, face, signature, boundary);
+  for (const Ring& face : faces_of(shape)) add_face(shape, face, signature, points, boundary);
   return boundary;
 }
 
@@ -120,7 +126,10 @@ TEST(RegionDivisions, AllSignaturesOfAllShapesAreProvedAndFillTheirRegionsWherev
     const tables::CellTable& table = compact_table(shape);
     unsigned divided = 0;
     for (unsigned signature = 1; signature + 1 < 1u << table.corner_count; ++signature) {
-      const Triangles boundary = boundary_of(shape, signature);
+      Points points;
+      std::iota(points.begin(), points.end(), 0u);
+      std::shuffle(points.begin(), points.end(), random);
+      const Triangles boundary = boundary_of(shape, signature, points);
       if (boundary.empty()) continue;
       SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(shape) << " signature " << signature);
       expect_closed(boundary);
@@ -150,7 +159,7 @@ TEST(RegionDivisions, ARegionWhoseOrientationDependsOnThePointsIsNotProved) {
   const tables::CellTable& table = compact_table(CellShape::hexahedron);
   std::array<std::uint8_t, 4> p;
   for (unsigned i = 0; i < 4; ++i)
-    p[i] = static_cast<std::uint8_t>(RegionVertices::kFirstEdge + edge_between(table, 2 * i, 2 * i + 1));
+    p[i] = static_cast<std::uint8_t>(ShapeVertices::kFirstEdge + edge_between(table, 2 * i, 2 * i + 1));
   const Triangles boundary = {{p[0], p[2], p[1]}, {p[0], p[1], p[3]}, {p[0], p[3], p[2]}, {p[1], p[2], p[3]}};
   expect_closed(boundary);
   EXPECT_FALSE(divisions.of(CellShape::hexahedron, boundary).is_proved);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The layout of the tables of shapes of mesh cells, which the generator emits: facets, symmetries, and on which sides
-// of the planes through their corners the other corners are. They do not depend on signatures.
+// of the hyperplanes through their corners the other corners are. They do not depend on signatures.
 #pragma once
 
 #include <array>
@@ -21,15 +21,11 @@ struct CellFacet {
   bool is_inverted;
 };
 
-/// The corners on either side of a plane, as bits. Corners in the plane have none.
-template <class Corners>
+/// The corners on either side of a hyperplane. Corners in it have no bit.
 struct PlaneSides {
-  Corners above;  ///< bits of corners
-  Corners below;  ///< bits of corners
+  std::uint16_t above;  ///< bits of corners
+  std::uint16_t below;  ///< bits of corners
 };
-
-/// Corner indices of a 3D shape are digits to this base in ShapeTable::planes_of_three.
-inline constexpr unsigned kMostCornersIn3D = 8;
 
 /// A shape without contours.
 struct ShapeTable {
@@ -40,12 +36,9 @@ struct ShapeTable {
   /// 3D: symmetry x (corners, edges): the images of corners, then those of edges. Symmetries are sorted by the images
   /// of corners; the identity is the first. Otherwise null.
   const std::uint8_t* symmetries;
-  /// 3D: by corners a, b and c, at (8 a + b) 8 + c: a corner d is above iff the tetrahedron a, b, c, d has positive
-  /// volume. Otherwise null.
-  const PlaneSides<std::uint8_t>* planes_of_three;
   /// 4D: all hyperplanes through four corners, ascending; which side is `above` does not matter, above < below.
   /// Otherwise null.
-  const PlaneSides<std::uint16_t>* planes;
+  const PlaneSides* planes;
 };
 
 }  // namespace tegl::tables

@@ -5,6 +5,7 @@
 
 #include "tegl/cell_contract.hpp"
 #include "tegl/face_filling_contract.hpp"
+#include "tegl/region_contract.hpp"
 #include "tegl/shape_contract.hpp"
 
 namespace tegl::tables {
@@ -17,5 +18,8 @@ const FaceFillingTable* face_filling_table(CellShape shape, bool high_connected)
 
 /// Facets, symmetries and planes of a shape.
 const ShapeTable& shape_table(CellShape shape) noexcept;
+
+/// The divisions of the high parts of a 3D shape; null for other shapes.
+const RegionDivisionTable* region_division_table(CellShape shape) noexcept;
 
 }  // namespace tegl::tables

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Signs of the volumes of tetrahedra in a 3D shape, for all positions of the contour's points on their edges.
+// Places of vertices in a 3D shape of mesh cells.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "tegl/generated/cells.hpp"
+#include "tegl/cell_contract.hpp"
 
 namespace tegl::detail {
 
 /// Vertices in a 3D shape: its corners, the points on its edges, the barycentres of the contour's polygons in the
 /// shape, and vertices inside its regions.
-struct RegionVertices {
+struct ShapeVertices {
   static constexpr unsigned kFirstEdge = 8, kFirstCentre = kFirstEdge + 12, kFirstOwn = kFirstCentre + 8, kEnd = 40;
 };
 
@@ -44,7 +44,7 @@ class ShapePlaces {
   void set_alpha(unsigned edge, double alpha) noexcept { alphas_[edge] = alpha; }
   /// Sets the edges (kFirstEdge + e) whose points' mean a barycentre is.
   void set_centre(unsigned centre, std::vector<std::uint8_t> points) {
-    centres_[centre - RegionVertices::kFirstCentre] = std::move(points);
+    centres_[centre - ShapeVertices::kFirstCentre] = std::move(points);
   }
   [[nodiscard]] Place place(unsigned vertex) const noexcept;
   [[nodiscard]] std::array<Place, 4> places(const std::array<std::uint8_t, 4>& t) const noexcept {
@@ -54,41 +54,7 @@ class ShapePlaces {
  private:
   const tables::CellTable& table_;
   std::array<double, 12> alphas_;
-  std::array<std::vector<std::uint8_t>, RegionVertices::kFirstOwn - RegionVertices::kFirstCentre> centres_;
-};
-
-/// The signs that a volume can have.
-struct VolumeSigns {
-  bool positive = false, negative = false;
-  [[nodiscard]] bool is_positive() const noexcept { return positive && !negative; }
-};
-
-/// A volume is linear in the position of each point, also if a point belongs to a barycentre: then the terms with that
-/// point twice are zero. So its sign is known if all its terms have one sign with the points at the ends of edges.
-class ShapeVolumes {
- public:
-  using Tetrahedron = std::array<std::uint8_t, 4>;
-
-  explicit ShapeVolumes(tables::CellShape shape);
-
-  [[nodiscard]] const tables::CellTable& table() const noexcept { return table_; }
-  /// Sets the edges (kFirstEdge + e) whose points' mean a barycentre is.
-  void set_centre(unsigned centre, std::vector<std::uint8_t> points) {
-    generic_.set_centre(centre, points);
-    points_[centre] = std::move(points);
-  }
-  [[nodiscard]] VolumeSigns signs(const Tetrahedron& t) const noexcept;
-  /// One position of the points.
-  [[nodiscard]] const ShapePlaces& generic() const noexcept { return generic_; }
-
- private:
-  void add_signs(const Tetrahedron& points, VolumeSigns& to) const noexcept;
-
-  const tables::CellTable& table_;
-  ShapePlaces generic_;
-  const tables::PlaneSides<std::uint8_t>* planes_;                           ///< ShapeTable::planes_of_three
-  std::array<std::vector<std::uint8_t>, RegionVertices::kFirstOwn> points_;  ///< corners and edges, by vertex
-  std::array<std::array<std::uint8_t, 2>, RegionVertices::kFirstCentre> ends_{};
+  std::array<std::vector<std::uint8_t>, ShapeVertices::kFirstOwn - ShapeVertices::kFirstCentre> centres_;
 };
 
 }  // namespace tegl::detail
