@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of a mesh of tetrahedra or polyhedra, once per line of the standard input: the other side of mesh_contours.py, which takes
-// turns with it.
+// Contours of a mesh of tetrahedra or polyhedra, once per line of the standard input: the other side of
+// mesh_contours.py, which takes turns with it.
 //
 //     mesh_contours MESH THREADS < COMMANDS
 //
-// MESH: the numbers of points P, cells C and F as 64-bit integers, 3 P doubles, 4 C 32-bit integers, P floats. Polyhedra
-// (F > 0) have F integers instead of 4 C: of each cell the number of faces, of each face the number of corners and the
-// corners. Commands:
-// `plain` extracts at 0 without known edges, `known` with known edges, `edges` finds the edges of a new complex. Each
-// answers with a line: milliseconds, vertices, simplices.
+// MESH: the numbers of points P, cells C and F as 64-bit integers, 3 P doubles, 4 C 32-bit integers, P floats.
+// Polyhedra (F > 0) have F integers instead of 4 C: of each cell the number of faces, of each face the number of
+// corners and the corners. Commands: `plain` extracts at 0 without known edges, `known` with known edges, `edges` finds
+// the edges of a new complex. Each answers with a line: milliseconds, vertices, simplices.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -66,9 +65,8 @@ int main(int argc, char** argv) {
   auto points = read<std::array<double, 3>>(in, sizes[0]);
   const auto corners = read<tegl::Index>(in, sizes[2] > 0 ? sizes[2] : 4 * sizes[1]);
   const auto values = read<float>(in, sizes[0]);
-  tegl::Complex<3> plain = sizes[2] > 0
-                               ? tegl::Complex<3>(std::move(points), polyhedra_of(corners))
-                               : tegl::Complex<3>(std::move(points), tegl::CellType::tetrahedron, corners);
+  tegl::Complex<3> plain = sizes[2] > 0 ? tegl::Complex<3>(std::move(points), polyhedra_of(corners))
+                                        : tegl::Complex<3>(std::move(points), tegl::CellType::tetrahedron, corners);
   plain.set_values<float>(values);
   tegl::Complex<3> known = plain;
   tegl::ExtractOptions options;

@@ -5,8 +5,9 @@ truncated octahedra that fill space, against vtkContourFilter.
 
     bench/mesh_contours.py [--program PROGRAM] [--cubes N | --polyhedra N] [--turns N] [--threads N] [--json FILE]
 
-All sides get the same mesh (N^3 cubes of 6 tetrahedra each, points moved at random; or 2 N^3 truncated octahedra) with the
-same float values, and take turns, so that what disturbs the machine meets all. tegl runs as a child process (mesh_contours.cpp) and measures itself.
+All sides get the same mesh (N^3 cubes of 6 tetrahedra each, points moved at random; or 2 N^3 truncated octahedra) with
+the same float values, and take turns, so that what disturbs the machine meets all. tegl runs as a child process
+(mesh_contours.cpp) and measures itself.
 Prints medians of milliseconds as a table in Markdown: with one thread milliseconds of processor time, which other
 programs hardly influence. VTK: points merged, no normals, as tegl's vertices are shared, too;
 and with points not merged, its default. One thread: sequential processing; more: VTK's own number. With --json, also

@@ -165,9 +165,9 @@ class Complex {
 /// ascending values; `values`: T x #P, row = time, NaN: missing; `points`: T x #P, row = time, if the points move, or
 /// empty. A cut of the contour at a time of `times` is the contour of the complex at that time (in the same
 /// triangulation), if no value is missing; at every other time, too, it is closed away from the border. N = 2 or 3.
-/// Polygons of up to 32 corners have prisms (InvalidArgument for others), and all polyhedra. Errors: InvalidArgument (fewer than 2 times; times not finite or not ascending; a wrong number of
-/// values or points; a coordinate that is not finite, or above 2^1018 in absolute value), TooLarge (2^32 points or
-/// prisms or more). O(T (P + C)) time and memory.
+/// Polygons of up to 32 corners have prisms (InvalidArgument for others), and all polyhedra. Errors: InvalidArgument
+/// (fewer than 2 times; times not finite or not ascending; a wrong number of values or points; a coordinate that is not
+/// finite, or above 2^1018 in absolute value), TooLarge (2^32 points or prisms or more). O(T (P + C)) time and memory.
 template <int N>
 requires DimensionBetween<N, 2, 3>
 [[nodiscard]] Complex<N + 1> in_time(const Complex<N>& complex, std::span<const double> times,
