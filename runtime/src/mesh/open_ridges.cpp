@@ -3,12 +3,12 @@
 // Open faces by random sums.
 //
 // Give each vertex a random point of a space with the contour's dimension, over the prime field of 2^61 - 1 elements.
-// The signed volumes of the simplices add up to the volume of the cone over the faces that do not cancel. The derivative of
-// the sum by the last coordinate of a vertex is a polynomial in the other coordinates, with a term for each uncancelled
-// face around the vertex. It does not depend on the last coordinates, so points have all but these. If there is none,
-// it is 0. If there is one, it is 0 with a probability of at most its degree N - 2 over 2^61 - 1. So one number per
-// vertex, to which each simplex adds, finds the vertices of open faces. Only faces between such vertices are listed and
-// counted.
+// The signed volumes of the simplices add up to the volume of the cone over the faces that do not cancel. The
+// derivative of the sum by the last coordinate of a vertex is a polynomial in the other coordinates, with a term for
+// each uncancelled face around the vertex. It does not depend on the last coordinates, so points have all but these.
+// If there is none, it is 0. If there is one, it is 0 with a probability of at most its degree N - 2 over 2^61 - 1. So
+// one number per vertex, to which each simplex adds, finds the vertices of open faces. Only faces between such vertices
+// are listed and counted.
 //
 // Based on: J. T. Schwartz, "Fast probabilistic algorithms for verification of polynomial identities", 1980.
 #include "mesh/open_ridges.hpp"
