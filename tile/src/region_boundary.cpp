@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Sums, parts and images of boundaries of regions.
-#include "tegl/tile/region_boundary.hpp"
+#include "tegl/region_boundary.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Places of corners, points on edges, and barycentres.
-#include "tegl/tile/shape_places.hpp"
+#include "tegl/shape_places.hpp"
 
 namespace tegl::detail {
 

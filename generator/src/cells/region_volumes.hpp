@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tegl/tile/region_boundary.hpp"
+#include "tegl/region_boundary.hpp"
 
 namespace tegl::gen {
 

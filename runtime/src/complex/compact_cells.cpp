@@ -20,8 +20,8 @@
 #include "regions/separating_planes.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tegl/shape_places.hpp"
 #include "tegl/tile/corners.hpp"
-#include "tegl/tile/shape_places.hpp"
 #include "tile/extract_tables.hpp"
 #include "tile/tesseract_fill.hpp"
 

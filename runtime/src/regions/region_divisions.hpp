@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tegl/generated/tables.hpp"
-#include "tegl/tile/region_boundary.hpp"
+#include "tegl/region_boundary.hpp"
 
 namespace tegl::detail {
 

@@ -2,7 +2,7 @@
 //
 // The layout of the table of regions of 3D shapes, which the generator emits: the high parts of the facets of 4D cells,
 // divided into tetrahedra that do not overlap, wherever the contour's points are on their edges. Vertices are those of
-// detail::ShapeVertices (tegl/tile/shape_places.hpp).
+// detail::ShapeVertices (tegl/shape_places.hpp).
 #pragma once
 
 #include <cstdint>

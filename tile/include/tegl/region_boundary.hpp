@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "tegl/tile/shape_places.hpp"
+#include "tegl/shape_places.hpp"
 
 namespace tegl::detail {
 
