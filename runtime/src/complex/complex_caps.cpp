@@ -55,7 +55,8 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       if (N == 4) {
         const PrismFacet facet = facet_of_prism(cells.polytopes.shape(cell), number);
         const bool flip = (facet.is_inverted != is_inverted) != descends;
-        facet.is_tabled() ? add_tabled(facet, points.data(), flip) : add_solid(facet, points.data(), flip);
+        facet.is_tabled() ? add_tabled(facet, points.data(), flip)
+                          : add_solid(facet, points.data(), cells.polytopes.entangled_base(cell), flip);
         continue;
       }
       // seen from outside, rings are counterclockwise; edges of polygons have the polygon on their left

@@ -20,6 +20,7 @@
 #include "complex/built_cells.hpp"
 #include "complex/cell_cases.hpp"
 #include "regions/cube_frame.hpp"
+#include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
 #include "regions/separating_planes.hpp"
 #include "tegl/generated/cells.hpp"
@@ -460,60 +461,28 @@ class DecidedCells::Filler {
       for (const auto& [t, count] : faces)
         if (count == 1 && ((span_of(t[0]) | span_of(t[1]) | span_of(t[2])) & ~square) == 0) fan.push_back(t);
       const auto [at, is_new] = fans_.try_emplace(square, fan);
-      if (!is_new && at->second != fan) join_fans(at->second, fan);
+      if (!is_new && at->second != fan) join_fans(at->second, fan, regions_);
     }
-  }
-
-  /// Fills the space between two triangulations of the same polygons. Each is a fan from a corner, the middle one of
-  /// three, so they differ in single diagonals of four vertices, which are the corners of a tetrahedron. It lies in the
-  /// hyperplane between the copies of both facets, whichever diagonal is nearer to the centre.
-  void join_fans(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
-    std::vector<Triangle> of_a, of_b;
-    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(of_a));
-    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(of_b));
-    for (std::size_t i = 0; i < of_a.size(); ++i)
-      for (std::size_t k = 0; k < i; ++k) {
-        const Triangle &t = of_a[i], &u = of_a[k];
-        const Local* const fourth = std::find_if(u.begin(), u.end(), [&](Local v) { return !has(t, v); });
-        const Tetrahedron both = {t[0], t[1], t[2], *fourth};
-        const auto is_face = [&](const Triangle& face) {
-          return std::all_of(face.begin(), face.end(), [&](Local v) { return v == *fourth || has(t, v); });
-        };
-        if (is_face(u) && std::count_if(of_b.begin(), of_b.end(), is_face) == 2) regions_.push_back(both);
-      }
   }
 
   /// The regions of a facet in which all polygons are discs.
   void add_regions(std::size_t f, bool high) {
     const Facet& facet = cells_.facets_[f];
-    std::vector<std::vector<Local>> parts;
-    std::vector<Triangle> triangles, of_contour;
+    RegionSides<Local> sides;
     for (const CellFacet& face : facets_of(facet.of->shape)) {
       std::vector<std::uint8_t> around;
       for (unsigned i = 0; i < face.corner_count; ++i) around.push_back(facet.of->corners[face.corners[i]]);
       if (face.corner_count == 4) std::swap(around[2], around[3]);
-      add_parts(around, high, parts, triangles);
+      add_parts(around, high, sides.parts, sides.triangles);
     }
     for (const Piece& piece : sigma_)
-      if (piece.facet == f) of_contour.push_back(piece.triangle);
-    DisjointSets sets(kLocals);
-    for (const auto& part : parts)
-      for (const Local v : part) sets.join(part[0], v);
-    for (const Triangle& t : of_contour) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
-    std::map<Index, std::vector<Local>> regions;  // by set: corners and edges
-    for (const auto& part : parts)
-      for (const Local v : part) regions[sets.find(v)].push_back(v);
-    for (auto& [root, vertices] : regions) {
-      std::sort(vertices.begin(), vertices.end());
-      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-      const bool is_tip = vertices.size() < 2 || vertices[vertices.size() - 2] < kCorners;  // one corner
+      if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
+    const auto add = [&](const std::vector<Local>& vertices) {
       std::uint64_t mask = 0;
       for (const Local v : vertices) mask |= bit_of(v);
-      const Local apex = is_tip ? vertices.back() : add_centre(mask);
-      for (const auto* const of : {&triangles, &of_contour})
-        for (const Triangle& t : *of)
-          if (sets.find(t[0]) == root && !has(t, apex)) regions_.push_back({t[0], t[1], t[2], apex});
-    }
+      return add_centre(mask);
+    };
+    cone_regions(sides, kCorners, kLocals, add, regions_);
   }
 
   /// The parts of a polygon on one side, with their triangles. `around`: its corners in order.

@@ -35,7 +35,8 @@ void add_fan(std::vector<CapVertex> part, std::vector<CapTriangle>& triangles) {
 }  // namespace
 
 template <int N>
-void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, bool flip) {
+void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, std::optional<Index> entangled,
+                               bool flip) {
   if constexpr (N == 4) {
     std::vector<double> at;
     for (const std::uint8_t v : facet.corners) {
@@ -60,7 +61,7 @@ void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, boo
         numbers.push_back(static_cast<Index>(around.back().number()));
       }
       const std::size_t size = loop.size();
-      const Index centre = size > 3 ? numbers_.polygon_in(key_of_facet(facet, points), numbers) : kNoPoint;
+      const Index centre = size > 3 ? numbers_.polygon_in(key_of_facet(facet, points, entangled), numbers) : kNoPoint;
       const auto start = centre == kNoPoint ? fan_of_loop(rules, facet, loop, points) : std::nullopt;
       const CapVertex apex = start ? around[*start] : CapVertex::of_contour(centre);
       for (std::size_t i = start ? *start + 1 : 0, end = start ? i + size - 2 : size; i < end; ++i)
@@ -92,8 +93,8 @@ void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, boo
   }
 }
 
-template void ComplexCaps<2>::add_solid(const PrismFacet&, const Index*, bool);
-template void ComplexCaps<3>::add_solid(const PrismFacet&, const Index*, bool);
-template void ComplexCaps<4>::add_solid(const PrismFacet&, const Index*, bool);
+template void ComplexCaps<2>::add_solid(const PrismFacet&, const Index*, std::optional<Index>, bool);
+template void ComplexCaps<3>::add_solid(const PrismFacet&, const Index*, std::optional<Index>, bool);
+template void ComplexCaps<4>::add_solid(const PrismFacet&, const Index*, std::optional<Index>, bool);
 
 }  // namespace tegl::detail

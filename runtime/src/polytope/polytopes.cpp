@@ -121,6 +121,23 @@ Polytopes Polytopes::solids_in_time(std::size_t points, std::size_t intervals) c
   return prisms;
 }
 
+std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>> prism_over_polygon(std::size_t corners) {
+  std::vector<std::uint8_t> rings;
+  std::vector<std::uint16_t> ends;
+  const auto push = [&](std::size_t v) { rings.push_back(static_cast<std::uint8_t>(v)); };
+  const auto end_face = [&] { ends.push_back(static_cast<std::uint16_t>(rings.size())); };
+  for (std::size_t v = corners; v-- > 0;) push(v);
+  end_face();
+  for (std::size_t v = 0; v < corners; ++v) push(corners + v);
+  end_face();
+  for (std::size_t v = 0; v < corners; ++v) {
+    const std::size_t next = (v + 1) % corners;
+    for (const std::size_t corner : {v, next, corners + next, corners + v}) push(corner);
+    end_face();
+  }
+  return {std::move(rings), std::move(ends)};
+}
+
 Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
   if (dim() == 3) return solids_in_time(points, intervals);
   Polytopes prisms;
@@ -128,24 +145,10 @@ Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
   for (std::size_t k = 0; k < intervals; ++k)
     for (std::size_t c = 0; c < size(); ++c) {
       const std::span<const Index> base = points_of(c);
-      const std::size_t count = base.size();
       corners.clear();
       for (const std::size_t layer : {k, k + 1})
         for (const Index p : base) corners.push_back(static_cast<Index>(layer * points + p));
-      // seen from outside, the base is clockwise and the top counterclockwise if the polygon is counterclockwise
-      Lattice lattice;
-      const auto push = [&](std::size_t v) { lattice.first.push_back(static_cast<std::uint8_t>(v)); };
-      const auto end_face = [&] { lattice.second.push_back(static_cast<std::uint16_t>(lattice.first.size())); };
-      for (std::size_t v = count; v-- > 0;) push(v);
-      end_face();
-      for (std::size_t v = 0; v < count; ++v) push(count + v);
-      end_face();
-      for (std::size_t v = 0; v < count; ++v) {
-        const std::size_t next = (v + 1) % count;
-        for (const std::size_t corner : {v, next, count + next, count + v}) push(corner);
-        end_face();
-      }
-      prisms.add(corners, std::move(lattice));
+      prisms.add(corners, prism_over_polygon(base.size()));
     }
   return prisms;
 }

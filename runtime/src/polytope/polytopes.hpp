@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tegl/contour.hpp"
@@ -69,6 +71,10 @@ class PolytopeShape {
   std::vector<std::array<std::uint8_t, 2>> edges_, faces_of_;  ///< by edge
 };
 
+/// The rings of the faces of the prism over a polygon, and where each ends: seen from outside as the polygon, the base
+/// is clockwise, the top counterclockwise. Corner v of the base is below corner `corners` + v.
+[[nodiscard]] std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>> prism_over_polygon(std::size_t corners);
+
 /// The polygons (of a 2D complex), polyhedra (3D) or prisms over polyhedra (4D) of a complex, in the order of the
 /// input.
 class Polytopes {
@@ -97,6 +103,10 @@ class Polytopes {
   /// may have the same diagonals between edges.
   [[nodiscard]] const std::vector<Index>& entangled() const noexcept { return entangled_; }
   [[nodiscard]] bool is_entangled(std::size_t prism) const noexcept { return is_entangled_[prism % base_count()]; }
+  /// The polyhedron under a prism if it is entangled.
+  [[nodiscard]] std::optional<Index> entangled_base(std::size_t prism) const noexcept {
+    return is_entangled(prism) ? std::optional(static_cast<Index>(prism % base_count())) : std::nullopt;
+  }
   /// Replaces each point p by number[p].
   void renumber(std::span<const Index> number);
 

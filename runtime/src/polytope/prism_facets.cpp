@@ -4,33 +4,19 @@
 #include "polytope/prism_facets.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tegl::detail {
 
 namespace {
 
-/// The prism over a polygon, seen from outside as the polygon: base clockwise, top counterclockwise.
-PolytopeShape prism_over_polygon(std::size_t count) {
-  std::vector<std::uint8_t> rings;
-  std::vector<std::uint16_t> ends;
-  const auto push = [&](std::size_t v) { rings.push_back(static_cast<std::uint8_t>(v)); };
-  const auto end_face = [&] { ends.push_back(static_cast<std::uint16_t>(rings.size())); };
-  for (std::size_t v = count; v-- > 0;) push(v);
-  end_face();
-  for (std::size_t v = 0; v < count; ++v) push(count + v);
-  end_face();
-  for (std::size_t v = 0; v < count; ++v) {
-    const std::size_t next = (v + 1) % count;
-    for (const std::size_t corner : {v, next, count + next, count + v}) push(corner);
-    end_face();
-  }
-  return {std::move(rings), std::move(ends)};
-}
-
 const PolytopeShape& prism_of_corners(std::size_t count) {
   static const auto kPrisms = [] {
     std::vector<PolytopeShape> prisms(3);
-    while (prisms.size() <= kPolytopeCorners) prisms.push_back(prism_over_polygon(prisms.size()));
+    while (prisms.size() <= kPolytopeCorners) {
+      auto [rings, ends] = prism_over_polygon(prisms.size());
+      prisms.emplace_back(std::move(rings), std::move(ends));
+    }
     return prisms;
   }();
   return kPrisms[count];
@@ -76,11 +62,14 @@ std::vector<PrismFacet> facets_of_prism(const PolytopeShape& shape) {
   return facets;
 }
 
-std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points) {
+std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points, std::optional<Index> entangled) {
   const auto point = [&](std::uint8_t corner) { return points[facet.corners[corner]]; };
   std::vector<std::uint8_t> corners(facet.corners.size());
   for (std::size_t v = 0; v < corners.size(); ++v) corners[v] = static_cast<std::uint8_t>(v);
   std::sort(corners.begin(), corners.end(), [&](std::uint8_t a, std::uint8_t b) { return point(a) < point(b); });
+  constexpr Index kNone = ~Index{0};  // no point; nor are the numbers below it, by which polyhedra are counted
+  if (entangled && facet.kind == PrismFacet::Kind::end)
+    return {point(corners[0]), kNone - 1 - *entangled, kNone, kNone};
   // three corners are in one polygon at most
   std::size_t fourth = 3;
   for (std::size_t f = 0; f < facet.shape->face_count(); ++f) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,9 +37,11 @@ struct PrismFacet {
 /// The corners of a hexahedron in the order of the tables, as corners of a facet: bit i of the place is a coordinate.
 inline constexpr std::array<std::uint8_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
 
-/// Four points of a facet that is not tabled, which no other facet of a complex has, whatever the numbering of the
-/// cell: the smallest ones that are not in one polygon, three of them the smallest of all. `points`: at the cell's
-/// corners.
-[[nodiscard]] std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points);
+/// Four ascending numbers of a facet that is not tabled, which no other facet of a complex has, whatever the numbering
+/// of the cell: its smallest points that are not in one polygon, three of them the smallest of all. Several polyhedra
+/// may have four such points in common if they are entangled; their ends have the smallest point and the polyhedron.
+/// `points`: at the cell's corners; `entangled`: Polytopes::entangled_base.
+[[nodiscard]] std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points,
+                                                std::optional<Index> entangled);
 
 }  // namespace tegl::detail

@@ -106,7 +106,6 @@ class PrismCell {
   void add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
                  std::vector<Triangle>& triangles) const;
   void add_cube_regions(std::size_t f, bool high);
-  void join_fans(const std::vector<Triangle>& a, const std::vector<Triangle>& b);
   [[nodiscard]] bool is_in_square(Local v, const Square& square) const noexcept;
   [[nodiscard]] Local add_centre(std::vector<Local> points);
   [[nodiscard]] Local copy_of(Local v);

@@ -141,7 +141,7 @@ class PrismBlockBuilder {
     if (kind == Kind::in_cube) {
       for (std::size_t v = 0; v < 8; ++v) vertex.points[v] = points[facet.corners[kHexahedronCorners[v]]];
     } else if (kind == Kind::loop) {
-      const std::array<Index, 4> key = key_of_facet(facet, points.data());
+      const std::array<Index, 4> key = key_of_facet(facet, points.data(), prisms_.entangled_base(cell));
       std::copy(key.begin(), key.end(), vertex.points.begin());
     }
   }

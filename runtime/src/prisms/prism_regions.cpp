@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "prisms/prism_cell.hpp"
+#include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
 #include "tegl/tile/diagonal_edges.hpp"
 #include "tile/extract_tables.hpp"
@@ -79,27 +80,13 @@ void PrismCell::find_regions(bool high) {
 
 /// The regions of a facet in which all polygons are discs.
 void PrismCell::add_regions(std::size_t f, bool high) {
-  std::vector<std::vector<Local>> parts;
-  std::vector<Triangle> triangles, of_contour;
-  for (std::size_t face = 0; face < facets_[f].shape->face_count(); ++face) add_parts(f, face, high, parts, triangles);
+  RegionSides<Local> sides;
+  for (std::size_t face = 0; face < facets_[f].shape->face_count(); ++face)
+    add_parts(f, face, high, sides.parts, sides.triangles);
   for (const Piece& piece : sigma_)
-    if (piece.facet == f) of_contour.push_back(piece.triangle);
-  DisjointSets sets(kCentres);
-  for (const auto& part : parts)
-    for (const Local v : part) sets.join(part[0], v);
-  for (const Triangle& t : of_contour) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
-  std::map<Index, std::vector<Local>> regions;  // by set: corners and edges
-  for (const auto& part : parts)
-    for (const Local v : part) regions[sets.find(v)].push_back(v);
-  for (auto& [root, vertices] : regions) {
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const bool is_tip = vertices.size() < 2 || vertices[vertices.size() - 2] < kCorners;  // one corner
-    const Local apex = is_tip ? vertices.back() : add_centre(vertices);
-    for (const auto* const of : {&triangles, &of_contour})
-      for (const Triangle& t : *of)
-        if (sets.find(t[0]) == root && !has(t, apex)) regions_.push_back({t[0], t[1], t[2], apex});
-  }
+    if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
+  cone_regions(
+      sides, kCorners, kCentres, [&](const std::vector<Local>& vertices) { return add_centre(vertices); }, regions_);
 }
 
 /// The parts of a polygon on one side, with their triangles.
@@ -184,26 +171,8 @@ void PrismCell::add_cube_regions(std::size_t f, bool high) {
       if (count == 1 && std::all_of(t.begin(), t.end(), [&](Local v) { return is_in_square(v, square); }))
         fan.push_back(t);
     const auto [at, is_new] = fans_.try_emplace(square, fan);
-    if (!is_new && at->second != fan) join_fans(at->second, fan);
+    if (!is_new && at->second != fan) join_fans(at->second, fan, regions_);
   }
-}
-
-/// Fills the space between two triangulations of the same polygons. Each is a fan from a corner, the middle one of
-/// three, so they differ in single diagonals of four vertices, which are the corners of a tetrahedron.
-void PrismCell::join_fans(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
-  std::vector<Triangle> of_a, of_b;
-  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(of_a));
-  std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(of_b));
-  for (std::size_t i = 0; i < of_a.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      const Triangle &t = of_a[i], &u = of_a[k];
-      const Local* const fourth = std::find_if(u.begin(), u.end(), [&](Local v) { return !has(t, v); });
-      const Tetrahedron both = {t[0], t[1], t[2], *fourth};
-      const auto is_face = [&](const Triangle& face) {
-        return std::all_of(face.begin(), face.end(), [&](Local v) { return v == *fourth || has(t, v); });
-      };
-      if (is_face(u) && std::count_if(of_b.begin(), of_b.end(), is_face) == 2) regions_.push_back(both);
-    }
 }
 
 }  // namespace tegl::detail

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tetrahedra in the regions of one side of a facet of a 4D cell, for any numbering of the cell's vertices.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <map>
+#include <vector>
+
+#include "base/disjoint_sets.hpp"
+
+namespace tegl::detail {
+
+template <class Local>
+bool has_vertex(const std::array<Local, 3>& t, Local v) noexcept {
+  return std::find(t.begin(), t.end(), v) != t.end();
+}
+
+/// The boundary of the regions of one side of a facet in which all polygons of the contour are discs.
+template <class Local>
+struct RegionSides {
+  std::vector<std::vector<Local>> parts;        ///< the side's parts of the facet's polygons, by their vertices
+  std::vector<std::array<Local, 3>> triangles;  ///< of the parts
+  std::vector<std::array<Local, 3>> of_contour;
+};
+/// Cones each region: from the one corner, if it has only one, else from a centre. Appends tetrahedra to `to`. Numbers
+/// below `first_corner` are on edges, those from there on are corners, all below `end`. `add_centre(vertices)`: numbers
+/// a vertex in the middle of the corners and edges of a region, ascending.
+template <class Local, class AddCentre>
+void cone_regions(const RegionSides<Local>& sides, Local first_corner, Local end, const AddCentre& add_centre,
+                  std::vector<std::array<Local, 4>>& to) {
+  DisjointSets sets(end);
+  for (const auto& part : sides.parts)
+    for (const Local v : part) sets.join(part[0], v);
+  for (const auto& t : sides.of_contour) sets.join(t[0], t[1]), sets.join(t[0], t[2]);
+  std::map<Index, std::vector<Local>> regions;  // by set: corners and edges
+  for (const auto& part : sides.parts)
+    for (const Local v : part) regions[sets.find(v)].push_back(v);
+  for (auto& [root, vertices] : regions) {
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const bool is_tip = vertices.size() < 2 || vertices[vertices.size() - 2] < first_corner;  // one corner
+    const Local apex = is_tip ? vertices.back() : add_centre(vertices);
+    for (const auto* const of : {&sides.triangles, &sides.of_contour})
+      for (const auto& t : *of)
+        if (sets.find(t[0]) == root && !has_vertex(t, apex)) to.push_back({t[0], t[1], t[2], apex});
+  }
+}
+
+/// Fills the space between two triangulations of the same polygons. Each is a fan from a corner, the middle one of
+/// three, so they differ in single diagonals of four vertices, which are the corners of a tetrahedron. It lies in the
+/// hyperplane between the copies of both facets, whichever diagonal is nearer to the centre. `a`, `b`: ascending.
+template <class Local>
+void join_fans(const std::vector<std::array<Local, 3>>& a, const std::vector<std::array<Local, 3>>& b,
+               std::vector<std::array<Local, 4>>& to) {
+  std::vector<std::array<Local, 3>> of_a, of_b;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(of_a));
+  std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(of_b));
+  for (std::size_t i = 0; i < of_a.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto &t = of_a[i], &u = of_a[k];
+      const Local* const fourth = std::find_if(u.begin(), u.end(), [&](Local v) { return !has_vertex(t, v); });
+      const auto is_face = [&](const std::array<Local, 3>& face) {
+        return std::all_of(face.begin(), face.end(), [&](Local v) { return v == *fourth || has_vertex(t, v); });
+      };
+      if (is_face(u) && std::count_if(of_b.begin(), of_b.end(), is_face) == 2)
+        to.push_back({t[0], t[1], t[2], *fourth});
+    }
+}
+
+}  // namespace tegl::detail
