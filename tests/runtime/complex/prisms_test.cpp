@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <set>
 #include <string>
@@ -407,6 +408,55 @@ TEST(Prisms, CapsCloseContoursAtTheBorder) {
                 measure(extract<double>(swept, 0.5, options)).content.value(),
                 name == "truncated octahedra" ? 1e-2 : 1e-9)
         << name;
+  }
+}
+
+/// Two prisms over pentagons, one in the notch of the other: they have two faces in common. `order`: numbers of points.
+FacedMesh notched_pair(const std::vector<Index>& order) {
+  const std::vector<std::array<double, 2>> outline = {{0, 0}, {-1, -1}, {1, -1}, {-1, -2}, {1, -2}, {-2, 1}, {2, 1}};
+  FacedMesh mesh;
+  mesh.points.resize(2 * outline.size());
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    mesh.points[order[i]] = {outline[i / 2][0], static_cast<double>(i % 2), outline[i / 2][1]};
+  for (const std::array<std::size_t, 5>& base : {std::array<std::size_t, 5>{1, 0, 2, 4, 3}, {1, 0, 2, 6, 5}}) {
+    CellFaces3 faces(2);
+    for (std::size_t i = 0; i < 5; ++i) {
+      faces[0].push_back(order[2 * base[4 - i]]);
+      faces[1].push_back(order[2 * base[i] + 1]);
+      const std::size_t a = base[i], b = base[(i + 1) % 5];
+      faces.push_back({order[2 * a], order[2 * b], order[2 * b + 1], order[2 * a + 1]});
+    }
+    mesh.add(std::move(faces));
+  }
+  return mesh;
+}
+
+TEST(Prisms, EndsOfCellsWithTwoCommonFacesAreTheirOwn) {
+  // The four smallest points of both prisms are the same in some of these orders.
+  std::mt19937_64 random(1);
+  std::vector<Index> order(14);
+  std::iota(order.begin(), order.end(), Index{0});
+  for (int i = 0; i < 40; ++i) {
+    const FacedMesh mesh = notched_pair(order);
+    Complex<3> complex = mesh.complex();
+    std::vector<double> values(kPrismTimes.size() * 14);
+    for (std::size_t v = 0; v < values.size(); ++v) {  // high at the lower points: a sheet through both prisms
+      const double size = 0.1 + static_cast<double>(random() >> 11) * 0x1p-53;
+      values[v / 14 * 14 + order[v % 14]] = v % 2 == 0 ? size : -size;
+    }
+    const Complex<4> swept = in_time<3>(complex, kPrismTimes, values);
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : kAllRules) {
+        SCOPED_TRACE(i);
+        const auto contour = extract<double>(swept, 0.0, prism_options(t, a));
+        expect_oriented_manifold(contour);
+        for (const std::size_t k : {1u, 2u}) {
+          complex.set_values(layer_of(values, 14, k));
+          const auto step = extract<double>(complex, 0.0, prism_options(t, a));
+          EXPECT_TRUE(same_surface(step, slice(contour, Hyperplane<4>::across(3, kPrismTimes[k]))));
+        }
+      }
+    std::shuffle(order.begin(), order.end(), random);
   }
 }
 
