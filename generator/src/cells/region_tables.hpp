@@ -41,8 +41,8 @@ struct CapTables {
                                                             std::span<const FaceFillings> fillings);
 
 /// Certifies each record: its boundary is closed and connected and precedes the next one, the oriented boundaries of
-/// its tetrahedra add up to it, and each tetrahedron is positive for all positions of the points on their edges. There,
-/// an own vertex is the mean of its points or, near a corner, any point near enough to the corner. Errors:
+/// its tetrahedra add up to it, and each tetrahedron is positive for all positions of the points on their edges. Own
+/// vertices are the means of their points or, near a corner, any points near enough to the corner. Errors:
 /// CertificateFailed.
 void certify_region_tables(const Cell& cell, const CapTables& tables);
 
