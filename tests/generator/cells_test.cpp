@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -367,7 +368,7 @@ TEST(ShapeTables, HaveTheNumbersThatAreKnown) {
   EXPECT_EQ(table(CellShape::hexahedron_prism).plane_count, 140);
 }
 
-/// What the certificate says of shapes, of which one was changed; "" if it accepts them.
+/// The message of the certificate about shapes of which one was changed; "" if it accepts them.
 template <class Change>
 std::string verdict_with(CellShape shape, const Change& change) {
   static const std::vector<ShapeTables> kAll = make_all_shape_tables();
@@ -422,15 +423,14 @@ CapTables regions_of_wedges() {
                             fillings);
 }
 
-TEST(RegionTables, TheEmittedOnesAreThoseThatWereCertified) {
-  const CapTables of = regions_of_wedges();
-  EXPECT_EQ(of.unproved, 0u);
-  const tables::RegionDivisionTable& table = *tables::region_division_table(CellShape::wedge);
+void expect_emitted(const tables::RegionDivisionTable& table, const CapTables& of) {
   ASSERT_EQ(table.count, of.records.size());
   for (std::size_t i = 0; i < of.records.size(); ++i) {
     const tables::RegionRecord &a = table.records[i], &b = of.records[i];
     ASSERT_EQ(a.first_triangle, b.first_triangle);
     ASSERT_EQ(a.first_tetrahedron, b.first_tetrahedron);
+    ASSERT_EQ(a.first_own, b.first_own);
+    ASSERT_EQ(a.first_near, b.first_near);
     ASSERT_EQ(a.triangles, b.triangles);
     ASSERT_EQ(a.tetrahedra, b.tetrahedra);
     ASSERT_EQ(a.own, b.own);
@@ -440,9 +440,45 @@ TEST(RegionTables, TheEmittedOnesAreThoseThatWereCertified) {
     ASSERT_TRUE(std::equal(of.triangles[i].begin(), of.triangles[i].end(), table.triangles + 3 * i));
   for (std::size_t i = 0; i < of.tetrahedra.size(); ++i)
     ASSERT_TRUE(std::equal(of.tetrahedra[i].begin(), of.tetrahedra[i].end(), table.tetrahedra + 4 * i));
+  ASSERT_EQ(table.own == nullptr, of.own.empty());
   ASSERT_TRUE(std::equal(of.own.begin(), of.own.end(), table.own));
-  for (std::size_t i = 0; i < of.near.size(); ++i) ASSERT_EQ(table.near[i].first_seen, of.near[i].first_seen);
+  ASSERT_EQ(table.near == nullptr, of.near.empty());
+  for (std::size_t i = 0; i < of.near.size(); ++i) {
+    ASSERT_EQ(table.near[i].own, of.near[i].own);
+    ASSERT_EQ(table.near[i].corner, of.near[i].corner);
+    ASSERT_EQ(table.near[i].seen, of.near[i].seen);
+    ASSERT_EQ(table.near[i].first_seen, of.near[i].first_seen);
+  }
+}
+
+TEST(RegionTables, TheEmittedOnesAreThoseThatWereCertified) {
+  struct Expected {
+    const char* name;
+    CellShape shape;
+    std::uint64_t boundaries, unproved;
+  };
+  const Expected expected[] = {{"tetrahedron", CellShape::tetrahedron, 109, 0},
+                               {"wedge", CellShape::wedge, 1'392, 0},
+                               {"pyramid", CellShape::pyramid, 631, 0},
+                               {"hexahedron", CellShape::hexahedron, 10'166, 5},
+                               {"octahedron", CellShape::octahedron, 8'018, 1}};
+  std::vector<CellTables> compact;
+  for (const Expected& of : expected) compact.push_back(make_cell_tables(mesh_cell(of.name), Triangulation::compact));
+  const std::vector<CapTables> all = make_all_region_tables(make_all_shape_tables(), make_all_face_fillings(compact));
+  ASSERT_EQ(all.size(), std::size(expected));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SCOPED_TRACE(expected[i].name);
+    EXPECT_EQ(all[i].name, expected[i].name);
+    EXPECT_EQ(all[i].boundaries, expected[i].boundaries);
+    EXPECT_EQ(all[i].unproved, expected[i].unproved);
+    expect_emitted(*tables::region_division_table(expected[i].shape), all[i]);
+  }
   EXPECT_EQ(tables::region_division_table(CellShape::triangle), nullptr);
+}
+
+template <class Array>
+std::uint32_t size_of(const Array& array) {
+  return static_cast<std::uint32_t>(array.size());
 }
 
 TEST(RegionTables, TheCertificateNamesEveryKindOfFault) {
@@ -484,6 +520,19 @@ TEST(RegionTables, TheCertificateNamesEveryKindOfFault) {
   ASSERT_LT(near, regions.records.size());
   expect_fault(near, "a tetrahedron that may be negative",
                [](CapTables& t, const Record& r) { t.near[r.first_near].seen = 0; });
+  const auto expect_outside = [&](std::size_t region, const auto& change) {
+    expect_fault(region, "a range outside of its array", change);
+  };
+  expect_outside(several, [](CapTables& t, Record& r) { r.first_triangle = size_of(t.triangles) - r.triangles + 1; });
+  expect_outside(several, [](CapTables& t, Record& r) { r.first_tetrahedron = size_of(t.tetrahedra) + 1; });
+  expect_outside(coned, [](CapTables& t, Record& r) { r.first_own = static_cast<std::uint16_t>(t.own.size()); });
+  expect_outside(near, [](CapTables& t, Record& r) { r.first_near = static_cast<std::uint16_t>(t.near.size()); });
+  expect_outside(near, [](CapTables& t, const Record& r) { t.near[r.first_near].first_seen = size_of(t.triangles); });
+  for (const unsigned bit : {6u, 8u + 9u, 20u})  // a wedge has six corners and nine edges
+    expect_fault(coned, "a mean of a point that does not exist",
+                 [&](CapTables& t, const Record& r) { t.own[r.first_own] |= 1u << bit; });
+  expect_fault(near, "a vertex near a corner that does not exist",
+               [](CapTables& t, const Record& r) { t.near[r.first_near].corner = 6; });
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -206,28 +208,58 @@ class Boundaries {
   std::map<std::uint8_t, std::uint8_t> next_;  ///< the contour's segments
 };
 
+/// An offset or a count in the type of a record.
+template <class Field>
+Field narrowed(std::size_t value) {
+  if (!std::in_range<Field>(value))
+    throw std::logic_error(fmt::format("an offset or a count of {} in a table of regions; expected at most {}", value,
+                                       std::numeric_limits<Field>::max()));
+  return static_cast<Field>(value);
+}
+
 /// Appends a region with its division.
 void append(const RegionTriangles& boundary, const CapDivision& division, CapTables& to) {
   tables::RegionRecord& record = to.records.emplace_back();
-  record.first_triangle = static_cast<std::uint32_t>(to.triangles.size());
-  record.first_tetrahedron = static_cast<std::uint32_t>(to.tetrahedra.size());
-  record.first_own = static_cast<std::uint16_t>(to.own.size());
-  record.first_near = static_cast<std::uint16_t>(to.near.size());
-  record.triangles = static_cast<std::uint8_t>(boundary.size());
-  record.tetrahedra = static_cast<std::uint8_t>(division.tetrahedra.size());
-  record.own = static_cast<std::uint8_t>(division.own.size());
-  record.near = static_cast<std::uint8_t>(division.near.size());
+  record.first_triangle = narrowed<std::uint32_t>(to.triangles.size());
+  record.first_tetrahedron = narrowed<std::uint32_t>(to.tetrahedra.size());
+  record.first_own = narrowed<std::uint16_t>(to.own.size());
+  record.first_near = narrowed<std::uint16_t>(to.near.size());
+  record.triangles = narrowed<std::uint8_t>(boundary.size());
+  record.tetrahedra = narrowed<std::uint8_t>(division.tetrahedra.size());
+  record.own = narrowed<std::uint8_t>(division.own.size());
+  record.near = narrowed<std::uint8_t>(division.near.size());
   to.triangles.insert(to.triangles.end(), boundary.begin(), boundary.end());
   to.tetrahedra.insert(to.tetrahedra.end(), division.tetrahedra.begin(), division.tetrahedra.end());
   to.own.insert(to.own.end(), division.own.begin(), division.own.end());
   for (const CapDivision::Near& near : division.near) {
-    to.near.push_back({near.own, near.corner, static_cast<std::uint8_t>(near.seen.size()),
-                       static_cast<std::uint32_t>(to.triangles.size())});
+    to.near.push_back({near.own, near.corner, narrowed<std::uint8_t>(near.seen.size()),
+                       narrowed<std::uint32_t>(to.triangles.size())});
     to.triangles.insert(to.triangles.end(), near.seen.begin(), near.seen.end());
   }
 }
 
-/// Checks the tetrahedra of one division.
+/// What a record refers to beyond the arrays or the shape, or null.
+const char* missing(const Outline& outline, const CapTables& tables, const tables::RegionRecord& record) {
+  const auto are_in = [](const auto& array, std::size_t first, std::size_t count) {
+    return first <= array.size() && count <= array.size() - first;
+  };
+  if (!are_in(tables.triangles, record.first_triangle, record.triangles) ||
+      !are_in(tables.tetrahedra, record.first_tetrahedron, record.tetrahedra) ||
+      !are_in(tables.own, record.first_own, record.own) || !are_in(tables.near, record.first_near, record.near))
+    return "a range outside of its array";
+  const std::uint32_t corners = (1u << outline.table.corner_count) - 1, edges = (1u << outline.table.edge_count) - 1;
+  for (unsigned i = 0; i < record.own; ++i)
+    if ((tables.own[record.first_own + i] & ~(corners | edges << Vertices::kFirstEdge)) != 0)
+      return "a mean of a point that does not exist";
+  for (unsigned i = 0; i < record.near; ++i) {
+    const tables::NearVertex& near = tables.near[record.first_near + i];
+    if (!are_in(tables.triangles, near.first_seen, near.seen)) return "a range outside of its array";
+    if (near.corner >= outline.table.corner_count) return "a vertex near a corner that does not exist";
+  }
+  return nullptr;
+}
+
+/// Checks the tetrahedra of one division, whose record refers to nothing that is missing.
 class DivisionCheck {
  public:
   DivisionCheck(const Outline& outline, const CapTables& tables, const tables::RegionRecord& record)
@@ -240,7 +272,7 @@ class DivisionCheck {
 
   [[nodiscard]] const RegionTriangles& boundary() const { return boundary_; }
 
-  /// What is wrong, or null.
+  /// The first fault that is found, or null.
   [[nodiscard]] const char* fault() const {
     if (!std::is_sorted(boundary_.begin(), boundary_.end())) return "triangles that do not ascend";
     if (!is_closed(boundary_) || detail::split_regions(boundary_).size() != 1) return "a boundary of no single region";
@@ -333,15 +365,16 @@ std::uint64_t digest(const CapTables& of) {
 CapTables make_region_tables(const Cell& cell, const ShapeTables& shape, std::span<const FaceFillings> fillings) {
   const Outline outline(cell);
   CapTables result{cell.name};
-  std::set<RegionTriangles> regions;
+  std::set<RegionTriangles> distinct, regions;
   Boundaries boundaries(cell, shape, fillings);
   for (unsigned s = 1; s < 1u << cell.tile.corner_count(); ++s)
     boundaries.list(s, [&](const RegionTriangles& boundary) {
-      ++result.boundaries;
+      if (!distinct.insert(boundary).second) return;
       detail::RegionMap map{};
       for (const RegionTriangles& region : detail::split_regions(boundary))
         regions.insert(detail::representative_of(region, outline.table, shape.symmetries, map));
     });
+  result.boundaries = distinct.size();
   const std::vector<RegionTriangles> all(regions.begin(), regions.end());
   std::vector<std::optional<CapDivision>> divisions(all.size());
   const auto nothing = [] { return 0; };
@@ -362,11 +395,14 @@ void certify_region_tables(const Cell& cell, const CapTables& tables) {
   const Outline outline(cell);
   RegionTriangles before;
   for (std::size_t i = 0; i < tables.records.size(); ++i) {
+    const auto expect_none = [&](const char* fault) {
+      if (fault != nullptr)
+        throw Error(ErrorCode::CertificateFailed, fmt::format("{}, region {}: {}", cell.name, i, fault));
+    };
+    expect_none(missing(outline, tables, tables.records[i]));
     const DivisionCheck check(outline, tables, tables.records[i]);
-    const char* fault = check.fault();
-    if (fault == nullptr && check.boundary() <= before) fault = "a boundary that does not follow the one before";
-    if (fault != nullptr)
-      throw Error(ErrorCode::CertificateFailed, fmt::format("{}, region {}: {}", cell.name, i, fault));
+    expect_none(check.fault());
+    if (check.boundary() <= before) expect_none("a boundary that does not follow the one before");
     before = check.boundary();
   }
 }

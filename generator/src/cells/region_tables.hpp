@@ -26,13 +26,14 @@ struct CapTables {
   std::vector<RegionTetrahedron> tetrahedra = {};
   std::vector<std::uint32_t> own = {};
   std::vector<tables::NearVertex> near = {};
-  std::uint64_t boundaries = 0;  ///< of the high parts of shapes
+  std::uint64_t boundaries = 0;  ///< different ones of the high parts of shapes
   std::uint64_t unproved = 0;    ///< regions up to symmetry without a division that is proved; they have no record
 };
 
-/// All regions of a 3D shape as a facet, certified. Those of all signatures, with both ways to join the high corners of
-/// each ambiguous quadrilateral, all fans in the polygons, and, in each polygon of the contour, a barycentre or one of
-/// the compact `fillings` by low and high. Errors: CertificateFailed.
+/// Lists, divides and certifies all regions of a 3D shape as a facet. They are the high parts for all signatures, with
+/// both ways to join the high corners of each ambiguous quadrilateral, all fans in the polygons, and, in each polygon
+/// of the contour, a barycentre or one of the compact `fillings` by low and high. Errors: CertificateFailed;
+/// std::logic_error if an offset or a count does not fit into its record.
 [[nodiscard]] CapTables make_region_tables(const Cell& cell, const ShapeTables& shape,
                                            std::span<const FaceFillings> fillings);
 /// The tables of all 3D shapes in the order of tables::CellShape.
@@ -40,8 +41,9 @@ struct CapTables {
                                                             std::span<const FaceFillings> fillings);
 
 /// Certifies each record: its boundary is closed and connected and precedes the next one, the oriented boundaries of
-/// its tetrahedra add up to it, and each tetrahedron is positive for all positions of the points on their edges. Those
-/// at own vertices: their mean or, near a corner, points near enough to it. Errors: CertificateFailed.
+/// its tetrahedra add up to it, and each tetrahedron is positive for all positions of the points on their edges. Own
+/// vertices are the means of their points or, near a corner, any points near enough to the corner. Errors:
+/// CertificateFailed.
 void certify_region_tables(const Cell& cell, const CapTables& tables);
 
 /// The arrays of the tables as C++, within namespace tegl::tables.

@@ -103,9 +103,9 @@ struct Connections {
     std::array<Sides, 8> joined;
     for (std::size_t f = 0; f < 8; ++f)
       joined[f] = hn::IfThenElseZero(hn::Ne(hn::And(reached, cubes[f]), hn::Zero(d)), cubes[f]);
-    const auto along_0 = hn::Or(hn::Or(joined[0], joined[1]), hn::Or(joined[2], joined[3]));
-    const auto along_2 = hn::Or(hn::Or(joined[4], joined[5]), hn::Or(joined[6], joined[7]));
-    return hn::Or(reached, hn::Or(along_0, along_2));
+    const auto along_01 = hn::Or(hn::Or(joined[0], joined[1]), hn::Or(joined[2], joined[3]));
+    const auto along_23 = hn::Or(hn::Or(joined[4], joined[5]), hn::Or(joined[6], joined[7]));
+    return hn::Or(reached, hn::Or(along_01, along_23));
   }
   /// The corners that are connected with no other.
   HWY_INLINE Sides isolated() const {

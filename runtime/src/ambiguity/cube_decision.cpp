@@ -238,15 +238,15 @@ Word join(const FaceBlock<3>& block, double isovalue, Resolved& tiles) noexcept 
   const auto& joins = cube_joins();
   // list the cubes with one pair of edges, without branches
   std::array<std::uint8_t, kWordBits> numbers, bits;
-  std::array<const tables::CubeJoin*, kWordBits> asked;
-  asked[0] = nullptr;  // the others are not cleared, which would take longer than to list them
+  std::array<const tables::CubeJoin*, kWordBits> cubes;
+  cubes[0] = nullptr;  // the others are not cleared, which would take longer than to list them
   std::size_t count = 0;
   Word with_more = 0;  // pairs of edges
   for (std::size_t j = 0; j < tiles.count; ++j) {
     const tables::CubeJoin& cube = joins[tiles.entries[j]];
     numbers[count] = static_cast<std::uint8_t>(j);
     bits[count] = tiles.bits[j];
-    asked[count] = &cube;
+    cubes[count] = &cube;
     count += static_cast<std::size_t>(cube.pairs == 1);
     with_more |= Word{cube.pairs > 1} << j;
   }
@@ -256,11 +256,11 @@ Word join(const FaceBlock<3>& block, double isovalue, Resolved& tiles) noexcept 
     tiles.choices[j] = static_cast<std::uint8_t>(detail::decide_centre(values, isovalue, tiles.entries[j]));
   }
   JoinQuestions questions;
-  ask(block, {bits.data(), count}, asked.data(), questions);
+  ask(block, {bits.data(), count}, cubes.data(), questions);
   answer(questions, isovalue);
   Word unsure = 0;
   for (std::size_t q = 0; q < count; ++q) {
-    const unsigned joined = 1u + unsigned{asked[q]->high};  // choices as numbers: separate, low, high
+    const unsigned joined = 1u + unsigned{cubes[q]->high};  // choices as numbers: separate, low, high
     const auto is_joined = unsigned{questions.answers[q] == JoinQuestions::yes};
     tiles.choices[numbers[q]] = static_cast<std::uint8_t>(joined * is_joined);
     unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << numbers[q];

@@ -51,9 +51,10 @@ struct JoinQuestions {
   enum Answer : std::uint8_t { no, yes, unsure };
 
   std::size_t count = 0;
-  /// `answer` writes zeros to the entries from `count` up to the next whole register.
+  /// `answer` writes zeros to the entries of `ends` and `sign` from `count` up to the next whole register.
   alignas(64) std::array<std::array<double, kMost>, 8> ends;
   alignas(64) std::array<double, kMost> sign;  ///< 1: A and C are high; -1: they are low
+  /// With AVX-512, the entries from `count` up to the next whole register are written, too, and have no meaning.
   std::array<Answer, kMost> answers;
 
   /// Adds a question. `value(corner)`: the sample at a corner of the cube.

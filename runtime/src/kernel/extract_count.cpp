@@ -338,8 +338,8 @@ template <int N>
 
 namespace {
 
-/// Counts the sizes of 4D tiles that the data do not affect. Their entries are seldom in a cache. So those of a row are
-/// requested first, and read after its other tiles are assembled.
+/// Counts the sizes of 4D tiles that the data do not affect. Their entries are seldom in a cache. So they are requested
+/// while other tiles of the row are assembled, and read at its end, or when 64 requests are waiting.
 class TilesOfTable {
  public:
   TilesOfTable(const RowTable& table, TileCount& count) noexcept : table_(table), count_(count) {}

@@ -153,6 +153,35 @@ TEST(RegionDivisions, AllSignaturesOfAllShapesAreProvedAndFillTheirRegionsWherev
   }
 }
 
+/// The emitted table has regions up to symmetry. Those that a share of the symmetries makes of them are found in it.
+TEST(RegionDivisions, ListedRegionsAreProvedAndFilledInOtherPositionsToo) {
+  constexpr std::size_t kStep = 5;  // of symmetries; the numbers of them are multiples of 2 and 3
+  RegionDivisions divisions(Triangulation::compact, tile::Alternative::low);
+  for (const CellShape shape : kSolid) {
+    const tables::CellTable& table = compact_table(shape);
+    const tables::RegionDivisionTable& listed = *tables::region_division_table(shape);
+    const tables::ShapeTable& symmetric = tables::shape_table(shape);
+    const std::size_t stride = table.corner_count + table.edge_count;
+    for (std::uint32_t i = 0; i < listed.count; ++i) {
+      RegionTriangles region(listed.records[i].triangles);
+      for (std::size_t j = 0; j < region.size(); ++j)
+        std::copy_n(listed.triangles + 3 * (listed.records[i].first_triangle + j), 3, region[j].begin());
+      for (std::size_t s = i % kStep; s < symmetric.symmetry_count; s += kStep) {
+        SCOPED_TRACE(testing::Message() << "shape " << static_cast<int>(shape) << " region " << i << " symmetry " << s);
+        RegionMap map{};
+        const RegionTriangles boundary =
+            representative_of(region, table, {symmetric.symmetries + s * stride, stride}, map);
+        const RegionDivision& division = divisions.of(shape, boundary);
+        ASSERT_TRUE(division.is_proved);
+        RegionTriangles sum;
+        for (const RegionTetrahedron& t : division.tetrahedra)
+          for (const RegionTriangle& face : detail::faces_of(t)) add_to_boundary(sum, face);
+        ASSERT_EQ(sum, boundary);
+      }
+    }
+  }
+}
+
 /// The points on four parallel edges span a tetrahedron that is positive or negative, depending on where they are.
 TEST(RegionDivisions, ARegionWhoseOrientationDependsOnThePointsIsNotProved) {
   RegionDivisions divisions(Triangulation::compact, tile::Alternative::low);
