@@ -169,7 +169,7 @@ std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tili
   if (list.empty()) return "";
   return list +
          " spans 360 degrees, and the contour ends at both its ends: --periodic auto continues it across, "
-         "--periodic none leaves this remark out";
+         "--periodic none suppresses this remark";
 }
 
 template std::string ExtractionOptions::take_longitudes(const Grid<2>&, Tiling&) const;
