@@ -82,8 +82,8 @@ def error_at(name, angle, count):
 
 def draw_by_angle(path, count):
     sys.dont_write_bytecode = True
-    svg = runpy.run_path(str(pathlib.Path(__file__).parents[1] / "scripts/triangulation_pictures"))["Svg"](580, 330)
-    left, top, width, height, most, angles = 60, 20, 480, 260, 0.012, range(0, 91, 3)
+    svg = runpy.run_path(str(pathlib.Path(__file__).parents[1] / "scripts/triangulation_pictures"))["Svg"](580, 350)
+    left, top, width, height, most, angles = 60, 40, 480, 260, 0.012, range(0, 91, 3)
 
     def to_page(angle, error):
         return left + width * angle / 90, top + height * (1 - error / most)
@@ -92,7 +92,8 @@ def draw_by_angle(path, count):
         svg.line(to_page(0, 0.002 * i), to_page(90, 0.002 * i), "#c2c7cc", 0.6)
         svg.text(left - 8, to_page(0, 0.002 * i)[1] + 4, f"{0.002 * i:g}", 11, "end")
         svg.text(to_page(15 * i, 0)[0], top + height + 18, f"{15 * i}°", 11)
-    svg.text(left + width / 2, top + height + 40, "angle; RMS error in steps of the cubic samples", 12)
+    svg.text(left + width / 2, top + height + 40, "angle", 12)
+    svg.text(left - 40, top - 12, "RMS error in steps of the cubic samples", 12, "start")
     for name, color in (("cubic", "#b4530a"), ("fcc", "#1f5fa8"), ("bcc", "#2f7d3b")):
         line = [to_page(angle, error_at(name, np.radians(angle), count)) for angle in angles]
         for a, b in zip(line, line[1:]):

@@ -164,10 +164,17 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     return axis % ndim
 
 
+def periodic_or_none(periodic: object) -> object:
+    """The argument `periodic`; None if it is the program's word for that."""
+    return None if isinstance(periodic, str) and periodic == "none" else periodic
+
+
 def periodic_axes(periodic: object, prepared: Prepared,
                   curved: Sequence[tuple[int, int, np.ndarray, str, str]] = ()) -> tuple[list[int], list[float]]:
     """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of `curved_axes`."""
     if isinstance(periodic, str) and periodic == "auto":
+        if prepared.ndim > 4:
+            return [], []  # the library has periodic axes in 2D to 4D
         found = _tegl.longitude_axes(prepared.image, curved)
         return found, [float("nan")] * len(found)
     if isinstance(periodic, str) and periodic == "all":
@@ -182,8 +189,8 @@ def periodic_axes(periodic: object, prepared: Prepared,
     elif isinstance(periodic, (list, tuple)):
         given = [(axis, float("nan")) for axis in periodic]
     else:
-        raise TypeError(f"periodic is {periodic!r}; expected an axis, a list of axes, 'all', 'auto', or a dict of "
-                        "axes and periods")
+        raise TypeError(f"periodic is {periodic!r}; expected an axis, a list of axes, 'all', 'auto', 'none', or a "
+                        "dict of axes and periods")
     axes = [prepared.library_axis(axis) for axis, _ in given]
     if not axes or len(set(axes)) != len(axes):
         raise ValueError(f"periodic is {periodic!r}; expected at least one axis, each once")

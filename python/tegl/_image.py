@@ -82,7 +82,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         call too.
     periodic
         Axes that are periodic: a name or number, a list of these, "all", a dict of axes and their periods, or "auto": the
-        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any. Without a dict, the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
+        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any; None or "none": no axis. Without a dict, the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
         across the seam, and `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis
         are connected to the first ones: at their own places (O-grids), 360 further along longitudes, or by a given period
         along the axis's own coordinate, in the direction in which that grows. See docs/other-tilings.md.
@@ -154,6 +154,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     of_cells = samples == "cells" or (samples == "file" and array.samples_are_cells)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
+    periodic = _arguments.periodic_or_none(periodic)
     of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
     if curved is not None:
         _refuse_other_coordinates([prepared.library_axis(axis) for axis in curved], prepared, spacing, origin, coords, affine)
@@ -219,6 +220,7 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
     level = _arguments.as_number("level", level)
     options = prepared.library_options(options)
     lattice = _lattice_of(array, lattice)
+    periodic = _arguments.periodic_or_none(periodic)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
                  if value is not None]

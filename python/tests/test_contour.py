@@ -350,6 +350,15 @@ def test_longitudes_that_span_360_degrees_are_found():
     plain = tegl.contour(spot, 0.0, periodic="auto", **names)
     assert plain.check().components == 2 and np.array_equal(plain.vertices, tegl.contour(spot, 0.0, **names).vertices)
     assert tegl.count(spot, 0.0, periodic="auto", **names) == (len(plain.vertices), len(plain.simplices))
+    none = tegl.contour(spot, 0.0, periodic="none", **names, **units)
+    assert np.array_equal(none.vertices, plain.vertices) and np.array_equal(none.simplices, plain.simplices)
+    assert tegl.count(spot, 0.0, periodic="none", **names, **units) == (len(none.vertices), len(none.simplices))
+    in_5d = np.random.default_rng(1).random((3, 3, 3, 3, 3))
+    contour = tegl.contour(in_5d, 0.5, periodic="auto")
+    assert np.array_equal(contour.vertices, tegl.contour(in_5d, 0.5).vertices)
+    assert tegl.count(in_5d, 0.5, periodic="auto") == (len(contour.vertices), len(contour.simplices))
+    with pytest.raises(TypeError, match="'all', 'auto', 'none', or a dict"):
+        tegl.contour(spot, 0.0, periodic=1.5)
 
 
 def test_periodic_axes_by_name_number_and_period():

@@ -585,19 +585,66 @@ TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {
   image.grid.axes[0].unit = "degrees_east";
   write_image(image.view(), file);
   EXPECT_EQ(remarks({"--periodic", "none"}), "");
-  EXPECT_EQ(components("none"), 2);
-  EXPECT_EQ(components("auto"), 1);
+  for (const char* const none : {"none", "None"}) EXPECT_EQ(components(none), 2);
+  for (const char* const found : {"auto", "AUTO"}) EXPECT_EQ(components(found), 1);
   for (const char* const way : {"--no-check", "--stream", "--facets"}) {
     const std::string to = std::string(way) == "--facets" ? "facets.vtu" : "spot.vtkhdf";
     EXPECT_THAT(remarks({way}, to), HasSubstr("lon spans 360 degrees, and the contour ends at both its ends"));
     EXPECT_THAT(remarks({way, "--periodic", "auto"}, to), HasSubstr("lon spans 360 degrees, so it is periodic"));
   }
+  EXPECT_THAT(remarks({"--positions", "linear"}), HasSubstr("--periodic auto continues it across"));
+  // --periodic auto is refused with these
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--pick", "170,0"}, {"--merge"}, {"--positions", "gravitation"}})
+    EXPECT_THAT(remarks(more), testing::AllOf(HasSubstr("both its ends: --periodic none suppresses this remark"),
+                                              testing::Not(HasSubstr("--periodic auto"))));
   EXPECT_EQ(run_json({"contour", file, "--iso", "0", "--periodic", "auto", "-o", output})["boundary_simplices"], 0);
   EXPECT_EQ(read_mesh(output).periods.size(), 5u);
   expect_refused_of(file, {"--periodic", "auto,lat", "-o", output}, "expected auto without other axes");
   expect_refused_of(file, {"--periodic", "lon,none", "-o", output}, "expected none without other axes");
   expect_refused_of(file, {"--periodic", "auto", "--pick", "1,2", "-o", output}, "--periodic auto with --pick");
   EXPECT_EQ(run_json({"contour", file, "--iso", "0", "--periodic", "none", "--pick", "170,0", "-o", output})["dim"], 1);
+}
+
+TEST_F(PeriodicCommand, SlicesAtTimesFindLongitudes) {
+  // a spot around the date line that shrinks
+  OwnedImage<float, 3> image;
+  image.grid = Grid<3>::unit({36, 17, 4});
+  image.grid.axes[0] = Axis::uniform(36, -175.0, 10.0);
+  image.grid.axes[1] = Axis::uniform(17, -80.0, 10.0);
+  image.grid.axes[0].name = "lon";
+  image.grid.axes[1].name = "lat";
+  image.grid.axes[2].name = "t";
+  for (std::size_t t = 0; t < 4; ++t)
+    for (std::size_t j = 0; j < 17; ++j)
+      for (std::size_t i = 0; i < 36; ++i)
+        image.values.push_back(
+            static_cast<float>(40.0 - std::hypot(180.0 - std::abs(image.grid.axes[0][i]), image.grid.axes[1][j]) -
+                               static_cast<double>(t)));
+  const std::string file = path("film.nc"), output = path("cut.vtkhdf");
+  const auto remarks = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"slice", file, "--iso", "0", "--at", "t=1.5", "-o", output};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.err;
+  };
+  const auto components = [&] { return run_json({"components", output})["count"].get<int>(); };
+  write_image(image.view(), file);
+  EXPECT_EQ(remarks({}), "");
+  const Mesh plain = read_mesh(output);
+  EXPECT_THAT(remarks({"--periodic", "auto"}), HasSubstr("no longitudes span 360 degrees"));
+  const Mesh found = read_mesh(output);
+  EXPECT_TRUE(std::equal(plain.coordinates.begin(), plain.coordinates.end(), found.coordinates.begin(),
+                         found.coordinates.end()));
+  image.grid.axes[0].unit = "degrees_east";
+  write_image(image.view(), file);
+  EXPECT_THAT(remarks({}), HasSubstr("lon spans 360 degrees, and the contour ends at both its ends"));
+  EXPECT_EQ(components(), 2);
+  EXPECT_EQ(remarks({"--periodic", "none"}), "");
+  EXPECT_EQ(components(), 2);
+  EXPECT_THAT(remarks({"--periodic", "auto"}), HasSubstr("lon spans 360 degrees, so it is periodic"));
+  EXPECT_EQ(components(), 1);
 }
 
 TEST_F(PeriodicCommand, CellsMayBeDivided) {

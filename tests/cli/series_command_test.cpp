@@ -288,6 +288,7 @@ TEST_F(SeriesCommand, OfMeshesIsSortedLikeOneOfImages) {
   run(contour({ten, two, nine}, {"--sort", "given"}, "given.vtkhdf"));
   expect_refused(2, contour({ten, two}, {"--sort", "time", "--time-step", "1"}, "out.vtkhdf"),
                  {"--sort time", "--time-step", "--times"});
+  expect_refused(2, contour({ten, two}, {"--sort", "time"}, "out.vtkhdf"), {"step_10.vtu", "--sort time", "--times"});
   expect_refused(2, contour({ten}, {"--sort", "name"}, "out.vtkhdf"), {"--sort name", "one mesh"});
   expect_refused(2, {"info", ten, "--sort", "name"}, {"--sort"});
 }

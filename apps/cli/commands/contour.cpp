@@ -63,7 +63,8 @@ class ContourCommand final : public Command {
             "image or mesh with one more axis",
             Files::image) {
     options_.add_to(app(), true);
-    options_.add_tiling_to(app());
+    options_.add_tiling_to(
+        app(), {"--index", "--pick", "--merge", "--merge-within", "--one-file", "--positions", "--scale-space"});
     app().add_flag("--unroll", unroll_,
                    "with --periodic, .vtkhdf: double the vertices on the seam, for pictures; other formats always do");
     app()
@@ -685,9 +686,7 @@ class ContourCommand final : public Command {
   CompressOption compress_;
   std::string output_;
   std::string index_;
-  bool stream_ = false;
-  bool one_file_ = false;
-  bool facets_ = false;
+  bool stream_ = false, one_file_ = false, facets_ = false;
   bool unroll_ = false;
   std::string pick_;
   bool no_check_ = false;

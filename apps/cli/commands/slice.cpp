@@ -335,7 +335,9 @@ class SliceCommand final : public Command {
   }
 
   std::vector<ContourResult> cut_image(const std::vector<Cut>& cuts, ProgressBar& bar) {
-    if (planes_.empty() && options_.samples_are_points() && options_.tiling().is_plain())
+    Tiling tiling = options_.tiling();
+    if (options_.finds_longitudes()) tiling.periodic.clear();  // cut_layers looks for them
+    if (planes_.empty() && options_.samples_are_points() && tiling.is_plain())
       if (std::optional<std::vector<ContourResult>> results = cut_layers(cuts, bar)) return std::move(*results);
     turn_to_all_files();  // as listed, whatever order they were opened in
     return cut_whole_image(cuts, bar);
@@ -355,6 +357,9 @@ class SliceCommand final : public Command {
       return std::nullopt;  // not a format with layers, or reading reports the error
     }
     if (options_.has_lattice(input.info)) return std::nullopt;  // cells of a lattice extend over more layers
+    Tiling tiling = options_.tiling();
+    const std::string on_longitudes = take_longitudes(input.layers, options_, tiling);
+    if (!tiling.is_plain()) return std::nullopt;  // cuts of wrapped contours
     const auto of_layers = [&]<Value T, int N>(const std::unique_ptr<LayerReader<T, N>>& layers) {
       require_cuts(N, "image");
       if constexpr (N >= 3) {
@@ -379,6 +384,7 @@ class SliceCommand final : public Command {
     };
     std::visit([&](const auto& any) { std::visit(of_layers, any); }, input.layers);
     if (results.empty()) return std::nullopt;
+    remark(on_longitudes);
     return results;
   }
 

@@ -12,6 +12,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/numbers.hpp"
 #include "base/statistics.hpp"
@@ -23,8 +25,10 @@ namespace tegl::cli {
 
 namespace {
 
-/// Whether the list is this word.
-bool is_only(const std::vector<std::string>& list, const char* word) { return list.size() == 1 && list[0] == word; }
+/// Whether the list is this word, in any case.
+bool is_only(const std::vector<std::string>& list, const char* word) {
+  return list.size() == 1 && equal_ignoring_case(list[0], word);
+}
 
 }  // namespace
 
@@ -80,7 +84,9 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
   app.add_flag("--allow-empty", allow_empty_, "a value outside of the data gives an empty result, not an error");
 }
 
-void ExtractionOptions::add_tiling_to(CLI::App& app) {
+void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> without_periods) {
+  app_ = &app;
+  without_periods_ = std::move(without_periods);
   options_.push_back(app.add_option("--periodic", periodic_,
                                     "axes that are periodic, by name, as in lon or x,y,z; or all; the period is the "
                                     "number of samples x the step, or as in lon=360; auto: longitudes that span 360 "
@@ -144,15 +150,32 @@ void ExtractionOptions::refuse_lattice(const ImageInfo& info, const std::string&
 
 std::vector<std::string> ExtractionOptions::periodic() const {
   for (const char* const word : {"auto", "none"})
-    if (periodic_.size() > 1 && std::find(periodic_.begin(), periodic_.end(), word) != periodic_.end())
+    if (periodic_.size() > 1 && std::any_of(periodic_.begin(), periodic_.end(), [word](const std::string& axis) {
+          return equal_ignoring_case(axis, word);
+        }))
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--periodic {}; expected {} without other axes", fmt::join(periodic_, ","), word));
   return is_only(periodic_, "none") ? std::vector<std::string>() : periodic_;
 }
 
+bool ExtractionOptions::finds_longitudes() const { return is_only(periodic_, "auto"); }
+
+bool ExtractionOptions::knows_periods(const Tiling& tiling) const {
+  const auto is_given = [&](const char* name) {
+    const CLI::Option* const option = app_->get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+  };
+  if (app_ == nullptr || polygon_triangulation() || tiling.lattice == Lattice::fcc_in_time) return false;
+  if (is_given("--attribute") && !tiling.curved.empty()) return false;
+  if (is_given("--stream") && tiling.lattice) return false;
+  return std::none_of(without_periods_.begin(), without_periods_.end(), [&](const std::string& name) {
+    return is_given(name.c_str()) && app_->get_option(name)->as<std::string>() != "linear";  // of --positions
+  });
+}
+
 template <int N>
 std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tiling) const {
-  const bool finds = is_only(periodic_, "auto");
+  const bool finds = finds_longitudes();
   const bool may_be_periodic = periodic_.empty() && !tiling.division && !tiling.of_cells;
   if (!finds && !may_be_periodic) return "";
   std::vector<std::string> names;
@@ -167,9 +190,9 @@ std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tili
                         : list + " spans 360 degrees, so it is periodic";
   }
   if (list.empty()) return "";
-  return list +
-         " spans 360 degrees, and the contour ends at both its ends: --periodic auto continues it across, "
-         "--periodic none leaves this remark out";
+  return fmt::format(
+      "{} spans 360 degrees, and the contour ends at both its ends: {}--periodic none suppresses this remark", list,
+      knows_periods(tiling) ? "--periodic auto continues it across, " : "");
 }
 
 template std::string ExtractionOptions::take_longitudes(const Grid<2>&, Tiling&) const;

@@ -51,8 +51,9 @@ class ExtractionOptions {
   /// polygons. This object must outlive the parse.
   void add_to(CLI::App& app, bool of_images_alone);
 
-  /// Adds --periodic, --lattice, --division and --samples-are to a command.
-  void add_tiling_to(CLI::App& app);
+  /// Adds --periodic, --lattice, --division and --samples-are to a command, which must outlive this object.
+  /// `without_periods`: other options of the command that are refused with --periodic.
+  void add_tiling_to(CLI::App& app, std::vector<std::string> without_periods = {});
   /// Adds --samples-are only.
   void add_samples_are_to(CLI::App& app);
   /// The values of these options. Throws InvalidArgument if two are given.
@@ -75,8 +76,10 @@ class ExtractionOptions {
   void refuse_cells_with_tiling(bool samples_are_cells, const std::string& file) const;
   /// Throws InvalidArgument with options that 5D contours do not have.
   void require_to_5d() const;
+  /// Whether --periodic is auto.
+  [[nodiscard]] bool finds_longitudes() const;
   /// With --periodic auto, takes the longitudes that run around the globe to the tiling, of which curved axes are
-  /// known. Returns a remark on them, also on those that --periodic would continue, or an empty text.
+  /// known. Returns a remark on them, or on those that end at both ends without --periodic, or an empty text.
   template <int N>
   [[nodiscard]] std::string take_longitudes(const Grid<N>& grid, Tiling& tiling) const;
   /// Whether the samples are on a lattice, of --lattice or of the file.
@@ -121,9 +124,13 @@ class ExtractionOptions {
   [[nodiscard]] bool has_lattice() const { return !lattice_.empty() && lattice_ != "cubic"; }
   /// The axes of --periodic; empty with none.
   [[nodiscard]] std::vector<std::string> periodic() const;
+  /// Whether --periodic may be given with the other options.
+  [[nodiscard]] bool knows_periods(const Tiling& tiling) const;
   void refuse_lattice_with(const std::string& other) const;
   void refuse_division_with(const std::string& other) const;
 
+  const CLI::App* app_ = nullptr;  ///< of add_tiling_to
+  std::vector<std::string> without_periods_;
   std::vector<CLI::Option*> options_;
   std::vector<std::string> isos_;
   std::vector<std::string> periodic_;

@@ -236,7 +236,7 @@ requires DimensionBetween<N, 2, 4>
 /// As `extract`, but writes to the caller's memory and returns the contour's size. `room` must hold at least that many
 /// rows; `count` returns the size. Vertices, normals and simplices equal those of `extract` byte by byte, except for
 /// the width of the numbers. If the contour touches itself beside missing values, it is made in memory of its own and
-/// copied. Errors: those of `extract`; InvalidArgument if `room` is too small, mostly before anything is written.
+/// copied. Errors: those of `extract`; InvalidArgument if `room` is too small, before anything is written.
 template <int N, Coordinate Real, VertexNumber I>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& complex, double isovalue,
                                                               const ContourRoom<N, Real, I>& room,

@@ -295,7 +295,7 @@ void reorder(std::vector<Item>& list, const std::vector<std::size_t>& order) {
 void sort_files(CellMeshOptions& options, std::vector<fs::path>& files) {
   if (options.order == SeriesOrder::given) return;
   if (files.size() == 1)
-    fail(ErrorCode::InvalidArgument, files[0], "is one mesh; expected several for an order of files");
+    fail(ErrorCode::InvalidArgument, files[0], "is one mesh; expected several for an order of files (--sort)");
   if (options.order == SeriesOrder::coordinate && options.time_step)
     throw Error(ErrorCode::InvalidArgument,
                 "files in the order of their times and a time step, which follows the order; expected times");
@@ -318,7 +318,8 @@ void sort_by_own_times(const CellMeshOptions& options, std::vector<std::optional
   if (options.order != SeriesOrder::coordinate || !options.times.empty()) return;
   for (std::size_t i = 0; i < own.size(); ++i)
     if (!own[i])
-      fail(ErrorCode::InvalidArgument, mesh.files[i], "has no time; expected one for the order by times, or times");
+      fail(ErrorCode::InvalidArgument, mesh.files[i],
+           "has no time for the order by times (--sort time); expected one in the file, or given times (--times)");
   std::vector<std::size_t> order(own.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return *own[a] < *own[b]; });

@@ -158,8 +158,7 @@ void append_listed_faces(const VtkFile& file, const XmlElement& piece, std::uint
              face, size(face_ends) - 1);
       if (++uses[static_cast<std::size_t>(face)] > 2)
         fail(ErrorCode::MalformedFile, file.path(),
-             "cell {} has the face {}, which two others have; expected a face "
-             "of at most two cells",
+             "cell {} has the face {}, which is listed twice before; expected each face at most twice, in two cells",
              cell, face);
       const std::int64_t to = face_ends[static_cast<std::size_t>(face)];
       for (std::int64_t k = face == 0 ? 0 : face_ends[static_cast<std::size_t>(face) - 1]; k < to; ++k) {

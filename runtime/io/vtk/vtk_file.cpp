@@ -38,8 +38,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kTypes =
                                                                                    {"Float32", "float"},
                                                                                    {"Float64", "double"}}};
 
-/// "array 'p'", for messages.
-std::string named(const VtkArray& array) { return fmt::format("array {}", shown(array.name)); }
+/// "array 'p'", for messages. Long names of VTK's own arrays are shown as a whole.
+std::string named(const VtkArray& array) {
+  for (const std::string_view known : {"face_connectivity", "polyhedron_to_faces", "polyhedron_offsets"})
+    if (array.name == known) return fmt::format("array '{}'", known);
+  return fmt::format("array {}", shown(array.name));
+}
 
 /// The place after the '_' with which appended data starts.
 std::uint64_t appended_begin(const fs::path& path, std::uint64_t after_tag) {

@@ -116,8 +116,11 @@ void free_large_block(void* block, std::size_t bytes) noexcept { free_block(bloc
 
 #else
 
-void* allocate_large_block(std::size_t bytes) { return ::operator new(bytes); }
-void free_large_block(void* block, std::size_t) noexcept { ::operator delete(block); }
+/// At least the alignment of any element, as pages have it: elements may be aligned for registers or cache lines.
+constexpr std::align_val_t kLargeAlignment{4096};
+
+void* allocate_large_block(std::size_t bytes) { return ::operator new(bytes, kLargeAlignment); }
+void free_large_block(void* block, std::size_t) noexcept { ::operator delete(block, kLargeAlignment); }
 
 #endif
 

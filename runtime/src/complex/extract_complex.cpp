@@ -331,7 +331,7 @@ class ComplexWriter {
   }
 
   /// The tetrahedra of a block of prisms over polyhedra, and the cells' own vertices.
-  void write_prisms(std::size_t b) const noexcept {
+  void write_prisms(std::size_t b) const {
     const PolytopeBlock& block = numbers_.polytopes()[b];
     auto* simplex = contour_.simplices.data() + numbers_.first_simplex_of_polytopes(b);
     std::size_t i = 0;

@@ -2,7 +2,7 @@
 //
 // Bounds by the corners of tetrahedra in 4-space. Highway's foreach_target compiles this file once per instruction set.
 // Multiplications and additions are not fused, and come in the order of the functions for one corner, so that all
-// instruction sets give identical bytes.
+// instruction sets give identical bytes. Coordinates are finite: comparisons of lanes take no account of NaN.
 #include "simplify/corner_lanes.hpp"
 
 #include <array>

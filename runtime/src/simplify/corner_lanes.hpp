@@ -33,7 +33,7 @@ struct alignas(N == 4 ? 32 : alignof(double)) CornerLanes {
   }
 };
 
-/// The longest edge of a simplex, as ends_of_longest_edge.
+/// The longest edge of a simplex, as ends_of_longest_edge. Precondition: finite coordinates.
 template <int N>
 struct LongestEdge {
   int first, second;
@@ -71,7 +71,7 @@ template <>
 LongestEdge<4> longest_edge_of(const CornerLanes<4>& corners);
 
 /// As SimplexGradients::distance for all corners, from the simplex with this row and these corners. Returns false if
-/// that needs another method.
+/// that needs another method. Precondition: finite coordinates.
 bool distances_by_gradients(std::span<const float, 16> row, const CornersN<4>& simplex, const PointN<4>& origin,
                             const CornerLanes<4>& corners, std::array<double, 4>& distances);
 
