@@ -34,7 +34,7 @@ class AssembledTiles {
     const std::size_t end = first + kHead + filling.own_vertices + (filling.simplex_count + 1) / 2;
     is_full_ = end > most;
     if (is_full_) return;
-    if (end > words_.capacity()) words_.reserve(std::min(most, end + words_.capacity() / 4));
+    if (end > words_.capacity()) words_.reserve(std::min(most, end + words_.capacity() / 16));
     words_.resize(end);
     std::uint64_t* const to = words_.data() + first;
     const std::uint64_t sizes = std::uint64_t{filling.own_vertices} << kOwnAt | std::uint64_t{filling.simplex_count}
