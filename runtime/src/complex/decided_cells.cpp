@@ -9,7 +9,6 @@
 // image's contour.
 #include <algorithm>
 #include <bit>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -292,7 +291,6 @@ class DecidedCells::Filler {
   static bool is_sphere(const Component& component) {
     return 2 * vertices_of(component).size() == component.size() + 4;
   }
-  static bool has(const Triangle& t, Local v) noexcept { return std::find(t.begin(), t.end(), v) != t.end(); }
 
   /// The tetrahedron between a triangle and a vertex inside the cell, with its positive side towards high.
   [[nodiscard]] Tetrahedron cone_of(const Piece& piece, Local apex) const noexcept {
@@ -305,11 +303,11 @@ class DecidedCells::Filler {
     std::ptrdiff_t most = 0;  // triangles at the apex, which need no tetrahedra
     for (const Local v : vertices_of(component)) {
       if (v >= edges_ || (cells_.triangulation_ == Triangulation::barycentric && component.size() > 4)) break;
-      const auto around =
-          std::count_if(component.begin(), component.end(), [&](const Piece& piece) { return has(piece.triangle, v); });
+      const auto around = std::count_if(component.begin(), component.end(),
+                                        [&](const Piece& piece) { return has_vertex(piece.triangle, v); });
       const bool is_apex =
           component.size() == 4 || std::all_of(component.begin(), component.end(), [&](const Piece& p) {
-            return (facets_of_edge_[v] >> p.facet & 1u) == 0 || has(p.triangle, v);
+            return (facets_of_edge_[v] >> p.facet & 1u) == 0 || has_vertex(p.triangle, v);
           });
       if (around > most && is_apex) apex = v, most = around;
     }
@@ -326,7 +324,7 @@ class DecidedCells::Filler {
       built_.cones.push_back(mask);
     }
     for (const Piece& piece : component)
-      if (is_inside || !has(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
+      if (is_inside || !has_vertex(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
   }
 
   /// The cone of a sphere by the ends of its vertices' edges; empty if some vertices are not on edges.
@@ -336,7 +334,7 @@ class DecidedCells::Filler {
     if (apex == kLocals || vertices_of(component).back() >= edges_) return cone;
     const auto ends = [&](Local v) { return static_cast<std::uint16_t>(span_of(v)); };
     for (const auto& [t, facet] : component)
-      if (!has(t, apex)) cone.push_back({ends(apex), ends(t[0]), ends(t[1]), ends(t[2])});
+      if (!has_vertex(t, apex)) cone.push_back({ends(apex), ends(t[0]), ends(t[1]), ends(t[2])});
     return cone;
   }
 

@@ -14,7 +14,7 @@
 
 namespace tegl::detail {
 
-/// A facet of a prism. Its own orientation is that of its rings.
+/// A facet of a prism. Its rings give its own orientation.
 struct PrismFacet {
   enum class Kind : std::uint8_t { end, wedge, hexahedron, prism };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ambiguity/face_decision.hpp"
+#include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/tile/corners.hpp"
@@ -235,7 +236,7 @@ PrismCell::Local PrismCell::apex_of(const Component& component, const std::vecto
     if (around_[v] <= most) continue;
     const bool is_apex =
         component.size() == 4 || std::all_of(component.begin(), component.end(), [&](const Piece& piece) {
-          return has(piece.triangle, v) || !is_in_facet(v, piece.facet);
+          return has_vertex(piece.triangle, v) || !is_in_facet(v, piece.facet);
         });
     if (is_apex) apex = v, most = around_[v];
   }
@@ -256,7 +257,7 @@ void PrismCell::add_sphere(const Component& component, const std::vector<Local>&
     std::copy_if(vertices.begin(), vertices.end(), std::back_inserter(points), [](Local v) { return v < kShared; });
   }
   for (const Piece& piece : component)
-    if (is_inside || !has(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
+    if (is_inside || !has_vertex(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));
 }
 
 }  // namespace tegl::detail

@@ -32,9 +32,9 @@ struct EntangledPrism {
   std::array<std::span<const std::uint8_t>, 2> coned{};
 };
 
-/// Builds the contours of prisms, one after the other. In each facet the contour is that of the polyhedron, wedge or
-/// hexahedron there, so that it is the same in any cell with the facet. Components of Sigma that are spheres are coned:
-/// in compact contours from one of their vertices if every triangle in a facet with that vertex has it, otherwise from
+/// Builds the contours of prisms, one after the other. In each facet they are the contour of the polyhedron, wedge or
+/// hexahedron there, which is the same in any cell with the facet. Components of Sigma that are spheres are coned: in
+/// compact contours from one of their vertices if every triangle in a facet with that vertex has it, otherwise from
 /// their barycentre. Others are filled with copies of the regions of one side, moved towards the centre of the cell.
 class PrismCell {
  public:
@@ -78,8 +78,6 @@ class PrismCell {
     std::uint16_t list;
     Local first_own;
   };
-
-  [[nodiscard]] static bool has(const Triangle& t, Local v) noexcept { return t[0] == v || t[1] == v || t[2] == v; }
 
   // Sigma
   void load(const PolytopeShape& shape);

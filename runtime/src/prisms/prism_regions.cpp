@@ -3,7 +3,6 @@
 // Fills components of Sigma with copies of the regions beside them. A region of a facet is a cone, as each of its
 // polygons is a disc; in a hexahedron with a tunnel it is the table's (CubeRegions).
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "prisms/prism_cell.hpp"
