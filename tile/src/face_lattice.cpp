@@ -4,12 +4,15 @@
 #include "tegl/tile/face_lattice.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "tegl/tile/complex.hpp"
-#include "tegl/tile/corners.hpp"
+#include "tegl/tile/cube_faces.hpp"
 
 namespace tegl::tile {
 
@@ -133,11 +136,35 @@ std::optional<std::uint32_t> FaceLattice::find(Signature corners) const {
 }
 
 FaceLattice FaceLattice::cube(int n) {
-  checked(n, 1);
-  std::vector<Signature> maximal;
-  for (unsigned f = 0; f < 2 * static_cast<unsigned>(n); ++f)
-    maximal.push_back(detail::face_corners(static_cast<unsigned>(n), f));
-  return {n, maximal};
+  const detail::CubeFaces cube(checked(n, 1));
+  std::vector<Face> faces;
+  faces.reserve(cube.cells().size());
+  for (const auto& [base, axes, dim] : cube.cells()) {
+    Face& face = faces.emplace_back(Face{.dim = dim});
+    for (unsigned v = axes;; v = (v - 1) & axes) {
+      face.corners |= Signature{1} << (base | v);
+      if (v == 0) break;
+    }
+    // incidence numbers: outward normal first, axes ascending
+    std::array<std::pair<std::uint32_t, int>, 12> below;
+    std::size_t count = 0;
+    int sign = -1;  // at the lower end of an axis
+    for (unsigned rest = axes; rest != 0; rest &= rest - 1, sign = -sign) {
+      const unsigned axis = rest & (0 - rest);
+      below[count++] = {cube.number(base, axes & ~axis), sign};
+      below[count++] = {cube.number(base | axis, axes & ~axis), -sign};
+    }
+    std::sort(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(count));
+    face.faces.reserve(count);
+    face.signs.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      face.faces.push_back(below[i].first);
+      face.signs.push_back(below[i].second);
+    }
+  }
+  FaceLattice lattice(1, std::array<Signature, 2>{1, 2});  // replaced: nothing here needs to be found or checked
+  lattice.faces_ = std::move(faces);
+  return lattice;
 }
 
 FaceLattice FaceLattice::simplex(int n) {

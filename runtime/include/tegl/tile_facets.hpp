@@ -15,8 +15,7 @@ namespace tegl {
 /// The number of a face of the N-cube, as used by tile::Resolution and tile::Vertex::face: faces are ordered by
 /// dimension, then by the ascending numbers of their corners. Corner v has coordinate v >> a & 1 on axis a. The face
 /// has the corners `base | s` for all subsets s of the bits of `axes` (theory's numbering), and as many dimensions as
-/// `axes` has bits. Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1) after
-/// the first call.
+/// `axes` has bits. Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1).
 template <int N>
 requires DimensionBetween<N, 2, 6>
 [[nodiscard]] std::size_t face_number(unsigned base, unsigned axes);

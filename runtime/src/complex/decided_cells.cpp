@@ -22,6 +22,7 @@
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
 #include "regions/separating_planes.hpp"
+#include "regions/tunnel_regions.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
@@ -431,35 +432,18 @@ class DecidedCells::Filler {
   /// The regions of a cube with a tunnel.
   void add_cube_regions(std::size_t f, bool high) {
     const Facet& facet = cells_.facets_[f];
-    const auto& [frame, list] = *contours_[f];
-    std::map<Triangle, unsigned> faces;
-    for (const CubeRegions::Region& region : regions_of_.regions(list, high)) {
-      const auto first = static_cast<Local>(kCentres + centres_.size());
-      for (const std::uint32_t mask : regions_of_.centres(region)) {
-        const std::uint32_t doubled = mask / CubeRegions::kFirstDouble;
-        (void)add_centre(mask_of(
-            facet, frame, doubled != 0 ? cubes_.mask(list, static_cast<unsigned>(std::countr_zero(doubled))) : mask));
-      }
-      const auto local = [&](unsigned v) {
-        if (v < CubeRegions::kFirstEdge) return corner_of(facet, frame.corner(v));
-        if (v < CubeRegions::kFirstOwn) return on_edge(facet, frame, v - CubeRegions::kFirstEdge);
-        if (v < CubeRegions::kFirstCentre) return static_cast<Local>(first_own_[f] + v - CubeRegions::kFirstOwn);
-        return static_cast<Local>(first + v - CubeRegions::kFirstCentre);
-      };
-      for (const auto& [a, b, c, d] : regions_of_.tetrahedra(region)) {
-        const Tetrahedron& t = regions_.emplace_back(Tetrahedron{local(a), local(b), local(c), local(d)});
-        for (unsigned k = 0; k < 4; ++k) ++faces[sorted(face_of(t, k))];
-      }
-    }
+    const CubeFrame& frame = contours_[f]->frame;
+    const auto corner = [&](unsigned v) { return corner_of(facet, frame.corner(v)); };
+    const auto edge = [&](unsigned e) { return on_edge(facet, frame, e); };
+    const auto centre = [&](std::uint32_t mask) { return add_centre(mask_of(facet, frame, mask)); };
+    auto faces = add_tunnel_regions(regions_of_, cubes_, contours_[f]->list, high, static_cast<Local>(first_own_[f]),
+                                    corner, edge, centre, regions_);
     for (const Piece& piece : sigma_)
       if (piece.facet == f) faces.erase(sorted(piece.triangle));
     for (const std::uint8_t q : cells_.quadrilaterals_in_[f]) {
       const unsigned square = corners_of(q);
-      std::vector<Triangle> fan;
-      for (const auto& [t, count] : faces)
-        if (count == 1 && ((span_of(t[0]) | span_of(t[1]) | span_of(t[2])) & ~square) == 0) fan.push_back(t);
-      const auto [at, is_new] = fans_.try_emplace(square, fan);
-      if (!is_new && at->second != fan) join_fans(at->second, fan, regions_);
+      add_square_fan(
+          faces, square, [&](Local v) { return (span_of(v) & ~square) == 0; }, fans_, regions_);
     }
   }
 

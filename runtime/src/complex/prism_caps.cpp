@@ -45,18 +45,18 @@ void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, std
     }
     // the boundary of the high part, facing outwards
     std::vector<CapTriangle> triangles;
-    for (std::size_t f = 0; f < facet.shape->face_count(); ++f) {
+    for (std::size_t f = 0; f < facet.shape.face_count(); ++f) {
       std::vector<Index> ring;
-      for (const std::uint8_t v : facet.shape->ring(f)) ring.push_back(points[facet.corners[v]]);
+      for (const std::uint8_t v : facet.shape.ring(f)) ring.push_back(points[facet.corners[v]]);
       for (std::vector<CapVertex>& part : parts_around(ring))
         if (!part.empty()) add_fan(std::move(part), triangles);
     }
     const PolytopeRules rules = rules_of(options_, isovalue_);
-    Loops().for_each(*facet.shape, at.data(), rules, [&](std::span<const std::uint8_t> loop) {
+    Loops().for_each(facet.shape, at.data(), rules, [&](std::span<const std::uint8_t> loop) {
       std::vector<CapVertex> around;
       std::vector<Index> numbers;
       for (const std::uint8_t e : loop) {
-        const auto& [a, b] = facet.shape->edges()[e];
+        const auto& [a, b] = facet.shape.edges()[e];
         around.push_back(on_edge(points[facet.corners[a]], points[facet.corners[b]]));
         numbers.push_back(static_cast<Index>(around.back().number()));
       }

@@ -69,7 +69,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) {
       estimator_.emplace(source, grid.sizes(), options, plan.part);
-      choices_.emplace(cube_, *estimator_);
+      choices_.emplace(*estimator_);
     }
     // Two slabs are in memory. Gradients read one layer more, a custom estimator as many as its reach.
     if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
@@ -302,7 +302,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   }
   /// Number in the cell of a built tile's face.
   [[nodiscard]] std::uint16_t seen_face(const SeenTile& seen, std::size_t face) const noexcept {
-    const CubeFaces::Cell& built = cube_.cells()[face];
+    const CubeFace& built = cube_.cells()[face];
     const unsigned axes = built_.symmetries().axes(seen.symmetry, built.axes);
     return cube_.number(built_.symmetries().base(seen.symmetry, built.base, axes), axes);
   }
@@ -414,7 +414,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   /// Interpolation parameter of the vertex on an edge of a cell. Edges of a cap across the border have 0: the vertex is
   /// at the sample itself.
   double alpha(CellKind<N> kind, const typename RowShape<N>::Index& base, std::size_t edge) {
-    const CubeFaces::Cell& face = cube_.cells()[edge];
+    const CubeFace& face = cube_.cells()[edge];
     const int axis = std::countr_zero(face.axes);
     if (kind.is_cap() && axis == N - 1) return 0.0;
     const unsigned shift = kind.spread(face.base);
@@ -447,7 +447,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
    private:
     template <int K, class End>
     [[nodiscard]] double level_in(std::size_t face, const End& end) const noexcept {
-      const CubeFaces::Cell& cell = of_.cube_.cells()[face];
+      const CubeFace& cell = of_.cube_.cells()[face];
       if (kind_.is_cap() && (cell.axes >> (N - 1) & 1u) != 0) return 0.5;
       auto start = base_;
       for (int a = 0; a < N; ++a) start[a] += kind_.spread(cell.base) >> a & 1u;

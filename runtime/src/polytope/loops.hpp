@@ -10,7 +10,7 @@
 #include <span>
 
 #include "ambiguity/face_estimator.hpp"
-#include "polytope/polytopes.hpp"
+#include "polytope/polytope_faces.hpp"
 
 namespace tegl::detail {
 
@@ -35,7 +35,7 @@ inline constexpr std::size_t kRingCorners = kPolytopeCorners, kLoopEdges = 3 * k
 /// In the ring of the face that shares the edge, ends are beginnings, so that the segments around a cell are loops.
 /// `values`: by corner of the shape.
 template <class Add>
-void for_each_segment(const PolytopeShape& shape, std::size_t face, const double* values, const PolytopeRules& rules,
+void for_each_segment(const PolytopeFaces& shape, std::size_t face, const double* values, const PolytopeRules& rules,
                       const Add& add) {
   const std::span<const std::uint8_t> ring = shape.ring(face), edges = shape.ring_edges(face);
   const auto is_high = [&](std::uint8_t v) { return values[v] >= rules.isovalue; };
@@ -62,7 +62,7 @@ void for_each_segment(const PolytopeShape& shape, std::size_t face, const double
 
 /// Finds a vertex of a loop whose diagonals are in no face of the cell: the contour of a neighbour may have other
 /// diagonals there. `start`: where to begin.
-[[nodiscard]] inline bool find_fan(const PolytopeShape& shape, std::span<const std::uint8_t> loop,
+[[nodiscard]] inline bool find_fan(const PolytopeFaces& shape, std::span<const std::uint8_t> loop,
                                    std::size_t& start) noexcept {
   for (; start < loop.size(); ++start) {
     std::size_t i = 2;
@@ -78,7 +78,7 @@ class Loops {
   /// Calls visit(loop) for the loops around a polyhedron with these values at its corners, by their first edges.
   /// `loop`: its edges, so that a triangle of three following ones faces high.
   template <class Visit>
-  void for_each(const PolytopeShape& shape, const double* values, const PolytopeRules& rules, const Visit& visit) {
+  void for_each(const PolytopeFaces& shape, const double* values, const PolytopeRules& rules, const Visit& visit) {
     const std::size_t edges = shape.base_edges();
     for (std::size_t e = 0; e < edges; ++e) next_[e] = kNone;
     for (std::size_t f = 0; f < shape.face_count(); ++f)

@@ -9,41 +9,51 @@
 #include <utility>
 
 #include "base/workers.hpp"
+#include "polytope/polygon_prisms.hpp"
 
 namespace tegl::detail {
 
 PolytopeShape::PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends)
-    : rings_(std::move(rings)), ends_(std::move(ends)) {
-  ring_edges_.resize(rings_.size());
-  for (std::size_t f = 0; f < ends_.size(); ++f) {
-    const std::size_t begin = f == 0 ? 0 : ends_[f - 1], count = ends_[f] - begin;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [a, b] = std::minmax(rings_[begin + i], rings_[begin + (i + 1) % count]);
-      const std::array<std::uint8_t, 2> edge{a, b};
-      const auto at = static_cast<std::size_t>(std::find(edges_.begin(), edges_.end(), edge) - edges_.begin());
-      ring_edges_[begin + i] = static_cast<std::uint8_t>(at);
-      const auto face = static_cast<std::uint8_t>(f);
-      if (at < edges_.size()) {
-        faces_of_[at][1] = face;
-        continue;
-      }
-      edges_.push_back(edge);
-      faces_of_.push_back({face, face});
-    }
-  }
-  for (const std::uint8_t corner : rings_) corner_count_ = std::max(corner_count_, std::size_t{corner} + 1);
+    : PolytopeShape(arrays_of(std::move(rings), std::move(ends))) {}
+
+PolytopeShape::PolytopeShape(Arrays arrays) : arrays_(std::make_shared<const Arrays>(std::move(arrays))) {
+  const Arrays& a = *arrays_;
+  static_cast<PolytopeFaces&>(*this) = {a.corner_count, a.rings, a.ring_edges, a.ends, a.edges, a.faces_of, a.is_prism};
 }
 
-PolytopeShape PolytopeShape::prism_over(PolytopeShape base) {
-  PolytopeShape prism = std::move(base);
-  const auto count = static_cast<std::uint8_t>(prism.corner_count_);
-  const std::size_t edges = prism.edges_.size();
+PolytopeShape::Arrays PolytopeShape::arrays_of(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends) {
+  Arrays a{std::move(rings), {}, std::move(ends), {}, {}, 0, false};
+  a.ring_edges.resize(a.rings.size());
+  for (std::size_t f = 0; f < a.ends.size(); ++f) {
+    const std::size_t begin = f == 0 ? 0 : a.ends[f - 1], count = a.ends[f] - begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [v, w] = std::minmax(a.rings[begin + i], a.rings[begin + (i + 1) % count]);
+      const Pair edge{v, w};
+      const auto at = static_cast<std::size_t>(std::find(a.edges.begin(), a.edges.end(), edge) - a.edges.begin());
+      a.ring_edges[begin + i] = static_cast<std::uint8_t>(at);
+      const auto face = static_cast<std::uint8_t>(f);
+      if (at < a.edges.size()) {
+        a.faces_of[at][1] = face;
+        continue;
+      }
+      a.edges.push_back(edge);
+      a.faces_of.push_back({face, face});
+    }
+  }
+  for (const std::uint8_t corner : a.rings) a.corner_count = std::max(a.corner_count, std::size_t{corner} + 1);
+  return a;
+}
+
+PolytopeShape PolytopeShape::prism_over(const PolytopeShape& base) {
+  Arrays prism = *base.arrays_;
+  const auto count = static_cast<std::uint8_t>(prism.corner_count);
+  const std::size_t edges = prism.edges.size();
   for (std::size_t e = 0; e < edges; ++e)
-    prism.edges_.push_back(
-        {static_cast<std::uint8_t>(prism.edges_[e][0] + count), static_cast<std::uint8_t>(prism.edges_[e][1] + count)});
-  for (std::uint8_t v = 0; v < count; ++v) prism.edges_.push_back({v, static_cast<std::uint8_t>(v + count)});
-  prism.is_prism_ = true;
-  return prism;
+    prism.edges.push_back(
+        {static_cast<std::uint8_t>(prism.edges[e][0] + count), static_cast<std::uint8_t>(prism.edges[e][1] + count)});
+  for (std::uint8_t v = 0; v < count; ++v) prism.edges.push_back({v, static_cast<std::uint8_t>(v + count)});
+  prism.is_prism = true;
+  return PolytopeShape(std::move(prism));
 }
 
 void Polytopes::add(std::span<const Index> corners, Lattice lattice) {
@@ -121,23 +131,6 @@ Polytopes Polytopes::solids_in_time(std::size_t points, std::size_t intervals) c
   return prisms;
 }
 
-std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>> prism_over_polygon(std::size_t corners) {
-  std::vector<std::uint8_t> rings;
-  std::vector<std::uint16_t> ends;
-  const auto push = [&](std::size_t v) { rings.push_back(static_cast<std::uint8_t>(v)); };
-  const auto end_face = [&] { ends.push_back(static_cast<std::uint16_t>(rings.size())); };
-  for (std::size_t v = corners; v-- > 0;) push(v);
-  end_face();
-  for (std::size_t v = 0; v < corners; ++v) push(corners + v);
-  end_face();
-  for (std::size_t v = 0; v < corners; ++v) {
-    const std::size_t next = (v + 1) % corners;
-    for (const std::size_t corner : {v, next, corners + next, corners + v}) push(corner);
-    end_face();
-  }
-  return {std::move(rings), std::move(ends)};
-}
-
 Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
   if (dim() == 3) return solids_in_time(points, intervals);
   Polytopes prisms;
@@ -148,7 +141,8 @@ Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
       corners.clear();
       for (const std::size_t layer : {k, k + 1})
         for (const Index p : base) corners.push_back(static_cast<Index>(layer * points + p));
-      prisms.add(corners, prism_over_polygon(base.size()));
+      const PolytopeFaces prism = kPolygonPrisms.over(base.size());
+      prisms.add(corners, {{prism.rings().begin(), prism.rings().end()}, {prism.ends().begin(), prism.ends().end()}});
     }
   return prisms;
 }

@@ -8,72 +8,38 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "polytope/polytope_faces.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
 
-/// Most corners of a polygon or polyhedron: the bits of a signature.
-inline constexpr std::size_t kPolytopeCorners = 64;
-
-/// The faces of a polytope as rings of its corners. Along each ring of a polyhedron, seen from outside, the corners are
-/// counterclockwise if the cell is not inverted; a polygon has one ring. A prism over a polyhedron (4D) has the rings
-/// of the polyhedron, its base; corner v of the base is corner v at the lower end and corner v + base_corners() at the
-/// upper one (PrismFacets has its facets).
-class PolytopeShape {
+/// The faces of a polytope, with the memory for them. Copies share it.
+class PolytopeShape : public PolytopeFaces {
  public:
-  PolytopeShape() = default;
   /// `rings`: one face after the other; `ends`: the end of each face. The faces of a polyhedron must be checked.
   PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
-  /// The prism over a polyhedron. Its edges: those of the base at the lower end, at the upper end, and between the ends
-  /// by corner.
-  [[nodiscard]] static PolytopeShape prism_over(PolytopeShape base);
-
-  [[nodiscard]] int dim() const noexcept { return is_prism_ ? 4 : face_count() == 1 ? 2 : 3; }
-  [[nodiscard]] std::size_t corner_count() const noexcept { return is_prism_ ? 2 * corner_count_ : corner_count_; }
-  /// Number of corners, and of edges, of a polyhedron or of the base of a prism.
-  [[nodiscard]] std::size_t base_corners() const noexcept { return corner_count_; }
-  [[nodiscard]] std::size_t base_edges() const noexcept { return faces_of_.size(); }
-  [[nodiscard]] std::size_t face_count() const noexcept { return ends_.size(); }
-  /// Number of facets: edges of a polygon, faces of a polyhedron, polyhedra around a prism.
-  [[nodiscard]] std::size_t facet_count() const noexcept {
-    return is_prism_ ? face_count() + 2 : face_count() == 1 ? corner_count_ : face_count();
-  }
-  [[nodiscard]] std::span<const std::uint8_t> ring(std::size_t face) const noexcept { return part(rings_, face); }
-  /// The edges of a face: edge i is between corners i and i + 1 of its ring.
-  [[nodiscard]] std::span<const std::uint8_t> ring_edges(std::size_t face) const noexcept {
-    return part(ring_edges_, face);
-  }
-  /// The ends of the edges.
-  [[nodiscard]] const std::vector<std::array<std::uint8_t, 2>>& edges() const noexcept { return edges_; }
-  /// The two faces at an edge, of a polyhedron or of the base of a prism.
-  [[nodiscard]] const std::array<std::uint8_t, 2>& faces_at(std::size_t edge) const noexcept { return faces_of_[edge]; }
-  /// Whether two different edges are in a common face, of a polyhedron or of the base of a prism.
-  [[nodiscard]] bool share_a_face(std::size_t edge, std::size_t other) const noexcept {
-    const auto &a = faces_of_[edge], &b = faces_of_[other];
-    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
-  }
+  /// The prism over a polyhedron.
+  [[nodiscard]] static PolytopeShape prism_over(const PolytopeShape& base);
 
  private:
-  [[nodiscard]] std::span<const std::uint8_t> part(const std::vector<std::uint8_t>& of, std::size_t face) const {
-    const std::size_t begin = face == 0 ? 0 : ends_[face - 1];
-    return {of.data() + begin, ends_[face] - begin};
-  }
+  struct Arrays {
+    std::vector<std::uint8_t> rings, ring_edges;
+    std::vector<std::uint16_t> ends;
+    std::vector<Pair> edges, faces_of;
+    std::size_t corner_count;
+    bool is_prism;
+  };
+  explicit PolytopeShape(Arrays arrays);
+  [[nodiscard]] static Arrays arrays_of(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
 
-  std::size_t corner_count_ = 0;  ///< of the base
-  bool is_prism_ = false;
-  std::vector<std::uint8_t> rings_, ring_edges_;
-  std::vector<std::uint16_t> ends_;
-  std::vector<std::array<std::uint8_t, 2>> edges_, faces_of_;  ///< by edge
+  std::shared_ptr<const Arrays> arrays_;
 };
-
-/// The rings of the faces of the prism over a polygon, and where each ends: seen from outside as the polygon, the base
-/// is clockwise, the top counterclockwise. Corner v of the base is below corner `corners` + v.
-[[nodiscard]] std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>> prism_over_polygon(std::size_t corners);
 
 /// The polygons (of a 2D complex), polyhedra (3D) or prisms over polyhedra (4D) of a complex, in the order of the
 /// input.

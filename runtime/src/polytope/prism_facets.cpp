@@ -4,26 +4,15 @@
 #include "polytope/prism_facets.hpp"
 
 #include <algorithm>
-#include <utility>
+
+#include "polytope/polygon_prisms.hpp"
 
 namespace tegl::detail {
 
 namespace {
 
-const PolytopeShape& prism_of_corners(std::size_t count) {
-  static const auto kPrisms = [] {
-    std::vector<PolytopeShape> prisms(3);
-    while (prisms.size() <= kPolytopeCorners) {
-      auto [rings, ends] = prism_over_polygon(prisms.size());
-      prisms.emplace_back(std::move(rings), std::move(ends));
-    }
-    return prisms;
-  }();
-  return kPrisms[count];
-}
-
-PrismFacet end_of(const PolytopeShape& shape, std::size_t end) {
-  PrismFacet facet{&shape, PrismFacet::Kind::end, {}, {}, end == 1};
+PrismFacet end_of(const PolytopeFaces& shape, std::size_t end) {
+  PrismFacet facet{shape, PrismFacet::Kind::end, {}, {}, end == 1};
   for (std::size_t v = 0; v < shape.base_corners(); ++v)
     facet.corners.push_back(static_cast<std::uint8_t>(v + end * shape.base_corners()));
   for (std::size_t e = 0; e < shape.base_edges(); ++e)
@@ -31,14 +20,14 @@ PrismFacet end_of(const PolytopeShape& shape, std::size_t end) {
   return facet;
 }
 
-PrismFacet side_of(const PolytopeShape& shape, std::size_t face) {
+PrismFacet side_of(const PolytopeFaces& shape, std::size_t face) {
   const std::span<const std::uint8_t> ring = shape.ring(face), edges = shape.ring_edges(face);
   const std::size_t count = ring.size(), corners = shape.base_corners(), base = shape.base_edges();
-  PrismFacet facet{&prism_of_corners(count), PrismFacet::Kind::prism, {}, {}, false};
+  PrismFacet facet{kPolygonPrisms.over(count), PrismFacet::Kind::prism, {}, {}, false};
   if (count < 5) facet.kind = count == 3 ? PrismFacet::Kind::wedge : PrismFacet::Kind::hexahedron;
   for (const std::size_t end : {0u, 1u})
     for (const std::uint8_t v : ring) facet.corners.push_back(static_cast<std::uint8_t>(v + end * corners));
-  for (const auto& [a, b] : facet.shape->edges()) {
+  for (const auto& [a, b] : facet.shape.edges()) {
     if (b == a + count) {
       facet.edges.push_back(static_cast<std::uint16_t>(2 * base + ring[a]));
       continue;
@@ -52,11 +41,11 @@ PrismFacet side_of(const PolytopeShape& shape, std::size_t face) {
 
 }  // namespace
 
-PrismFacet facet_of_prism(const PolytopeShape& shape, std::size_t facet) {
+PrismFacet facet_of_prism(const PolytopeFaces& shape, std::size_t facet) {
   return facet < 2 ? end_of(shape, facet) : side_of(shape, facet - 2);
 }
 
-std::vector<PrismFacet> facets_of_prism(const PolytopeShape& shape) {
+std::vector<PrismFacet> facets_of_prism(const PolytopeFaces& shape) {
   std::vector<PrismFacet> facets;
   for (std::size_t f = 0; f < shape.facet_count(); ++f) facets.push_back(facet_of_prism(shape, f));
   return facets;
@@ -72,8 +61,8 @@ std::array<Index, 4> key_of_facet(const PrismFacet& facet, const Index* points, 
     return {point(corners[0]), kNone - 1 - *entangled, kNone, kNone};
   // three corners are in one polygon at most
   std::size_t fourth = 3;
-  for (std::size_t f = 0; f < facet.shape->face_count(); ++f) {
-    const std::span<const std::uint8_t> ring = facet.shape->ring(f);
+  for (std::size_t f = 0; f < facet.shape.face_count(); ++f) {
+    const std::span<const std::uint8_t> ring = facet.shape.ring(f);
     const auto is_in = [&](std::uint8_t v) { return std::find(ring.begin(), ring.end(), v) != ring.end(); };
     if (!is_in(corners[0]) || !is_in(corners[1]) || !is_in(corners[2])) continue;
     while (is_in(corners[fourth])) ++fourth;

@@ -10,7 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "polytope/polytopes.hpp"
+#include "polytope/polytope_faces.hpp"
+#include "tegl/contour.hpp"
 
 namespace tegl::detail {
 
@@ -18,7 +19,7 @@ namespace tegl::detail {
 struct PrismFacet {
   enum class Kind : std::uint8_t { end, wedge, hexahedron, prism };
 
-  const PolytopeShape* shape;         ///< of an end: the prism itself, whose rings are those of its base
+  PolytopeFaces shape;                ///< of an end: the prism itself, whose rings are the rings of its base
   Kind kind;                          ///< wedges and hexahedra have tables in other cells; `prism` has a larger base
   std::vector<std::uint8_t> corners;  ///< of the cell, by corner of the facet
   std::vector<std::uint16_t> edges;   ///< of the cell, by edge of the facet
@@ -30,9 +31,9 @@ struct PrismFacet {
 
 /// The facets of a prism: both ends, then by face of the base. A prism over a face has the corners around the face at
 /// the lower end, then those at the upper end. `shape` must outlive the facets.
-[[nodiscard]] std::vector<PrismFacet> facets_of_prism(const PolytopeShape& shape);
+[[nodiscard]] std::vector<PrismFacet> facets_of_prism(const PolytopeFaces& shape);
 /// One of these facets.
-[[nodiscard]] PrismFacet facet_of_prism(const PolytopeShape& shape, std::size_t facet);
+[[nodiscard]] PrismFacet facet_of_prism(const PolytopeFaces& shape, std::size_t facet);
 
 /// The corners of a hexahedron in the order of the tables, as corners of a facet: bit i of the place is a coordinate.
 inline constexpr std::array<std::uint8_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};

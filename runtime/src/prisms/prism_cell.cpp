@@ -34,13 +34,13 @@ std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const PrismFa
   if (!rules.is_compact) return std::nullopt;
   std::size_t start = 0;
   if (facet.kind == PrismFacet::Kind::end)
-    return find_fan(*facet.shape, loop, start) ? std::optional(start) : std::nullopt;
+    return find_fan(facet.shape, loop, start) ? std::optional(start) : std::nullopt;
   const auto ends = [&](std::size_t i) -> std::pair<Index, Index> {
-    const auto& [a, b] = facet.shape->edges()[loop[i]];
+    const auto& [a, b] = facet.shape.edges()[loop[i]];
     return std::minmax(points[facet.corners[a]], points[facet.corners[b]]);
   };
   std::optional<std::size_t> best;
-  for (; find_fan(*facet.shape, loop, start); ++start)
+  for (; find_fan(facet.shape, loop, start); ++start)
     if (!best || ends(start) < ends(*best)) best = start;
   return best;
 }
@@ -52,7 +52,7 @@ PrismCell::PrismCell(const PolytopeRules& rules)
       regions_of_(CubeRegions::instance(triangulation_of(rules))),
       around_(kCones) {}
 
-void PrismCell::load(const PolytopeShape& shape) {
+void PrismCell::load(const PolytopeFaces& shape) {
   shape_ = &shape;
   facets_ = facets_of_prism(shape);
   corners_of_face_.assign(shape.face_count(), 0);
@@ -60,7 +60,7 @@ void PrismCell::load(const PolytopeShape& shape) {
     for (const std::uint8_t v : shape.ring(f)) corners_of_face_[f] |= std::uint64_t{1} << v;
 }
 
-void PrismCell::build(const PolytopeShape& shape, const Index* points, const double* values,
+void PrismCell::build(const PolytopeFaces& shape, const Index* points, const double* values,
                       const EntangledPrism& entangled) {
   if (&shape != shape_) load(shape);
   points_ = points;
@@ -92,7 +92,7 @@ void PrismCell::add_contour(std::size_t f) {
     for (unsigned v = 0; v < 8; ++v) signature |= (at[kHexahedronCorners[v]] >= rules_.isovalue ? 1u : 0u) << v;
     return rules_.rule ? add_cube(f, signature) : add_filling(f, signature);
   }
-  loops_.for_each(*facet.shape, at.data(), rules_, [&](std::span<const std::uint8_t> loop) { add_loop(f, loop); });
+  loops_.for_each(facet.shape, at.data(), rules_, [&](std::span<const std::uint8_t> loop) { add_loop(f, loop); });
 }
 
 void PrismCell::add_loop(std::size_t f, std::span<const std::uint8_t> loop) {
@@ -119,7 +119,7 @@ PrismCell::Local PrismCell::on_edge(std::size_t f, unsigned p, unsigned q) const
   const PrismFacet& facet = facets_[f];
   const auto [a, b] = std::minmax(kHexahedronCorners[p], kHexahedronCorners[q]);
   const std::array<std::uint8_t, 2> ends = {a, b};
-  const auto& edges = facet.shape->edges();
+  const auto& edges = facet.shape.edges();
   return facet.edges[static_cast<std::size_t>(std::find(edges.begin(), edges.end(), ends) - edges.begin())];
 }
 

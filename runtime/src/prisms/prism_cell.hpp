@@ -56,7 +56,7 @@ class PrismCell {
   explicit PrismCell(const PolytopeRules& rules);
 
   /// Builds the contour of an active cell with these points and values at its corners.
-  void build(const PolytopeShape& shape, const Index* points, const double* values,
+  void build(const PolytopeFaces& shape, const Index* points, const double* values,
              const EntangledPrism& entangled = {});
 
   /// With their positive sides towards high corners if the cell is not inverted.
@@ -80,7 +80,7 @@ class PrismCell {
   };
 
   // Sigma
-  void load(const PolytopeShape& shape);
+  void load(const PolytopeFaces& shape);
   void add_contour(std::size_t f);
   void add_loop(std::size_t f, std::span<const std::uint8_t> loop);
   void add_filling(std::size_t f, unsigned signature);
@@ -113,7 +113,7 @@ class PrismCell {
   const ResolvedCubes& cubes_;
   const CubeRegions& regions_of_;
   Loops loops_;
-  const PolytopeShape* shape_ = nullptr;
+  const PolytopeFaces* shape_ = nullptr;
   std::vector<PrismFacet> facets_;
   std::vector<std::uint64_t> corners_of_face_;  ///< of the base, as bits
   // The current cell:

@@ -35,7 +35,7 @@ ConedLoops find_coned_loops(const Polytopes& prisms, std::span<const double> val
   for (const Index c : prisms.entangled())
     for (Index k = 0; k < layers; ++k) {
       const std::size_t prism = c + std::size_t{k > 0 ? k - 1 : 0} * prisms.base_count();
-      const PolytopeShape& shape = prisms.shape(prism);
+      const PolytopeFaces& shape = prisms.shape(prism);
       const Index* const points = prisms.cell(prism) + (k > 0 ? shape.base_corners() : 0);
       for (std::size_t v = 0; v < shape.base_corners(); ++v) at[v] = values[points[v]];
       if (std::any_of(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(shape.base_corners()),
@@ -81,7 +81,7 @@ class PrismBlockBuilder {
     if (is_missing) block_.missing.push_back(cell);
     if (is_missing || high == 0 || high == points.size()) return;
     ++block_.active;
-    const PolytopeShape& shape = prisms_.shape(cell);
+    const PolytopeFaces& shape = prisms_.shape(cell);
     cell_.build(shape, points.data(), at_.data(), entangled(cell));
     for (std::size_t e = 0; e < shape.edges().size(); ++e) {
       const auto& [a, b] = shape.edges()[e];

@@ -8,6 +8,7 @@
 #include "prisms/prism_cell.hpp"
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
+#include "regions/tunnel_regions.hpp"
 #include "tegl/tile/diagonal_edges.hpp"
 #include "tile/extract_tables.hpp"
 
@@ -80,7 +81,7 @@ void PrismCell::find_regions(bool high) {
 /// The regions of a facet in which all polygons are discs.
 void PrismCell::add_regions(std::size_t f, bool high) {
   RegionSides<Local> sides;
-  for (std::size_t face = 0; face < facets_[f].shape->face_count(); ++face)
+  for (std::size_t face = 0; face < facets_[f].shape.face_count(); ++face)
     add_parts(f, face, high, sides.parts, sides.triangles);
   for (const Piece& piece : sigma_)
     if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
@@ -92,7 +93,7 @@ void PrismCell::add_regions(std::size_t f, bool high) {
 void PrismCell::add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
                           std::vector<Triangle>& triangles) const {
   const PrismFacet& facet = facets_[f];
-  const std::span<const std::uint8_t> ring = facet.shape->ring(face), edges = facet.shape->ring_edges(face);
+  const std::span<const std::uint8_t> ring = facet.shape.ring(face), edges = facet.shape.ring_edges(face);
   const std::size_t count = ring.size(), first = parts.size();
   const auto corner = [&](std::size_t i) { return static_cast<Local>(kCorners + facet.corners[ring[i % count]]); };
   const auto edge = [&](std::size_t i) { return Local{facet.edges[edges[i % count]]}; };
@@ -136,41 +137,24 @@ bool PrismCell::is_in_square(Local v, const Square& square) const noexcept {
 
 /// The regions of a hexahedron with a tunnel.
 void PrismCell::add_cube_regions(std::size_t f, bool high) {
-  const auto& [frame, list, first_own] = *contours_[f];
-  std::map<Triangle, unsigned> faces;
-  for (const CubeRegions::Region& region : regions_of_.regions(list, high)) {
-    const auto first = static_cast<Local>(kCentres + centres_.size());
-    for (const std::uint32_t mask : regions_of_.centres(region)) {
-      const std::uint32_t doubled = mask / CubeRegions::kFirstDouble;
-      (void)add_centre(points_of(
-          f, frame, doubled != 0 ? cubes_.mask(list, static_cast<unsigned>(std::countr_zero(doubled))) : mask));
-    }
-    const auto local = [&](unsigned v) {
-      if (v < CubeRegions::kFirstEdge) return corner_of(f, frame.corner(v));
-      if (v < CubeRegions::kFirstOwn) {
-        const unsigned e = v - CubeRegions::kFirstEdge, base = edge_base(3, e);
-        return on_edge(f, frame.corner(base), frame.corner(base | 1u << e / 4));
-      }
-      if (v < CubeRegions::kFirstCentre) return static_cast<Local>(first_own + v - CubeRegions::kFirstOwn);
-      return static_cast<Local>(first + v - CubeRegions::kFirstCentre);
-    };
-    for (const auto& [a, b, c, d] : regions_of_.tetrahedra(region)) {
-      const Tetrahedron& t = regions_.emplace_back(Tetrahedron{local(a), local(b), local(c), local(d)});
-      for (unsigned k = 0; k < 4; ++k) ++faces[sorted(face_of(t, k))];
-    }
-  }
+  const CubeContour& contour = *contours_[f];
+  const CubeFrame& frame = contour.frame;
+  const auto corner = [&](unsigned v) { return corner_of(f, frame.corner(v)); };
+  const auto edge = [&](unsigned e) {
+    const unsigned base = edge_base(3, e);
+    return on_edge(f, frame.corner(base), frame.corner(base | 1u << e / 4));
+  };
+  const auto centre = [&](std::uint32_t mask) { return add_centre(points_of(f, frame, mask)); };
+  auto faces =
+      add_tunnel_regions(regions_of_, cubes_, contour.list, high, contour.first_own, corner, edge, centre, regions_);
   for (const Piece& piece : sigma_)
     if (piece.facet == f) faces.erase(sorted(piece.triangle));
   for (const auto& corners : kSquareCorners) {
     Square square;
     for (std::size_t i = 0; i < 4; ++i) square[i] = corner_of(f, corners[i]);
     std::sort(square.begin(), square.end());
-    std::vector<Triangle> fan;
-    for (const auto& [t, count] : faces)
-      if (count == 1 && std::all_of(t.begin(), t.end(), [&](Local v) { return is_in_square(v, square); }))
-        fan.push_back(t);
-    const auto [at, is_new] = fans_.try_emplace(square, fan);
-    if (!is_new && at->second != fan) join_fans(at->second, fan, regions_);
+    add_square_fan(
+        faces, square, [&](Local v) { return is_in_square(v, square); }, fans_, regions_);
   }
 }
 

@@ -4,7 +4,6 @@
 #include "tile/built_tile.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include <fmt/format.h>
@@ -13,17 +12,6 @@ namespace tegl::detail {
 
 using tile::VertexId;
 using tile::VertexKind;
-
-CubeFaces::CubeFaces(int n) : lattice_(tile::FaceLattice::cube(n)), numbers_(std::size_t{1} << (2 * n)) {
-  for (const tile::Face& face : lattice_.faces()) {
-    const auto least = static_cast<unsigned>(std::countr_zero(face.corners));
-    const unsigned most = 63u - static_cast<unsigned>(std::countl_zero(face.corners));
-    numbers_[least << n | (least ^ most)] = static_cast<std::uint16_t>(cells_.size());
-    cells_.push_back({static_cast<std::uint8_t>(least), static_cast<std::uint8_t>(least ^ most),
-                      static_cast<std::uint8_t>(face.dim)});
-    if (face.dim < 2) first_choice_ = cells_.size();
-  }
-}
 
 namespace {
 

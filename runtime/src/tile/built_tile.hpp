@@ -11,39 +11,11 @@
 #include <vector>
 
 #include "tegl/error.hpp"
+#include "tegl/tile/cube_faces.hpp"
 #include "tegl/tile/facets.hpp"
 #include "tegl/tile/triangulation.hpp"
 
 namespace tegl::detail {
-
-/// The faces of an n-cube, with the extraction's names for them.
-class CubeFaces {
- public:
-  struct Cell {
-    std::uint8_t base;  ///< lowest corner
-    std::uint8_t axes;  ///< bit a: spans axis a
-    std::uint8_t dim;
-  };
-  explicit CubeFaces(int n);
-
-  [[nodiscard]] const tile::FaceLattice& lattice() const noexcept { return lattice_; }
-  [[nodiscard]] int dim() const noexcept { return lattice_.dim(); }
-  /// By number in the lattice.
-  [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
-  /// Number of the face with this base and axes.
-  [[nodiscard]] std::uint16_t number(unsigned base, unsigned axes) const noexcept {
-    return numbers_[base << lattice_.dim() | axes];
-  }
-  [[nodiscard]] std::size_t tile() const noexcept { return cells_.size() - 1; }
-  /// Number of the first face of dimension 2. Choices exist for it and all later faces.
-  [[nodiscard]] std::size_t first_choice() const noexcept { return first_choice_; }
-
- private:
-  tile::FaceLattice lattice_;
-  std::vector<Cell> cells_;
-  std::vector<std::uint16_t> numbers_;
-  std::size_t first_choice_ = 0;
-};
 
 /// Returns build(). Builders throw std::length_error for tiles with too many vertices; this becomes Error{TooLarge}.
 template <class Build>

@@ -13,7 +13,7 @@ namespace {
 class GeneralMaker final : public TileMaker {
  public:
   GeneralMaker(const CubeFaces& cube, tile::Alternative alternative, std::size_t max_bytes)
-      : cube_(cube), alternative_(alternative), builder_(cube.lattice(), max_bytes) {}
+      : cube_(cube), alternative_(alternative), builder_(tile::FaceLattice::cube(cube.dim()), max_bytes) {}
 
   BuiltTile make(const TileKey& key) override {
     choices_.clear();
@@ -29,7 +29,7 @@ class GeneralMaker final : public TileMaker {
   [[nodiscard]] std::size_t kept_bytes() const override { return builder_.kept_bytes(); }
 
  private:
-  const CubeFaces& cube_;
+  CubeFaces cube_;
   tile::Alternative alternative_;
   tile::FacetBuilder builder_;
   std::vector<tile::Choice> choices_;
@@ -42,7 +42,7 @@ BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
   if (from_.builders_.empty()) {
     from_.builders_.reserve(from_.made_ + 1);  // so that returning a builder cannot throw
     if (from_.kind_.triangulation == Triangulation::compact)
-      builder_ = five_cube_maker(from_.cube_, from_.kind_);
+      builder_ = five_cube_maker(from_.kind_);
     else
       builder_ = std::make_unique<GeneralMaker>(from_.cube_, from_.kind_.alternative, from_.max_builder_bytes_);
     ++from_.made_;

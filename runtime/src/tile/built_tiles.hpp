@@ -117,7 +117,7 @@ class BuiltTiles {
   };
   void keep(const TileKey& key, const Pointer& tile);
 
-  const CubeFaces& cube_;
+  CubeFaces cube_;
   CubeSymmetries symmetries_;
   TileKind kind_;
   std::size_t max_bytes_;          ///< for tiles

@@ -8,7 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 namespace tegl::detail {
 
@@ -19,21 +19,44 @@ struct CubeSymmetry {
   std::uint8_t flip = 0;
 };
 
-/// All symmetries of the n-cube, n = 2 ... 6.
+/// A permutation of axes.
+struct AxisPermutation {
+  std::array<std::uint8_t, 32> spread{};  ///< where it takes a set of axes
+  bool is_odd = false;
+};
+
+/// All permutations of the axes of the N-cube in lexicographic order, computed by the compiler.
+template <unsigned N>
+struct AxisPermutations {
+  static constexpr std::size_t kCount = [] {
+    std::size_t count = 1;
+    for (unsigned n = 2; n <= N; ++n) count *= n;
+    return count;
+  }();
+  std::array<AxisPermutation, kCount> all{};
+
+  constexpr AxisPermutations() {
+    std::array<std::uint8_t, N> axes{};
+    for (std::size_t i = 0; i < N; ++i) axes[i] = static_cast<std::uint8_t>(i);
+    for (AxisPermutation& p : all) {
+      for (unsigned mask = 1; mask < 1u << N; ++mask) {
+        const unsigned rest = mask & (mask - 1), axis = axes[static_cast<std::size_t>(std::countr_zero(mask))];
+        p.spread[mask] = static_cast<std::uint8_t>(p.spread[rest] | 1u << axis);
+      }
+      for (std::size_t i = 0; i < N; ++i)
+        for (std::size_t j = i + 1; j < N; ++j) p.is_odd = p.is_odd != (axes[i] > axes[j]);
+      std::next_permutation(axes.begin(), axes.end());
+    }
+  }
+};
+
+template <unsigned N>
+inline constexpr AxisPermutations<N> kAxisPermutations{};
+
+/// All symmetries of the n-cube, n = 2 ... 5.
 class CubeSymmetries {
  public:
-  explicit CubeSymmetries(int n) : n_(static_cast<unsigned>(n)) {
-    std::array<std::uint8_t, 6> axes = {0, 1, 2, 3, 4, 5};
-    do {
-      Permutation& p = permutations_.emplace_back();
-      p.axes = axes;
-      for (unsigned mask = 0; mask < 1u << n_; ++mask)
-        for (unsigned i = 0; i < n_; ++i)
-          p.spread[mask] = static_cast<std::uint8_t>(p.spread[mask] | (mask >> i & 1u) << axes[i]);
-      for (unsigned i = 0; i < n_; ++i)
-        for (unsigned j = i + 1; j < n_; ++j) p.odd = p.odd != (axes[i] > axes[j]);
-    } while (std::next_permutation(axes.begin(), axes.begin() + n));
-  }
+  explicit CubeSymmetries(int n) noexcept : n_(static_cast<unsigned>(n)), permutations_(permutations_of(n)) {}
 
   /// Maps a set of axes from the first frame to the second.
   [[nodiscard]] unsigned axes(CubeSymmetry symmetry, unsigned axes) const noexcept {
@@ -45,7 +68,7 @@ class CubeSymmetries {
     return permutations_[symmetry.permutation].spread[base] ^ (symmetry.flip & ~axes);
   }
   [[nodiscard]] bool is_mirror(CubeSymmetry symmetry) const noexcept {
-    return permutations_[symmetry.permutation].odd != (std::popcount(symmetry.flip) % 2 != 0);
+    return permutations_[symmetry.permutation].is_odd != (std::popcount(symmetry.flip) % 2 != 0);
   }
 
   /// A symmetry to the frame of `signature` from a canonical one, in which upper halves have at least as many high
@@ -85,11 +108,18 @@ class CubeSymmetries {
   }
 
  private:
-  struct Permutation {
-    std::array<std::uint8_t, 6> axes;
-    std::array<std::uint8_t, 64> spread{};
-    bool odd = false;
-  };
+  static constexpr std::span<const AxisPermutation> permutations_of(int n) noexcept {
+    switch (n) {
+      case 2:
+        return kAxisPermutations<2>.all;
+      case 3:
+        return kAxisPermutations<3>.all;
+      case 4:
+        return kAxisPermutations<4>.all;
+      default:
+        return kAxisPermutations<5>.all;
+    }
+  }
   /// Corners v with (v >> axis & 1) set.
   static std::uint64_t upper_half(unsigned axis) noexcept {
     constexpr std::array<std::uint64_t, 6> kHalves = {0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
@@ -98,7 +128,7 @@ class CubeSymmetries {
   }
 
   unsigned n_;
-  std::vector<Permutation> permutations_;  ///< in lexicographic order
+  std::span<const AxisPermutation> permutations_;  ///< in lexicographic order
 };
 
 }  // namespace tegl::detail

@@ -8,12 +8,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "builder5.hpp"
-#include "tegl/tile/corners.hpp"
+#include "tile/five_cube_numbers.hpp"
 
 namespace tegl::detail {
 
@@ -28,46 +27,12 @@ using Id = FiveCubeBuilder::Id;
 using tile::Choice;
 
 constexpr unsigned kTile = FiveCubeBuilder::kTile;
-
-/// Number of the corners and edges of a face below a corner or an edge of it: its number in the face's own frame.
-struct Frame {
-  std::uint32_t corners = 0;
-  std::array<std::uint64_t, 2> edges{};
-
-  [[nodiscard]] unsigned number_of_corner(unsigned v) const {
-    return static_cast<unsigned>(std::popcount(corners & ((1u << v) - 1)));
-  }
-  [[nodiscard]] unsigned number_of_edge(unsigned e) const {
-    const std::uint64_t below = (std::uint64_t{1} << (e % 64)) - 1;
-    const int before =
-        e < 64 ? std::popcount(edges[0] & below) : std::popcount(edges[0]) + std::popcount(edges[1] & below);
-    return static_cast<unsigned>(std::popcount(corners) + before);
-  }
-};
+constexpr CubeFaces kCube(5);
+constexpr const FiveCubeNumbers& kNumbers = kFiveCubeNumbers;
 
 class FiveCubeMaker final : public TileMaker {
  public:
-  FiveCubeMaker(const CubeFaces& cube, const TileKind& kind) : cube_(cube), kind_(kind) {
-    for (unsigned e = 0; e < 80; ++e) {
-      const auto& ends = FiveCube::kEdges[e];
-      edge_face_[e] = cube.number(ends[0], unsigned{ends[0]} ^ ends[1]);
-    }
-    std::iota(edges_.begin(), edges_.end(), std::uint8_t{0});
-    std::sort(edges_.begin(), edges_.end(), [&](unsigned a, unsigned b) { return edge_face_[a] < edge_face_[b]; });
-    for (unsigned q = 0; q < 80; ++q)
-      square_face_[q] = cube.number(FiveCube::kSquares[q].base, FiveCube::kSquares[q].axes);
-    for (unsigned c = 0; c < 40; ++c) {
-      const FiveCube::Face& face = FiveCube::kCubes[c].face;
-      cube_face_[c] = cube.number(face.base, face.axes);
-    }
-    for (unsigned f = 0; f < 10; ++f) {
-      tesseract_face_[f] = cube.number(f % 2 << f / 2, 31u ^ 1u << f / 2);
-      for (const std::uint8_t v : FiveCube::kTesseracts[f].corners) frames_[f].corners |= 1u << v;
-      for (const std::uint8_t e : FiveCube::kTesseracts[f].edges)
-        frames_[f].edges[e / 64] |= std::uint64_t{1} << (e % 64);
-    }
-    frames_[kTile] = {~std::uint32_t{0}, {~std::uint64_t{0}, 0xffff}};
-  }
+  explicit FiveCubeMaker(const TileKind& kind) : kind_(kind) {}
 
   BuiltTile make(const TileKey& key) override {
     FiveKey of = key_of(key);
@@ -82,20 +47,20 @@ class FiveCubeMaker final : public TileMaker {
     FiveKey result;
     result.signature = static_cast<std::uint32_t>(key.signature);
     if (!key.has_choices()) return result;
-    const auto choice = [&](std::size_t face) { return key.choice(face - cube_.first_choice()); };
+    const auto choice = [&](std::size_t face) { return key.choice(face - kCube.first_choice()); };
     for (unsigned q = 0; q < 80; ++q)
-      if (choice(square_face_[q]) == Choice::high) result.high_squares[q / 64] |= std::uint64_t{1} << (q % 64);
+      if (choice(kNumbers.squares[q]) == Choice::high) result.high_squares[q / 64] |= std::uint64_t{1} << (q % 64);
     for (unsigned c = 0; c < 40; ++c) {
-      const Choice of = choice(cube_face_[c]);
+      const Choice of = choice(kNumbers.cubes[c]);
       if (of == Choice::low) result.low_cubes |= std::uint64_t{1} << c;
       if (of == Choice::high) result.high_cubes |= std::uint64_t{1} << c;
     }
     for (unsigned f = 0; f < 10; ++f) {
-      const Choice of = choice(tesseract_face_[f]);
+      const Choice of = choice(kNumbers.tesseracts[f]);
       if (of == Choice::low) result.low_tesseracts = static_cast<std::uint16_t>(result.low_tesseracts | 1u << f);
       if (of == Choice::high) result.high_tesseracts = static_cast<std::uint16_t>(result.high_tesseracts | 1u << f);
     }
-    result.tile = choice(cube_.tile());
+    result.tile = choice(kCube.tile());
     return result;
   }
 
@@ -115,11 +80,11 @@ class FiveCubeMaker final : public TileMaker {
     by_face_.clear();
     for (unsigned c = 0; c < 40; ++c)
       for (unsigned j = 0; j < builder_.cube_vertices(c); ++j)
-        by_face_.emplace_back(cube_face_[c],
+        by_face_.emplace_back(kNumbers.cubes[c],
                               static_cast<Id>(FiveCubeBuilder::kFirstOfCubes + ResolvedCubes::kMostOwn * c + j));
     for (std::size_t i = 0; i < contour.own.size(); ++i) {
       const unsigned f = contour.own[i].face;
-      by_face_.emplace_back(f == kTile ? static_cast<std::uint16_t>(cube_.tile()) : tesseract_face_[f],
+      by_face_.emplace_back(f == kTile ? static_cast<std::uint16_t>(kCube.tile()) : kNumbers.tesseracts[f],
                             static_cast<Id>(FiveCubeBuilder::kFirstOwn + i));
     }
     std::sort(by_face_.begin(), by_face_.end());
@@ -136,10 +101,10 @@ class FiveCubeMaker final : public TileMaker {
     find_inner(contour);
     tile.vertices.reserve(critical + by_face_.size());
     tile.faces.reserve(critical + by_face_.size());
-    for (const unsigned e : edges_) {
+    for (const unsigned e : kNumbers.edge_order) {
       const auto& ends = FiveCube::kEdges[e];
       if (((key.signature >> ends[0] ^ key.signature >> ends[1]) & 1u) != 0)
-        number_[e] = add(tile, tile::VertexKind::edge, edge_face_[e], true);
+        number_[e] = add(tile, tile::VertexKind::edge, kNumbers.edges[e], true);
     }
     for (const auto& [face, id] : by_face_) number_[id] = add(tile, tile::VertexKind::side, face, true);
     // their positions
@@ -157,7 +122,7 @@ class FiveCubeMaker final : public TileMaker {
   }
 
   std::uint16_t corner(BuiltTile& tile, unsigned v) {
-    if (corner_[v] == BuiltTile::kNone) corner_[v] = add(tile, tile::VertexKind::corner, cube_.number(v, 0), false);
+    if (corner_[v] == BuiltTile::kNone) corner_[v] = add(tile, tile::VertexKind::corner, kCube.number(v, 0), false);
     return corner_[v];
   }
 
@@ -178,7 +143,7 @@ class FiveCubeMaker final : public TileMaker {
 
   void place_own(BuiltTile& tile, Id id, const FiveCubeBuilder::Own& own, const FiveKey& key) {
     const auto first = static_cast<std::uint32_t>(tile.of.size());
-    const Frame& frame = frames_[own.face];
+    const FiveCubeNumbers::Frame& frame = kNumbers.frames[own.face];
     for (std::uint32_t rest = own.points.corners; rest != 0; rest &= rest - 1) {
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
       tile.of.push_back(corner(tile, v));
@@ -203,14 +168,8 @@ class FiveCubeMaker final : public TileMaker {
     return !kind_.is_estimated || ResolvedTesseract::is_settled(FiveCube::signatures(key.signature)[own.face]);
   }
 
-  const CubeFaces& cube_;
   TileKind kind_;
   FiveCubeBuilder builder_;
-  std::array<std::uint16_t, 80> edge_face_{}, square_face_{};
-  std::array<std::uint8_t, 80> edges_{};  ///< in lattice order
-  std::array<std::uint16_t, 40> cube_face_{};
-  std::array<std::uint16_t, 10> tesseract_face_{};
-  std::array<Frame, 11> frames_{};
   // The current tile.
   std::vector<std::uint16_t> number_;  ///< by the builder's vertex
   std::array<std::uint16_t, 32> corner_{};
@@ -219,8 +178,6 @@ class FiveCubeMaker final : public TileMaker {
 
 }  // namespace
 
-std::unique_ptr<TileMaker> five_cube_maker(const CubeFaces& cube, const TileKind& kind) {
-  return std::make_unique<FiveCubeMaker>(cube, kind);
-}
+std::unique_ptr<TileMaker> five_cube_maker(const TileKind& kind) { return std::make_unique<FiveCubeMaker>(kind); }
 
 }  // namespace tegl::detail

@@ -9,7 +9,7 @@
 
 namespace tegl::detail {
 
-/// Builds compact tiles. `cube`: of dimension 5; it must outlive the result. A maker keeps only its working storage.
-std::unique_ptr<TileMaker> five_cube_maker(const CubeFaces& cube, const TileKind& kind);
+/// Builds compact tiles of 5D images. A maker keeps only its working storage.
+std::unique_ptr<TileMaker> five_cube_maker(const TileKind& kind);
 
 }  // namespace tegl::detail

@@ -76,7 +76,7 @@ class GridCells {
  private:
   static constexpr unsigned kLast = 1u << (N - 1);
 
-  FaceWhere find(CellKind<N> kind, const CubeFaces::Cell& face) {
+  FaceWhere find(CellKind<N> kind, const CubeFace& face) {
     if (face.dim == 0 || face.dim == 2) return {};  // no vertices of their own
     const bool outwards = kind.is_cap() && (face.axes & kLast) != 0;
     if (kind.is_cap() && (face.base & kLast) != 0) return {};  // all corners low

@@ -9,22 +9,12 @@
 #include "tile/built_tile.hpp"
 
 namespace tegl {
-namespace {
-
-template <int N>
-const detail::CubeFaces& cube_faces() {
-  static const detail::CubeFaces faces(N);
-  return faces;
-}
-
-}  // namespace
-
 template <int N>
 requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsigned axes) {
   if ((base & axes) != 0 || (base | axes) >> N != 0)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("face with base {:#b} and axes {:#b}; expected disjoint sets of {} bits", base, axes, N));
-  return cube_faces<N>().number(base, axes);
+  return detail::CubeFaces(N).number(base, axes);
 }
 
 template <int N>
@@ -39,7 +29,7 @@ requires DimensionBetween<N, 2, 6> tile::TileFacets tile_facets(std::uint64_t si
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} choices for the faces of a {}D tile; expected 0 or {}", choices, N, kFaceCount<N>));
   return detail::too_large_as_error(
-      [&] { return tile::build_facets(cube_faces<N>().lattice(), signature, resolution); });
+      [&] { return tile::build_facets(tile::FaceLattice::cube(N), signature, resolution); });
 }
 
 #define TEGL_INSTANTIATE(N)                                          \

@@ -102,7 +102,7 @@ class TilePlaces {
     known_.assign(tile.vertices.size(), false);
   }
   void set_edge(std::size_t v, double alpha) noexcept {
-    const CubeFaces::Cell& edge = cube_.cells()[tile_->vertices[v].face];
+    const CubeFace& edge = cube_.cells()[tile_->vertices[v].face];
     const unsigned axes = symmetries_.axes(symmetry_, edge.axes);
     points_[v] = corner_point<N>(symmetries_.base(symmetry_, edge.base, axes));
     points_[v][std::countr_zero(axes)] = alpha;
@@ -183,7 +183,7 @@ class TilePlaces {
     std::uint32_t corners = 0;
     for (std::size_t at = vertex.first; at < vertex.end; at += 2) corners |= 1u << tile_->of[at + 1];
     const TilePoint<3> inside = ray_place(corners, rays_->level(vertex.face, corners));
-    const CubeFaces::Cell& face = cube_.cells()[vertex.face];
+    const CubeFace& face = cube_.cells()[vertex.face];
     Point point = corner_point<N>(face.base);
     for (int a = 0, own_axis = 0; a < N; ++a)
       if ((face.axes >> a & 1u) != 0) point[a] = inside[own_axis++];
@@ -202,7 +202,7 @@ class TilePlaces {
       sum.add((*this)(tile_->of[at]), is_even ? 1.0 : uneven_weight(tile_->of[at + 1]));
     const Point mean = divided(sum);
     const double level = has_corners ? level_towards(mean, vertex.face) : 0.0;
-    const CubeFaces::Cell& face = cube_.cells()[vertex.face];
+    const CubeFace& face = cube_.cells()[vertex.face];
     Point point = corner_point<N>(face.base);
     int own_axis = 0;
     for (int a = 0; a < N; ++a) {
@@ -216,7 +216,7 @@ class TilePlaces {
 
   /// Level of the ray from the centre of a face of four or five dimensions to a point in it.
   [[nodiscard]] double level_towards(const Point& end, std::size_t face) const noexcept {
-    const CubeFaces::Cell& cell = cube_.cells()[face];
+    const CubeFace& cell = cube_.cells()[face];
     if (cell.dim == 5) return rays_->level(face, in_frame<5>(end, cell.axes));
     return cell.dim == 4 ? rays_->level(face, in_frame<4>(end, cell.axes)) : 0.5;
   }
@@ -250,7 +250,7 @@ class TilePlaces {
     return point;
   }
 
-  const CubeFaces& cube_;
+  CubeFaces cube_;
   const CubeSymmetries& symmetries_;
   const BuiltTile* tile_ = nullptr;
   const TileRays* rays_ = nullptr;

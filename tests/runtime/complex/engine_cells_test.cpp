@@ -12,11 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include "complex/cell_cases.hpp"
 #include "complex/cell_groups.hpp"
 #include "complex/complex_cases.hpp"
 #include "complex/engine_cells.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/generated/cells.hpp"
+#include "tegl/shape_places.hpp"
 #include "tegl/tile/facets.hpp"
 
 namespace tegl {
@@ -197,6 +200,86 @@ TEST(EngineCells, CompactContoursAndRulesThatReadTheDataHaveTheTopologyOfTheGene
         CellType::hexahedron_prism, CellType::voxel_prism, CellType::cell16, CellType::octahedron_prism})
     // a pyramid over time has only one cube, which rarely has a tunnel
     expect_topology_of_the_engine<4>(type, type == CellType::pyramid_prism ? 600 : 100, 5);
+}
+
+/// The corners around the faces of a wedge: the triangles, then the sides in the order of quadrilaterals_of.
+const std::vector<std::vector<unsigned>> kWedgeFaces = {{0, 1, 2}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+
+/// The contour of a wedge in its faces, as pairs of edges. `high`: ambiguous sides whose high corners are joined.
+std::set<std::set<unsigned>> segments_of_wedge(const tables::CellTable& table, unsigned signature, unsigned high) {
+  std::set<std::set<unsigned>> segments;
+  for (std::size_t f = 0; f < kWedgeFaces.size(); ++f) {
+    const std::vector<unsigned>& ring = kWedgeFaces[f];
+    const std::size_t size = ring.size();
+    const auto is_high = [&](std::size_t i) { return (signature >> ring[i % size] & 1u) != 0; };
+    const auto edge = [&](std::size_t i) -> unsigned {
+      return detail::edge_between(table, ring[i % size], ring[(i + 1) % size]);
+    };
+    std::set<unsigned> crossed;
+    for (std::size_t i = 0; i < size; ++i)
+      if (is_high(i) != is_high(i + 1)) crossed.insert(edge(i));
+    if (crossed.size() == 2) segments.insert(crossed);
+    if (crossed.size() < 4) continue;
+    const bool cut_off = (high >> (f - 2) & 1u) == 0;  // which corners are apart
+    for (std::size_t i = 0; i < size; ++i)
+      if (is_high(i) == cut_off) segments.insert({edge(i + size - 1), edge(i)});
+  }
+  return segments;
+}
+
+TEST(ResolvedWedges, WithSidesOfBothKindsHaveThePolygonOfTheirFaces) {
+  const tables::CellTable& table = tables::cell_table(tables::CellShape::wedge, Triangulation::compact);
+  const detail::ResolvedCells wedges(tables::CellShape::wedge, table, Triangulation::compact,
+                                     {detail::FaceRule::By::means, true}, 0.0);
+  const auto sides = detail::quadrilaterals_of(tables::CellShape::wedge);
+  using Place = std::array<double, 3>;
+  const auto corner = [&](unsigned v) -> Place {
+    return {double(table.corners[3 * v]), double(table.corners[3 * v + 1]), double(table.corners[3 * v + 2])};
+  };
+  std::set<unsigned> lists;
+  for (unsigned signature = 0; signature < 64; ++signature) {
+    unsigned ambiguous = 0;
+    for (unsigned q = 0; q < 3; ++q) ambiguous |= detail::is_ambiguous_square(signature, sides[q]) ? 1u << q : 0;
+    for (unsigned high = ambiguous & (ambiguous - 1); high != 0 && high != ambiguous; high = (high - 1) & ambiguous) {
+      SCOPED_TRACE(testing::Message() << "signature " << signature << " high sides " << high);
+      const unsigned variant = detail::ResolvedCells::variant(signature, ambiguous, high);
+      ASSERT_GT(variant, 1u);
+      lists.insert(variant);
+      const detail::CellContour contour = wedges.contour(variant);
+      ASSERT_EQ(contour.list().added(), 1u);
+      const auto segments = segments_of_wedge(table, signature, high);
+      std::set<unsigned> crossed;
+      Place centre{};
+      const auto point = [&](unsigned e) {
+        const Place a = corner(table.edges[2 * e]), b = corner(table.edges[2 * e + 1]);
+        return Place{0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+      };
+      for (const auto& segment : segments) crossed.insert(segment.begin(), segment.end());
+      for (const unsigned e : crossed)
+        for (std::size_t a = 0; a < 3; ++a) centre[a] += point(e)[a] / static_cast<double>(crossed.size());
+      std::uint64_t mask = 0;
+      for (const unsigned e : crossed) mask |= std::uint64_t{1} << (table.corner_count + e);
+      EXPECT_EQ(contour.mask(0), mask);
+      // a cone over each segment once: if it were several polygons, an edge would have other segments than in the faces
+      std::set<std::set<unsigned>> coned;
+      std::map<unsigned, unsigned> next;
+      for (unsigned i = 0; i < contour.list().simplex_count; ++i) {
+        EXPECT_EQ(contour.vertex(i, 0), table.edge_count);
+        const unsigned p = contour.vertex(i, 1), q = contour.vertex(i, 2);
+        coned.insert({p, q});
+        next[p] = q;
+        const unsigned a = table.edges[2 * p], b = table.edges[2 * p + 1];
+        const Place to_high = corner((signature >> a & 1u) != 0 ? a : b);
+        EXPECT_GT(detail::six_volumes(std::array{centre, point(p), point(q), to_high}), 1e-9) << "triangle " << i;
+      }
+      EXPECT_EQ(coned, segments);
+      EXPECT_EQ(contour.list().simplex_count, segments.size());
+      std::size_t around = 1;
+      for (unsigned e = next.begin()->second; e != next.begin()->first && around < 99; e = next.at(e)) ++around;
+      EXPECT_EQ(around, segments.size());
+    }
+  }
+  EXPECT_EQ(lists.size(), 12u);
 }
 
 }  // namespace

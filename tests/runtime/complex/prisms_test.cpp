@@ -23,6 +23,8 @@
 #include "errors.hpp"
 #include "invariants.hpp"
 #include "polyhedral_meshes.hpp"
+#include "polytope/polygon_prisms.hpp"
+#include "polytope/polytopes.hpp"
 #include "prisms/prism_cell.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
@@ -281,6 +283,43 @@ TEST(Prisms, ContoursOverLargerPolyhedraAreThoseOfTheEngine) {
     std::size_t corners = 0;
     const CellFaces3 faces = faces_by_library(hull(points), corners);
     (void)compare_with_engine(faces, corners, step);
+  }
+}
+
+/// The table of the compiler against the shape that is made from the same rings step by step, and the rings against
+/// the definition: regular prisms around a point, with all faces counterclockwise from outside.
+TEST(Prisms, TableOfPrismsOverPolygonsHasTheirFaces) {
+  for (std::size_t n = 3; n <= detail::kPolytopeCorners; ++n) {
+    SCOPED_TRACE(n);
+    const detail::PolytopeFaces prism = detail::kPolygonPrisms.over(n);
+    const detail::PolytopeShape made({prism.rings().begin(), prism.rings().end()},
+                                     {prism.ends().begin(), prism.ends().end()});
+    ASSERT_EQ(n + 2, prism.face_count());
+    EXPECT_EQ(3, prism.dim());
+    EXPECT_EQ(2 * n, prism.corner_count());
+    EXPECT_EQ(made.base_edges(), prism.base_edges());
+    EXPECT_EQ(std::vector(made.edges().begin(), made.edges().end()),
+              std::vector(prism.edges().begin(), prism.edges().end()));
+    for (std::size_t e = 0; e < 3 * n; ++e) EXPECT_EQ(made.faces_at(e), prism.faces_at(e)) << e;
+    const auto corner = [&](std::size_t v) -> std::array<double, 3> {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(v % n) / static_cast<double>(n);
+      return {std::cos(angle), std::sin(angle), v < n ? -1.0 : 1.0};
+    };
+    for (std::size_t f = 0; f < n + 2; ++f) {
+      EXPECT_TRUE(std::ranges::equal(made.ring_edges(f), prism.ring_edges(f))) << f;
+      const std::span<const std::uint8_t> ring = prism.ring(f);
+      ASSERT_EQ(f < 2 ? n : 4, ring.size());
+      EXPECT_EQ(ring.size(), std::set<int>(ring.begin(), ring.end()).size());
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const auto a = corner(ring[i]), b = corner(ring[(i + 1) % ring.size()]),
+                   c = corner(ring[(i + 2) % ring.size()]);
+        const double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                              a[2] * (b[0] * c[1] - b[1] * c[0]);
+        EXPECT_GT(volume, 1e-6) << f << ' ' << i;
+      }
+    }
+    // the corners at the base come first, around it, and those above them follow in this order
+    for (std::size_t v = 0; v < n; ++v) EXPECT_EQ(v + 2, prism.faces_at(prism.ring_edges(v + 2)[0])[1]) << v;
   }
 }
 

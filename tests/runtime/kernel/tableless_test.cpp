@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -92,6 +93,27 @@ TEST(CubeSymmetries, HalfSpacesThatAreTheSameUpToSymmetryHaveOneFrame) {
     const std::uint64_t turned = half_space(weights);
     EXPECT_EQ(symmetries.before(symmetries.to_frame_of(signature), signature),
               symmetries.before(symmetries.to_frame_of(turned), turned));
+  }
+}
+
+TEST(CubeSymmetries, HaveAllPermutationsInLexicographicOrder) {
+  for (int n = 2; n <= 5; ++n) {
+    const detail::CubeSymmetries symmetries(n);
+    std::vector<unsigned> axes(static_cast<std::size_t>(n));
+    std::iota(axes.begin(), axes.end(), 0u);
+    std::uint16_t number = 0;
+    do {
+      const detail::CubeSymmetry symmetry{number++, 0};
+      unsigned reached = 0, cycles = 0;  // an odd permutation is one with an odd number of even cycles
+      for (unsigned i = 0; i < axes.size(); ++i) {
+        EXPECT_EQ(1u << axes[i], symmetries.axes(symmetry, 1u << i)) << n << ' ' << number;
+        for (unsigned j = i; (reached >> j & 1u) == 0; j = axes[j]) {
+          cycles += axes[j] == i ? 1 : 0;
+          reached |= 1u << j;
+        }
+      }
+      EXPECT_EQ((axes.size() - cycles) % 2 != 0, symmetries.is_mirror(symmetry)) << n << ' ' << number;
+    } while (std::next_permutation(axes.begin(), axes.end()));
   }
 }
 

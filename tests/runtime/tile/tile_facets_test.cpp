@@ -3,13 +3,18 @@
 // Single tiles with signs of faces: the tunnel, face numbers, certificates, arguments.
 #include "tegl/tile_facets.hpp"
 
+#include <bit>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "builder5.hpp"
 #include "tegl/error.hpp"
 #include "tegl/tile/certificate.hpp"
+#include "tegl/tile/corners.hpp"
+#include "tegl/tile/cube_faces.hpp"
+#include "tile/five_cube_numbers.hpp"
 
 namespace tegl {
 namespace {
@@ -35,6 +40,61 @@ TEST(TileFacets, FacesAreNumberedByTheirBaseAndAxes) {
   EXPECT_EQ(faces[face_number<3>(2, 5)].corners, (1u << 2) | (1u << 3) | (1u << 6) | (1u << 7));
   EXPECT_THROW(face_number<3>(1, 1), Error);
   EXPECT_THROW(face_number<3>(8, 0), Error);
+}
+
+/// The lattices of cubes, whose faces are numbered by the compiler, against lattices of intersections of facets.
+TEST(CubeFaces, AreTheIntersectionsOfFacets) {
+  for (int n = 1; n <= 6; ++n) {
+    SCOPED_TRACE(n);
+    std::vector<tile::Signature> facets;
+    for (unsigned f = 0; f < 2u * static_cast<unsigned>(n); ++f)
+      facets.push_back(detail::face_corners(static_cast<unsigned>(n), f));
+    const tile::FaceLattice expected(n, facets), cube = tile::FaceLattice::cube(n);
+    const detail::CubeFaces numbers(n);
+    ASSERT_EQ(expected.faces().size(), cube.faces().size());
+    ASSERT_EQ(expected.faces().size(), numbers.cells().size());
+    EXPECT_EQ(expected.tile(), numbers.tile());
+    std::size_t flat = 0;  // corners and edges
+    for (std::size_t f = 0; f < cube.faces().size(); ++f) {
+      const tile::Face &a = expected.faces()[f], &b = cube.faces()[f];
+      EXPECT_EQ(a.dim, b.dim) << f;
+      EXPECT_EQ(a.corners, b.corners) << f;
+      EXPECT_EQ(a.faces, b.faces) << f;
+      EXPECT_EQ(a.signs, b.signs) << f;
+      const detail::CubeFace& face = numbers.cells()[f];
+      EXPECT_EQ(a.dim, face.dim) << f;
+      EXPECT_EQ(unsigned{face.base}, static_cast<unsigned>(std::countr_zero(a.corners))) << f;
+      EXPECT_EQ(unsigned{face.base} | face.axes, 63u - static_cast<unsigned>(std::countl_zero(a.corners))) << f;
+      EXPECT_EQ(f, numbers.number(face.base, face.axes));
+      flat += a.dim < 2 ? 1 : 0;
+    }
+    EXPECT_EQ(flat, numbers.first_choice());
+  }
+}
+
+TEST(CubeFaces, OfThe5CubeAreNumberedAsInItsBuilder) {
+  using builders::FiveCube;
+  const detail::CubeFaces cube(5);
+  const detail::FiveCubeNumbers& numbers = detail::kFiveCubeNumbers;
+  for (std::size_t e = 0; e < 80; ++e) {
+    const auto& ends = FiveCube::kEdges[e];
+    EXPECT_EQ(cube.number(ends[0], unsigned{ends[0]} ^ ends[1]), numbers.edges[e]);
+    EXPECT_EQ(32u + e, numbers.edges[numbers.edge_order[e]]);
+    EXPECT_EQ(cube.number(FiveCube::kSquares[e].base, FiveCube::kSquares[e].axes), numbers.squares[e]);
+    EXPECT_EQ(32u + e, numbers.frames[10].number_of_edge(static_cast<unsigned>(e)));
+  }
+  for (std::size_t c = 0; c < 40; ++c)
+    EXPECT_EQ(cube.number(FiveCube::kCubes[c].face.base, FiveCube::kCubes[c].face.axes), numbers.cubes[c]);
+  for (std::size_t f = 0; f < 10; ++f) {
+    const FiveCube::Tesseract& tesseract = FiveCube::kTesseracts[f];
+    const unsigned lowest = tesseract.corners[0];
+    EXPECT_EQ(cube.number(lowest, lowest ^ tesseract.corners[15]), numbers.tesseracts[f]);
+    const detail::FiveCubeNumbers::Frame& frame = numbers.frames[f];
+    EXPECT_EQ(16, std::popcount(frame.corners));
+    EXPECT_EQ(32, std::popcount(frame.edges[0]) + std::popcount(frame.edges[1]));
+    for (unsigned v = 0; v < 16; ++v) EXPECT_EQ(v, frame.number_of_corner(tesseract.corners[v]));
+    for (unsigned e = 0; e < 32; ++e) EXPECT_EQ(16 + e, frame.number_of_edge(tesseract.edges[e]));
+  }
 }
 
 TEST(TileFacets, ASquareIsCutOrJoinedByTheSignOfItsCentre) {
