@@ -239,8 +239,8 @@ class BoxTree {
   /// rounding): then the simplex is not nearer. That decides most simplices around the nearest point.
   static bool is_beyond(const CornersN<N>& corners, const PointN<N>& p, const Found& best) {
     if (!(best.nearest.distance < std::numeric_limits<double>::infinity())) return false;
-    constexpr double kRounding = 1e-12;
-    const double least = (1.0 - kRounding) * dot(best.way, best.way);
+    constexpr double kRoundingShare = 1e-12;
+    const double least = (1.0 - kRoundingShare) * dot(best.way, best.way);
     return std::all_of(corners.begin(), corners.end(),
                        [&](const PointN<N>& corner) { return dot(best.way, minus(p, corner)) >= least; });
   }

@@ -21,7 +21,9 @@
 #include "mesh/measure_pieces.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "mesh/validate.hpp"
+#include "simplify/boundary_faces.hpp"
 #include "simplify/box_tree.hpp"
+#include "simplify/deviation_target.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/prism_cover.hpp"
 #include "simplify/prism_walk.hpp"
@@ -82,108 +84,6 @@ void raise(double& value, double candidate) {
   while (candidate > old && !shared.compare_exchange_weak(old, candidate, std::memory_order_relaxed)) {
   }
 }
-
-/// Boundary of the chain of a contour's simplices. By simplex, bit i: the orientations at the face opposite to corner i
-/// do not cancel.
-template <int N>
-class BoundaryFaces {
- public:
-  BoundaryFaces(const ScaledSimplices<N>& contour, const FacetNeighbours<N>& neighbours, unsigned threads,
-                const Progress& progress)
-      : faces_(contour.simplices.size(), 0) {
-    find_unjoined(contour.simplices, neighbours);
-    // Vertices at equal places are identified: files may store each simplex with its own vertices.
-    if (!ridges_.empty() && unite(contour)) find(contour.points.size(), threads, progress);
-    rows_ = {};
-  }
-  [[nodiscard]] unsigned of(Index simplex) const { return faces_[simplex]; }
-
- private:
-  using Ridge = typename FacesOfStars<N>::Ridge;
-
-  /// Two simplices that are joined at a face cancel there, so only the others are compared.
-  void find_unjoined(std::span<const std::array<Index, N>> simplices, const FacetNeighbours<N>& neighbours) {
-    struct Side {
-      Ridge ridge;
-      Index simplex;
-      std::uint8_t corner;
-      bool is_even;
-    };
-    std::vector<Side> sides;
-    for (Index s = 0; s < simplices.size(); ++s)
-      for (int corner = 0; corner < N; ++corner) {
-        if (neighbours.across(s, corner) != FacetNeighbours<N>::kNone) continue;
-        if (repeats_a_vertex(simplices[s])) break;
-        Side side{{}, s, static_cast<std::uint8_t>(corner), false};
-        side.is_even = FacetNeighbours<N>::facet_of(simplices[s], corner, side.ridge);
-        sides.push_back(side);
-      }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return std::tie(a.ridge, a.simplex, a.corner) < std::tie(b.ridge, b.simplex, b.corner);
-    });
-    for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-      std::ptrdiff_t sum = 0;
-      for (; j < sides.size() && sides[j].ridge == sides[i].ridge; ++j) sum += sides[j].is_even ? 1 : -1;
-      if (sum == 0) continue;
-      ridges_.push_back(sides[i].ridge);
-      for (std::size_t k = i; k < j; ++k) faces_[sides[k].simplex] |= static_cast<std::uint8_t>(1u << sides[k].corner);
-    }
-  }
-
-  static bool repeats_a_vertex(std::array<Index, N> simplex) {
-    std::sort(simplex.begin(), simplex.end());
-    return std::adjacent_find(simplex.begin(), simplex.end()) != simplex.end();
-  }
-
-  void find(std::size_t vertices, unsigned threads, const Progress& progress) {
-    const std::span<const Index> rows(rows_.empty() ? nullptr : rows_[0].data(), rows_.size() * N);
-    const Stars stars = make_stars<N>(rows, vertices, threads, part_of(progress, 0.0, 0.2));
-    std::vector<std::vector<Ridge>> parts(block_count(vertices, kBlock));
-    count_faces<N>(rows, stars, {}, 1, false, threads, part_of(progress, 0.2, 1.0),
-                   [&](std::size_t block, const Ridge& ridge) { parts[block].push_back(ridge); });
-    std::fill(faces_.begin(), faces_.end(), std::uint8_t{0});
-    ridges_.clear();
-    for (const auto& part : parts)
-      for (const Ridge& ridge : part) {
-        ridges_.push_back(ridge);
-        for (const Index s : stars.of(ridge[0])) mark(s, ridge);
-      }
-  }
-
-  void mark(Index s, const Ridge& ridge) {
-    unsigned others = 0;
-    for (int i = 0; i < N; ++i)
-      if (std::find(ridge.begin(), ridge.end(), rows_[s][i]) == ridge.end()) others |= 1u << i;
-    if (std::has_single_bit(others)) faces_[s] |= static_cast<std::uint8_t>(others);
-  }
-
-  /// Identifies vertices of open faces at equal places. Returns false if there are none.
-  bool unite(const ScaledSimplices<N>& contour) {
-    const Buffer<PointN<N>>& points = contour.points;
-    std::vector<Index> open;
-    for (const Ridge& ridge : ridges_) open.insert(open.end(), ridge.begin(), ridge.end());
-    const auto before = [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; };
-    std::sort(open.begin(), open.end(), before);
-    open.erase(std::unique(open.begin(), open.end()), open.end());
-    std::vector<Index> first(points.size());
-    std::iota(first.begin(), first.end(), Index{0});
-    bool any = false;
-    for (std::size_t i = 1; i < open.size(); ++i) {
-      if (points[open[i]] != points[open[i - 1]]) continue;
-      first[open[i]] = first[open[i - 1]];
-      any = true;
-    }
-    if (!any) return false;
-    rows_.assign(contour.simplices.begin(), contour.simplices.end());
-    for (auto& row : rows_)
-      for (Index& v : row) v = first[v];
-    return true;
-  }
-
-  std::vector<std::array<Index, N>> rows_;
-  std::vector<std::uint8_t> faces_;
-  std::vector<Ridge> ridges_;
-};
 
 /// Shared input of all measurements.
 template <int N>
@@ -618,24 +518,21 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
 }
 
 template <int N>
-void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, double enough, unsigned threads,
+void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& target, double enough, unsigned threads,
                  const Progress& progress, Deviation& result) {
-  const FacetNeighbours<N> neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.0, 0.05));
-  const BoundaryFaces<N> open(to, neighbours, threads, part_of(progress, 0.05, 0.1));
-  const BoxTree<N> tree(to.corners, threads);
+  const auto& [to, neighbours, open, tree, gradients] = target;
   // distances of vertices: exactly where they are needed
-  const SimplexGradients<N> gradients(to.corners, threads, {});
   const SimplexWalk<N> walk(gradients, neighbours);
   VertexDistances<N> vertices(from.simplices, from.points, tree, walk, threads);
-  vertices.approach(part_of(progress, 0.1, 0.15));
-  result.least = vertices.find_largest(part_of(progress, 0.15, 0.18));
+  vertices.approach(part_of(progress, 0.0, 0.05));
+  result.least = vertices.find_largest(part_of(progress, 0.05, 0.08));
   result.least =
-      largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.18, 0.22));
+      largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.08, 0.12));
   enough = enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least;
-  vertices.search_above(enough / kLooseness, part_of(progress, 0.22, 0.25));
+  vertices.search_above(enough / kLooseness, part_of(progress, 0.12, 0.15));
   const DeviationInput<N> measure{from, to, tree, open, gradients, neighbours, vertices.near(), enough, result.of_to};
   for_each_block(
-      from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9),
+      from.simplices.size(), kGrain, threads, part_of(progress, 0.15, 0.9),
       [&] { return SimplexDeviation<N>(measure); },
       [&](std::size_t, std::size_t first, std::size_t end, SimplexDeviation<N>& one) {
         double reached = 0.0;
@@ -646,6 +543,23 @@ void measure_all(const ScaledSimplices<N>& from, const ScaledSimplices<N>& to, d
 }
 
 }  // namespace
+
+template <int N>
+Deviation deviation_to(const ScaledSimplices<N>& from, const DeviationTarget<N>& to, double enough,
+                       const WorkOptions& work) {
+  Deviation result;
+  result.of_from.assign(from.simplices.size(), 0.0);
+  result.of_to.assign(to.contour.simplices.size(), 0.0);
+  measure_all(from, to, enough, work.threads, work.progress, result);
+  result.of_from = from.in_order_of_contour(result.of_from);
+  result.of_to = to.contour.in_order_of_contour(result.of_to);
+  return result;
+}
+
+template Deviation deviation_to(const ScaledSimplices<2>&, const DeviationTarget<2>&, double, const WorkOptions&);
+template Deviation deviation_to(const ScaledSimplices<3>&, const DeviationTarget<3>&, double, const WorkOptions&);
+template Deviation deviation_to(const ScaledSimplices<4>&, const DeviationTarget<4>&, double, const WorkOptions&);
+
 }  // namespace detail
 
 template <int N, Coordinate Real>
@@ -661,20 +575,14 @@ requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& f
     require_vertices(*contour);
     require_finite(*contour);
   }
-  Deviation result;
-  result.of_from.assign(from.simplices.size(), 0.0);
-  result.of_to.assign(to.simplices.size(), 0.0);
-  if (from.simplices.empty()) return result;
-  if (to.simplices.empty()) {
-    result.bound = result.least = kInfinity;
-    result.of_from.assign(from.simplices.size(), kInfinity);
-    return result;
+  if (from.simplices.empty() || to.simplices.empty()) {
+    const double far = from.simplices.empty() ? 0.0 : kInfinity;
+    return {far, far, std::vector<double>(from.simplices.size(), far), std::vector<double>(to.simplices.size(), 0.0)};
   }
   const ScaledSimplices<N> scaled_from(from, options.scale), scaled_to(to, options.scale);
-  measure_all(scaled_from, scaled_to, options.enough, options.work.threads, options.work.progress, result);
-  result.of_from = scaled_from.in_order_of_contour(result.of_from);
-  result.of_to = scaled_to.in_order_of_contour(result.of_to);
-  return result;
+  const DeviationTarget<N> target(scaled_to, options.work.threads, part_of(options.work.progress, 0.0, 0.1));
+  return deviation_to(scaled_from, target, options.enough,
+                      {options.work.threads, part_of(options.work.progress, 0.1, 1.0)});
 }
 
 #define TEGL_INSTANTIATE_CONTOURS(N, Real) \

@@ -22,6 +22,7 @@
 
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/box_tree.hpp"
+#include "simplify/common_point.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/placed_simplex.hpp"
 #include "simplify/simplex_gradients.hpp"
@@ -74,9 +75,7 @@ class SimplexWalk {
     for (std::size_t made = 1; !parts_.empty();) {
       Part& next = parts_.back();
       const Balls balls(next.corners);
-      const double farthest = farthest_of(next);
-      if (is_within(balls.square, limit - farthest)) {
-        const double bound = std::min(limit, farthest + std::sqrt(balls.square));
+      if (const double bound = bound_by_balls(next, balls, limit); bound <= limit) {
         for (const NearPoint& corner : next.near) take({bound, corner.simplex});
         parts_.pop_back();
         continue;
@@ -189,6 +188,16 @@ class SimplexWalk {
     double square_of_middle;  ///< of the radius of the ball around that
     double square;            ///< of a radius, at least that of the smallest ball
   };
+  /// A ball around the corners as a whole, or a common point of balls around each of them; infinity if neither bounds
+  /// the distance by `limit`.
+  [[nodiscard]] static double bound_by_balls(const Part& part, const Balls& balls, double limit) {
+    const double farthest = farthest_of(part);
+    if (is_within(balls.square, limit - farthest)) return std::min(limit, farthest + std::sqrt(balls.square));
+    std::array<double, N> distances;
+    for (int i = 0; i < N; ++i) distances[i] = part.near[i].distance;
+    return bound_by_common_point<N>(part.corners, distances, balls.edge, limit);
+  }
+
   /// Whether the root of `square` is at most `room`.
   static bool is_within(double square, double room) { return room >= 0.0 && square <= room * room; }
 

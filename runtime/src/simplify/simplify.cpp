@@ -20,11 +20,11 @@
 #include "simplify/collapsible_complex.hpp"
 #include "simplify/edge_collapse.hpp"
 #include "simplify/error_attribute.hpp"
+#include "simplify/measured_contour.hpp"
 #include "simplify/simplify_fast.hpp"
 #include "simplify/simplify_options.hpp"
 #include "simplify/simplify_orders.hpp"
 #include "tegl/check.hpp"
-#include "tegl/deviation.hpp"
 
 namespace tegl {
 namespace detail {
@@ -281,6 +281,7 @@ class Simplifier {
   };
   Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop, RoundKind kind = {}) {
     ++stats_.rounds;
+    if (!kind.is_trial && (options_.measure || options_.max_error)) measured_.begin();
     const Progress progress = detail::part_of(options_.work.progress, progress_, to);
     progress_ = to;
     const bool is_fast = options_.method == SimplifyMethod::fast;
@@ -481,14 +482,13 @@ class Simplifier {
     if (round.error_of_original) return;  // the contour itself
     const double from = std::exchange(progress_, to);
     const auto start = std::chrono::steady_clock::now();
-    DeviationOptions<N> options;
-    options.scale = options_.scale;
-    options.work = {options_.work.threads, detail::part_of(options_.work.progress, from, 0.5 * (from + to))};
-    options.enough = enough;
-    Deviation of_original = deviation(contour_, round.result, options);
-    options.work.progress = detail::part_of(options_.work.progress, 0.5 * (from + to), to);
-    options.enough = enough > 0.0 ? enough : of_original.least;
-    const Deviation of_result = deviation(round.result, contour_, options);
+    if (round.result.simplices.empty()) {  // infinitely far away
+      round.error_of_original = kUnlimited;
+      round.error_of_result = earlier_error_;
+      return;
+    }
+    auto [of_original, of_result] = measured_.measure(
+        round.result, enough, {options_.work.threads, detail::part_of(options_.work.progress, from, to)});
     round.errors = std::move(of_original.of_to);
     for (std::size_t s = 0; s < round.errors.size(); ++s)
       round.errors[s] = std::max(round.errors[s], of_result.of_from[s]);
@@ -654,6 +654,7 @@ class Simplifier {
   double earlier_error_ = 0.0;
   double progress_ = 0.0;  ///< reported so far
   SimplifyStats stats_;
+  MeasuredContour<N> measured_{contour_, options_.scale, options_.work.threads};
 };
 
 /// The contour with coordinates of another type. The rest is copied, or moved from a temporary.

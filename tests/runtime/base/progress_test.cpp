@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <thread>
@@ -16,6 +17,7 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include "base/task_aside.hpp"
 #include "fields.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
@@ -248,6 +250,42 @@ TEST(Progress, OfOperationsOnOneThread) {
   auto facets = extract_facets<float>(image.view(), 0.5);
   expect_progress([&](const WorkOptions& work) { facets.connect_up(work); });
   expect_progress([&](const WorkOptions& work) { check(facets, work); });
+}
+
+TEST(TaskAside, RunsOnceOnAnotherThreadOrWhereItIsFinished) {
+  for (const bool begun : {false, true}) {
+    std::atomic<int> runs = 0;
+    detail::TaskAside task([&] { ++runs; });
+    if (begun) task.begin();
+    task.finish();
+    EXPECT_EQ(runs, 1);
+    task.finish();
+    EXPECT_EQ(runs, 1);
+  }
+}
+
+TEST(TaskAside, ThrowsWhatTheTaskThrows) {
+  for (const bool begun : {false, true}) {
+    detail::TaskAside task([] { throw Error(ErrorCode::Cancelled, "of the task"); });
+    if (begun) task.begin();
+    EXPECT_THROW(task.finish(), Error);
+    EXPECT_THROW(task.finish(), Error);
+  }
+}
+
+/// Tasks that nobody waits for: none runs after the end of its object.
+TEST(TaskAside, DoesNotOutliveItsObject) {
+  for (int trial = 0; trial < 200; ++trial) {
+    auto alive = std::make_unique<std::atomic<bool>>(true);
+    std::atomic<int> late = 0;
+    {
+      detail::TaskAside task([&, flag = alive.get()] { late += !flag->load(); });
+      if (trial % 4 != 0) task.begin();
+      if (trial % 2 != 0) std::this_thread::yield();
+    }
+    alive->store(false);
+    EXPECT_EQ(late, 0);
+  }
 }
 
 }  // namespace

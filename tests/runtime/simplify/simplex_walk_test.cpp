@@ -17,6 +17,7 @@
 #include "fields.hpp"
 #include "only_targets.hpp"
 #include "simplify/box_tree.hpp"
+#include "simplify/common_point.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/vertex_distances.hpp"
 #include "tegl/extract.hpp"
@@ -234,6 +235,45 @@ TYPED_TEST(Walk, BoundsDoNotDependOnTheOrderOfTheSimplices) {
   for (std::size_t s = 0; s < bounds.size(); ++s) bounds[s] = bound_with(forward, s);
   for (std::size_t s = bounds.size(); s-- > 0;) ASSERT_EQ(bound_with(backward, s), bounds[s]) << s;
   EXPECT_TRUE(std::any_of(bounds.begin(), bounds.end(), [](double x) { return x < 0.15; }));
+}
+
+/// By its definition: the distance of a point is at most that of any corner and the way to it. Sampled points attain
+/// more than any bound that is too small.
+TYPED_TEST(Walk, BallsAroundCornersBoundAllPointsOfASimplex) {
+  constexpr int N = TypeParam::value;
+  std::mt19937 random(17);
+  std::exponential_distribution<double> share(1.0);
+  int bounded = 0, below_one_ball = 0, failed = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const CornersN<N> corners = random_simplex<N>(random, 1.0);
+    const LongestEdge<N> edge = longest_edge_by_corners<N>(corners);
+    std::array<double, N> distances;
+    for (double& distance : distances) distance = std::uniform_real_distribution<double>(0.0, 0.5)(random);
+    const double limit = std::sqrt(edge.square) * std::uniform_real_distribution<double>(0.4, 1.2)(random);
+    const double bound = bound_by_common_point<N>(corners, distances, edge, limit);
+    if (!(bound < std::numeric_limits<double>::infinity())) {
+      ++failed;
+      continue;
+    }
+    ++bounded;
+    EXPECT_LE(bound, limit);
+    const double of_middle = *std::max_element(edge.squares.begin(), edge.squares.end());
+    below_one_ball += bound < *std::max_element(distances.begin(), distances.end()) + std::sqrt(of_middle);
+    for (int sample = 0; sample < 50; ++sample) {
+      std::array<double, N> weights;
+      double sum = 0.0;
+      for (double& weight : weights) sum += weight = share(random);
+      PointN<N> p{};
+      for (int i = 0; i < N; ++i)
+        for (int a = 0; a < N; ++a) p[a] += weights[i] / sum * corners[i][a];
+      double most = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < N; ++i) most = std::min(most, distances[i] + norm(minus(p, corners[i])));
+      EXPECT_LE(most, bound + 1e-12) << trial;
+    }
+  }
+  EXPECT_GT(bounded, 50);
+  EXPECT_GT(below_one_ball, 50);
+  EXPECT_GT(failed, 50);
 }
 
 /// Parts of all sizes near a contour with a hole: no point of a bounded part is farther than its bound.

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What measurements of distances need of the contour that they measure from or to. Prepared once for several of them.
+#pragma once
+
+#include "base/progress.hpp"
+#include "simplify/boundary_faces.hpp"
+#include "simplify/box_tree.hpp"
+#include "simplify/facet_neighbours.hpp"
+#include "simplify/scaled_simplices.hpp"
+#include "simplify/simplex_gradients.hpp"
+#include "tegl/deviation.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl::detail {
+
+/// A contour that distances are measured to. `contour` must outlive it.
+template <int N>
+struct DeviationTarget {
+  explicit DeviationTarget(const ScaledSimplices<N>& to, unsigned threads = 1, const Progress& progress = {})
+      : contour(to),
+        neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.0, 0.5)),
+        open(to, neighbours, threads, part_of(progress, 0.5, 1.0)),
+        tree(to.corners, threads),
+        gradients(to.corners, threads, {}) {}
+  DeviationTarget(const DeviationTarget&) = delete;
+  DeviationTarget& operator=(const DeviationTarget&) = delete;
+
+  const ScaledSimplices<N>& contour;
+  FacetNeighbours<N> neighbours;
+  BoundaryFaces<N> open;
+  BoxTree<N> tree;
+  SimplexGradients<N> gradients;
+};
+
+/// As `deviation`, with the scale of both contours, neither of which may be empty. `enough`: as in DeviationOptions.
+template <int N>
+Deviation deviation_to(const ScaledSimplices<N>& from, const DeviationTarget<N>& to, double enough,
+                       const WorkOptions& work);
+
+}  // namespace tegl::detail

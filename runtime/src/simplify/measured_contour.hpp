@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A contour that is compared with several others, one after the other: prepared once for measurements of distances, by
+// another thread if there is time.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "base/progress.hpp"
+#include "base/task_aside.hpp"
+#include "simplify/deviation_target.hpp"
+#include "simplify/scaled_simplices.hpp"
+#include "tegl/contour.hpp"
+#include "tegl/deviation.hpp"
+#include "tegl/work.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+class MeasuredContour {
+ public:
+  /// The contour must outlive it.
+  MeasuredContour(const Contour<N, double>& contour, const std::array<double, N>& scale, unsigned threads)
+      : contour_(contour), scale_(scale), threads_(threads) {}
+
+  /// With several threads, another one begins with the preparation. One thread prepares the contour in `measure`, when
+  /// the memory of what it does before is free.
+  void begin() {
+    if (threads_ == 1 || preparation_) return;
+    preparation_.emplace([this] { prepare(1); });
+    preparation_->begin();
+  }
+
+  struct Deviations {
+    Deviation to_other, from_other;
+  };
+  /// Distances in both directions. `enough`: as in DeviationOptions; 0 means the largest known distance to the other
+  /// contour for those from it. Neither contour may be empty.
+  Deviations measure(const Contour<N, double>& other, double enough, const WorkOptions& work) {
+    if (preparation_) preparation_->finish();
+    if (!target_) prepare(work.threads);
+    const ScaledSimplices<N> simplices(other, scale_);
+    Deviations result;
+    {
+      const DeviationTarget<N> target(simplices, work.threads, part_of(work.progress, 0.0, 0.05));
+      result.to_other = deviation_to(*simplices_, target, enough, {work.threads, part_of(work.progress, 0.05, 0.5)});
+    }
+    result.from_other = deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
+                                     {work.threads, part_of(work.progress, 0.5, 1.0)});
+    return result;
+  }
+
+ private:
+  void prepare(unsigned threads) {
+    simplices_.emplace(contour_, scale_);
+    target_.emplace(*simplices_, threads);
+  }
+
+  const Contour<N, double>& contour_;
+  std::array<double, N> scale_;
+  unsigned threads_;
+  std::optional<ScaledSimplices<N>> simplices_;
+  std::optional<DeviationTarget<N>> target_;
+  std::optional<TaskAside> preparation_;  ///< the last member: it waits for the thread that uses the others
+};
+
+}  // namespace tegl::detail
