@@ -526,10 +526,20 @@ TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
             run_json({"contour", ball, "--iso", "0", "-o", in_memory})["tiles"]);
   expect_refused_of(ball, {"--stream", "--close", "-o", streamed}, "--close with --stream and the lattice fcc");
   expect_refused_of(ball, {"--stream", "--lattice", "fcc", "--periodic", "z", "-o", streamed}, "z with --stream");
-  const std::string moving = path("moving.nrrd");
-  (void)run_json({"sample", "ball", "--lattice", "d4", "--size", "9", "-o", moving});
-  expect_refused_of(moving, {"--stream", "-o", streamed},
-                    "--stream with the lattice d4; expected triangular, fcc or bcc");
+  for (const char* const lattice : {"d4", "fcc_in_time"}) {  // with other numbers
+    const std::string moving = path("moving.nrrd");
+    (void)run_json({"sample", "ball", "--lattice", lattice, "--size", "9", "-o", moving});
+    const std::vector<std::string> options = {"contour", moving, "--iso", "0", "--ambiguity", "mean"};
+    auto stream = options, memory = options;
+    stream.insert(stream.end(), {"--stream", "-o", streamed});
+    memory.insert(memory.end(), {"-o", in_memory});
+    const nlohmann::json report = run_json(stream);
+    EXPECT_EQ(report["tiles"], run_json(memory)["tiles"]);
+    const Mesh one = read_mesh(streamed), other = read_mesh(in_memory);
+    EXPECT_EQ(one.coordinates.size(), other.coordinates.size()) << lattice;
+    EXPECT_EQ(one.simplices.size(), other.simplices.size()) << lattice;
+    EXPECT_GT(one.simplices.size(), 1000u);
+  }
 }
 
 TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {

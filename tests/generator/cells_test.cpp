@@ -460,7 +460,7 @@ TEST(RegionTables, TheEmittedOnesAreThoseThatWereCertified) {
   const Expected expected[] = {{"tetrahedron", CellShape::tetrahedron, 109, 0},
                                {"wedge", CellShape::wedge, 1'392, 0},
                                {"pyramid", CellShape::pyramid, 631, 0},
-                               {"hexahedron", CellShape::hexahedron, 10'166, 5},
+                               {"hexahedron", CellShape::hexahedron, 10'166, 0},
                                {"octahedron", CellShape::octahedron, 8'018, 1}};
   std::vector<CellTables> compact;
   for (const Expected& of : expected) compact.push_back(make_cell_tables(mesh_cell(of.name), Triangulation::compact));
@@ -470,7 +470,7 @@ TEST(RegionTables, TheEmittedOnesAreThoseThatWereCertified) {
     SCOPED_TRACE(expected[i].name);
     EXPECT_EQ(all[i].name, expected[i].name);
     EXPECT_EQ(all[i].boundaries, expected[i].boundaries);
-    EXPECT_EQ(all[i].unproved, expected[i].unproved);
+    EXPECT_EQ(all[i].unproved.size(), expected[i].unproved);
     expect_emitted(*tables::region_division_table(expected[i].shape), all[i]);
   }
   EXPECT_EQ(tables::region_division_table(CellShape::triangle), nullptr);

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "gen_cli.hpp"
 
@@ -64,6 +65,31 @@ TEST(GenCli, BuilderIsTheOneOfTheBuildInEveryLanguage) {
       EXPECT_EQ(files.at(name + suffix), (std::string{std::istreambuf_iterator<char>(in), {}})) << name << suffix;
     }
   }
+}
+
+TEST(GenCli, ManifestOfABuilderKeepsTheTextsOfEarlierCalls) {
+  const Folder folder;
+  const auto emit = [&](const char* out, const std::string& languages) {
+    ASSERT_EQ(gen({"--builder", "--dim", "2", "--language", languages, "--out", folder.file(out)}).status, 0);
+  };
+  const auto names = [&](const char* out) {
+    std::vector<std::string> result;
+    const json manifest = json::parse(contents(folder.file(out)).at("builder2_manifest.json"));
+    for (const json& text : manifest.at("texts")) result.push_back(text.at("name"));
+    return result;
+  };
+  emit("at_once", "cpp,glsl,wgsl");
+  for (const char* const languages : {"wgsl", "cpp", "glsl", "cpp"}) emit("in_turn", languages);
+  EXPECT_EQ(contents(folder.file("in_turn")), contents(folder.file("at_once")));
+  // a text that was changed, and one that is no longer there, are not listed
+  std::ofstream(folder.file("in_turn/builder2.glsl"), std::ios::app) << "// changed\n";
+  std::filesystem::remove(folder.file("in_turn/builder2.wgsl"));
+  emit("in_turn", "cpp");
+  EXPECT_EQ(names("in_turn"), (std::vector<std::string>{"builder2.hpp", "builder2.cpp"}));
+  // nor is anything of a manifest with another certificate
+  std::ofstream(folder.file("at_once/builder2_manifest.json")) << "{}\n";
+  emit("at_once", "glsl");
+  EXPECT_EQ(names("at_once"), std::vector<std::string>{"builder2.glsl"});
 }
 
 TEST(GenCli, LinesOfBuildersHaveAtMost120Columns) {

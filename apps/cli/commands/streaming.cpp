@@ -96,10 +96,7 @@ std::vector<ExtractedSize> extract_all(LayerReader<T, N>& layers, std::span<cons
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--close with --stream and the lattice {}; expected it without --stream",
                             name_of(*options.lattice)));
-  if constexpr (N < 4)
-    return extract_lattice_streamed_several<Real>(layers, *options.lattice, contours, options.extract);
-  throw Error(ErrorCode::InvalidArgument,
-              fmt::format("--stream with the lattice {}; expected triangular, fcc or bcc", name_of(*options.lattice)));
+  return extract_lattice_streamed_several<Real>(layers, *options.lattice, contours, options.extract);
 }
 
 template <class Real, class T, int N>

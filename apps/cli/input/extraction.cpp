@@ -165,7 +165,7 @@ bool ExtractionOptions::knows_periods(const Tiling& tiling) const {
     const CLI::Option* const option = app_->get_option_no_throw(name);
     return option != nullptr && option->count() > 0;
   };
-  if (app_ == nullptr || polygon_triangulation() || tiling.lattice == Lattice::fcc_in_time) return false;
+  if (app_ == nullptr || polygon_triangulation()) return false;
   if (is_given("--attribute") && !tiling.curved.empty()) return false;
   if (is_given("--stream") && tiling.lattice) return false;
   return std::none_of(without_periods_.begin(), without_periods_.end(), [&](const std::string& name) {

@@ -4,9 +4,12 @@
 #include "builders/emit_builder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
+#include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "base/error.hpp"
@@ -40,20 +43,49 @@ std::uint64_t digest(const std::string& text) {
   return hash.value();
 }
 
+/// A text in the manifest.
+std::string entry_of(const std::string& name, const std::string& text) {
+  return fmt::format("    {{\"name\": \"{}\", \"bytes\": {}, \"fnv1a\": \"{:016x}\"}}", name, text.size(),
+                     digest(text));
+}
+
+constexpr const char* kEntries = "  \"texts\": [\n";
+
+std::string with_entries(std::string head, const std::vector<std::string>& entries) {
+  return head + kEntries + fmt::format("{}", fmt::join(entries, ",\n")) + "\n  ]\n}\n";
+}
+
+/// The text of a manifest before its entries, and these; none if the text has another form.
+std::pair<std::string, std::vector<std::string>> entries_of(const std::string& manifest) {
+  const std::size_t at = manifest.find(kEntries);
+  if (at == std::string::npos) return {};
+  std::vector<std::string> entries;
+  std::istringstream lines(manifest.substr(at + std::string_view(kEntries).size()));
+  for (std::string line; std::getline(lines, line) && line.rfind("    {\"name\": \"", 0) == 0;) {
+    if (line.back() == ',') line.pop_back();
+    entries.push_back(std::move(line));
+  }
+  return {manifest.substr(0, at), std::move(entries)};
+}
+
+std::string name_in(const std::string& entry) {
+  const std::size_t first = entry.find(": \"") + 3;
+  return entry.substr(first, entry.find('"', first) - first);
+}
+
+int rank_of(const std::string& entry) {
+  const std::string name = name_in(entry);
+  return name.ends_with(".glsl") ? 1 : name.ends_with(".wgsl") ? 2 : 0;
+}
+
 EmittedFile manifest(const BuilderRequest& request, const BuilderTexts& texts) {
   std::string text;
   fmt::format_to(std::back_inserter(text),
-                 "{{\n  \"builder\": {},\n  \"command\": \"{}\",\n  \"leaf\": \"{}\",\n  \"certified\": \"{}\",\n"
-                 "  \"texts\": [",
+                 "{{\n  \"builder\": {},\n  \"command\": \"{}\",\n  \"leaf\": \"{}\",\n  \"certified\": \"{}\",\n",
                  request.dim, builder_command(request, Language::cpp), leaf_name(request.leaf), texts.certificate);
-  const char* separator = "\n";
-  for (const EmittedFile& file : texts.files) {
-    fmt::format_to(std::back_inserter(text), "{}    {{\"name\": \"{}\", \"bytes\": {}, \"fnv1a\": \"{:016x}\"}}",
-                   separator, file.name, file.text.size(), digest(file.text));
-    separator = ",\n";
-  }
-  text += "\n  ]\n}\n";
-  return {builder_name(request) + "_manifest.json", std::move(text)};
+  std::vector<std::string> entries;
+  for (const EmittedFile& file : texts.files) entries.push_back(entry_of(file.name, file.text));
+  return {builder_name(request) + "_manifest.json", with_entries(std::move(text), entries)};
 }
 
 }  // namespace
@@ -103,6 +135,21 @@ BuilderTexts emit_builder_texts(const BuilderRequest& request) {
   BuilderTexts texts = texts_of(request);
   for (EmittedFile& file : texts.files) file.text = with_short_lines(file.text);
   return texts;
+}
+
+std::string with_earlier_texts(const std::string& manifest, const std::string& earlier,
+                               const std::function<std::string(const std::string&)>& read) {
+  auto [head, entries] = entries_of(manifest);
+  const auto [earlier_head, earlier_entries] = entries_of(earlier);
+  if (head != earlier_head) return manifest;
+  for (const std::string& entry : earlier_entries) {
+    const std::string name = name_in(entry);
+    const bool is_new = std::none_of(entries.begin(), entries.end(), [&](const auto& e) { return name_in(e) == name; });
+    if (is_new && entry_of(name, read(name)) == entry) entries.push_back(entry);
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const auto& a, const auto& b) { return rank_of(a) < rank_of(b); });
+  return with_entries(std::move(head), entries);
 }
 
 std::vector<EmittedFile> emit_builder(const BuilderRequest& request) {

@@ -100,9 +100,10 @@ class Samples {
 /// Divides one region.
 class RegionSearch {
  public:
-  /// `outwards`: whether volumes below the boundary's triangles are positive. Adds to `result`.
-  RegionSearch(const RegionVolumes& volumes, bool outwards, CapDivision& result)
-      : volumes_(volumes), outwards_(outwards), result_(result) {}
+  /// `outwards`: whether volumes below the boundary's triangles are positive; `is_exact`: proves by the signs of
+  /// volumes themselves, not of their terms. Adds to `result`.
+  RegionSearch(const RegionVolumes& volumes, bool outwards, bool is_exact, CapDivision& result)
+      : volumes_(volumes), outwards_(outwards), is_exact_(is_exact), result_(result) {}
 
   /// Returns whether a division was found that is proved.
   bool run(const Triangles& boundary) {
@@ -128,7 +129,9 @@ class RegionSearch {
     const unsigned key = ((apex * 32u + t[0]) * 32u + t[1]) * 32u + t[2];
     const auto [at, is_new] = signs_.try_emplace(key);
     if (is_new) {
-      at->second = volumes_.signs({apex, t[0], t[1], t[2]});
+      const Tetrahedron tetrahedron{apex, t[0], t[1], t[2]};
+      at->second = volumes_.signs(tetrahedron);
+      if (is_exact_ && at->second.positive && at->second.negative) at->second = volumes_.exact_signs(tetrahedron);
       if (!outwards_) std::swap(at->second.positive, at->second.negative);
     }
     return at->second;
@@ -346,7 +349,7 @@ class RegionSearch {
   bool divide_both(const Parts& parts) {
     const CapDivision before = result_;
     for (const Triangles& part : parts)
-      if (!RegionSearch(volumes_, outwards_, result_).run(part)) {
+      if (!RegionSearch(volumes_, outwards_, is_exact_, result_).run(part)) {
         result_ = before;
         return false;
       }
@@ -354,7 +357,7 @@ class RegionSearch {
   }
 
   const RegionVolumes& volumes_;
-  bool outwards_;
+  bool outwards_, is_exact_;
   CapDivision& result_;
   std::uint64_t vertices_ = 0, left_ = 0;
   const Samples* samples_ = nullptr;
@@ -380,10 +383,12 @@ RegionVolumes volumes_with(const tables::CellTable& shape, const RegionTriangles
 
 std::optional<CapDivision> divide_region(const tables::CellTable& shape, const RegionTriangles& boundary) {
   const RegionVolumes volumes = volumes_with(shape, boundary);
-  CapDivision division;
-  RegionSearch search(volumes, is_outwards(volumes, boundary), division);
-  if (!search.run(boundary)) return std::nullopt;
-  return division;
+  const bool outwards = is_outwards(volumes, boundary);
+  for (const bool is_exact : {false, true}) {
+    CapDivision division;
+    if (RegionSearch(volumes, outwards, is_exact, division).run(boundary)) return division;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tegl::gen

@@ -295,7 +295,9 @@ class DivisionCheck {
     return std::all_of(sides.begin(), sides.end(), [](const auto& side) { return side.second == 0; });
   }
   [[nodiscard]] VolumeSigns signs(std::uint8_t apex, const RegionTriangle& t) const {
-    VolumeSigns of = volumes_.signs({apex, t[0], t[1], t[2]});
+    const RegionTetrahedron tetrahedron{apex, t[0], t[1], t[2]};
+    VolumeSigns of = volumes_.signs(tetrahedron);
+    if (of.positive && of.negative) of = volumes_.exact_signs(tetrahedron);
     if (!outwards_) std::swap(of.positive, of.negative);
     return of;
   }
@@ -362,19 +364,25 @@ std::uint64_t digest(const CapTables& of) {
 
 }  // namespace
 
+std::vector<RegionTriangles> list_boundaries(const Cell& cell, const ShapeTables& shape,
+                                             std::span<const FaceFillings> fillings) {
+  std::set<RegionTriangles> distinct;
+  Boundaries boundaries(cell, shape, fillings);
+  for (unsigned s = 1; s < 1u << cell.tile.corner_count(); ++s)
+    boundaries.list(s, [&](const RegionTriangles& boundary) { distinct.insert(boundary); });
+  return {distinct.begin(), distinct.end()};
+}
+
 CapTables make_region_tables(const Cell& cell, const ShapeTables& shape, std::span<const FaceFillings> fillings) {
   const Outline outline(cell);
   CapTables result{cell.name};
-  std::set<RegionTriangles> distinct, regions;
-  Boundaries boundaries(cell, shape, fillings);
-  for (unsigned s = 1; s < 1u << cell.tile.corner_count(); ++s)
-    boundaries.list(s, [&](const RegionTriangles& boundary) {
-      if (!distinct.insert(boundary).second) return;
-      detail::RegionMap map{};
-      for (const RegionTriangles& region : detail::split_regions(boundary))
-        regions.insert(detail::representative_of(region, outline.table, shape.symmetries, map));
-    });
-  result.boundaries = distinct.size();
+  const std::vector<RegionTriangles> boundaries = list_boundaries(cell, shape, fillings);
+  std::set<RegionTriangles> regions;
+  detail::RegionMap map{};
+  for (const RegionTriangles& boundary : boundaries)
+    for (const RegionTriangles& region : detail::split_regions(boundary))
+      regions.insert(detail::representative_of(region, outline.table, shape.symmetries, map));
+  result.boundaries = boundaries.size();
   const std::vector<RegionTriangles> all(regions.begin(), regions.end());
   std::vector<std::optional<CapDivision>> divisions(all.size());
   const auto nothing = [] { return 0; };
@@ -385,7 +393,7 @@ CapTables make_region_tables(const Cell& cell, const ShapeTables& shape, std::sp
     if (divisions[i])
       append(all[i], *divisions[i], result);
     else
-      ++result.unproved;
+      result.unproved.push_back(all[i]);
   }
   certify_region_tables(cell, result);
   return result;
@@ -425,7 +433,7 @@ std::string region_arrays(const std::vector<CapTables>& all) {
   std::string text;
   for (const CapTables& of : all) {
     fmt::format_to(Appender(text), "\n// {}: {} regions up to symmetry, proved; {} others.\n", of.name,
-                   of.records.size(), of.unproved);
+                   of.records.size(), of.unproved.size());
     const std::string name = "k" + upper_camel(of.name) + "Region";
     write_records(text, "RegionRecord", (name + "Records").c_str(), "firsts, counts", of.records,
                   [](const tables::RegionRecord& r) {
@@ -468,7 +476,7 @@ std::string region_manifest(const std::vector<CapTables>& all) {
     lines.push_back(fmt::format(
         "    {{\"cell\": \"{}\", \"boundaries\": {}, \"regions\": {}, \"unproved\": {}, \"tetrahedra\": {}, \"fnv1a\": "
         "\"{:016x}\"}}",
-        of.name, of.boundaries, of.records.size(), of.unproved, of.tetrahedra.size(), digest(of)));
+        of.name, of.boundaries, of.records.size(), of.unproved.size(), of.tetrahedra.size(), digest(of)));
   return fmt::format("{}", fmt::join(lines, ",\n"));
 }
 

@@ -27,13 +27,17 @@ struct CapTables {
   std::vector<std::uint32_t> own = {};
   std::vector<tables::NearVertex> near = {};
   std::uint64_t boundaries = 0;  ///< different ones of the high parts of shapes
-  std::uint64_t unproved = 0;    ///< regions up to symmetry without a division that is proved; they have no record
+  /// Regions up to symmetry without a division that is proved; they have no record.
+  std::vector<RegionTriangles> unproved = {};
 };
 
-/// Lists, divides and certifies all regions of a 3D shape as a facet. They are the high parts for all signatures, with
-/// both ways to join the high corners of each ambiguous quadrilateral, all fans in the polygons, and, in each polygon
-/// of the contour, a barycentre or one of the compact `fillings` by low and high. Errors: CertificateFailed;
-/// std::logic_error if an offset or a count does not fit into its record.
+/// The different boundaries, sorted, of the high parts of a 3D shape as a facet: for all signatures, with both ways to
+/// join the high corners of each ambiguous quadrilateral, all fans in the polygons, and, in each polygon of the
+/// contour, a barycentre or one of the compact `fillings` by low and high.
+[[nodiscard]] std::vector<RegionTriangles> list_boundaries(const Cell& cell, const ShapeTables& shape,
+                                                           std::span<const FaceFillings> fillings);
+/// Divides and certifies all regions with these boundaries. Errors: CertificateFailed; std::logic_error if an offset or
+/// a count does not fit into its record.
 [[nodiscard]] CapTables make_region_tables(const Cell& cell, const ShapeTables& shape,
                                            std::span<const FaceFillings> fillings);
 /// The tables of all 3D shapes in the order of tables::CellShape.

@@ -3,6 +3,8 @@
 // Signs of volumes from those of the tetrahedra between corners.
 #include "cells/region_volumes.hpp"
 
+#include <numeric>
+
 namespace tegl::gen {
 
 RegionVolumes::RegionVolumes(const tables::CellTable& shape) : table_(shape), generic_(shape) {
@@ -50,6 +52,31 @@ VolumeSigns RegionVolumes::signs(const RegionTetrahedron& t) const noexcept {
       for (const std::uint8_t c : points_[t[2]])
         for (const std::uint8_t d : points_[t[3]]) add_signs({a, b, c, d}, signs);
   return signs;
+}
+
+VolumeSigns RegionVolumes::exact_signs(const RegionTetrahedron& t) const noexcept {
+  std::uint32_t moving = 0;  // edges whose points it depends on
+  std::int64_t scale = 1;    // makes the coordinates of all means integers
+  for (const std::uint8_t v : t) {
+    scale = std::lcm(scale, static_cast<std::int64_t>(points_[v].size()));
+    for (const std::uint8_t p : points_[v])
+      if (p >= ShapeVertices::kFirstEdge) moving |= 1u << (p - ShapeVertices::kFirstEdge);
+  }
+  VolumeSigns signs;
+  for (std::uint32_t ends = moving;; ends = (ends - 1) & moving) {  // bit e: the second end of edge e
+    std::array<std::array<std::int64_t, 3>, 4> at{};
+    for (std::size_t k = 0; k < 4; ++k)
+      for (const std::uint8_t p : points_[t[k]]) {
+        const bool is_second = p >= ShapeVertices::kFirstEdge && (ends >> (p - ShapeVertices::kFirstEdge) & 1u) != 0;
+        const std::size_t corner = ends_[p][is_second ? 1 : 0];
+        for (std::size_t a = 0; a < 3; ++a)
+          at[k][a] += scale / static_cast<std::int64_t>(points_[t[k]].size()) * table_.corners[3 * corner + a];
+      }
+    const std::int64_t volume = detail::six_volumes(at);
+    signs.positive = signs.positive || volume > 0;
+    signs.negative = signs.negative || volume < 0;
+    if (ends == 0) return signs;
+  }
 }
 
 }  // namespace tegl::gen

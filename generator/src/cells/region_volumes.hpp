@@ -24,7 +24,7 @@ struct VolumeSigns {
 };
 
 /// A volume is linear in the position of each point, also if a point belongs to a barycentre: then the terms with that
-/// point twice are zero. So its sign is known if all its terms have one sign with the points at the ends of edges.
+/// point twice are zero. So its least and greatest values are where all points are at ends of their edges.
 class RegionVolumes {
  public:
   /// `shape`: a 3D shape with its corners and edges; it must outlive the object.
@@ -36,7 +36,11 @@ class RegionVolumes {
     generic_.set_centre(centre, points);
     points_[centre] = std::move(points);
   }
+  /// The signs of all its terms: a volume with barycentres is a sum of volumes without. Fast; more than the volume's
+  /// own signs if terms of both signs balance.
   [[nodiscard]] VolumeSigns signs(const RegionTetrahedron& t) const noexcept;
+  /// The signs of the volume itself, exactly: it is computed with all points at ends of edges, in all ways.
+  [[nodiscard]] VolumeSigns exact_signs(const RegionTetrahedron& t) const noexcept;
   /// One position of the points.
   [[nodiscard]] const detail::ShapePlaces& generic() const noexcept { return generic_; }
 

@@ -255,8 +255,14 @@ int run_builder(const Options& options) {
     for (std::size_t i = 0; i + 1 < emitted.size(); ++i) fmt::print("{}{}", i == 0 ? "" : "\n", emitted[i].text);
     return 0;
   }
+  const auto read = [&](const std::string& name) {
+    std::ifstream in(std::filesystem::path(options.out) / name, std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
   std::vector<TimedFile> files;
   for (const EmittedFile& file : emitted) files.push_back({file, 0.0});
+  EmittedFile& manifest = files.back().file;
+  manifest.text = with_earlier_texts(manifest.text, read(manifest.name), read);
   write_files(options.out, options.keeps_same, files);
   for (const TimedFile& timed : files) fmt::print("wrote {}: {} bytes\n", timed.file.name, timed.file.text.size());
   return 0;

@@ -53,13 +53,17 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// `periods`: of periodic axes (tegl/periodic.hpp; 0: not periodic). Cells across the seam connect the last samples to
 /// the first ones, and the contour is wrapped (Contour::periods). The layers need an even number, at least 6, as the
-/// odd ones are shifted; other periodic axes at least 3 samples. Not for fcc_in_time.
+/// odd ones are shifted; other periodic axes at least 3 samples.
+///
+/// ExtractOptions::ambiguity: on triangular and bcc there is no ambiguity. On fcc, fixed rules differ only in pyramids
+/// at the first and last layer; rules by the data resolve their bases, and cells are stored. On d4, rules by the data
+/// give the topology of `low`. In fcc_in_time, they resolve quadrilaterals between two times.
 ///
 /// Normals (Normals::differences) come from gradients by least squares on a sample and its neighbours on the lattice,
-/// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex`; InvalidArgument
-/// for options that lattices do not have: ambiguity resolved from the data, Normals::sobel; and for periods that are
-/// not the number of samples x the step. The result does not depend on the number of threads. O(P) time; in 2D and 3D
-/// about 1.3 bytes per sample of fcc, with caps or periods those of `lattice_complex`, twice.
+/// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex` and, for options,
+/// of `extract` of complexes; InvalidArgument for Normals::sobel, and for periods that are not the number of samples x
+/// the step. The result does not depend on the number of threads. O(P) time; in 2D and 3D about 1.3 bytes per sample of
+/// fcc, with caps or periods those of `lattice_complex`, twice.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,

@@ -81,21 +81,25 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_s
     LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
     const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {});
 
-/// As `extract_lattice` for each isovalue, for an image on a lattice that is read by layers: the same vertices and
-/// simplices with the same numbers, and normals that differ by rounding at most. 2D and 3D (triangular, fcc, bcc),
-/// without periods. Layers are read once, in ascending order; the reader and the sinks are called by the calling
-/// thread. Parts of 16 layers or more are contoured together with up to ten layers around them, so the time is up
-/// to 1.6 times that of the whole image in memory (3 times with normals), and memory holds these layers and their
-/// contour. Errors: those of `extract_lattice` except TooLarge, and of the reader and the sinks; InvalidArgument for
+/// As `extract_lattice` for each isovalue, for an image on a lattice that is read by layers, without periods: the same
+/// vertices and simplices, and normals that differ by rounding at most. In 2D and 3D, numbers are the same as well,
+/// except with ambiguity resolved from the data on fcc. There and in 4D (d4, fcc_in_time), vertices are numbered as
+/// they first appear, and simplices are passed part by part.
+///
+/// Layers are read once, in ascending order; the reader and the sinks are called by the calling thread. 2D and 3D:
+/// parts of 16 layers or more are contoured together with up to ten layers around them, so the time is up to 1.6 times
+/// that of the whole image in memory (3 times with normals), and memory holds these layers and their contour. Otherwise
+/// the cells of parts of 2 layers or more are stored, and memory holds them and up to ten layers more. Errors: those of
+/// `extract_lattice` except TooLarge of the whole image, and of the reader and the sinks; InvalidArgument for
 /// ExtractOptions::close and a null sink; UnsupportedData for missing values.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 3> std::vector<ExtractedSize> extract_lattice_streamed_several(
+requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_streamed_several(
     LayerReader<T, N>& layers, Lattice lattice,
     std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options = {});
 
 /// As extract_lattice_streamed_several, for one isovalue.
 template <Coordinate Real = float, Value T, int N>
-requires DimensionBetween<N, 2, 3> ExtractedSize extract_lattice_streamed(LayerReader<T, N>& layers, Lattice lattice,
+requires DimensionBetween<N, 2, 4> ExtractedSize extract_lattice_streamed(LayerReader<T, N>& layers, Lattice lattice,
                                                                           double isovalue, ContourSink<N, Real>& sink,
                                                                           const ExtractOptions& options = {}) {
   const StreamedContour<N, Real> contour{isovalue, &sink};

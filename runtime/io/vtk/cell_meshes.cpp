@@ -338,10 +338,45 @@ void sort_by_own_times(const CellMeshOptions& options, std::vector<std::optional
   reorder(own, order);
 }
 
-/// The times of files; empty for a single file without one.
+/// Where the times of a series are from.
+enum class TimesFrom { caller, step, collection, files };
+
+/// Throws InvalidArgument unless times ascend; names the option, or the files, that the times are from.
+void require_ascending(const std::vector<double>& times, const std::vector<fs::path>& files, TimesFrom from,
+                       const fs::path& collection) {
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) continue;
+    const std::string before = files[i - 1].filename().string(), here = files[i].filename().string();
+    switch (from) {
+      case TimesFrom::caller:
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the given times (--times) have {} for {} after {} for {}; expected ascending times in "
+                                "the order of the files, or the files in the order of their times (--sort time)",
+                                times[i], here, times[i - 1], before));
+      case TimesFrom::step:
+        throw Error(ErrorCode::InvalidArgument, fmt::format("the time step (--time-step) is {}; expected a positive "
+                                                            "number, so that the times of the files ascend",
+                                                            times[1] - times[0]));
+      case TimesFrom::collection:
+        fail(ErrorCode::InvalidArgument, collection,
+             "has the timestep {} of {} after {} of {}; expected ascending times: the order by times (--sort time), or "
+             "given times (--times)",
+             times[i], here, times[i - 1], before);
+      case TimesFrom::files:
+        fail(ErrorCode::InvalidArgument, files[i],
+             "has the time {} (TimeValue), after {} of {}; expected ascending times: the files in the order of their "
+             "times (--sort time), or given times (--times)",
+             times[i], times[i - 1], before);
+    }
+  }
+}
+
+/// The times of files; empty for a single file without one. `collection`: the .pvd file that options.times are from;
+/// empty: none.
 std::vector<double> times_of(const std::vector<std::optional<double>>& own, const CellMeshOptions& options,
-                             const std::vector<fs::path>& files) {
+                             const std::vector<fs::path>& files, const fs::path& collection) {
   std::vector<double> times = options.times;
+  TimesFrom from = !collection.empty() ? TimesFrom::collection : TimesFrom::caller;
   const bool are_given = !times.empty() || options.time_step;
   if (are_given && own.size() == 1)
     fail(ErrorCode::InvalidArgument, files[0],
@@ -349,18 +384,18 @@ std::vector<double> times_of(const std::vector<std::optional<double>>& own, cons
   if (!times.empty() && options.time_step)
     throw Error(ErrorCode::InvalidArgument, "times and a time step; expected one of the two");
   if (own.size() == 1) return {};
+  if (options.time_step) from = TimesFrom::step;
   for (std::size_t i = 0; i < own.size() && options.time_step; ++i)
     times.push_back(static_cast<double>(i) * *options.time_step);
   if (!times.empty() && times.size() != own.size())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} times for {} files; expected one for each", times.size(), own.size()));
   const bool is_known = std::all_of(own.begin(), own.end(), [](const auto& time) { return time.has_value(); });
-  if (times.empty())
+  if (times.empty()) {
+    from = TimesFrom::files;  // or numbers, which ascend
     for (std::size_t i = 0; i < own.size(); ++i) times.push_back(is_known ? *own[i] : static_cast<double>(i));
-  for (std::size_t i = 1; i < times.size(); ++i)
-    if (!(times[i] > times[i - 1]))
-      fail(ErrorCode::InvalidArgument, files[i], "lies at the time {}, after {} at {}; expected ascending times",
-           times[i], files[i - 1].string(), times[i - 1]);
+  }
+  require_ascending(times, files, from, collection);
   return times;
 }
 
@@ -407,6 +442,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
   CellMeshOptions options = given_options;
   CellMesh mesh;
   mesh.files.assign(given.begin(), given.end());
+  fs::path collection;  // that the times are from
   if (given.size() == 1 && is_pvd(given[0])) {
     std::vector<double> times;
     mesh.files.clear();
@@ -414,7 +450,10 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
       mesh.files.push_back(std::move(step.file));
       times.push_back(step.time);
     }
-    if (options.times.empty() && !options.time_step && times.size() > 1) options.times = std::move(times);
+    if (options.times.empty() && !options.time_step && times.size() > 1) {
+      options.times = std::move(times);
+      collection = given[0];
+    }
   }
   sort_files(options, mesh.files);
   std::vector<std::optional<double>> own_times;
@@ -464,7 +503,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
   mesh.remarks = std::move(first.remarks);
   mesh.axis_names = std::move(first.axis_names);
   sort_by_own_times(options, own_times, mesh);
-  mesh.times = times_of(own_times, options, mesh.files);
+  mesh.times = times_of(own_times, options, mesh.files, collection);
   return mesh;
 }
 

@@ -34,7 +34,7 @@ class AssembledTiles {
     const std::size_t end = first + kHead + filling.own_vertices + (filling.simplex_count + 1) / 2;
     is_full_ = end > most;
     if (is_full_) return;
-    if (end > words_.capacity()) words_.reserve(std::min(most, end + words_.capacity() / 16));
+    if (end > words_.capacity()) words_.reserve(std::min(most, end + unused(words_.capacity())));
     words_.resize(end);
     std::uint64_t* const to = words_.data() + first;
     const std::uint64_t sizes = std::uint64_t{filling.own_vertices} << kOwnAt | std::uint64_t{filling.simplex_count}
@@ -61,6 +61,10 @@ class AssembledTiles {
   }
 
  private:
+  /// How many words more than needed a list of `words` gets when it grows. Short lists get few: all chunks of a batch
+  /// have one, and threads enlarge theirs at the same time. Long ones get more, so that they are seldom copied.
+  static constexpr std::size_t unused(std::size_t words) noexcept { return words / (words < 1024 ? 16 : 4); }
+
   static constexpr std::size_t kHead = 2;  ///< words before the masks
   static constexpr unsigned kListBits = 10, kCubesAt = 20, kOwnAt = 28, kSimplicesAt = 36;
   static_assert(ResolvedCubes::kNone < 1u << kListBits);

@@ -98,6 +98,10 @@ Complex<N> ComplexAccess::identified(const Complex<N>& complex, std::vector<std:
   result.cells_ = std::make_shared<const CellGroups>(std::move(cells));
   result.signs_ = complex.signs_;
   result.values_ = std::move(values);
+  // layers stay apart unless the last axis is periodic
+  result.is_layered_ = complex.is_layered_;
+  for (std::size_t p = 0; p < number.size() && result.is_layered_; ++p)
+    result.is_layered_ = complex.points_[p][N - 1] == result.points_[number[p]][N - 1];
   return result;
 }
 

@@ -565,6 +565,7 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
   const Progress& progress = options.work.progress;
   const NumberedContour<N> numbered(complex, isovalue, options, around.active, part_of(progress, 0.0, 0.6),
                                     result.stats);
+  if (around.keys != nullptr) *around.keys = {numbered.numbers().edge_ends(), numbered.numbers().polygons()};
   Stopwatch watch;
   result.contour =
       contour_of<Real>(complex, numbered, numbered.numbers().vertices_at_missing(ComplexAccess::cells(complex)),

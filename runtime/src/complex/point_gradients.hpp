@@ -20,6 +20,8 @@
 
 namespace tegl::detail {
 
+struct VertexKeys;
+
 /// What is known beside a complex, for the positions and normals of its contour.
 template <int N>
 struct Surroundings {
@@ -29,6 +31,8 @@ struct Surroundings {
   std::vector<Period<N>> periods = {};
   /// Numbers of the cells that may be active; null: any.
   const std::vector<Index>* active = nullptr;
+  /// Receives the keys of the contour's vertices (shared_points.hpp); null: not needed.
+  VertexKeys* keys = nullptr;
 };
 
 /// As `extract_with_stats` of a complex with surroundings.

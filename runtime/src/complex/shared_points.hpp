@@ -41,6 +41,12 @@ struct SharedPoints {
   std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell, those of polytopes last
 };
 
+/// What the first vertices of a contour are known by: those on edges, then those in common 3-faces.
+struct VertexKeys {
+  std::vector<EdgeEnds> edges;       ///< by the ends
+  std::vector<PolygonKey> polygons;  ///< by the vertices of the polygon
+};
+
 /// Numbers the shared barycentres of all active cells. Errors: TooLarge, Cancelled.
 [[nodiscard]] SharedPoints number_shared_points(const CellGroups& cells, const CellTables& tables,
                                                 const std::vector<ActiveBlock>& blocks,

@@ -36,7 +36,7 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
   // Share of the image's bytes. The rest of 1/16 is for storage that does not grow with slabs. 4D has few slabs and
   // needs two per batch, so it keeps the larger share.
   // If 4D tiles are resolved from the data, few assembled ones fit too; those of noise come on top.
-  const double share = (ahead && N < 4) || counter.lists_cubes() ? 0.05 : 0.057;
+  const double share = counter.lists_cubes() ? 0.048 : ahead && N < 4 ? 0.05 : 0.057;
   // Bytes; allowed for any image size. 4D tiles resolved from the data are kept from counting to writing.
   const double little = counter.lists_cubes() ? 3u << 16 : 1u << 17;
   // Minimum slabs that must fit together with their tile lists in 4D. If fewer fit, lists are not kept but computed

@@ -298,9 +298,6 @@ void check_lattice_options(double isovalue, ExtractOptions options) {
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("normals on a lattice are {}; expected gradient (differences)", name_of(options.normals)));
-  if (options.ambiguity != Ambiguity::low && options.ambiguity != Ambiguity::high)
-    throw Error(ErrorCode::InvalidArgument,
-                "ambiguity resolved from the data; expected low or high for the contour of a lattice");
   options.normals = Normals::none;
   check_complex_options(N, isovalue, options);
 }
@@ -321,7 +318,7 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
   }
   Extraction<N, Real> result;
   if constexpr (N < 4)
-    if (periodic == 0 && !options.close && is_in_range<Real>(grid)) {
+    if (periodic == 0 && !options.close && has_rows(lattice, options.ambiguity) && is_in_range<Real>(grid)) {
       check_grid(grid, lattice, N - 1);
       (void)count_samples(grid, "a lattice");
       ImageSource<T, N> samples(image, isovalue, options.epsilon);
@@ -330,7 +327,7 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
         return result;
       }
     }
-  if (periodic != 0) check_grid(grid, lattice, N - 1);
+  if (periodic != 0) check_grid(grid, lattice, layer_axis(lattice));
   const Complex<N> complex =
       periodic == 0 ? lattice_complex(image, lattice) : periodic_lattice_complex(image, lattice, periods);
   if (places != nullptr)

@@ -27,8 +27,15 @@ using Place = LatticePlace;
 /// Collects cells; those with a corner outside of the array are left out.
 class Collector {
  public:
-  Collector(const std::array<std::size_t, 4>& sizes, const std::array<std::size_t, 4>& margin)
-      : sizes_(sizes), margin_(margin) {}
+  Collector(const std::array<std::size_t, 4>& sizes, const std::array<std::size_t, 4>& margin, int layer_axis,
+            const std::array<std::size_t, 2>& layers)
+      : sizes_(sizes) {
+    for (int a = 0; a < 4; ++a) {
+      const bool is_layered = a == layer_axis;
+      first_[a] = static_cast<std::ptrdiff_t>(std::max(margin[a], is_layered ? layers[0] : 0));
+      end_[a] = static_cast<std::ptrdiff_t>(std::min(sizes[a] - margin[a], is_layered ? layers[1] : sizes[a]));
+    }
+  }
 
   [[nodiscard]] std::ptrdiff_t size(int axis) const { return static_cast<std::ptrdiff_t>(sizes_[axis]); }
 
@@ -49,10 +56,10 @@ class Collector {
   template <class Work>
   void for_samples(const Work& work) const {
     Place at{};
-    for (at[3] = first(3); at[3] < end(3); ++at[3])
-      for (at[2] = first(2); at[2] < end(2); ++at[2])
-        for (at[1] = first(1); at[1] < end(1); ++at[1])
-          for (at[0] = first(0); at[0] < end(0); ++at[0]) work(at);
+    for (at[3] = first_[3]; at[3] < end_[3]; ++at[3])
+      for (at[2] = first_[2]; at[2] < end_[2]; ++at[2])
+        for (at[1] = first_[1]; at[1] < end_[1]; ++at[1])
+          for (at[0] = first_[0]; at[0] < end_[0]; ++at[0]) work(at);
   }
 
  private:
@@ -62,10 +69,8 @@ class Collector {
     return static_cast<Index>(result);
   }
 
-  [[nodiscard]] std::ptrdiff_t first(int axis) const { return static_cast<std::ptrdiff_t>(margin_[axis]); }
-  [[nodiscard]] std::ptrdiff_t end(int axis) const { return size(axis) - first(axis); }
-
-  std::array<std::size_t, 4> sizes_, margin_;
+  std::array<std::size_t, 4> sizes_;
+  Place first_, end_;  ///< samples that have cells
   LatticeCells cells_;
 };
 
@@ -188,8 +193,8 @@ class PatternCollector {
 }  // namespace
 
 LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes,
-                              const std::array<std::size_t, 4>& margin) {
-  Collector cells(sizes, margin);
+                              const std::array<std::size_t, 4>& margin, const std::array<std::size_t, 2>& layers) {
+  Collector cells(sizes, margin, dimension(lattice) - 1, layers);
   add_cells(lattice, cells);
   return cells.take();
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "tegl/complex.hpp"
@@ -18,10 +19,14 @@ struct LatticeCells {
   std::vector<Index> corners;
 };
 
+inline constexpr std::array<std::size_t, 2> kAllLayers = {0, std::numeric_limits<std::size_t>::max()};
+
 /// The cells of `lattice` (not fcc_in_time) over an array of these sizes, axis 0 fastest. `margin`: samples at both
-/// ends of each axis that have no cells of their own, but may be corners of others.
+/// ends of each axis that have no cells of their own, but may be corners of others. `layers`: only cells of samples in
+/// the layers from the first to the one before the second.
 [[nodiscard]] LatticeCells cells_of_lattice(Lattice lattice, const std::array<std::size_t, 4>& sizes,
-                                            const std::array<std::size_t, 4>& margin = {});
+                                            const std::array<std::size_t, 4>& margin = {},
+                                            const std::array<std::size_t, 2>& layers = kAllLayers);
 
 /// Indices of a sample, or their differences.
 using LatticePlace = std::array<std::ptrdiff_t, 4>;

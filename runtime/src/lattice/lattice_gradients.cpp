@@ -26,7 +26,7 @@ LatticeGradients<N>::LatticeGradients(const CornerValues<N>& values, const Grid<
     : values_(values),
       grid_(grid),
       sizes_(grid.sizes()),
-      layers_(lattice == Lattice::fcc_in_time ? 2 : N - 1),
+      layers_(layer_axis(lattice)),
       sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
       periodic_(periodic),
       periods_(periods),

@@ -16,6 +16,11 @@
 
 namespace tegl::detail {
 
+/// The axis of the layers, of which the odd ones are shifted.
+[[nodiscard]] inline int layer_axis(Lattice lattice) noexcept {
+  return dimension(lattice) - (lattice == Lattice::fcc_in_time ? 2 : 1);
+}
+
 /// Throws InvalidArgument for a lattice of other dimensions.
 inline void check_dimension(Lattice lattice, int dim) {
   if (dimension(lattice) != dim)

@@ -21,6 +21,13 @@
 
 namespace tegl::detail {
 
+/// Whether rows of bits give the contour. Of fcc, they resolve the pyramids at both ends by fixed rules only; other 2D
+/// and 3D lattices have no ambiguous cells.
+[[nodiscard]] inline bool has_rows(Lattice lattice, Ambiguity ambiguity) noexcept {
+  if (dimension(lattice) == 4) return false;
+  return lattice != Lattice::fcc || ambiguity == Ambiguity::low || ambiguity == Ambiguity::high;
+}
+
 /// Population count; faster than std::popcount where the processor has no instruction for it.
 [[nodiscard]] inline std::uint32_t count_bits(Word word) noexcept {
   word -= word >> 1 & 0x5555555555555555u;

@@ -2,7 +2,7 @@
 //
 // A longer image, with a margin of the samples at the other end of each periodic axis, has all cells in one piece, and
 // so their orientations. Then the samples of the margin become those that they repeat. No cell has two of them: cells
-// extend over one step of the shifted axes and two layers.
+// extend over one step of the shifted axes and two layers, and prisms over one interval of time.
 #include "lattice/periodic_lattice.hpp"
 
 #include <array>
@@ -17,6 +17,7 @@
 #include "complex/image_points.hpp"
 #include "lattice/lattice_cells.hpp"
 #include "lattice/lattice_grid.hpp"
+#include "lattice/lattice_in_time.hpp"
 #include "periodic/periodic_layers.hpp"
 
 namespace tegl::detail {
@@ -33,14 +34,12 @@ constexpr std::size_t kMargin = 2;  // even, so that layers keep their parity
 
 template <int N>
 void check_lattice_periods(const Grid<N>& grid, Lattice lattice, const AxisPeriods<N>& periods) {
-  if (lattice == Lattice::fcc_in_time)
-    refuse(lattice, "periodic axes; expected none: periods are for triangular, fcc, bcc and d4");
   for (int a = 0; a < N; ++a) {
     if (periods[a] == 0.0) continue;
     const Axis& axis = grid.axes[a];
     const std::size_t size = axis.size();
     // farther than half a period apart, points of one cell would have no nearest places
-    if (a == N - 1 && (size % 2 != 0 || size < 6))
+    if (a == layer_axis(lattice) && (size % 2 != 0 || size < 6))
       refuse(lattice, fmt::format("the periodic axis {} has {} layers; expected an even number, at least 6, as odd "
                                   "layers are shifted",
                                   a, size));
@@ -62,16 +61,25 @@ Complex<N> periodic_lattice_complex(const Image<T, N>& image, Lattice lattice, c
     margin[a] = kMargin;
     longer.axes[a] = wrapped_axis(image.grid().axes[a], periods[a], kMargin, kMargin);
   }
-  (void)count_samples(longer, "a lattice with its margins");  // before anything of its size is allocated
-  const LatticeCells cells = cells_of_lattice(lattice, four_sizes(longer), margin);
+  if (lattice == Lattice::fcc_in_time && periods[N - 1] != 0.0) {  // as many intervals as times
+    margin[N - 1] = 0;
+    longer.axes[N - 1] = wrapped_axis(image.grid().axes[N - 1], periods[N - 1], 0, 1);
+  }
+  const std::size_t count = count_samples(longer, "a lattice with its margins");  // before anything is allocated
   std::vector<Index> number;
   for_each_sample<N>(longer.sizes(), [&](std::array<std::size_t, N> index) {
     std::size_t at = 0;
     for (int a = N - 1; a >= 0; --a) at = at * sizes[a] + (index[a] + sizes[a] - margin[a]) % sizes[a];
     number.push_back(static_cast<Index>(at));
   });
-  return ComplexAccess::identified<N>(Complex<N>(points_of(longer, N - 1), cells.types, cells.corners),
-                                      points_of(image.grid(), N - 1), values_of(image), number);
+  const auto identified = [&](const Complex<N>& cells) {
+    return ComplexAccess::identified<N>(cells, points_of(image.grid(), layer_axis(lattice)), values_of(image), number);
+  };
+  if constexpr (N == 4)
+    if (lattice == Lattice::fcc_in_time)
+      return identified(fcc_over_times(fcc_at_a_time(longer, margin), longer, std::vector<double>(count)));
+  const LatticeCells cells = cells_of_lattice(lattice, four_sizes(longer), margin);
+  return identified(Complex<N>(points_of(longer, N - 1), cells.types, cells.corners));
 }
 
 #define TEGL_INSTANTIATE_DIM(T, N) \

@@ -16,11 +16,11 @@ template <int N>
   return axes;
 }
 
-/// Throws InvalidArgument unless a lattice (not fcc_in_time) continues across the ends of its periodic axes.
+/// Throws InvalidArgument unless a lattice continues across the ends of its periodic axes.
 template <int N>
 void check_lattice_periods(const Grid<N>& grid, Lattice lattice, const AxisPeriods<N>& periods);
 
-/// The complex of an image on a lattice (not fcc_in_time) with periodic axes. Its points are the samples; the corners
+/// The complex of an image on a lattice with periodic axes. Its points are the samples; the corners
 /// of cells across the seam are a period apart, with the orientations of cells that are not.
 template <Value T, int N>
 [[nodiscard]] Complex<N> periodic_lattice_complex(const Image<T, N>& image, Lattice lattice,

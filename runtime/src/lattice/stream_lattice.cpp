@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Streamed contours of images on lattices. Some layers at a time are contoured together with the layers around them, on
-// which their cells, vertices and gradients depend; the part of the contour that is theirs is passed on.
+// which their cells, vertices and gradients depend; the part of the contour that is theirs is passed on. In 4D, and if
+// fcc is resolved from the data, their cells are stored (CellParts).
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,6 +17,7 @@
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "image/row_source.hpp"
+#include "lattice/cell_parts.hpp"
 #include "lattice/lattice_grid.hpp"
 #include "lattice/lattice_rows.hpp"
 #include "tegl/error.hpp"
@@ -27,11 +30,6 @@ namespace {
 /// Layers before and behind the own layers of a part. Cells have their corners at most two layers away, and so have
 /// edges and neighbours for gradients. Even, so that a part's odd layers are the image's.
 constexpr std::size_t kBefore = 4, kBehind = 6;
-
-/// The layers of a part: [begin, end) with those around its own, [first, last).
-struct PartLayers {
-  std::size_t begin, first, last, end;
-};
 
 /// What the own layers of a part have of the part's contour.
 struct OwnNumbers {
@@ -46,7 +44,9 @@ void check_stream(const Grid<N>& grid, Lattice lattice, const ExtractOptions& op
   check_dimension(lattice, N);
   if (options.close)
     refuse(fmt::format("close of a streamed contour on the lattice {}; expected an image in memory", name_of(lattice)));
-  check_grid(grid, lattice, N - 1);
+  check_grid(grid, lattice, layer_axis(lattice));
+  if (const std::size_t times = grid.axes[N - 1].size(); lattice == Lattice::fcc_in_time && times < 2)
+    refuse(fmt::format("{} times; expected at least 2", times));
   for (int row = 0; row < N; ++row) {
     double most = std::abs(grid.offset[row]);
     for (int a = 0; a < N; ++a) {
@@ -63,11 +63,33 @@ void check_stream(const Grid<N>& grid, Lattice lattice, const ExtractOptions& op
 template <class Real, int N>
 class LatticeStream {
  public:
-  LatticeStream(const StreamedContour<N, Real>& contour, Lattice lattice) : contour_(contour), lattice_(lattice) {}
+  /// `by_rows`: whether rows of bits give the contour.
+  LatticeStream(const StreamedContour<N, Real>& contour, Lattice lattice, bool by_rows)
+      : contour_(contour), lattice_(lattice) {
+    if (!by_rows) parts_.emplace(contour, lattice);
+  }
 
   /// `image`: the layers [part.begin, part.end) of the image on `grid`.
   template <Value T>
   void add(const Image<T, N>& image, const Grid<N>& grid, const PartLayers& part, const ExtractOptions& options) {
+    if (parts_) return parts_->add(image, grid, part, options, [&] { refuse_missing(part); });
+    if constexpr (N < 4) add_rows(image, grid, part, options);
+  }
+  [[nodiscard]] ExtractedSize result(double read_seconds) const {
+    ExtractedSize result = parts_ ? ExtractedSize{parts_->size(), parts_->stats()} : ExtractedSize{size_, stats_};
+    result.stats.read_seconds = read_seconds;
+    return result;
+  }
+
+ private:
+  [[noreturn]] void refuse_missing(const PartLayers& part) const {
+    throw Error(ErrorCode::UnsupportedData,
+                fmt::format("missing values between layers {} and {} of a streamed image on the lattice {}; expected "
+                            "none, or an image in memory",
+                            part.begin, part.end - 1, name_of(lattice_)));
+  }
+  template <Value T>
+  void add_rows(const Image<T, N>& image, const Grid<N>& grid, const PartLayers& part, const ExtractOptions& options) {
     const OwnNumbers own = own_numbers(image, part, options);
     ExtractOptions without = options;
     const bool weighs_as_whole = options.normals != Normals::none && grid.axes[N - 1].is_uniform();
@@ -81,13 +103,6 @@ class LatticeStream {
     stats_.find_seconds += made.stats.find_seconds;
     stats_.generate_seconds += made.stats.generate_seconds;
   }
-  [[nodiscard]] ExtractedSize result(double read_seconds) const {
-    ExtractedSize result{size_, stats_};
-    result.stats.read_seconds = read_seconds;
-    return result;
-  }
-
- private:
   template <Value T>
   OwnNumbers own_numbers(const Image<T, N>& image, const PartLayers& part, const ExtractOptions& options) const {
     const auto sizes = image.grid().sizes();
@@ -95,11 +110,7 @@ class LatticeStream {
     const auto patterns = make_patterns<N>(lattice_, image.grid(), options);
     LatticeRows rows({sizes[0], rows_in_layer, sizes[N - 1]}, patterns);
     const ImageSource<T, N> samples(image, contour_.isovalue, options.epsilon);
-    if (rows.template classify<N>(samples, {options.work.threads}))
-      throw Error(ErrorCode::UnsupportedData,
-                  fmt::format("missing values between layers {} and {} of a streamed image on the lattice {}; expected "
-                              "none, or an image in memory",
-                              part.begin, part.end - 1, name_of(lattice_)));
+    if (rows.template classify<N>(samples, {options.work.threads})) refuse_missing(part);
     rows.count({options.work.threads});
     const std::size_t from = (part.first - part.begin) * rows_in_layer, to = (part.last - part.begin) * rows_in_layer;
     OwnNumbers own{rows.row(from).first, rows.vertices(), rows.row(from).first_simplex, rows.simplices()};
@@ -141,6 +152,7 @@ class LatticeStream {
 
   StreamedContour<N, Real> contour_;
   Lattice lattice_;
+  std::optional<CellParts<Real, N>> parts_;  ///< none: by rows
   ContourSize size_;
   ExtractStats stats_;
   std::vector<typename ContourSink<N, Real>::Simplex> simplices_;
@@ -150,14 +162,13 @@ class LatticeStream {
 template <Value T, int N>
 class LayerWindow {
  public:
-  explicit LayerWindow(LayerReader<T, N>& reader) : reader_(reader) {
+  /// `least`: own layers of a part; `samples`: if they have fewer samples than this, parts have more layers.
+  LayerWindow(LayerReader<T, N>& reader, std::size_t least, std::size_t samples)
+      : reader_(reader), least_(least), samples_(samples) {
     for (int a = 0; a + 1 < N; ++a) layer_ *= reader.grid().axes[a].size();
   }
   /// Number of layers of a part: large ones are few, so that the layers around them are not the most.
-  [[nodiscard]] std::size_t own_layers() const noexcept {
-    constexpr std::size_t kLeast = 16, kSamples = std::size_t{1} << 18;
-    return std::max(kLeast, kSamples / layer_ / 2 * 2);
-  }
+  [[nodiscard]] std::size_t own_layers() const noexcept { return std::max(least_, samples_ / layer_ / 2 * 2); }
   /// A view of the layers [begin, end). They ascend from call to call.
   [[nodiscard]] Image<T, N> layers(std::size_t begin, std::size_t end) {
     const auto passed = static_cast<std::ptrdiff_t>((begin - begin_) * layer_);
@@ -173,7 +184,7 @@ class LayerWindow {
 
  private:
   LayerReader<T, N>& reader_;
-  std::size_t layer_ = 1, begin_ = 0, read_ = 0;
+  std::size_t least_, samples_, layer_ = 1, begin_ = 0, read_ = 0;
   Buffer<T> values_;
 };
 
@@ -181,7 +192,7 @@ class LayerWindow {
 }  // namespace detail
 
 template <Coordinate Real, Value T, int N>
-requires DimensionBetween<N, 2, 3> std::vector<ExtractedSize> extract_lattice_streamed_several(
+requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_streamed_several(
     LayerReader<T, N>& layers, Lattice lattice,
     std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options) {
   for (const auto& contour : contours)
@@ -189,9 +200,10 @@ requires DimensionBetween<N, 2, 3> std::vector<ExtractedSize> extract_lattice_st
   const Grid<N> grid = layers.grid();
   detail::check_stream<Real>(grid, lattice, options);
   std::vector<detail::LatticeStream<Real, N>> streams;
-  for (const auto& contour : contours) streams.emplace_back(contour, lattice);
+  const bool by_rows = detail::has_rows(lattice, options.ambiguity);
+  for (const auto& contour : contours) streams.emplace_back(contour, lattice, by_rows);
   if (contours.empty()) return {};
-  detail::LayerWindow<T, N> window(layers);
+  detail::LayerWindow<T, N> window(layers, by_rows ? 16 : 2, std::size_t{1} << (by_rows ? 18 : 16));
   const std::size_t count = grid.axes[N - 1].size(), own = window.own_layers();
   double read_seconds = 0.0;
   for (std::size_t first = 0; first < count; first += own) {
@@ -223,7 +235,9 @@ requires DimensionBetween<N, 2, 3> std::vector<ExtractedSize> extract_lattice_st
   TEGL_INSTANTIATE_ONE(T, 2, float)  \
   TEGL_INSTANTIATE_ONE(T, 2, double) \
   TEGL_INSTANTIATE_ONE(T, 3, float)  \
-  TEGL_INSTANTIATE_ONE(T, 3, double)
+  TEGL_INSTANTIATE_ONE(T, 3, double) \
+  TEGL_INSTANTIATE_ONE(T, 4, float)  \
+  TEGL_INSTANTIATE_ONE(T, 4, double)
 #include "base/instantiate.hpp"
 #undef TEGL_INSTANTIATE_ONE
 

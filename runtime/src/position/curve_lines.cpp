@@ -4,56 +4,12 @@
 #include "position/curve_lines.hpp"
 
 #include <algorithm>
-#include <bit>
+
+#include "position/short_segments.hpp"
 
 namespace tegl::detail {
 
 namespace {
-
-/// The segments of up to kSteps steps, by the bits of their turns: whether a step's axis is not that of the first step.
-class ShortSegments {
- public:
-  static constexpr std::size_t kSteps = 10;
-
-  ShortSegments() {
-    for (std::uint32_t bits = 0; bits < std::uint32_t{1} << kSteps; bits += 2) {
-      StraightSegment segment;
-      while (segment.size() < kSteps &&
-             segment.add((bits >> segment.size() & 1u) != 0 ? GridStep::up : GridStep::right))
-        lines_[place(bits, segment.size())] = segment.line();
-      sizes_[bits] = static_cast<std::uint8_t>(segment.size());
-      if (segment.size() == kSteps) whole_[bits / 2] = segment;
-    }
-  }
-  /// The number of steps of the longest segment with these turns; kSteps: as many or more.
-  [[nodiscard]] std::size_t size(Word turns) const noexcept { return sizes_[turns & (sizes_.size() - 1)]; }
-  /// The line of the segment of `size` steps.
-  [[nodiscard]] const StraightSegment::Line& line(Word turns, std::size_t size) const noexcept {
-    return lines_[place(turns, size)];
-  }
-  /// The segment of kSteps steps, to be continued. `steps`: those of the curve.
-  [[nodiscard]] StraightSegment whole(Word turns, const GridStep* steps) const noexcept {
-    turns &= sizes_.size() - 1;
-    StraightSegment segment = whole_[turns / 2];
-    segment.set_directions(steps[0], steps[turns == 0 ? 0 : std::countr_zero(turns)]);
-    return segment;
-  }
-
- private:
-  static std::size_t place(Word turns, std::size_t size) noexcept {
-    const std::size_t end = std::size_t{1} << size;
-    return end | (turns & (end - 1));
-  }
-
-  std::array<std::uint8_t, std::size_t{1} << kSteps> sizes_{};
-  std::array<StraightSegment::Line, std::size_t{1} << (kSteps + 1)> lines_{};
-  std::array<StraightSegment, std::size_t{1} << (kSteps - 1)> whole_{};  // without the first bit, which is 0
-};
-
-const ShortSegments& short_segments() {
-  static const ShortSegments segments;
-  return segments;
-}
 
 bool is_positive(GridStep step) noexcept { return step == GridStep::right || step == GridStep::up; }
 
@@ -100,12 +56,11 @@ void CurveLines::prepare(std::size_t count) {
 }
 
 CurveLines::Segment CurveLines::segment_from(std::size_t first, std::size_t most) const noexcept {
-  const ShortSegments& table = short_segments();
   most = std::min<std::size_t>(most, ends_[first] - first);
   const Word bits = turns(first);
-  const std::size_t size = std::min(table.size(bits), most);
-  if (size < ShortSegments::kSteps || most == size) return {size, table.line(bits, size)};
-  StraightSegment segment = table.whole(bits, steps_.data() + first);
+  const std::size_t size = std::min(kShortSegments.size(bits), most);
+  if (size < ShortSegments::kSteps || most == size) return {size, kShortSegments.line(bits, size)};
+  StraightSegment segment = kShortSegments.whole(bits, steps_.data() + first);
   while (segment.size() < most && segment.add(steps_[first + segment.size()])) {
   }
   return {segment.size(), segment.line()};

@@ -13,11 +13,22 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace tegl::detail {
 
 /// The direction of a step between neighbouring points of the square grid: +x, +y, -x, -y.
 enum class GridStep : std::uint8_t { right, up, left, down };
+
+/// The square root of a positive normal number, rounded to nearest in constant expressions, too.
+constexpr float square_root(float x) noexcept {
+  if (!std::is_constant_evaluated()) return std::sqrt(x);
+  // Heron's rule from above: the roots of `float` are far enough from the middle between two `float` that a last error
+  // of a few units of `double` does not matter
+  double root = x < 1.0f ? 1.0 : static_cast<double>(x);
+  for (double next = root; (next = 0.5 * (root + static_cast<double>(x) / root)) < root;) root = next;
+  return static_cast<float>(root);
+}
 
 /// All lines that separate the pixels on both sides of a segment, as if each were equally likely. In the frame of the
 /// segment's first two directions, with p = x + y (steps from the start) and rest = a x - b y, each line is a function
@@ -31,7 +42,7 @@ class SeparatingLines {
     float from, to;
   };
   /// `least`: the least c of lines with s = 0.
-  SeparatingLines(float least, Places rise, Places fall)
+  constexpr SeparatingLines(float least, Places rise, Places fall)
       : least_(least), rise_(rise.from), fall_(fall.from), rising_(1 / (rise.to - rise.from)) {
     const float rises_in = rise.to - rise.from, falls_in = fall.to - fall.from;
     falling_ = 1 / falls_in;
@@ -39,15 +50,15 @@ class SeparatingLines {
   }
 
   /// The mean line: s, and rest at p.
-  [[nodiscard]] float slope() const noexcept { return (share_ * rising_ - (1 - share_) * falling_) / 3; }
-  [[nodiscard]] float mean(float p) const noexcept { return least_ + (1 + mean_corner(p)) / 3; }
+  [[nodiscard]] constexpr float slope() const noexcept { return (share_ * rising_ - (1 - share_) * falling_) / 3; }
+  [[nodiscard]] constexpr float mean(float p) const noexcept { return least_ + (1 + mean_corner(p)) / 3; }
   /// The variance of rest at p.
-  [[nodiscard]] float variance(float p) const noexcept {
+  [[nodiscard]] constexpr float variance(float p) const noexcept {
     const float up = rise(p), down = fall(p);
     return variance_of(mean_corner(p), share_ * up * up + (1 - share_) * down * down, mean_corner(p) * mean_corner(p));
   }
   /// The mean of the variance from p = 0 to `end`.
-  [[nodiscard]] float mean_variance(float end) const noexcept {
+  [[nodiscard]] constexpr float mean_variance(float end) const noexcept {
     // of the square of a linear function
     const auto square = [](float at_start, float at_end) {
       return (at_start * at_start + at_start * at_end + at_end * at_end) / 3;
@@ -60,12 +71,14 @@ class SeparatingLines {
 
  private:
   /// The values of the third corners at p, above `least`.
-  [[nodiscard]] float rise(float p) const noexcept { return rising_ * (p - rise_); }
-  [[nodiscard]] float fall(float p) const noexcept { return 1 - falling_ * (p - fall_); }
-  [[nodiscard]] float mean_corner(float p) const noexcept { return share_ * rise(p) + (1 - share_) * fall(p); }
+  [[nodiscard]] constexpr float rise(float p) const noexcept { return rising_ * (p - rise_); }
+  [[nodiscard]] constexpr float fall(float p) const noexcept { return 1 - falling_ * (p - fall_); }
+  [[nodiscard]] constexpr float mean_corner(float p) const noexcept {
+    return share_ * rise(p) + (1 - share_) * fall(p);
+  }
   /// The variance over both triangles. A triangle whose corners have the values 0, 1 and v has the mean (1 + v) / 3 and
   /// the mean of squares (1 + v + v^2) / 6. `corner`, `squares`: the means of v and v^2; `square`: of v, squared.
-  static float variance_of(float corner, float squares, float square) noexcept {
+  static constexpr float variance_of(float corner, float squares, float square) noexcept {
     return (1 + corner + squares) / 6 - (1 + 2 * corner + square) / 9;
   }
 
@@ -83,10 +96,13 @@ class StraightSegment {
 
   struct Point {
     std::int32_t x = 0, y = 0;
+    friend bool operator==(const Point&, const Point&) = default;
   };
 
+  friend bool operator==(const StraightSegment&, const StraightSegment&) = default;
+
   /// Appends a step if the path stays a digital straight segment. Returns whether it does.
-  bool add(GridStep step) noexcept {
+  constexpr bool add(GridStep step) noexcept {
     if (count_ == kMost) return false;
     const unsigned turn = count_ == 0 ? 0 : (static_cast<unsigned>(step) - first_) & 3u;
     if (turn == 2 || (turn != 0 && turn_ != 0 && turn != turn_)) return false;
@@ -121,12 +137,12 @@ class StraightSegment {
 
   /// Takes the segment into another frame: its first two directions become these. `second` is `first` if the segment
   /// has only one.
-  void set_directions(GridStep first, GridStep second) noexcept {
+  constexpr void set_directions(GridStep first, GridStep second) noexcept {
     first_ = static_cast<unsigned>(first);
     turn_ = (static_cast<unsigned>(second) - first_) & 3u;
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return count_; }
+  [[nodiscard]] constexpr std::size_t size() const noexcept { return count_; }
   /// The direction and the place of a segment. In the frame of its first two directions, the direction is (b, a). With
   /// rest(x, y) = a x - b y, the line consists of the points with 2 rest = doubled_mean: it passes through the mean of
   /// the middles of all steps.
@@ -139,21 +155,22 @@ class StraightSegment {
     /// be right for straight curves. In curved ones, long segments would then count too little, and balls get too
     /// large.)
     float precision = 1;
+    friend bool operator==(const Line&, const Line&) = default;
   };
-  [[nodiscard]] Line line() const noexcept {
+  [[nodiscard]] constexpr Line line() const noexcept {
     const double sum =
         static_cast<double>(a_) * static_cast<double>(sum_.x) - static_cast<double>(b_) * static_cast<double>(sum_.y);
     Line line{static_cast<std::int16_t>(a_), static_cast<std::int16_t>(b_),
               static_cast<float>(sum / static_cast<double>(count_)), squared_length()};
     // with two periods or more, the variance is nearly that of the lines with this direction
     if (count_ < 2 * static_cast<std::size_t>(a_ + b_))
-      line.precision /= std::sqrt(12 * separating_lines().mean_variance(static_cast<float>(count_)));
+      line.precision /= square_root(12 * separating_lines().mean_variance(static_cast<float>(count_)));
     return line;
   }
   /// a^2 + b^2, for the direction (b, a).
-  [[nodiscard]] float squared_length() const noexcept { return static_cast<float>(a_ * a_ + b_ * b_); }
+  [[nodiscard]] constexpr float squared_length() const noexcept { return static_cast<float>(a_ * a_ + b_ * b_); }
   /// At least one step.
-  [[nodiscard]] SeparatingLines separating_lines() const noexcept {
+  [[nodiscard]] constexpr SeparatingLines separating_lines() const noexcept {
     const auto place = [](const Point& p) { return static_cast<float>(p.x + p.y); };
     // leaning points have pixels beside them: the upper ones below the path, the lower ones above it
     return {static_cast<float>(mu_) + 0.5f * static_cast<float>(a_ + b_) - 1,
@@ -162,8 +179,8 @@ class StraightSegment {
   }
 
  private:
-  [[nodiscard]] std::int32_t rest(const Point& p) const noexcept { return a_ * p.x - b_ * p.y; }
-  void set_direction(const Point& from, const Point& to) noexcept {
+  [[nodiscard]] constexpr std::int32_t rest(const Point& p) const noexcept { return a_ * p.x - b_ * p.y; }
+  constexpr void set_direction(const Point& from, const Point& to) noexcept {
     a_ = to.y - from.y;
     b_ = to.x - from.x;
   }

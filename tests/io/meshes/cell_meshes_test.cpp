@@ -2,6 +2,8 @@
 //
 // Meshes of cells and tables of points: what the reader makes of small files, and the errors of wrong ones. Files that
 // VTK writes are in vtk_writes_test.py, hostile ones in hostile.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "io_support.hpp"
@@ -358,13 +360,19 @@ TEST(CellMesh, FilesOfASeriesMustMatch) {
   const std::vector<fs::path> same = {dir / "a.vtu", dir / "a.vtu"};
   CellMeshOptions options;
   options.times = {1.0, 0.5};
-  expect_error(ErrorCode::InvalidArgument, {"0.5", "ascending"}, [&] { read_cell_mesh(same, options); });
+  expect_error(ErrorCode::InvalidArgument, {"given times (--times) have 0.5 for a.vtu after 1 for a.vtu", "ascending"},
+               [&] { read_cell_mesh(same, options); });
   options.times = {0.5, 1.0};
   EXPECT_EQ(to_complex(read_cell_mesh(same, options)).index(), 2U);  // 4D
   options.time_step = 0.25;
   expect_error(ErrorCode::InvalidArgument, {"times and a time step"}, [&] { read_cell_mesh(same, options); });
   options.times.clear();
   EXPECT_THAT(read_cell_mesh(same, options).times, testing::ElementsAre(0.0, 0.25));
+  for (const double step : {0.0, -0.25}) {
+    options.time_step = step;
+    expect_error(ErrorCode::InvalidArgument, {fmt::format("(--time-step) is {}; expected a positive number", step)},
+                 [&] { read_cell_mesh(same, options); });
+  }
 }
 
 TEST(CellMesh, FilesOfASeriesHaveTheOrderOfNamesOrTimes) {
@@ -415,7 +423,8 @@ TEST(CellMesh, FilesAreSortedByTheirOwnTimes) {
   write("b.vtu", 1.0, moved);
   write("c.vtu", 2.0, still);
   const std::vector<fs::path> listed = {dir / "a.vtu", dir / "b.vtu", dir / "c.vtu"};
-  expect_error(ErrorCode::InvalidArgument, {"ascending"}, [&] { read_cell_mesh(listed); });
+  expect_error(ErrorCode::InvalidArgument, {"b.vtu: has the time 1 (TimeValue), after 3 of a.vtu", "ascending"},
+               [&] { read_cell_mesh(listed); });
   CellMeshOptions options;
   options.order = SeriesOrder::coordinate;
   const CellMesh mesh = read_cell_mesh(listed, options);
@@ -449,6 +458,11 @@ TEST(CellMesh, CollectionsNameFilesInTheirFolder) {
              collection("<DataSet timestep=\"2\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"a.vtu\"/>"));
   EXPECT_TRUE(is_cell_mesh_file(dir / "a.pvd"));
   EXPECT_THAT(read(dir / "a.pvd").times, testing::ElementsAre(1, 2));
+  write_file(dir / "b.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));
+  write_file(dir / "b.pvd",
+             collection("<DataSet timestep=\"2\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"b.vtu\"/>"));
+  expect_error(ErrorCode::InvalidArgument, {"b.pvd: has the timestep 1 of b.vtu after 2 of a.vtu", "--sort time"},
+               [&] { read(dir / "b.pvd", {.order = SeriesOrder::by_name}); });
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"<DataSet timestep=\"x\" file=\"a.vtu\"/>", "timestep='x'"},
       {"<DataSet timestep=\"1\" file=\"../a.vtu\"/>", "a.vtu"},

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Streamed contours of images on lattices are those in memory, with the same numbers.
+// Streamed contours of images on lattices are those in memory, by rows of bits with the same numbers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "collector.hpp"
@@ -78,6 +79,67 @@ TEST(StreamedLattice, IsTheContourInMemory) {
   }
 }
 
+/// The simplices of a contour by the coordinates of their vertices, sorted.
+template <int N, class Vertices, class Simplices>
+std::vector<std::array<std::array<double, N>, N>> by_places(const Vertices& vertices, const Simplices& simplices) {
+  std::vector<std::array<std::array<double, N>, N>> result;
+  for (const auto& simplex : simplices) {
+    auto& places = result.emplace_back();
+    for (int j = 0; j < N; ++j) places[j] = vertices[simplex[j]];
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// The same contour as in memory, up to the numbers of vertices and the order of simplices.
+template <int N>
+void expect_streamed_by_cells(Lattice lattice, const std::array<std::size_t, N>& sizes, unsigned seed,
+                              const std::vector<Ambiguity>& rules) {
+  SCOPED_TRACE(testing::Message() << name_of(lattice) << ", " << sizes[N - 1] << " layers");
+  Grid<N> grid;
+  for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a], -1.0, 0.1);
+  if (seed % 2 == 0) grid.linear[0][1] = 0.3;
+  const auto image = sampled_on_lattice<N>(lattice, grid, noise_everywhere<N>(seed));
+  for (const Ambiguity ambiguity : rules)
+    for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
+      ExtractOptions options;
+      options.ambiguity = ambiguity;
+      options.triangulation = triangulation;
+      options.epsilon = 0.05;
+      options.normals = triangulation == Triangulation::compact ? Normals::differences : Normals::none;
+      options.work.threads = 1 + seed % 3;
+      const auto [contour, stats] = extract_lattice_with_stats<double>(image.view(), lattice, kIsovalue, options);
+      std::size_t next = 0;
+      auto layers = layers_of<N>(image, next);
+      Collector<N, double> sink;
+      const auto extracted = extract_lattice_streamed<double>(layers, lattice, kIsovalue, sink, options);
+      EXPECT_EQ(next, sizes[N - 1]);
+      EXPECT_GT(contour.simplices.size(), 100u);
+      ASSERT_EQ(extracted.size.vertices, contour.vertices.size());
+      ASSERT_EQ(extracted.size.simplices, contour.simplices.size());
+      EXPECT_EQ(sink.vertices.size(), contour.vertices.size());
+      EXPECT_EQ(extracted.stats.tiles, stats.tiles);
+      EXPECT_EQ(extracted.stats.active_tiles, stats.active_tiles);
+      EXPECT_TRUE(by_places<N>(sink.vertices, sink.simplices) == by_places<N>(contour.vertices, contour.simplices));
+      std::map<std::array<double, N>, std::array<double, N>> normals;
+      for (std::size_t v = 0; v < contour.normals.size(); ++v) normals[contour.vertices[v]] = contour.normals[v];
+      ASSERT_EQ(sink.normals.size(), contour.normals.size());
+      for (std::size_t v = 0; v < sink.normals.size(); ++v)
+        for (int a = 0; a < N; ++a) ASSERT_NEAR(sink.normals[v][a], normals.at(sink.vertices[v])[a], 1e-6) << v;
+    }
+}
+
+TEST(StreamedLattice, ByCellsIsTheContourInMemory) {
+  const std::vector<Ambiguity> by_data = {Ambiguity::mean, Ambiguity::decider};
+  // parts of 26, 8 and 2 layers, so that there is a last part of one layer, and one of the layers around it only
+  expect_streamed_by_cells<3>(Lattice::fcc, {50, 48, 53}, 1, by_data);
+  expect_streamed_by_cells<4>(Lattice::d4, {20, 20, 20, 9}, 2, {Ambiguity::low, Ambiguity::mean});
+  expect_streamed_by_cells<4>(Lattice::d4, {33, 30, 31, 5}, 3, {Ambiguity::low});
+  expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 9}, 4, {Ambiguity::high, Ambiguity::mean});
+  expect_streamed_by_cells<4>(Lattice::fcc_in_time, {33, 30, 31, 4}, 5, {Ambiguity::saddle});
+  expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 2}, 6, {Ambiguity::high});
+}
+
 TEST(StreamedLattice, SeveralIsovaluesTakeOnePass) {
   Grid<3> grid = Grid<3>::unit({150, 140, 40});
   const auto image = sampled_on_lattice<3>(Lattice::fcc, grid, noise_everywhere<3>(4));
@@ -107,14 +169,24 @@ TEST(StreamedLattice, WhatOnlyMemoryHasIsRefused) {
       EXPECT_EQ(error.code(), code) << error.what();
     }
   };
-  ExtractOptions close, sobel, mean;
+  ExtractOptions close, sobel, custom;
   close.close = true;
   sobel.normals = Normals::sobel;
-  mean.ambiguity = Ambiguity::mean;
-  for (const ExtractOptions& options : {close, sobel, mean}) refused(ErrorCode::InvalidArgument, Lattice::fcc, options);
+  custom.ambiguity = Ambiguity::custom;
+  for (const ExtractOptions& options : {close, sobel, custom})
+    refused(ErrorCode::InvalidArgument, Lattice::fcc, options);
   refused(ErrorCode::InvalidArgument, Lattice::triangular, {});
   image.values[100] = std::numeric_limits<double>::quiet_NaN();
   refused(ErrorCode::UnsupportedData, Lattice::fcc, {});
+  ExtractOptions mean;
+  mean.ambiguity = Ambiguity::mean;  // by cells
+  refused(ErrorCode::UnsupportedData, Lattice::fcc, mean);
+  auto one_time = sampled_on_lattice<4>(Lattice::fcc_in_time, Grid<4>::unit({4, 4, 4, 1}), noise_everywhere<4>(4));
+  std::size_t next = 0;
+  auto layers = layers_of<4>(one_time, next);
+  Collector<4, float> sink;
+  expect_error(ErrorCode::InvalidArgument, "1 times; expected at least 2",
+               [&] { extract_lattice_streamed<float>(layers, Lattice::fcc_in_time, 0.5, sink); });
 }
 
 }  // namespace

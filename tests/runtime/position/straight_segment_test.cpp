@@ -9,10 +9,12 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "position/curve_lines.hpp"
+#include "position/short_segments.hpp"
 
 namespace tegl::test {
 namespace {
@@ -190,6 +192,99 @@ TEST(StraightSegment, LinesOfCurvesAreThoseOfTheirSegments) {
       EXPECT_NEAR(lines[j].sum, expected[j].sum, 1e-4 * expected[j].weight) << i << " at " << j;
     }
   }
+}
+
+constexpr std::size_t kShort = detail::ShortSegments::kSteps;
+
+/// The path of some first steps with these turns.
+std::vector<detail::GridStep> path_of(unsigned turns, std::size_t size) {
+  std::vector<detail::GridStep> steps;
+  for (std::size_t i = 0; i < size; ++i)
+    steps.push_back((turns >> i & 1u) != 0 ? detail::GridStep::up : detail::GridStep::right);
+  return steps;
+}
+
+TEST(ShortSegments, AreTheSegmentsThatAreFoundStepByStep) {
+  for (unsigned turns = 0; turns < 1u << kShort; turns += 2) {
+    detail::StraightSegment segment;
+    for (const detail::GridStep step : path_of(turns, kShort)) {
+      if (!segment.add(step)) break;
+      EXPECT_EQ(detail::kShortSegments.line(turns, segment.size()), segment.line()) << turns << ' ' << segment.size();
+    }
+    ASSERT_EQ(detail::kShortSegments.size(turns), segment.size()) << turns;
+    if (segment.size() < kShort) continue;
+    const std::vector<detail::GridStep> steps = path_of(turns, kShort);
+    EXPECT_EQ(detail::kShortSegments.whole(turns, steps.data()), segment) << turns;
+  }
+}
+
+/// a and b of the digital line with the shortest period, a + b, that has all points of a path, by trying all of them;
+/// none if there is none or several are shortest.
+std::optional<std::array<int, 2>> shortest_line(const std::vector<std::array<int, 2>>& points) {
+  for (int period = 1; period <= static_cast<int>(points.size()); ++period) {
+    std::vector<std::array<int, 2>> found;
+    for (int a = 0; a <= period; ++a) {
+      const int b = period - a;
+      int least = 0, most = 0;
+      for (const auto& [x, y] : points) {
+        least = std::min(least, a * x - b * y);
+        most = std::max(most, a * x - b * y);
+      }
+      if (most - least < period) found.push_back({a, b});
+    }
+    if (!found.empty()) return found.size() == 1 ? std::optional(found[0]) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// The directions and places are integers; weights follow from the variance, which another test compares with sampled
+/// lines.
+TEST(ShortSegments, HaveTheLinesOfTheDefinition) {
+  std::size_t count = 0;
+  for (std::size_t size = 1; size <= kShort; ++size)
+    for (unsigned turns = 0; turns < 1u << size; turns += 2) {
+      const std::vector<detail::GridStep> steps = path_of(turns, size);
+      std::vector<std::array<int, 2>> points = {{0, 0}};
+      for (const detail::GridStep step : steps) {
+        points.push_back(points.back());
+        ++points.back()[step == detail::GridStep::right ? 0 : 1];
+      }
+      const auto direction = shortest_line(points);
+      ASSERT_EQ(detail::kShortSegments.size(turns) >= size, direction.has_value()) << turns << ' ' << size;
+      if (!direction) continue;
+      ++count;
+      const auto& line = detail::kShortSegments.line(turns, size);
+      const auto [a, b] = *direction;
+      EXPECT_EQ(line.a, a) << turns << ' ' << size;
+      EXPECT_EQ(line.b, b) << turns << ' ' << size;
+      int doubled = 0;  // sum of twice the middles of steps, as a x - b y
+      for (std::size_t i = 0; i < size; ++i)
+        doubled += a * (points[i][0] + points[i + 1][0]) - b * (points[i][1] + points[i + 1][1]);
+      EXPECT_EQ(line.doubled_mean, static_cast<float>(doubled / static_cast<double>(size))) << turns << ' ' << size;
+      double precision = a * a + b * b;
+      if (size < 2 * static_cast<std::size_t>(a + b)) {
+        detail::StraightSegment segment;
+        for (const detail::GridStep step : steps) segment.add(step);
+        const auto lines = segment.separating_lines();
+        const auto end = static_cast<float>(size);
+        // the variance is a quadratic function, whose mean Simpson's rule gives
+        precision /= std::sqrt(2 * (lines.variance(0) + 4 * lines.variance(end / 2) + lines.variance(end)));
+      }
+      EXPECT_NEAR(line.precision, precision, 1e-5 * precision) << turns << ' ' << size;
+    }
+  EXPECT_EQ(count, 229u);
+}
+
+TEST(ShortSegments, SquareRootsOfTheCompilerAreRoundedToNearest) {
+  static_assert(detail::square_root(4.0f) == 2.0f && detail::square_root(0.25f) == 0.5f);
+  static constexpr std::size_t kCount = 200;
+  static constexpr auto at = [](std::size_t i) { return 0.25f + 0.037f * static_cast<float>(i * i) / 7.0f; };
+  constexpr auto roots = [] {
+    std::array<float, kCount> result{};
+    for (std::size_t i = 0; i < kCount; ++i) result[i] = detail::square_root(at(i));
+    return result;
+  }();
+  for (std::size_t i = 0; i < kCount; ++i) EXPECT_EQ(roots[i], std::sqrt(at(i))) << i;
 }
 
 }  // namespace
