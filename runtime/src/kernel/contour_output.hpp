@@ -63,6 +63,18 @@ template <int N>
 struct Layer;
 template <int N>
 struct Slab;
+template <int N>
+struct SlabView;
+
+/// What reads the numbers of vertices on edges by their bits, beside tiles at missing values: nothing, an output that
+/// compares the last layer with layer 0, or anything else.
+enum class RankReaders { none, last_layer, any };
+
+/// How vertices of planes are found.
+struct NumberedBy {
+  bool ranks;  ///< those on edges by bits; otherwise no tile is missing, and the bits are undefined
+  bool lists;  ///< those of cubes by lists (Counter::lists_cubes)
+};
 
 /// Output of an extraction. It receives the parts in order, each by open and close. Vertex numbers in simplices count
 /// modulo 2^32; those in a part's simplices belong to this part or to the previous one.
@@ -92,13 +104,12 @@ class ContourOutput {
   /// Called after a part is written. `nonmanifold`: vertices of this and all previous parts that may have to be
   /// duplicated.
   virtual void close(const ContourPart& /*part*/, const NonmanifoldCandidates& /*nonmanifold*/) {}
-  /// Whether see_layer and see_slab read the numbers of vertices on edges.
-  [[nodiscard]] virtual bool reads_numbers() const noexcept { return false; }
+  /// Which numbers of vertices on edges see_layer and see_slab read by their bits. They always have those of layer 0.
+  [[nodiscard]] virtual RankReaders rank_readers() const noexcept { return RankReaders::none; }
   /// Called for layer 0, then for each slab and the layer above it, in order, when their vertices are numbered.
-  /// `lists_cubes`: as Counter::lists_cubes.
   virtual void see_layer(std::size_t /*k*/, const RowShape<N>& /*shape*/, const Layer<N>& /*layer*/,
-                         bool /*lists_cubes*/) {}
-  virtual void see_slab(const RowShape<N>& /*shape*/, const Slab<N>& /*slab*/, bool /*lists_cubes*/) {}
+                         NumberedBy /*by*/) {}
+  virtual void see_slab(const SlabView<N>& /*view*/, NumberedBy /*by*/) {}
   /// Called after all parts are written. `caps` may be null.
   virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) = 0;
 };

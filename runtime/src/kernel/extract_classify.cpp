@@ -80,7 +80,7 @@ void Counter<N>::guess_rows(const SampleClassifier<N>& source, std::size_t k, bo
       high = source.is_high(index) != invert;
     }
     layer.state[row] = high ? RowState::high : RowState::low;
-    if (!ranks_ && !has_cubes_) continue;
+    if (ranks_ == RankReaders::none && !has_cubes_) continue;
     // Closing at the border and counting cubes read bits.
     for (std::size_t w = 0; w < shape_.words(); ++w)
       layer.high[row * shape_.pitch() + w] = high ? shape_.mask(w, false) : 0;

@@ -16,7 +16,7 @@
 namespace tegl::detail {
 
 template <int N>
-Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
+Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, RankReaders ranks,
                     const FaceEstimator<N>* estimator)
     : shape_(shape), tile_(*tables.tile), rows_(rows), estimator_(estimator), ranks_(ranks) {
   lists_cubes_ = N == 4 && estimator_ != nullptr;
@@ -629,8 +629,7 @@ template <int N>
 void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above,
                             std::size_t chunk, CountScratch& scratch) const {
   if (is_uniform_chunk(view, chunk)) return clear_chunk(upper, slab, chunk);
-  // Tiles adjacent to missing values use the ranks of their edges.
-  const bool ranks = !quick_ || ranks_ || !slab.all_valid || (above != nullptr && !above->all_valid);
+  const bool ranks = has_ranks(slab, above);
   SlabChunk sums;
   std::uint64_t in_layer = 0;
   if (!slab.assembled.empty()) slab.assembled[chunk].clear();

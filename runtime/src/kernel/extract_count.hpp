@@ -11,6 +11,7 @@
 
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/tesseract_decision.hpp"
+#include "kernel/contour_output.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
@@ -42,9 +43,9 @@ class TileSelection;
 template <int N>
 class Counter {
  public:
-  /// `rows`: flat table for the fast path, or null. `ranks`: whether vertex numbers on edges are read by other code.
+  /// `rows`: flat table for the fast path, or null. `ranks`: what other code reads vertex numbers on edges.
   /// `estimator`: resolves ambiguous tiles; null: the table does.
-  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
+  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, RankReaders ranks,
           const FaceEstimator<N>* estimator = nullptr);
 
   /// Whether slabs keep the lists of their active tiles (4 bytes per sample). Otherwise each list is computed twice. In
@@ -100,6 +101,12 @@ class Counter {
     return quick_ && slab.all_valid && shape_.has_cells(shape_.index_of(row), (1u << N) - 1);
   }
 
+  /// Whether the edges of a slab and of the layer above it, which lies below slab `above` (null: it is the last), have
+  /// bits, by which vertices are found. Tiles adjacent to missing values use them.
+  [[nodiscard]] bool has_ranks(const Slab<N>& slab, const Slab<N>* above) const noexcept {
+    if (!quick_ || ranks_ == RankReaders::any || !slab.all_valid) return true;
+    return above != nullptr ? !above->all_valid : ranks_ == RankReaders::last_layer;
+  }
   /// Whether any cube owns vertices.
   [[nodiscard]] bool has_cubes() const noexcept { return has_cubes_; }
   /// Whether cubes are resolved from the data (N = 4). Cubes that own vertices are then listed instead of marked by
@@ -170,7 +177,7 @@ class Counter {
   const tables::TileTable& tile_;
   const RowTable* rows_;
   const FaceEstimator<N>* estimator_;
-  bool ranks_;
+  RankReaders ranks_;
   bool quick_ = false;
   bool keeps_tiles_ = true;
   std::size_t most_assembled_ = 0;                 ///< 64-bit words per chunk

@@ -81,7 +81,8 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         tables_(tables),
         placement_(grid, N == 4 || plan.keeps_off_layers),
         estimator_(make_estimator(source, grid, options, plan)),
-        counter_(shape_, tables, tables.rows, options.close || output.reads_numbers(), estimator_.get()),
+        counter_(shape_, tables, tables.rows, options.close ? RankReaders::any : output.rank_readers(),
+                 estimator_.get()),
         tiles_(source, tables, tables.rows, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes() && !counter_.lists_cubes()),
         nonmanifold_(shape_, counter_),
@@ -481,7 +482,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
     if (first == 0) {
       nonmanifold_.open_slab(0, slab(0));
       nonmanifold_.add_layer(0, layer(0));
-      output_.see_layer(0, shape_, layer(0), counter_.lists_cubes());
+      output_.see_layer(0, shape_, layer(0), {true, counter_.lists_cubes()});
       if (caps_) caps_->add_layer(0, layer(0), nullptr, &slab(0));
     }
     reporter_.begin_pass(end - first);
@@ -489,8 +490,9 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
       nonmanifold_.add_slab(k, slab(k));
       if (const Slab<N>* const above = slab_above(k + 1)) nonmanifold_.open_slab(k + 1, *above);
       nonmanifold_.add_layer(k + 1, layer(k + 1));
-      output_.see_slab(shape_, slab(k), counter_.lists_cubes());
-      output_.see_layer(k + 1, shape_, layer(k + 1), counter_.lists_cubes());
+      const NumberedBy by{counter_.has_ranks(slab(k), slab_above(k + 1)), counter_.lists_cubes()};
+      output_.see_slab(view(k), by);
+      output_.see_layer(k + 1, shape_, layer(k + 1), by);
       if (caps_) {
         caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
         caps_->add_slab(k, view(k));

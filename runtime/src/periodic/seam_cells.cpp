@@ -55,18 +55,18 @@ void SeamCells<N>::list_layer(const Plane& plane, const RowShape<N>& shape, bool
 template <int N>
 template <class Plane>
 void SeamCells<N>::add_plane(const Plane& plane, unsigned axes, const RowShape<N>& shape, bool lists) {
-  const auto crosses = [&](int axis) { return is_periodic(axis) && (axes >> axis & 1u) == 0; };
+  if ((axes_ & ~axes & ((1u << (N - 1)) - 1)) == 0) return;
   for (std::size_t row = 0; row < shape.rows(); ++row) {
     if (plane.count[row] == 0) continue;
     for (int a = 1; a < N - 1; ++a) {
-      if (!crosses(a) || shape.index_of(row)[a] + 1 != shape.size(a)) continue;
+      if (!repeats(axes, a) || shape.index_of(row)[a] + 1 != shape.size(a)) continue;
       upper_.clear();
       lower_.clear();
       list_row(plane, row, shape, lists, upper_);
       list_row(plane, shape.at_start(row, a), shape, lists, lower_);
       pair(upper_, lower_);
     }
-    if (!crosses(0)) continue;
+    if (!repeats(axes, 0)) continue;
     const std::size_t last = shape.size(0) - 1;
     if constexpr (std::is_same_v<Plane, CubePlane>)
       if (lists) {
@@ -86,10 +86,29 @@ void SeamCells<N>::add_plane(const Plane& plane, unsigned axes, const RowShape<N
 }
 
 template <int N>
-void SeamCells<N>::add_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool lists_cubes) {
-  for (int a = 0; a < N - 1; ++a) add_plane(layer.edges[a], 1u << a, shape, false);
+void SeamCells<N>::add_edges(const EdgePlane& plane, int axis, const RowShape<N>& shape, const Word* from,
+                             const Word* to) {
+  const unsigned axes = 1u << axis;
+  if ((axes_ & ~axes & ((1u << (N - 1)) - 1)) == 0) return;
+  for (std::size_t row = 0; row < shape.rows(); ++row) {
+    const std::uint32_t count = plane.count.data()[row];  // data(): checked builds do not inline operator[]
+    if (count == 0) continue;
+    for (int a = 1; a < N - 1; ++a)
+      if (repeats(axes, a) && shape.index_of(row)[a] + 1 == shape.size(a))
+        pair(plane.first(row), plane.first(shape.at_start(row, a)), count);
+    if (!repeats(axes, 0)) continue;
+    const bool is_critical = ((from[row * shape.pitch()] ^ to[shape.shifted(row, axes) * shape.pitch()]) & 1u) != 0;
+    if (is_critical) pair(plane.first(row) + count - 1, plane.first(row), 1);
+  }
+}
+
+template <int N>
+void SeamCells<N>::add_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, NumberedBy by) {
+  for (int a = 0; a < N - 1; ++a)
+    by.ranks ? add_plane(layer.edges[a], 1u << a, shape, false)
+             : add_edges(layer.edges[a], a, shape, layer.high.data(), layer.high.data());
   if constexpr (N == 4)
-    if (!layer.cubes.count.empty()) add_plane(layer.cubes, 7u, shape, lists_cubes);
+    if (!layer.cubes.count.empty()) add_plane(layer.cubes, 7u, shape, by.lists);
   if (!is_periodic(N - 1) || (k != 0 && k + 1 != shape.layers())) return;
   const std::size_t before = pairs_.size();
   const auto add_kind = [&](const auto& plane, int kind, bool lists) {
@@ -100,17 +119,20 @@ void SeamCells<N>::add_layer(std::size_t k, const RowShape<N>& shape, const Laye
   };
   for (int a = 0; a < N - 1; ++a) add_kind(layer.edges[a], a, false);
   if constexpr (N == 4)
-    if (!layer.cubes.count.empty()) add_kind(layer.cubes, N - 1, lists_cubes);
+    if (!layer.cubes.count.empty()) add_kind(layer.cubes, N - 1, by.lists);
   pairs_with_layer_0_ = pairs_.size() - before;
 }
 
 template <int N>
-void SeamCells<N>::add_slab(const RowShape<N>& shape, const Slab<N>& slab, bool lists_cubes) {
+void SeamCells<N>::add_slab(const SlabView<N>& view, NumberedBy by) {
   constexpr unsigned kAll = (1u << N) - 1;
-  add_plane(slab.edges, 1u << (N - 1), shape, false);
+  const RowShape<N>& shape = *view.shape;
+  const Slab<N>& slab = *view.slab;
+  by.ranks ? add_plane(slab.edges, 1u << (N - 1), shape, false)
+           : add_edges(slab.edges, N - 1, shape, view.layers[0]->high.data(), view.layers[1]->high.data());
   if constexpr (N == 4)
     for (int a = 0; a < N - 1; ++a)
-      if (!slab.cubes[a].count.empty()) add_plane(slab.cubes[a], kAll & ~(1u << a), shape, lists_cubes);
+      if (!slab.cubes[a].count.empty()) add_plane(slab.cubes[a], kAll & ~(1u << a), shape, by.lists);
 }
 
 template <int N>

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/contour_output.hpp"
 #include "kernel/extract_layers.hpp"
 
 namespace tegl::detail {
@@ -20,9 +21,12 @@ class SeamCells {
   /// Bit a of `axes`: axis a is periodic.
   explicit SeamCells(unsigned axes) noexcept : axes_(axes) {}
 
-  /// Call in order: layer 0, then each slab and the layer above it, when vertices are numbered, with bits of ranks.
-  void add_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool lists_cubes);
-  void add_slab(const RowShape<N>& shape, const Slab<N>& slab, bool lists_cubes);
+  [[nodiscard]] RankReaders rank_readers() const noexcept {
+    return is_periodic(N - 1) ? RankReaders::last_layer : RankReaders::none;
+  }
+  /// Call in order: layer 0, then each slab and the layer above it, when vertices are numbered.
+  void add_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, NumberedBy by);
+  void add_slab(const SlabView<N>& view, NumberedBy by);
 
   /// Pairs (vertex in a last layer, the same vertex in the first layer); the first number is the larger one.
   [[nodiscard]] std::vector<std::pair<Index, Index>>& pairs() noexcept { return pairs_; }
@@ -43,6 +47,14 @@ class SeamCells {
   /// Pairs the vertices of a plane of cells along `axes`.
   template <class Plane>
   void add_plane(const Plane& plane, unsigned axes, const RowShape<N>& shape, bool lists);
+  /// The same for edges without bits. Rows that repeat each other then have as many edges, in the same order. The edge
+  /// at a row's sample i is between bit i of its words at `from` and at `to`.
+  void add_edges(const EdgePlane& plane, int axis, const RowShape<N>& shape, const Word* from, const Word* to);
+  /// Whether cells along `axes` repeat across periodic axis a.
+  [[nodiscard]] bool repeats(unsigned axes, int a) const noexcept { return is_periodic(a) && (axes >> a & 1u) == 0; }
+  void pair(Index last, Index first, std::size_t count) {
+    for (Index i = 0; i < count; ++i) pairs_.emplace_back(last + i, first + i);
+  }
   template <class Plane>
   void list_layer(const Plane& plane, const RowShape<N>& shape, bool lists, Cells& cells) const;
   /// Pairs the vertices of cells at equal places. Both lists ascend.

@@ -37,11 +37,14 @@ class SeamNumbers {
   /// Number of vertices after merging.
   [[nodiscard]] std::size_t kept() const noexcept { return kept_; }
   [[nodiscard]] std::size_t dropped() const noexcept { return dropped_; }
-  /// Calls move(from, to) for each vertex that moves to the place of a merged one.
-  template <class Move>
-  void for_each_move(const Move& move) const {
-    for (std::size_t i = 0; i < tail_.size(); ++i)
+  /// Calls move(from, to) for each vertex that moves to the place of a merged one, and somewhat earlier request(to).
+  template <class Request, class Move>
+  void for_each_move(const Request& request, const Move& move) const {
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t i = 0; i < tail_.size(); ++i) {
+      if (i + kAhead < tail_.size()) request(tail_[i + kAhead]);
       if (const auto from = static_cast<Index>(kept_ + i); tail_[i] != from && !is_merged(from)) move(from, tail_[i]);
+    }
   }
   /// The number after merging of a vertex's number before.
   [[nodiscard]] Index operator()(Index v) const noexcept {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "hwy/cache_control.h"
 #include "kernel/memory_output.hpp"
 #include "periodic/seam_cells.hpp"
 #include "periodic/seam_numbers.hpp"
@@ -53,13 +54,13 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
     return MemoryOutput<N, Real>::open(part);
   }
 
-  [[nodiscard]] bool reads_numbers() const noexcept override { return true; }
-  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool lists_cubes) override {
-    cells_.add_layer(k, shape, layer, lists_cubes);
+  [[nodiscard]] RankReaders rank_readers() const noexcept override { return cells_.rank_readers(); }
+  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, NumberedBy by) override {
+    cells_.add_layer(k, shape, layer, by);
   }
-  void see_slab(const RowShape<N>& shape, const Slab<N>& slab, bool lists_cubes) override {
-    cells_.add_slab(shape, slab, lists_cubes);
-    add_seam_rows(slab);
+  void see_slab(const SlabView<N>& view, NumberedBy by) override {
+    cells_.add_slab(view, by);
+    add_seam_rows(*view.slab);
     ++slabs_;
   }
 
@@ -111,17 +112,23 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
 
   void merge(const ContourPart& all, const SeamNumbers& number) {
     Contour<N, Real>& contour = this->contour();
-    number.for_each_move([&](Index from, Index to) {
-      contour.vertices[to] = contour.vertices[from];
-      if (!contour.normals.empty()) contour.normals[to] = contour.normals[from];
-    });
+    number.for_each_move([&](Index to) { hwy::Prefetch(&contour.vertices[to]); },
+                         [&](Index from, Index to) {
+                           contour.vertices[to] = contour.vertices[from];
+                           if (!contour.normals.empty()) contour.normals[to] = contour.normals[from];
+                         });
     contour.vertices.resize(number.kept());
     if (!contour.normals.empty()) contour.normals.resize(number.kept());
     // the simplices of the vertices that moved: their part's, the next ones', and caps
     const auto part = std::find_if(parts_.begin(), parts_.end(),
                                    [&](const ContourPart& each) { return each.end_vertex > number.kept(); });
     std::uint64_t tail = part == parts_.end() ? all.end_simplex : part->first_simplex;
-    for (const Range& range : rows_) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Range& range = rows_[i];
+      // Most are no longer in a near cache, and far apart.
+      const Range& later = rows_[std::min(i + kAhead, rows_.size() - 1)];
+      hwy::Prefetch(contour.simplices.data() + later.first);
+      hwy::Prefetch(contour.simplices.data() + later.end);
       renumber_moved(number, tail, range.first);
       renumber(number, range.first, range.end);
       tail = std::max(tail, range.end);
@@ -141,6 +148,8 @@ class WrappedOutput final : public MemoryOutput<N, Real> {
         if (v >= kept) v = number(v);
   }
 
+  static constexpr std::size_t kAhead = 16;  ///< ranges of simplices that are requested
+
   const RowShape<N>& shape_;
   unsigned axes_;
   std::uint64_t most_simplices_;
@@ -158,13 +167,11 @@ class WrappedCount final : public ContourOutput<N, Real> {
   WrappedCount(const RowShape<N>& shape, unsigned axes) : shape_(shape), axes_(axes), cells_(axes) {}
 
   Room open(const ContourPart& /*part*/) override { return {nullptr, nullptr}; }
-  [[nodiscard]] bool reads_numbers() const noexcept override { return true; }
-  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool lists_cubes) override {
-    cells_.add_layer(k, shape, layer, lists_cubes);
+  [[nodiscard]] RankReaders rank_readers() const noexcept override { return cells_.rank_readers(); }
+  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, NumberedBy by) override {
+    cells_.add_layer(k, shape, layer, by);
   }
-  void see_slab(const RowShape<N>& shape, const Slab<N>& slab, bool lists_cubes) override {
-    cells_.add_slab(shape, slab, lists_cubes);
-  }
+  void see_slab(const SlabView<N>& view, NumberedBy by) override { cells_.add_slab(view, by); }
   void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override {
     size = {all.end_vertex, all.end_simplex};
     any_missing = nonmanifold.any_missing();

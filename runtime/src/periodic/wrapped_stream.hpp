@@ -34,13 +34,13 @@ class WrappedStream final : public StreamOutput<N, Real> {
   WrappedStream(ContourSink<N, Real>& sink, const RowShape<N>& shape, unsigned axes, std::vector<Period<N>> periods,
                 const Options& options);
 
-  [[nodiscard]] bool reads_numbers() const noexcept override { return true; }
-  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, bool lists_cubes) override {
-    cells_.add_layer(k, shape, layer, lists_cubes);
+  [[nodiscard]] RankReaders rank_readers() const noexcept override { return cells_.rank_readers(); }
+  void see_layer(std::size_t k, const RowShape<N>& shape, const Layer<N>& layer, NumberedBy by) override {
+    cells_.add_layer(k, shape, layer, by);
   }
-  void see_slab(const RowShape<N>& shape, const Slab<N>& slab, bool lists_cubes) override {
-    cells_.add_slab(shape, slab, lists_cubes);
-    if (slabs_++ == 0 && repeats_layer_0_) numbers_of_layer_0_.resize(slab.edges.chunk_first[0]);
+  void see_slab(const SlabView<N>& view, NumberedBy by) override {
+    cells_.add_slab(view, by);
+    if (slabs_++ == 0 && repeats_layer_0_) numbers_of_layer_0_.resize(view.slab->edges.chunk_first[0]);
   }
   void finish(const ContourPart& all, const Caps<N, Real>* caps, const NonmanifoldCandidates& nonmanifold) override;
 

@@ -278,6 +278,35 @@ TEST(Periodic, UnevenAxesHaveTheirOwnStepAcrossTheSeam) {
   }
 }
 
+/// With all axes periodic there is nothing to close; but vertices at the seam are then found by bits in all layers.
+template <int N>
+void expect_the_same_closed(const OwnedImage<float, N>& image) {
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean})
+    for (const unsigned threads : {1u, 3u}) {
+      ExtractOptions options{.ambiguity = ambiguity};
+      options.work.threads = threads;
+      const auto open = wrapped(image, all_periodic<N>(), 0.1, options);
+      options.close = true;
+      const auto closed = wrapped(image, all_periodic<N>(), 0.1, options);
+      ASSERT_GT(open.vertices.size(), 20u);
+      EXPECT_EQ(open.vertices, closed.vertices);
+      EXPECT_EQ(open.simplices, closed.simplices);
+    }
+}
+
+TEST(Periodic, VerticesAtTheSeamAreTheSameWithAndWithoutBits) {
+  const auto expect = [](auto image, std::size_t missing_from) {
+    expect_the_same_closed(image);
+    for (std::size_t i = missing_from; i < image.values.size(); i += 97)
+      image.values[i] = std::numeric_limits<float>::quiet_NaN();
+    expect_the_same_closed(image);
+  };
+  expect(torus_image<2>({66, 31}, noise_of<2>(1)), 1800);
+  expect(torus_image<3>({65, 9, 40}, noise_of<3>(2)), 20000);
+  expect(torus_image<3>({21, 40, 30}, sum_of_cosines<3>), 20000);
+  expect(torus_image<4>({7, 5, 6, 12}, noise_of<4>(3)), 2000);
+}
+
 TEST(Periodic, TheBytesDoNotDependOnThreads) {
   const auto image = torus_image<4>({9, 8, 10, 9}, noise_of<4>(5));
   for (const bool with_normals : {false, true}) {

@@ -177,7 +177,7 @@ TEST(Streamed, NumbersPassTwoToTheThirtyTwo) {
   Collector<3, float> collector;
   detail::StreamOutput<3, float> output(collector, false);
   const detail::RowShape<3> shape({4, 4, 4});
-  const detail::Counter<3> counter(shape, detail::generated_tables<3>({}), nullptr, false);
+  const detail::Counter<3> counter(shape, detail::generated_tables<3>({}), nullptr, detail::RankReaders::none);
   const detail::NonmanifoldCollector<3> none(shape, counter);
   const auto write = [&](std::uint64_t first, std::uint64_t end, std::uint64_t first_simplex) {
     const detail::ContourPart part{first, end, first_simplex, first_simplex + 1, 0.5};
