@@ -191,7 +191,7 @@ void define_lists(std::string& text, const CubeLists& lists, const std::string& 
   parts.resize(parts.size() + CubeLists::kMostParts);
   define(text, name("std::uint32_t", "PartApexes"), parts, [](const CubeLists::Part& p) { return mask(p.apexes); });
   define(text, name("std::uint64_t", "PartVertices"), parts, [](const CubeLists::Part& p) { return mask(p.vertices); });
-  constexpr std::size_t kWordsBehind = 15;
+  constexpr std::size_t kWordsBehind = 16;
   define_bytes(text, "kWords" + suffix, flat(lists.words, 4 * kWordsBehind), 32);
   fmt::format_to(Out(text),
                  "\nconstinit const ResolvedCubes kCubes{0}({{kLists{0}, kKeys{0}, kTriangles{0}, kFirstTriangle{0}, "

@@ -195,6 +195,24 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
   store(i, polynomials, last_roots(polynomials, wanted_at(i)));
 }
 
+void points_on_rays(const TileBox& box, TesseractRays& rays) {
+  const RayTag d;
+  const auto half = hn::Set(d, 0.5), one = hn::Set(d, 1.0);
+  for (std::size_t a = 0; a < 4; ++a) {
+    const auto from = hn::Set(d, box.from[a]), to = hn::Set(d, box.to[a]), step = hn::Sub(to, from);
+    const auto least = hn::Set(d, std::min(box.from[a], box.to[a])),
+               most = hn::Set(d, std::max(box.from[a], box.to[a]));
+    for (std::size_t i = 0; i < rays.count; i += hn::Lanes(d)) {
+      double* const at = rays.ends[a].data() + i;
+      const auto x = hn::Add(half, hn::Mul(hn::Load(d, rays.levels.data() + i), hn::Sub(hn::Load(d, at), half)));
+      auto point = hn::Add(from, hn::Mul(x, step));
+      point = hn::IfThenElse(hn::Gt(least, point), least, point);
+      point = hn::IfThenElse(hn::Gt(point, most), most, point);
+      hn::Store(hn::IfThenElse(hn::Ge(x, one), to, point), d, at);
+    }
+  }
+}
+
 /// Levels of rays to squares, on which the interpolant is linear. `a`: sum of all heights.
 HWY_INLINE RayLanes linear_levels(RayLanes a, const RayLanes (&sums)[4]) {
   const auto level = hn::Div(a, hn::Sub(sums[1], sums[0]));
@@ -292,12 +310,17 @@ namespace tegl::detail {
 
 HWY_EXPORT(levels_of_tesseract);
 HWY_EXPORT(levels_of_cubes);
+HWY_EXPORT(points_on_rays);
 
 void find_levels(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) noexcept {
   if (is_finite_enough(products[0]))
     HWY_DYNAMIC_DISPATCH(levels_of_tesseract)(products, epsilon, rays);
   else
     std::fill_n(rays.levels.begin(), rays.count, 0.5);
+}
+
+void place_on_rays(const TileBox& box, TesseractRays& rays) noexcept {
+  HWY_DYNAMIC_DISPATCH(points_on_rays)(box, rays);
 }
 
 void cube_levels(CubeRays& rays, unsigned degree, double epsilon, std::array<double, CubeRays::kMost>& out) noexcept {

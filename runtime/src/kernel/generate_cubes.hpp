@@ -146,6 +146,9 @@ class CellVertices {
                                                           : EdgePlaces<4, 15>(source_, base);
     ResolvedPlaces places(edges, triangulation, lists);
     const typename Placement<N, Real>::Cell in_cell(placement_, base);
+    if (placement_.normals() == nullptr && (masks & ResolvedTesseract::kRepeats) == 0)
+      return places.own_vertices(
+          filling, in_cell, [&](unsigned j, const TilePoint<N>& point) { vertices_[first + j] = in_cell.at(point); });
     places.own_vertices(filling, [&](unsigned j, const TilePoint<N>& place) {
       vertices_[first + j] = in_cell(place);
       if (placement_.normals() != nullptr)

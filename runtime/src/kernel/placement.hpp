@@ -100,11 +100,18 @@ class Placement {
         to_[a] = placement.coordinates_[a][base[a] + 1];
       }
     }
-    [[nodiscard]] Vertex operator()(const std::array<double, N>& place) const noexcept {
+    [[nodiscard]] Vertex operator()(const std::array<double, N>& place) const noexcept { return at(on_axes(place)); }
+    /// The two parts of this: axis coordinates of a place in the cell, and the position of a point given by these.
+    [[nodiscard]] std::array<double, N> on_axes(const std::array<double, N>& place) const noexcept {
       std::array<double, N> point;
       for (int a = 0; a < N; ++a) point[a] = between(from_[a], to_[a], place[a]);
+      return point;
+    }
+    [[nodiscard]] Vertex at(const std::array<double, N>& point) const noexcept {
       return placement_.inside_slab(placement_.world(point), slab_);
     }
+    [[nodiscard]] const std::array<double, N>& from() const noexcept { return from_; }
+    [[nodiscard]] const std::array<double, N>& to() const noexcept { return to_; }
 
    private:
     const Placement& placement_;

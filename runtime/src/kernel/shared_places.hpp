@@ -213,6 +213,25 @@ class ResolvedPlaces {
     }
   }
 
+  /// The same with axis coordinates; `in_cell`: Placement::Cell. Requires that no vertex repeats another one.
+  template <class Cell, class Write>
+  void own_vertices(const ResolvedView& filling, const Cell& in_cell, const Write& write) noexcept {
+    TesseractRays rays;
+    find_rays(filling, rays);
+    place_on_rays({in_cell.from(), in_cell.to()}, rays);
+    std::size_t ray = 0;
+    for (unsigned j = 0; j < filling.own_vertices; ++j) {
+      const std::uint64_t mask = filling.masks[j];
+      if (is_mean(mask)) continue;
+      if (!is_on_ray(mask)) {
+        write(j, in_cell.on_axes(place_off_rays(filling, j)));
+        continue;
+      }
+      write(j, TilePoint<4>{rays.ends[0][ray], rays.ends[1][ray], rays.ends[2][ray], rays.ends[3][ray]});
+      ++ray;
+    }
+  }
+
  private:
   static constexpr std::uint64_t kEdgesOfMask = std::uint64_t{0xffffffffu} << 16;
 

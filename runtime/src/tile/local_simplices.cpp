@@ -115,75 +115,26 @@ void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t*
 
 using builders::ResolvedCubes;
 
-#if HWY_TARGET != HWY_SCALAR
-
-#if HWY_TARGET <= HWY_AVX3
-using ConeTag = hn::CappedTag<std::uint32_t, kMoreSimplices + 1>;
-#else
-using ConeTag = hn::CappedTag<std::uint32_t, 4>;
-/// By set of four words: the bytes of its words one after the other.
-struct Orders {
-  alignas(16) std::uint8_t of[16][16];
-};
-constexpr Orders kTogether = [] {
-  Orders orders{};
-  for (unsigned set = 0; set < 16; ++set)
-    for (unsigned word = 0, to = 0; word < 4; ++word)
-      for (unsigned i = 0; (set >> word & 1u) != 0 && i < 4; ++i)
-        orders.of[set][to++] = static_cast<std::uint8_t>(4 * word + i);
-  return orders;
-}();
-#endif
-
-/// Stores the chosen words one after the other and returns their end. What follows overwrites the surplus.
-HWY_INLINE std::uint32_t* append(hn::Vec<ConeTag> all, hn::Mask<ConeTag> chosen, std::uint32_t* out) {
-  const ConeTag words;
-#if HWY_TARGET <= HWY_AVX3
-  hn::StoreU(hn::Compress(all, chosen), words, out);
-#else  // For smaller registers, Compress of Highway 1.0 copies a table to the stack in each call.
-  const hn::Repartition<std::uint8_t, ConeTag> bytes;
-  std::uint8_t set[8] = {};
-  hn::StoreMaskBits(words, chosen, set);
-  const auto together = hn::TableLookupBytes(hn::BitCast(bytes, all), hn::Load(bytes, kTogether.of[set[0]]));
-  hn::StoreU(hn::BitCast(words, together), words, out);
-#endif
-  return out + hn::CountTrue(words, chosen);
-}
-
-#endif
-
-/// Maps the triangles' vertices and sets the apex, except for triangles that have it.
+/// Maps the triangles' vertices and sets the apex.
 std::uint32_t* cone_local(const ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
                           std::uint32_t* out) {
 #if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
   return builders::ResolvedTesseract::add_cones(triangles, count, apex, out);
 #else
-  const ConeTag words;
+  const hn::CappedTag<std::uint32_t, kMoreSimplices + 1> words;
   const hn::Repartition<std::uint8_t, decltype(words)> bytes;
   constexpr std::uint32_t kLanes = hn::MaxLanes(words);
   const auto first = hn::Set(words, apex);
-  const auto in_all = hn::Set(bytes, static_cast<std::uint8_t>(apex));
-  const auto of_triangle = hn::Set(words, ~std::uint32_t{255});
-  const auto none = hn::Zero(words);
   for (const ResolvedCubes::Triangles* end = triangles + count; triangles != end; ++triangles) {
     const auto order = hn::LoadDup128(bytes, kOrders[ResolvedCubes::is_reversed(triangles->cube) ? 1 : 0]);
     const auto lifted = hn::LoadDup128(bytes, ResolvedCubes::lifted(triangles->cube).data());
-    if (apex >= ResolvedCubes::kVertices) {  // the tile's own vertex, which no triangle has
-      for (std::uint32_t t = 0; t < triangles->count; t += kLanes) {
-        const auto local = hn::TableLookupBytes(hn::LoadU(bytes, triangles->words + 4 * std::size_t{t}), order);
-        hn::StoreU(hn::Or(hn::BitCast(words, hn::TableLookupBytesOr0(lifted, local)), first), words, out + t);
-      }
-      out += triangles->count;
-      continue;
-    }
-    for (std::uint32_t t = 0; t < triangles->count; t += kLanes) {
+    std::uint32_t t = 0;
+    do {  // also if there are none, so that this is not predicted
       const auto local = hn::TableLookupBytes(hn::LoadU(bytes, triangles->words + 4 * std::size_t{t}), order);
-      const auto mapped = hn::TableLookupBytesOr0(lifted, local);
-      const auto is_apex = hn::BitCast(words, hn::VecFromMask(bytes, hn::Eq(mapped, in_all)));
-      const auto is_without = hn::Eq(hn::And(is_apex, of_triangle), none);
-      const auto chosen = hn::And(is_without, hn::FirstN(words, triangles->count - t));
-      out = append(hn::Or(hn::BitCast(words, mapped), first), chosen, out);
-    }
+      hn::StoreU(hn::Or(hn::BitCast(words, hn::TableLookupBytesOr0(lifted, local)), first), words, out + t);
+      t += kLanes;
+    } while (t < triangles->count);
+    out += triangles->count;
   }
   return out;
 #endif
@@ -215,6 +166,13 @@ HWY_EXPORT(cone_local);
 std::uint32_t* add_cones(const builders::ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
                          std::uint32_t* out) noexcept {
   return HWY_DYNAMIC_DISPATCH(cone_local)(triangles, count, apex, out);
+}
+
+SimplexFunctions simplex_functions() noexcept {
+  // Before the processor is known, the functions would be those that find it.
+  if (hwy::ChosenTarget& target = hwy::GetChosenTarget(); !target.IsInitialized())
+    target.Update(hwy::SupportedTargets());
+  return {&HWY_DYNAMIC_DISPATCH(map_local), &HWY_DYNAMIC_DISPATCH(cone_local)};
 }
 
 }  // namespace tegl::detail

@@ -36,4 +36,12 @@ void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint6
 std::uint32_t* add_cones(const builders::ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
                          std::uint32_t* out) noexcept;
 
+/// map_simplices and add_cones as compiled for this processor, without the choice in each call, which takes as long as
+/// the work for a region of few tetrahedra.
+struct SimplexFunctions {
+  builders::ResolvedTesseract::MapTetrahedra map;
+  builders::ResolvedTesseract::AddCones cones;
+};
+[[nodiscard]] SimplexFunctions simplex_functions() noexcept;
+
 }  // namespace tegl::detail

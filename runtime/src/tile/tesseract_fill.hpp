@@ -27,8 +27,9 @@ using builders::ResolvedView;
 /// A builder that maps tetrahedra and cones by the processor's vector instructions.
 inline ResolvedTesseract make_resolved_tesseract(Triangulation triangulation) {
   static_assert(CubeRegions::kMoreTetrahedra >= kMoreSimplices, "map_simplices reads so many behind them");
-  static_assert(ResolvedCubes::kWordsBehind >= kMoreSimplices, "add_cones reads so many behind them");
-  return ResolvedTesseract(triangulation, &map_simplices, &add_cones);
+  static_assert(ResolvedCubes::kWordsBehind > kMoreSimplices, "add_cones reads so many behind them");
+  const SimplexFunctions functions = simplex_functions();
+  return ResolvedTesseract(triangulation, functions.map, functions.cones);
 }
 
 /// Number of the list (ResolvedCubes) for a cube's key; kNone for a cube without a contour.
