@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Signs of volumes from those of the tetrahedra between corners.
+// Signs of volumes from the signs of tetrahedra between corners.
 #include "cells/region_volumes.hpp"
 
 #include <numeric>

@@ -113,7 +113,8 @@ int sign_inwards(const Cell& cell, const CellFacet& facet, const std::vector<uns
   return sign_of(cofactor_determinant(rows, dim));
 }
 
-/// Whether facets have the orientation that the contract defines: the facet's own is that of its reference corners.
+/// Whether facets have the orientation that the contract defines: a facet's own orientation is that of the reference
+/// corners of its shape.
 bool is_inverted(const Cell& cell, const CellFacet& facet, const std::vector<Cell>& shapes) {
   if (facet.corner_count == 2) return sign_inwards(cell, facet, {0, 1}) < 0;
   const Cell& own = shapes[static_cast<std::size_t>(facet.shape)];

@@ -24,8 +24,9 @@ struct ShapeTables {
 /// The tables of all shapes in the order of tables::CellShape, certified.
 [[nodiscard]] std::vector<ShapeTables> make_all_shape_tables();
 
-/// Certifies tables of all shapes in the order of tables::CellShape. Facets: those of the lattice, each once, of the
-/// named shape; their orientations cancel at each face between two of them, and one is that of a determinant.
+/// Certifies tables of all shapes in the order of tables::CellShape. Each facet of the
+/// lattice is listed once, with its shape; orientations of two facets cancel at their common face, and one orientation
+/// is compared with the sign of a determinant.
 /// Symmetries: all permutations of corners that map facets to facets. Planes: the signs of all determinants of five
 /// corners. Errors: CertificateFailed.
 void certify_shape_tables(std::span<const ShapeTables> all);

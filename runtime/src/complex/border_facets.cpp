@@ -79,7 +79,7 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
       use.place = first_of[c] + f;
     }
   });
-  // sort by the first corner, then those of each corner
+  // sort by the first corner, then the facets with the same first corner
   const auto bits = static_cast<unsigned>(std::bit_width(points));
   sort_by_bits(
       uses, bits, [](const auto& use) { return std::uint64_t{use.key[0]}; }, work.threads);

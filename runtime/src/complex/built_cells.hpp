@@ -127,8 +127,8 @@ class CompactCells final : public BuiltCells {
 };
 
 /// The contours of the cells of one 4D shape whose ambiguous faces are decided from the data. The contour in a facet is
-/// the 3D contour there: in hexahedra that of a resolved cube of images, elsewhere discs. Neighbours have the same one,
-/// as it depends on values and, in hexahedra and compact contours, on the order of the points' numbers.
+/// the 3D contour there: in hexahedra the contour of a resolved cube of images, elsewhere discs. Neighbours have the
+/// same one, as it depends on values and, in hexahedra and compact contours, on the order of the points' numbers.
 class DecidedCells final : public BuiltCells {
  public:
   /// `rule`: not a caller's.

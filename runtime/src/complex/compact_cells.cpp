@@ -174,8 +174,8 @@ class CompactCells::Filler {
       if (most == 0 || (edges_of(piece.triangle) >> apex & 1u) == 0) add_cone(piece, apex);
   }
 
-  /// Whether `gen` does not prove the table's copy of a side: in prisms over octahedra those of tori with more than ten
-  /// polygons, two classes of signatures.
+  /// Whether `gen` does not prove the table's copy of a side: in prisms over octahedra, copies for tori with more than
+  /// ten polygons, two classes of signatures.
   [[nodiscard]] bool has_unproved_copy() const noexcept {
     constexpr unsigned kMostProved = 10;
     const CellContour contour(cells_.barycentric_, signature_, cells_.high_connected_);
@@ -216,7 +216,7 @@ class CompactCells::Filler {
     const auto root_of = [&](const Component& c) { return sets.find(c.front().triangle[0]); };
     for (const auto& [root, component] : components)
       if (!is_sphere(component)) is_copied[root_of(component)] = true;
-    // vertices: those of the table in the order of the contract, with shared ones as collars
+    // vertices of the table in the order of the contract, with shared ones as collars
     std::vector<std::uint8_t> number(table.edge_count + list.added());
     for (unsigned v = 0; v < table.edge_count; ++v) number[v] = static_cast<std::uint8_t>(v);
     unsigned next = table.edge_count;

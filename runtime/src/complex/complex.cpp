@@ -67,7 +67,7 @@ template <int N>
 Complex<N> ComplexAccess::oriented(std::vector<std::array<double, N>> points, CellType type,
                                    std::span<const Index> corners) {
   Complex<N> complex(std::move(points), type, corners);
-  // All signs become those of the majority: only cells that are flat up to rounding differ.
+  // All cells get the sign of the majority: only cells that are flat up to rounding differ from it.
   CellSigns signs = *complex.signs_;
   std::size_t inverted = 0;
   for (const std::vector<std::uint64_t>& words : signs)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Caps of contours of complexes. The high part of an edge is a segment. That of a quadrilateral is triangulated by the
-// table that closes contours of images, that of a triangle is a fan. The high part of a 3D facet is divided into
-// tetrahedra between fans in the polygons around it and the contour's triangles in the facet. The fans start at a
+// table that closes contours of images; the high part of a triangle is a fan. The high part of a 3D facet is divided
+// into tetrahedra between fans in the polygons around it and the contour's triangles in the facet. The fans start at a
 // corner that depends on the numbers of the polygon's corners, so both facets at a polygon have the same triangles;
 // those of a grid's cubes are the image's.
 #include "complex/complex_caps.hpp"

@@ -52,7 +52,7 @@ class ComplexCaps {
 
   /// The points that caps have as vertices, ascending.
   [[nodiscard]] const std::vector<Index>& corners() const noexcept { return corners_; }
-  /// Number of vertices beside those of the contour: corners first, then added ones.
+  /// Number of vertices that the contour does not have: corners first, then added ones.
   [[nodiscard]] std::size_t vertex_count() const noexcept { return corners_.size() + first_point_.size() - 1; }
   /// The points of the contour and corners whose mean an added vertex is, or on the way to whose mean it is.
   [[nodiscard]] std::span<const CapVertex> points_of(std::size_t added) const noexcept {

@@ -145,7 +145,7 @@ std::vector<Index> only_simplex(std::span<const std::array<double, N>> points) {
   return corners;
 }
 
-/// The corners of the simplices of the lower hull, all with the same orientation: that of the hull.
+/// The corners of the simplices of the lower hull, all with the orientation of the hull.
 template <int N>
 std::vector<Index> lower_simplices(qhT& state) {
   constexpr double kVertical = -1e-10;  // facets over the border of the points

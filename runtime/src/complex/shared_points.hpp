@@ -33,12 +33,12 @@ struct LoopPoint {
 [[nodiscard]] PolygonKey key_of_loop(Index smallest, const std::array<Index, 4>& facet) noexcept;
 
 /// The shared vertices of a contour, ordered by their keys: barycentres, and vertices in cubes. The key of the latter
-/// names the cube and the mask; its last entry is kInCube, that of a loop kInFacet.
+/// names the cube and the mask; its last entry is kInCube. The last entry of a loop's key is kInFacet.
 struct SharedPoints {
   std::vector<PolygonKey> keys;
   std::vector<CubePoint> in_cubes;
   std::vector<LoopPoint> loops;
-  std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell, those of polytopes last
+  std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell; vertices in polytopes come last
 };
 
 /// What the first vertices of a contour are known by: those on edges, then those in common 3-faces.

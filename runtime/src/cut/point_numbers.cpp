@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points of a part by a hash table; those of all parts by a counting sort.
+// Numbers the points of a part by a hash table, the points of all parts by a counting sort.
 #include "cut/point_numbers.hpp"
 
 #include <algorithm>

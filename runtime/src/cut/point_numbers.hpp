@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Numbers for the points of a cut, which is made in parts: those of each part first, then all in the order of their
-// keys. A point is in several pieces, most of them of one part, so few keys are left to sort.
+// Numbers for the points of a cut, which is made in parts: first in each part, then for all points in the order of
+// their keys. A point is in several pieces, most of them of one part, so few keys are left to sort.
 #pragma once
 
 #include <cstddef>

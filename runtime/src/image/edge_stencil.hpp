@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads the values around edges: those of one row by whole registers, others four at a time. Compiled for several
-// instruction sets.
+// Reads the values around edges: around edges of one row by whole registers, otherwise four at a time. Compiled for
+// several instruction sets.
 #pragma once
 
 #include <cstddef>

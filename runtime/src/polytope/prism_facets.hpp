@@ -23,7 +23,7 @@ struct PrismFacet {
   Kind kind;                          ///< wedges and hexahedra have tables in other cells; `prism` has a larger base
   std::vector<std::uint8_t> corners;  ///< of the cell, by corner of the facet
   std::vector<std::uint16_t> edges;   ///< of the cell, by edge of the facet
-  /// Whether the facet's own orientation, followed by a direction into the cell, is not that of the cell.
+  /// Whether the facet's own orientation, followed by a direction into the cell, is opposite to the cell's orientation.
   bool is_inverted;
 
   [[nodiscard]] bool is_tabled() const noexcept { return kind == Kind::wedge || kind == Kind::hexahedron; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Finds the division of a region: in hexahedra that of the cube's table, if its boundary fits; otherwise the one that
+// Finds the division of a region: in hexahedra by the cube's table, if its boundary fits; otherwise the division that
 // the generator lists for the region that a symmetry of the shape maps it to.
 #include "regions/region_divisions.hpp"
 

@@ -21,7 +21,7 @@ using TriangleCounts = std::map<std::array<Local, 3>, unsigned>;
 
 /// Appends the tetrahedra of the table's regions on one side of a cube, and returns their triangles. `regions`,
 /// `cubes`: the tables of the cube (builders::CubeRegions and ResolvedCubes). Vertices of the cell: `corner(v)`;
-/// `edge(e)`, on an edge; those of the contour inside of the cube from `first_own` on; `add_centre(mask)` numbers a new
+/// `edge(e)`, on an edge; the contour's own in the cube, from `first_own` on; `add_centre(mask)` numbers a new
 /// one, the mean of corners and points of the cube.
 template <class Local, class Regions, class Cubes, class Corner, class Edge, class AddCentre>
 TriangleCounts<Local> add_tunnel_regions(const Regions& regions, const Cubes& cubes, std::uint16_t list, bool high,

@@ -110,7 +110,7 @@ class BoxTree {
   static constexpr Index kLeafSize = 4;
   static constexpr std::size_t kParts = 256;
 
-  /// The simplices of a node; those of its children are the halves. A node with at most kLeafSize is a leaf.
+  /// The simplices of a node; each of its two children has one half of them. A node with at most kLeafSize is a leaf.
   struct Range {
     Index first, end;
     [[nodiscard]] bool is_leaf() const { return end - first <= kLeafSize; }

@@ -15,7 +15,7 @@
 
 namespace tegl::detail {
 
-/// The links are given face by face, in the order of the functions: first that of uv, then that of u, then that of v.
+/// The links are given face by face, in the order of the functions: first the links of uv, then of u, then of v.
 /// Vertices of the link of uv are numbered. Only faces that consist of them can be in both links, unless the links
 /// share another vertex. Use one per thread.
 template <int N>

@@ -12,7 +12,7 @@
 
 namespace tegl::detail {
 
-/// Maps the frame of one tile to that of another: axis i becomes the i-th entry of a permutation, then the axes in
+/// Maps the frame of one tile to the frame of another: axis i becomes the i-th entry of a permutation, then the axes in
 /// `flip` are reversed. All 0: the identity.
 struct CubeSymmetry {
   std::uint16_t permutation = 0;

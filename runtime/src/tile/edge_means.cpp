@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Adds points on edges in the lanes of registers (see edge_means.hpp). Highway's foreach_target compiles this file once
-// per instruction set. The operations are those of mask_place, in the same order, so that the positions are equal bit
-// by bit.
+// per instruction set. The operations are the same as in mask_place, in the same order, so that the positions are equal
+// bit by bit.
 #include "tile/edge_means.hpp"
 
 #include "tile/extract_tables.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Converts keys and contours between the numbering of the lattice, which extractions use, and that of the builder of
-// 5-cubes.
+// Converts keys and contours between the numbering of the lattice, which extractions use, and the numbering of the
+// builder of 5-cubes.
 #include "tile/five_cube_tile.hpp"
 
 #include <algorithm>

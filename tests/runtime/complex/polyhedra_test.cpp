@@ -20,9 +20,9 @@
 #include "complex/cell_groups.hpp"
 #include "complex/complex_cases.hpp"
 #include "complex/complex_edges.hpp"
+#include "complex/polyhedral_cases.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
-#include "polyhedral_meshes.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/measure.hpp"
@@ -32,15 +32,6 @@ namespace tegl {
 namespace {
 
 using namespace test;
-
-ExtractOptions polyhedra_options(Triangulation triangulation, Ambiguity ambiguity = Ambiguity::low,
-                                 unsigned threads = 0) {
-  ExtractOptions options;
-  options.triangulation = triangulation;
-  options.ambiguity = ambiguity;
-  options.work.threads = threads;
-  return options;
-}
 
 /// A vertex as the crossed edges around it: its own, or those of the loop of which it is the barycentre.
 using Around = std::set<std::array<unsigned, 2>>;
@@ -151,15 +142,7 @@ TEST(Polyhedra, ContoursOfDodecahedraAndTruncatedOctahedraAreThoseOfTheEngine) {
   expect_contours_of_engine(truncated_octahedron_points(), 16381);
 }
 
-/// Polyhedra that fill space, merged ones beside cells of all types among them.
-std::vector<std::pair<std::string, FacedMesh>> meshes() {
-  const MeshData<3> points = grid_points<3>({13, 13, 13}, 0.1);
-  return {{"truncated octahedra", truncated_octahedra(7, 0.1)},
-          {"Voronoi", voronoi_cells(1500, 3)},
-          {"merged hexahedra", merged(faced(cube_mesh(points, true)), 0.7, 1)},
-          {"merged wedges", merged(faced(wedge_mesh(points)), 0.7, 2)},
-          {"merged mixed", merged(faced(mixed_mesh(points, 5)), 0.5, 3)}};
-}
+std::vector<std::pair<std::string, FacedMesh>> meshes() { return space_fillings(7, 1500, 13); }
 
 TEST(Polyhedra, MeshesHavePolyhedraOfManyShapes) {
   for (const auto& [name, mesh] : meshes()) {
@@ -290,17 +273,8 @@ TEST(Polyhedra, MissingValuesLeaveAManifoldWithBoundary) {
   for (const auto& [name, mesh] : meshes()) {
     SCOPED_TRACE(name);
     Complex<3> complex = mesh.complex();
-    std::vector<double> values = closed_noise(mesh, 31);
-    std::mt19937_64 random(9);
-    for (double& value : values)
-      if (random() % 50 == 0) value = std::numeric_limits<double>::quiet_NaN();
-    complex.set_values(values);
-    for (const Ambiguity a : {Ambiguity::low, Ambiguity::mean}) {
-      const auto contour = extract(complex, 0.5, polyhedra_options(Triangulation::compact, a));
-      EXPECT_GT(expect_oriented_manifold(contour).boundary_simplices, 100u);
-      EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}),
-                count(complex, 0.5, polyhedra_options(Triangulation::compact, a)));
-    }
+    complex.set_values(with_missing(closed_noise(mesh, 31)));
+    expect_boundary_beside_missing(complex);
   }
 }
 

@@ -20,9 +20,9 @@
 #include "compare.hpp"
 #include "complex/cell_groups.hpp"
 #include "complex/complex_cases.hpp"
+#include "complex/polyhedral_cases.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
-#include "polyhedral_meshes.hpp"
 #include "polytope/polygon_prisms.hpp"
 #include "polytope/polytopes.hpp"
 #include "prisms/prism_cell.hpp"
@@ -37,14 +37,6 @@ namespace {
 
 using namespace test;
 using detail::PrismCell;
-
-ExtractOptions prism_options(Triangulation triangulation, Ambiguity ambiguity = Ambiguity::low, unsigned threads = 0) {
-  ExtractOptions options;
-  options.triangulation = triangulation;
-  options.ambiguity = ambiguity;
-  options.work.threads = threads;
-  return options;
-}
 
 // ---------------------------------------------------------------------------------------------------- single cells
 
@@ -327,14 +319,7 @@ TEST(Prisms, TableOfPrismsOverPolygonsHasTheirFaces) {
 
 const std::vector<double> kPrismTimes = {0.0, 0.7, 1.0, 2.5};
 
-std::vector<std::pair<std::string, FacedMesh>> prism_meshes() {
-  const MeshData<3> points = grid_points<3>({7, 7, 7}, 0.1);
-  return {{"truncated octahedra", truncated_octahedra(4, 0.1)},
-          {"Voronoi", voronoi_cells(500, 3)},
-          {"merged hexahedra", merged(faced(cube_mesh(points, true)), 0.7, 1)},
-          {"merged wedges", merged(faced(wedge_mesh(points)), 0.7, 2)},
-          {"merged mixed", merged(faced(mixed_mesh(points, 5)), 0.5, 3)}};
-}
+std::vector<std::pair<std::string, FacedMesh>> prism_meshes() { return space_fillings(4, 500, 7); }
 
 /// Noise at the inner times, -1 at the first and the last one and on the border.
 std::vector<double> noise_in_time(const FacedMesh& mesh, std::uint64_t seed) {
@@ -361,12 +346,12 @@ TEST(Prisms, NoiseHasAClosedOrientedManifoldWithEveryRule) {
       for (const Ambiguity a : kAllRules) {
         SCOPED_TRACE(name + (t == Triangulation::compact ? " compact " : " barycentric ") +
                      std::to_string(static_cast<int>(a)));
-        const auto contour = extract(swept, 0.5, prism_options(t, a));
+        const auto contour = extract(swept, 0.5, polyhedra_options(t, a));
         EXPECT_GT(contour.simplices.size(), 1000u);
         EXPECT_EQ(0u, expect_closed_manifold(contour).degenerate_simplices);
         EXPECT_GT(measure(contour).content.value(), 0.0);
         EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}),
-                  count(swept, 0.5, prism_options(t, a)));
+                  count(swept, 0.5, polyhedra_options(t, a)));
       }
   }
 }
@@ -379,10 +364,10 @@ TEST(Prisms, CutsAtStepsAreTheContoursOfTheSteps) {
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : kAllRules) {
         SCOPED_TRACE(name);
-        const auto contour = extract<double>(swept, 0.5, prism_options(t, a));
+        const auto contour = extract<double>(swept, 0.5, polyhedra_options(t, a));
         for (const std::size_t k : {1u, 2u}) {
           complex.set_values(layer_of(values, mesh.points.size(), k));
-          const auto step = extract<double>(complex, 0.5, prism_options(t, a));
+          const auto step = extract<double>(complex, 0.5, polyhedra_options(t, a));
           EXPECT_GT(step.simplices.size(), 100u);
           EXPECT_TRUE(same_surface(step, slice(contour, Hyperplane<4>::across(3, kPrismTimes[k]))));
         }
@@ -402,9 +387,9 @@ TEST(Prisms, ResultsAreTheSameBytesWithAnyThreadsKnownEdgesAndAnIndex) {
     Complex<4> known = swept;
     known.find_edges({3, {}});
     const CellIndex index(swept);
-    const auto one = extract(swept, 0.5, prism_options(Triangulation::compact, Ambiguity::saddle, 1));
+    const auto one = extract(swept, 0.5, polyhedra_options(Triangulation::compact, Ambiguity::saddle, 1));
     for (const unsigned threads : {1u, 3u}) {
-      const auto options = prism_options(Triangulation::compact, Ambiguity::saddle, threads);
+      const auto options = polyhedra_options(Triangulation::compact, Ambiguity::saddle, threads);
       for (const auto& other : {extract(swept, 0.5, options), extract(known, 0.5, options),
                                 extract(swept, index, 0.5, options), extract(known, index, 0.5, options)}) {
         EXPECT_TRUE(one.vertices == other.vertices);
@@ -425,7 +410,7 @@ TEST(Prisms, CapsCloseContoursAtTheBorder) {
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : kAllRules) {
         SCOPED_TRACE(name);
-        ExtractOptions options = prism_options(t, a);
+        ExtractOptions options = polyhedra_options(t, a);
         options.close = true;
         if (a == Ambiguity::mean || a == Ambiguity::saddle ||
             (t == Triangulation::compact && a != Ambiguity::low && a != Ambiguity::high)) {
@@ -487,11 +472,11 @@ TEST(Prisms, EndsOfCellsWithTwoCommonFacesAreTheirOwn) {
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : kAllRules) {
         SCOPED_TRACE(i);
-        const auto contour = extract<double>(swept, 0.0, prism_options(t, a));
+        const auto contour = extract<double>(swept, 0.0, polyhedra_options(t, a));
         expect_oriented_manifold(contour);
         for (const std::size_t k : {1u, 2u}) {
           complex.set_values(layer_of(values, 14, k));
-          const auto step = extract<double>(complex, 0.0, prism_options(t, a));
+          const auto step = extract<double>(complex, 0.0, polyhedra_options(t, a));
           EXPECT_TRUE(same_surface(step, slice(contour, Hyperplane<4>::across(3, kPrismTimes[k]))));
         }
       }
@@ -502,17 +487,7 @@ TEST(Prisms, EndsOfCellsWithTwoCommonFacesAreTheirOwn) {
 TEST(Prisms, MissingValuesLeaveAManifoldWithBoundary) {
   for (const auto& [name, mesh] : prism_meshes()) {
     SCOPED_TRACE(name);
-    std::vector<double> values = noise_in_time(mesh, 31);
-    std::mt19937_64 random(9);
-    for (double& value : values)
-      if (random() % 50 == 0) value = std::numeric_limits<double>::quiet_NaN();
-    const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, values);
-    for (const Ambiguity a : {Ambiguity::low, Ambiguity::mean}) {
-      const auto contour = extract(swept, 0.5, prism_options(Triangulation::compact, a));
-      EXPECT_GT(expect_oriented_manifold(contour).boundary_simplices, 100u);
-      EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}),
-                count(swept, 0.5, prism_options(Triangulation::compact, a)));
-    }
+    expect_boundary_beside_missing(in_time<3>(mesh.complex(), kPrismTimes, with_missing(noise_in_time(mesh, 31))));
   }
 }
 
@@ -528,7 +503,7 @@ TEST(Prisms, LinearFunctionsHaveTheirHyperplaneAndNormals) {
       for (const auto& p : mesh.points) values.push_back(plane({p[0], p[1], p[2], t}));
     const Complex<4> swept = in_time<3>(mesh.complex(), kPrismTimes, values);
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
-      ExtractOptions options = prism_options(t);
+      ExtractOptions options = polyhedra_options(t);
       options.normals = Normals::differences;
       const auto contour = extract<double>(swept, 0.0, options);
       EXPECT_GT(contour.vertices.size(), 100u);
@@ -554,12 +529,12 @@ TEST(Prisms, DISABLED_MeshesOf100000PrismsHaveClosedOrientedManifolds) {
     for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
       for (const Ambiguity a : {Ambiguity::low, Ambiguity::saddle}) {
         SCOPED_TRACE(name);
-        const auto contour = extract<double>(swept, 0.5, prism_options(t, a));
+        const auto contour = extract<double>(swept, 0.5, polyhedra_options(t, a));
         EXPECT_GT(contour.simplices.size(), 1000000u);
         expect_closed_manifold(contour);
         Complex<3> step = mesh.complex();
         step.set_values(layer_of(values, mesh.points.size(), 1));
-        EXPECT_TRUE(same_surface(extract<double>(step, 0.5, prism_options(t, a)),
+        EXPECT_TRUE(same_surface(extract<double>(step, 0.5, polyhedra_options(t, a)),
                                  slice(contour, Hyperplane<4>::across(3, kPrismTimes[1]))));
       }
   }
