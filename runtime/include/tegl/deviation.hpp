@@ -36,8 +36,8 @@ struct Deviation {
 /// double.
 ///
 /// Method. A simplex that is not much larger than the largest distance is bounded in up to 48 parts (4D: 128): each by
-/// the distances of its corners from one simplex of `to`, because this distance is convex, or by a radius and the
-/// distance of its corners or of the middle of its longest edge. Above each other simplex of `from`, along its normal,
+/// the distances of its corners from one simplex of `to`, because this distance is convex, by balls around its corners,
+/// or by one around the middle of its longest edge. Above each other simplex of `from`, along its normal,
 /// the simplices of `to` are grouped by height. A group without a border there that covers one point of the simplex
 /// covers all of it (by topology, without comparing sizes), so the group's height bounds the distance. If there is no
 /// such group, for instance next to borders, the distances of the corners bound those of all points between. A simplex

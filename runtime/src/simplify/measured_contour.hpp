@@ -28,7 +28,10 @@ class MeasuredContour {
   /// the memory of what it does before is free.
   void begin() {
     if (threads_ == 1 || preparation_) return;
-    preparation_.emplace([this] { prepare(1); });
+    preparation_.emplace([this] {
+      simplices_.emplace(contour_, scale_);
+      target_.emplace(*simplices_);
+    });
     preparation_->begin();
   }
 
@@ -39,24 +42,20 @@ class MeasuredContour {
   /// contour for those from it. Neither contour may be empty.
   Deviations measure(const Contour<N, double>& other, double enough, const WorkOptions& work) {
     if (preparation_) preparation_->finish();
-    if (!target_) prepare(work.threads);
+    if (!simplices_) simplices_.emplace(contour_, scale_);
     const ScaledSimplices<N> simplices(other, scale_);
     Deviations result;
     {
       const DeviationTarget<N> target(simplices, work.threads, part_of(work.progress, 0.0, 0.05));
       result.to_other = deviation_to(*simplices_, target, enough, {work.threads, part_of(work.progress, 0.05, 0.5)});
     }
+    if (!target_) target_.emplace(*simplices_, work.threads);  // when the memory of the other target is free
     result.from_other = deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
                                      {work.threads, part_of(work.progress, 0.5, 1.0)});
     return result;
   }
 
  private:
-  void prepare(unsigned threads) {
-    simplices_.emplace(contour_, scale_);
-    target_.emplace(*simplices_, threads);
-  }
-
   const Contour<N, double>& contour_;
   std::array<double, N> scale_;
   unsigned threads_;

@@ -281,12 +281,11 @@ class Simplifier {
   };
   Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop, RoundKind kind = {}) {
     ++stats_.rounds;
-    if (!kind.is_trial && (options_.measure || options_.max_error)) measured_.begin();
     const Progress progress = detail::part_of(options_.work.progress, progress_, to);
     progress_ = to;
     const bool is_fast = options_.method == SimplifyMethod::fast;
     Round round = is_fast ? run_meshoptimizer(tolerance, stop, kind.is_trial, progress)
-                          : collapse_edges(tolerance, stop, kind.by_mean, progress);
+                          : collapse_edges(tolerance, stop, kind, progress);
     round.end = end_without_limits(round.result);
     if (round.end == SimplifyEnd::shape && round.is_limited) round.end = SimplifyEnd::error;
     if (round.result.simplices.size() != contour_.simplices.size()) return round;
@@ -336,11 +335,13 @@ class Simplifier {
   }
 
   /// One round of a method that contracts edges.
-  Round collapse_edges(const std::vector<double>& tolerance, std::size_t stop, bool by_mean, const Progress& progress) {
+  Round collapse_edges(const std::vector<double>& tolerance, std::size_t stop, RoundKind kind,
+                       const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     EdgeCollapse<N> collapse = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
     // contract
-    CollapseGoal goal{stop, options_.max_curvature, by_mean, &progress, kReady, kCollapsed, options_.work.threads};
+    CollapseGoal goal{stop, options_.max_curvature, kind.by_mean, &progress, kReady, kCollapsed, options_.work.threads};
+    if (!kind.is_trial && (options_.measure || options_.max_error)) goal.ready = [this] { measured_.begin(); };
     if (options_.method == SimplifyMethod::quadric) collapse_by_quadrics(collapse, goal);
     if (options_.method == SimplifyMethod::facets) collapse_by_curvature(collapse, goal);
     if (options_.method == SimplifyMethod::vertices) collapse_by_distance(collapse, goal);

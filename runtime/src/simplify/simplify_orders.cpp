@@ -77,12 +77,14 @@ class QuadricOrder {
   QuadricOrder(EdgeCollapse<N>& collapse, const CollapseGoal& goal)
       : collapse_(collapse),
         by_mean_(goal.by_mean),
+        count_(goal.count),
         reporter_(goal, collapse.complex().alive()),
         workers_(goal.threads, [] { return Scratch(); }),
         waits_(collapse.points().size(), 0) {}
 
   void fill() {
     for (Index v = 0; v < collapse_.points().size(); ++v) let_wait(v);
+    if (collapse_.complex().alive() > count_) push_waiting();
   }
   void empty() {
     const auto is_current = [&](const EdgeBuckets::Entry& entry) { return entry.stamp == stamp(entry.a, entry.b); };
@@ -179,6 +181,7 @@ class QuadricOrder {
 
   EdgeCollapse<N>& collapse_;
   bool by_mean_;
+  std::size_t count_;
   ProgressReporter reporter_;
   Workers<Scratch> workers_;
   EdgeBuckets queue_;
@@ -385,6 +388,7 @@ void collapse_in_passes(EdgeCollapse<N>& collapse, const CollapseGoal& goal) {
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const std::size_t before = collapse.complex().alive();
     order.fill();
+    if (pass == 0 && goal.ready) goal.ready();
     order.empty();
     const std::size_t after = collapse.complex().alive();
     if (after <= goal.count || static_cast<double>(before - after) < kLeastGain * static_cast<double>(before)) return;

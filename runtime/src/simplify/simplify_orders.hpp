@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "simplify/edge_collapse.hpp"
 #include "tegl/error.hpp"
@@ -18,6 +19,8 @@ struct CollapseGoal {
   const Progress* progress = nullptr;
   double from = 0, to = 1;  ///< range of `progress` that this work covers
   unsigned threads = 1;     ///< only for `collapse_by_quadrics`; 0 for all of the machine
+  /// Called before the first contraction: from then on, one thread does most of the work.
+  std::function<void()> ready = {};
 };
 
 /// Contracts until the goal is reached or no contraction is possible. Throws Cancelled.

@@ -39,6 +39,19 @@ PointN<N> random_point(std::mt19937& random, double size) {
   return p;
 }
 
+/// Evenly distributed over the simplex.
+template <int N>
+PointN<N> random_point_of(std::mt19937& random, const CornersN<N>& corners) {
+  std::exponential_distribution<double> share(1.0);
+  std::array<double, N> weights;
+  double sum = 0.0;
+  for (double& weight : weights) sum += weight = share(random);
+  PointN<N> p{};
+  for (int i = 0; i < N; ++i)
+    for (int a = 0; a < N; ++a) p[a] += weights[i] / sum * corners[i][a];
+  return p;
+}
+
 template <int N>
 CornersN<N> random_simplex(std::mt19937& random, double size) {
   CornersN<N> corners;
@@ -242,7 +255,6 @@ TYPED_TEST(Walk, BoundsDoNotDependOnTheOrderOfTheSimplices) {
 TYPED_TEST(Walk, BallsAroundCornersBoundAllPointsOfASimplex) {
   constexpr int N = TypeParam::value;
   std::mt19937 random(17);
-  std::exponential_distribution<double> share(1.0);
   int bounded = 0, below_one_ball = 0, failed = 0;
   for (int trial = 0; trial < 400; ++trial) {
     const CornersN<N> corners = random_simplex<N>(random, 1.0);
@@ -260,12 +272,7 @@ TYPED_TEST(Walk, BallsAroundCornersBoundAllPointsOfASimplex) {
     const double of_middle = *std::max_element(edge.squares.begin(), edge.squares.end());
     below_one_ball += bound < *std::max_element(distances.begin(), distances.end()) + std::sqrt(of_middle);
     for (int sample = 0; sample < 50; ++sample) {
-      std::array<double, N> weights;
-      double sum = 0.0;
-      for (double& weight : weights) sum += weight = share(random);
-      PointN<N> p{};
-      for (int i = 0; i < N; ++i)
-        for (int a = 0; a < N; ++a) p[a] += weights[i] / sum * corners[i][a];
+      const PointN<N> p = random_point_of<N>(random, corners);
       double most = std::numeric_limits<double>::infinity();
       for (int i = 0; i < N; ++i) most = std::min(most, distances[i] + norm(minus(p, corners[i])));
       EXPECT_LE(most, bound + 1e-12) << trial;
@@ -286,7 +293,6 @@ TYPED_TEST(Walk, BoundsAllPointsOfASimplex) {
   const BoxTree<N> tree(ball.corners());
   SimplexWalk<N> walk(gradients, neighbours, &tree);
   std::mt19937 random(11);
-  std::exponential_distribution<double> share(1.0);
   int bounded = 0, failed = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const auto start = static_cast<Index>(random() % ball.simplices.size());
@@ -307,12 +313,7 @@ TYPED_TEST(Walk, BoundsAllPointsOfASimplex) {
     EXPECT_LE(bound, limit);
     EXPECT_FALSE(walk.matches().empty());
     for (int sample = 0; sample < 6; ++sample) {
-      std::array<double, N> weights;
-      double sum = 0.0;
-      for (double& weight : weights) sum += weight = share(random);
-      PointN<N> p{};
-      for (int i = 0; i < N; ++i)
-        for (int a = 0; a < N; ++a) p[a] += weights[i] / sum * part[i][a];
+      const PointN<N> p = random_point_of<N>(random, part);
       EXPECT_LE(ball.distance(p), bound + 1e-12) << trial;
     }
   }
