@@ -35,6 +35,10 @@ namespace tegl {
 ///   faces, components of the contour on the boundary stay separate.
 /// - custom: by ExtractOptions::estimator.
 ///
+/// Octahedra and 16-cells, in lattices and meshes, have no ambiguous faces. Two opposite corners that are unlike all
+/// others are joined by mean and saddle, if the mean of all corners is on their side; other rules keep them separate.
+/// Tori in the boundary of a 16-cell are filled as the same mean requires, or by the rule as in other cells.
+///
 /// In 2D, squares gives the same bytes as mean, and decider the same as saddle. In 3D, every polygon of squares and
 /// decider is a disc, as with low and high. In 4D and 5D, a component on a face's boundary that is not a sphere is
 /// filled as if the face's centre were low.

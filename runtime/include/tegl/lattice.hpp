@@ -56,8 +56,9 @@ requires DimensionBetween<N, 2, 4>
 /// odd ones are shifted; other periodic axes at least 3 samples.
 ///
 /// ExtractOptions::ambiguity: on triangular and bcc there is no ambiguity. On fcc, fixed rules differ only in pyramids
-/// at the first and last layer; rules by the data resolve their bases, and cells are stored. On d4, rules by the data
-/// give the topology of `low`. In fcc_in_time, they resolve quadrilaterals between two times.
+/// at the first and last layer; rules by the data resolve their bases, and cells are stored. In fcc_in_time,
+/// these resolve quadrilaterals between two times. `mean` and `saddle` decide the insides of octahedra and 16-cells
+/// (tegl/ambiguity.hpp).
 ///
 /// Normals (Normals::differences) come from gradients by least squares on a sample and its neighbours on the lattice,
 /// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex` and, for options,

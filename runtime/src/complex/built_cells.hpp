@@ -9,10 +9,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "ambiguity/face_estimator.hpp"
+#include "ambiguity/lone_pair.hpp"
 #include "complex/border_facets.hpp"
 #include "complex/cell_contour.hpp"
 #include "regions/face_fillings.hpp"
@@ -31,7 +33,8 @@ struct CellKey {
   /// By facet: FaceFillings; of a hexahedron that is decided: CubeFrame.
   std::array<std::uint8_t, 16> fillings{};
   std::uint32_t squares = 0;  ///< decided: whether quadrilaterals are high, as bits
-  std::uint16_t cubes = 0;    ///< decided: tile::Choice of facet f in bits 2 f and 2 f + 1
+  /// Decided: tile::Choice of facet f in bits 2 f and 2 f + 1; of an octahedron: of a lone pair with a tunnel.
+  std::uint16_t cubes = 0;
   tile::Choice tile = tile::Choice::separate;
   auto operator<=>(const CellKey&) const = default;
 };
@@ -152,6 +155,12 @@ class DecidedCells final : public BuiltCells {
   /// Which of a facet's quadrilaterals are ambiguous, or high, as bits by quadrilaterals_of.
   [[nodiscard]] unsigned ambiguous_in(std::size_t facet, unsigned signature) const noexcept;
   [[nodiscard]] unsigned high_in(std::size_t facet, const CellKey& key) const noexcept;
+  /// The lone pair of a facet that is an octahedron. `bits`: its signature.
+  [[nodiscard]] std::optional<LonePair> lone_pair_in(std::size_t facet, unsigned bits) const noexcept;
+  /// Whether a facet is an octahedron with a tunnel.
+  [[nodiscard]] bool has_ring(std::size_t facet, const CellKey& key) const noexcept;
+  /// Of a 16-cell. `at`: the values at its corners.
+  [[nodiscard]] tile::Choice choice_of_cross_polytope(unsigned signature, std::span<const double> at) const noexcept;
   /// Whether a hexahedron's contour depends on the order of the points' numbers.
   [[nodiscard]] bool has_frame(unsigned signature, unsigned squares, tile::Choice choice) const noexcept;
 
@@ -160,7 +169,7 @@ class DecidedCells final : public BuiltCells {
   double isovalue_;
   bool high_connected_ = false;                                        ///< of the fixed rule
   std::map<tables::CellShape, std::array<FaceFillings, 2>> fillings_;  ///< of facets other than cubes: low, high
-  std::unique_ptr<const ResolvedCells> wedges_;
+  std::unique_ptr<const ResolvedCells> wedges_, octahedra_;
   std::vector<std::array<std::uint8_t, 4>> quadrilaterals_;   ///< their corners; bit i of the place is a coordinate
   std::vector<std::vector<std::uint8_t>> quadrilaterals_in_;  ///< by facet and quadrilaterals_of
 };

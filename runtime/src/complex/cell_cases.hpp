@@ -42,6 +42,8 @@ class ResolvedCells {
   /// The same for a shape that is no hexahedron, with these ambiguous quadrilaterals (quadrilaterals_of) and those of
   /// them that are high, as bits.
   [[nodiscard]] static std::uint16_t variant(unsigned signature, unsigned ambiguous, unsigned high) noexcept;
+  /// The variant of an octahedron with a tunnel.
+  [[nodiscard]] static std::uint16_t tunnel_variant(const LonePair& pair) noexcept;
   /// The contour of a variant above 1.
   [[nodiscard]] CellContour contour(unsigned variant) const noexcept { return {table_, lists_[variant - 2]}; }
   /// The place in the unit cube of a side vertex of a hexahedron, from its mask: on a ray from the centre, where the
@@ -55,6 +57,8 @@ class ResolvedCells {
  private:
   void add_hexahedra(Triangulation triangulation);
   void add_wedges();
+  /// `table`: of octahedra, with the contours that have no tunnel.
+  void add_tunnels(const tables::CellTable& table);
 
   tables::CellShape shape_;
   tables::CellTable table_;

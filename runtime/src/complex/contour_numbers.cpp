@@ -22,14 +22,15 @@ namespace tegl::detail {
 
 namespace {
 
-/// Whether a 4D shape has hexahedra as facets: contours in them may have tunnels.
-bool has_cubes(tables::CellShape shape) {
+/// Whether a 4D shape has hexahedra or octahedra as facets: contours in them may have tunnels.
+bool may_have_tunnels(tables::CellShape shape) {
   const auto facets = facets_of(shape);
-  return std::any_of(facets.begin(), facets.end(),
-                     [](const CellFacet& facet) { return facet.shape == tables::CellShape::hexahedron; });
+  return std::any_of(facets.begin(), facets.end(), [](const CellFacet& facet) {
+    return facet.shape == tables::CellShape::hexahedron || facet.shape == tables::CellShape::octahedron;
+  });
 }
 
-bool has_cubes(const Polytopes& polytopes) {
+bool may_have_tunnels(const Polytopes& polytopes) {
   if (polytopes.dim() != 4) return false;
   for (std::size_t c = 0; c < polytopes.size(); ++c)
     for (std::size_t f = 0; f < polytopes.shape(c).face_count(); ++f)
@@ -40,10 +41,12 @@ bool has_cubes(const Polytopes& polytopes) {
 /// Errors: InvalidArgument.
 void check_caps(const CellGroups& cells, const ExtractOptions& options) {
   if (!options.close || !is_estimated(options.ambiguity) || face_rule(options.ambiguity).separates) return;
-  if (has_cubes(cells.polytopes) || std::any_of(cells.groups.begin(), cells.groups.end(),
-                                                [](const CellGroup& group) { return has_cubes(group.shape); }))
+  if (may_have_tunnels(cells.polytopes) ||
+      std::any_of(cells.groups.begin(), cells.groups.end(),
+                  [](const CellGroup& group) { return may_have_tunnels(group.shape); }))
     throw Error(ErrorCode::InvalidArgument,
-                "close and ambiguity by means or saddles in 4D cells with hexahedra as facets; expected low, high, "
+                "close and ambiguity by means or saddles in 4D cells with hexahedra or octahedra as facets; expected "
+                "low, high, "
                 "squares or decider");
 }
 

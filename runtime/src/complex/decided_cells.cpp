@@ -5,8 +5,8 @@
 // from one of their vertices if every triangle in a facet with that vertex has it, otherwise from their barycentre.
 // Other components, and all if the cell's centre joins them, are filled with copies of the regions of one side of the
 // boundary, moved towards the centre. A region of a facet is a cone, as each of its polygons is a disc; in a hexahedron
-// with a tunnel it is the table's (CubeRegions). A tesseract whose facets are those of an image's tesseract has the
-// image's contour.
+// with a tunnel it is the table's (CubeRegions), around a tunnel in an octahedron a ring of cones. A tesseract whose
+// facets are those of an image's tesseract has the image's contour.
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -14,7 +14,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ambiguity/face_decision.hpp"
 #include "base/disjoint_sets.hpp"
 #include "complex/built_cells.hpp"
 #include "complex/cell_cases.hpp"
@@ -77,6 +76,10 @@ DecidedCells::DecidedCells(CellShape shape, Triangulation triangulation, FaceRul
     if (facet.of->shape == CellShape::wedge && wedges_ == nullptr)
       wedges_ = std::make_unique<ResolvedCells>(CellShape::wedge, tables::cell_table(CellShape::wedge, triangulation),
                                                 triangulation, rule, isovalue);
+    if (facet.of->shape == CellShape::octahedron && octahedra_ == nullptr)
+      octahedra_ = std::make_unique<ResolvedCells>(CellShape::octahedron,
+                                                   tables::cell_table(CellShape::octahedron, triangulation),
+                                                   triangulation, rule, isovalue);
     if (triangulation == Triangulation::compact && facet.of->shape != CellShape::hexahedron &&
         fillings_.count(facet.of->shape) == 0)
       fillings_.try_emplace(facet.of->shape,
@@ -91,61 +94,9 @@ DecidedCells::DecidedCells(CellShape shape, bool high_connected, bool is_swept)
 
 DecidedCells::~DecidedCells() = default;
 
-unsigned DecidedCells::ambiguous_in(std::size_t facet, unsigned signature) const noexcept {
-  unsigned bits = 0;
-  const auto& in_facet = quadrilaterals_in_[facet];
-  for (unsigned q = 0; q < in_facet.size(); ++q)
-    bits |= (is_ambiguous_square(signature, quadrilaterals_[in_facet[q]]) ? 1u : 0u) << q;
-  return bits;
-}
-
-unsigned DecidedCells::high_in(std::size_t facet, const CellKey& key) const noexcept {
-  unsigned bits = 0;
-  const auto& in_facet = quadrilaterals_in_[facet];
-  for (unsigned q = 0; q < in_facet.size(); ++q) bits |= (key.squares >> in_facet[q] & 1u) << q;
-  return bits;
-}
-
 bool DecidedCells::has_frame(unsigned signature, unsigned squares, tile::Choice choice) const noexcept {
   if (triangulation_ == Triangulation::compact) return true;
   return has_tunnel(ResolvedCubes::instance(triangulation_), CubeContour(0, signature, squares, choice).list);
-}
-
-CellKey DecidedCells::key(unsigned signature, const Index* corners, std::span<const double> values) const noexcept {
-  CellKey key;
-  key.signature = static_cast<std::uint16_t>(signature);
-  std::array<double, 16> at{};
-  for (unsigned v = 0; v < table_.corner_count; ++v) at[v] = values[corners[v]];
-  for (std::size_t q = 0; q < quadrilaterals_.size(); ++q) {
-    const auto& of = quadrilaterals_[q];
-    if (!is_ambiguous_square(signature, of)) continue;
-    const std::array<double, 4> of_corners = {at[of[0]], at[of[1]], at[of[2]], at[of[3]]};
-    key.squares |= (is_square_high(rule_, of_corners, isovalue_) ? 1u : 0u) << q;
-  }
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Facet& facet = facets_[f];
-    const unsigned bits = facet_signature(facet, signature);
-    if (bits == 0 || bits + 1 == 1u << facet.of->corner_count) continue;
-    const std::array<Index, 8> points = points_of(facet, corners);
-    if (facet.of->shape != CellShape::hexahedron) {
-      if (triangulation_ == Triangulation::barycentric) continue;
-      const std::uint16_t variant = ResolvedCells::variant(bits, ambiguous_in(f, signature), high_in(f, key));
-      if (variant > 1) continue;
-      const FaceFillings& of = fillings_.at(facet.of->shape)[variant];
-      key.fillings[f] = facet.has_own ? of.own(bits) : of.choose(bits, points.data());
-      continue;
-    }
-    std::array<double, 8> of_cube;
-    for (std::size_t v = 0; v < 8; ++v) of_cube[v] = at[facet.of->corners[v]];
-    const tile::Choice choice = cube_key(rule_, of_cube, isovalue_, bits).choice();
-    key.cubes = static_cast<std::uint16_t>(key.cubes | static_cast<unsigned>(choice) << 2 * f);
-    if (!facet.has_own && has_frame(bits, high_in(f, key), choice))
-      key.fillings[f] = static_cast<std::uint8_t>(CubeFrame::number_of(points.data()));
-  }
-  if (shape_ == CellShape::hexahedron_prism && !rule_.separates &&
-      !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(signature)))
-    key.tile = is_mean_high(at, isovalue_) ? tile::Choice::high : tile::Choice::low;
-  return key;
 }
 
 /// Builds contours one after the other.
@@ -211,8 +162,10 @@ class DecidedCells::Filler {
     const unsigned bits = facet_signature(facet, key_->signature);
     if (bits == 0 || bits + 1 == 1u << facet.of->corner_count) return;
     if (facet.of->shape == CellShape::hexahedron) return add_cube(f, bits);
+    const bool has_ring = cells_.has_ring(f, *key_);
     const auto variant =
-        facet.of->shape == CellShape::octahedron  // by `low` in contours that are decided
+        has_ring ? ResolvedCells::tunnel_variant(*cells_.lone_pair_in(f, bits))
+        : facet.of->shape == CellShape::octahedron  // by `low` in contours that are decided
             ? std::uint16_t{cells_.high_connected_}
             : ResolvedCells::variant(bits, cells_.ambiguous_in(f, key_->signature), cells_.high_in(f, *key_));
     if (variant < 2 && cells_.triangulation_ == Triangulation::compact) {
@@ -221,8 +174,9 @@ class DecidedCells::Filler {
       return;
     }
     const tables::CellTable& table = tables::cell_table(facet.of->shape, cells_.triangulation_);
-    const CellContour contour = variant < 2 ? CellContour(table, bits, variant == 1) : cells_.wedges_->contour(variant);
-    const auto first = static_cast<Local>(kShared + built_.shared.size());
+    const CellContour contour = variant < 2 ? CellContour(table, bits, variant == 1)
+                                            : (has_ring ? cells_.octahedra_ : cells_.wedges_)->contour(variant);
+    const Local first = first_own_[f] = static_cast<Local>(kShared + built_.shared.size());
     for (unsigned j = 0; j < contour.list().added(); ++j) {
       std::uint64_t mask = 0;
       for (std::uint64_t rest = contour.mask(j) >> table.corner_count; rest != 0; rest &= rest - 1)
@@ -447,7 +401,36 @@ class DecidedCells::Filler {
     }
   }
 
-  /// The regions of a facet in which all polygons are discs.
+  /// The region of an octahedron around a tunnel: between its four quadrilaterals and the boundary, in as many sectors.
+  void add_ring(std::size_t f, const RegionSides<Local>& sides) {
+    for (unsigned j = 0; j < 4; ++j) {
+      const auto centre = static_cast<Local>(first_own_[f] + j);  // of the quadrilateral
+      std::uint64_t sector = built_.shared[centre - kShared];
+      std::vector<Triangle> around;
+      for (unsigned v = 0; v < corners_; ++v) {  // the walls to both neighbours
+        Triangle wall{static_cast<Local>(kCorners + v), 0, 0};
+        std::size_t count = 1;
+        for (Local e = 0; e < edges_ && count < 3; ++e)
+          if ((built_.shared[centre - kShared] & bit_of(e)) != 0 &&
+              (cells_.table_.edges[2 * e] == v || cells_.table_.edges[2 * e + 1] == v))
+            wall[count++] = e;
+        const unsigned lone = key_->signature >> v & 1u;
+        if (count < 3 || lone == (static_cast<tile::Choice>(key_->cubes >> 2 * f & 3u) == tile::Choice::high ? 1u : 0u))
+          continue;
+        sector |= bit_of(wall[0]);
+        around.push_back(wall);
+      }
+      const auto is_in = [&](Local v) { return (sector & bit_of(v)) != 0; };
+      for (const Triangle& t : sides.triangles)
+        if (std::all_of(t.begin(), t.end(), is_in)) around.push_back(t);
+      for (const Triangle& t : sides.of_contour)
+        if (has_vertex(t, centre)) around.push_back(t);
+      const Local apex = add_centre(sector);
+      for (const Triangle& t : around) regions_.push_back({t[0], t[1], t[2], apex});
+    }
+  }
+
+  /// The regions of a facet in which all polygons are discs, or of an octahedron.
   void add_regions(std::size_t f, bool high) {
     const Facet& facet = cells_.facets_[f];
     RegionSides<Local> sides;
@@ -459,6 +442,9 @@ class DecidedCells::Filler {
     }
     for (const Piece& piece : sigma_)
       if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
+    const auto inside = high ? tile::Choice::high : tile::Choice::low;
+    if (cells_.has_ring(f, *key_) && static_cast<tile::Choice>(key_->cubes >> 2 * f & 3u) != inside)
+      return add_ring(f, sides);
     const auto add = [&](const std::vector<Local>& vertices) {
       std::uint64_t mask = 0;
       for (const Local v : vertices) mask |= bit_of(v);

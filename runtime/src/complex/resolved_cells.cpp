@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Cells whose ambiguous quadrilaterals are resolved from the data. Hexahedra have the resolved cubes of images, tunnels
-// included. In other cells each polygon is a disc: the lists of the low- or the high-connected alternative, or, if a
-// wedge has one quadrilateral of each, the only polygon, coned.
+// included. In octahedra, a tunnel may connect two opposite corners. In other cells each polygon is a disc: the lists
+// of the low- or the high-connected alternative, or, if a wedge has one quadrilateral of each, the only polygon, coned.
 #include <algorithm>
 #include <optional>
 #include <span>
 
 #include "ambiguity/face_decision.hpp"
+#include "ambiguity/lone_pair.hpp"
+#include "complex/built_cells.hpp"
 #include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
 #include "image/cube_heights.hpp"
+#include "regions/cube_frame.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
+#include "tile/tesseract_fill.hpp"
 #include "tile/variant_table.hpp"
 
 namespace tegl::detail {
@@ -38,6 +42,16 @@ unsigned edge_between(const tables::CellTable& table, unsigned p, unsigned q) no
 /// corners of the lower one; `joined` is the corner whose side with `odd` is high-connected.
 constexpr unsigned wedge_list(unsigned odd, unsigned joined, bool is_odd_high) noexcept {
   return 4 * odd + (joined == (odd + 1) % 3 ? 2u : 0u) + (is_odd_high ? 1u : 0u);
+}
+
+/// Whether a contour has a directed edge between vertices on these edges of the cell.
+bool has_directed_edge(const CellContour& contour, unsigned from, unsigned to) noexcept {
+  for (unsigned i = 0; i < contour.list().simplex_count; ++i)
+    for (unsigned k = 0; k < 3; ++k)
+      if (contour.vertex(i, k) == (contour.reverses() ? to : from) &&
+          contour.vertex(i, (k + 1) % 3) == (contour.reverses() ? from : to))
+        return true;
+  return false;
 }
 
 }  // namespace
@@ -70,6 +84,7 @@ ResolvedCells::ResolvedCells(CellShape shape, const tables::CellTable& table, Tr
       for (const auto& corners : quadrilaterals_of(shape))
         if (is_ambiguous_square(s, corners)) ambiguous_[s] = true;
     if (shape == CellShape::wedge) add_wedges();
+    if (shape == CellShape::octahedron && !rule.separates) add_tunnels(table);
   }
   table_.element_of = nullptr;
   table_.lists = lists_.data();
@@ -161,7 +176,45 @@ void ResolvedCells::add_wedges() {
       }
 }
 
+/// A tunnel is a ring of four quadrilaterals between the loops around two opposite corners, each coned from its centre:
+/// no diagonal depends on the numbers of points. A quadrilateral is in the tetrahedron of the two corners and of two
+/// neighbouring ones of the others, so no two of them meet.
+void ResolvedCells::add_tunnels(const tables::CellTable& table) {
+  for (unsigned pair = 0; pair < 3; ++pair)
+    for (const bool is_high : {false, true}) {
+      const unsigned signature = is_high ? 3u << 2 * pair : 63u & ~(3u << 2 * pair);
+      ambiguous_[signature] = true;
+      const unsigned b = 2 * ((pair + 1) % 3), c = 2 * ((pair + 2) % 3), p = 2 * pair, q = p + 1;
+      const std::array<unsigned, 4> around = {b, c, b + 1, c + 1};
+      lists_.push_back({static_cast<std::uint32_t>(simplices_.size() / 3), static_cast<std::uint32_t>(masks_.size()),
+                        16, 0, 4, 0, 0});
+      const CellContour discs(table, signature, false);
+      for (unsigned i = 0; i < 4; ++i) {
+        const unsigned from = around[i], to = around[(i + 1) % 4];
+        const std::array<unsigned, 4> loop = {edge_between(table, p, from), edge_between(table, p, to),
+                                              edge_between(table, q, to), edge_between(table, q, from)};
+        const bool is_forward = has_directed_edge(discs, loop[0], loop[1]);
+        std::uint64_t mask = 0;
+        for (unsigned k = 0; k < 4; ++k) {
+          const unsigned next = loop[(k + 1) % 4];
+          mask |= std::uint64_t{1} << (table.corner_count + loop[k]);
+          for (const unsigned v : {table.edge_count + i, is_forward ? loop[k] : next, is_forward ? next : loop[k]})
+            simplices_.push_back(static_cast<std::uint8_t>(v));
+        }
+        masks_.push_back(mask);
+      }
+    }
+}
+
+std::uint16_t ResolvedCells::tunnel_variant(const LonePair& pair) noexcept {
+  return static_cast<std::uint16_t>(2 + 2 * pair.pair + (pair.is_high ? 1u : 0u));
+}
+
 std::uint16_t ResolvedCells::variant(const double* values, unsigned signature) const noexcept {
+  if (shape_ == CellShape::octahedron) {
+    const auto pair = lone_pair(signature, 3);
+    return pair && has_tunnel_between(*pair, {values, 6}, isovalue_) ? tunnel_variant(*pair) : std::uint16_t{0};
+  }
   if (shape_ == CellShape::hexahedron) {
     const CubeKey key = cube_key(rule_, std::span<const double, 8>(values, 8), isovalue_, signature);
     if (key.is_plain()) return static_cast<std::uint16_t>(2 + kPlainHexahedra + signature);
@@ -208,6 +261,84 @@ std::array<double, 3> ResolvedCells::place_in_cube(std::uint32_t mask, const std
     for (double& at : heights.at) at -= isovalue;
     return heights.level(corners);
   });
+}
+
+unsigned DecidedCells::ambiguous_in(std::size_t facet, unsigned signature) const noexcept {
+  unsigned bits = 0;
+  const auto& in_facet = quadrilaterals_in_[facet];
+  for (unsigned q = 0; q < in_facet.size(); ++q)
+    bits |= (is_ambiguous_square(signature, quadrilaterals_[in_facet[q]]) ? 1u : 0u) << q;
+  return bits;
+}
+
+unsigned DecidedCells::high_in(std::size_t facet, const CellKey& key) const noexcept {
+  unsigned bits = 0;
+  const auto& in_facet = quadrilaterals_in_[facet];
+  for (unsigned q = 0; q < in_facet.size(); ++q) bits |= (key.squares >> in_facet[q] & 1u) << q;
+  return bits;
+}
+
+CellKey DecidedCells::key(unsigned signature, const Index* corners, std::span<const double> values) const noexcept {
+  CellKey key;
+  key.signature = static_cast<std::uint16_t>(signature);
+  std::array<double, 16> at{};
+  for (unsigned v = 0; v < table_.corner_count; ++v) at[v] = values[corners[v]];
+  for (std::size_t q = 0; q < quadrilaterals_.size(); ++q) {
+    const auto& of = quadrilaterals_[q];
+    if (!is_ambiguous_square(signature, of)) continue;
+    const std::array<double, 4> of_corners = {at[of[0]], at[of[1]], at[of[2]], at[of[3]]};
+    key.squares |= (is_square_high(rule_, of_corners, isovalue_) ? 1u : 0u) << q;
+  }
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const Facet& facet = facets_[f];
+    const unsigned bits = facet_signature(facet, signature);
+    if (bits == 0 || bits + 1 == 1u << facet.of->corner_count) continue;
+    const std::array<Index, 8> points = points_of(facet, corners);
+    if (const auto pair = lone_pair_in(f, bits); pair && !rule_.separates) {
+      std::array<double, 6> of_octahedron;
+      for (std::size_t v = 0; v < 6; ++v) of_octahedron[v] = at[facet.of->corners[v]];
+      if (has_tunnel_between(*pair, of_octahedron, isovalue_)) {
+        key.cubes = static_cast<std::uint16_t>(
+            key.cubes | static_cast<unsigned>(pair->is_high ? tile::Choice::high : tile::Choice::low) << 2 * f);
+        continue;
+      }
+    }
+    if (facet.of->shape != CellShape::hexahedron) {
+      if (triangulation_ == Triangulation::barycentric) continue;
+      const std::uint16_t variant = ResolvedCells::variant(bits, ambiguous_in(f, signature), high_in(f, key));
+      if (variant > 1) continue;
+      const FaceFillings& of = fillings_.at(facet.of->shape)[variant];
+      key.fillings[f] = facet.has_own ? of.own(bits) : of.choose(bits, points.data());
+      continue;
+    }
+    std::array<double, 8> of_cube;
+    for (std::size_t v = 0; v < 8; ++v) of_cube[v] = at[facet.of->corners[v]];
+    const tile::Choice choice = cube_key(rule_, of_cube, isovalue_, bits).choice();
+    key.cubes = static_cast<std::uint16_t>(key.cubes | static_cast<unsigned>(choice) << 2 * f);
+    if (!facet.has_own && has_frame(bits, high_in(f, key), choice))
+      key.fillings[f] = static_cast<std::uint8_t>(CubeFrame::number_of(points.data()));
+  }
+  if (shape_ == CellShape::hexahedron_prism && !rule_.separates &&
+      !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(signature)))
+    key.tile = is_mean_high(at, isovalue_) ? tile::Choice::high : tile::Choice::low;
+  if (shape_ == CellShape::cell16 && !rule_.separates) key.tile = choice_of_cross_polytope(signature, at);
+  return key;
+}
+
+tile::Choice DecidedCells::choice_of_cross_polytope(unsigned signature, std::span<const double> at) const noexcept {
+  if (!high_pairs(signature, 4)) return tile::Choice::separate;
+  const bool is_high = is_mean_high(at.first(8), isovalue_);
+  // two spheres around the corners of a lone pair; otherwise a torus
+  if (const auto pair = lone_pair(signature, 4); pair && pair->is_high != is_high) return tile::Choice::separate;
+  return is_high ? tile::Choice::high : tile::Choice::low;
+}
+
+std::optional<LonePair> DecidedCells::lone_pair_in(std::size_t facet, unsigned bits) const noexcept {
+  return facets_[facet].of->shape == CellShape::octahedron ? lone_pair(bits, 3) : std::nullopt;
+}
+
+bool DecidedCells::has_ring(std::size_t facet, const CellKey& key) const noexcept {
+  return facets_[facet].of->shape == CellShape::octahedron && (key.cubes >> 2 * facet & 3u) != 0;
 }
 
 }  // namespace tegl::detail

@@ -404,6 +404,43 @@ TEST(Decided4d, RandomCellsDoNotIntersectThemselves) {
   }
 }
 
+TEST(Decided4d, CellsWithTunnelsBetweenOppositeCornersDoNotIntersectThemselves) {
+  for (const CellType type : {CellType::octahedron_prism, CellType::cell16}) {
+    constexpr std::size_t kCount = 400;
+    const detail::CellKind& kind = *detail::find_kind(type);
+    const std::size_t all = detail::table_of(kind.shape).corner_count;
+    const std::size_t of_cross = type == CellType::cell16 ? 8 : 6;  // an end of a prism
+    Complex<4> complex = random_cells(type, kCount, 19);
+    std::vector<double> values(complex.values().begin(), complex.values().end());
+    const detail::CellGroup& group = detail::ComplexAccess::cells(complex).groups[0];
+    std::mt19937_64 random(20);
+    for (std::size_t c = 0; c < kCount; ++c) {
+      const bool is_high = random() % 2 == 0, both_ends = random() % 2 == 0;
+      for (std::size_t first = 0; first < all; first += of_cross) {
+        if (first > 0 && !both_ends) continue;
+        const std::size_t pair = 2 * (random() % (of_cross / 2));
+        for (std::size_t v = 0; v < of_cross; ++v) {  // the pair has most of the sum
+          double& value = values[group.cell(c)[first + v]];
+          const bool is_lone = v == pair || v == pair + 1;
+          value = (is_high == is_lone ? 1.0 : -1.0) * std::abs(value) * (is_lone ? 1.0 : 0.1);
+          if (is_lone) value = std::copysign(std::max(std::abs(value), 0.5), value);
+        }
+      }
+    }
+    complex.set_values(values);
+    for (const Triangulation triangulation : kOfEach) {
+      SCOPED_TRACE(testing::Message() << name_of(type) << " " << static_cast<int>(triangulation));
+      const auto contour = extract<double>(complex, 0.0, decided_by(Ambiguity::mean, triangulation));
+      const auto apart = extract<double>(complex, 0.0, decided_by(Ambiguity::squares, triangulation));
+      EXPECT_GT(contour.simplices.size(), apart.simplices.size());
+      const MeshReport report = check(contour);
+      EXPECT_EQ(0u, report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts);
+      const auto found = find_intersections(contour);
+      EXPECT_TRUE(found.is_embedded()) << found.pair_count << " pairs";
+    }
+  }
+}
+
 /// Cells that share no facet have a contour with a boundary, which is a manifold if that of each cell is one.
 TEST(Decided4d, CellsWithAnySignatureHaveAnOrientedManifold) {
   const std::pair<CellType, unsigned> shapes[] = {{CellType::pyramid_prism, 1},    {CellType::wedge_prism, 3},

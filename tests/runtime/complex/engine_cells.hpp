@@ -168,9 +168,19 @@ std::array<double, 8> values_of_cube(const tables::CellTable& table, tile::Signa
   return result;
 }
 
+/// Whether a face is a cube, or an octahedron or 16-cell: by its corners and edges.
+inline bool is_cube_or_cross(const tile::Face& face, const std::vector<tile::Face>& faces) {
+  const auto corners = static_cast<std::ptrdiff_t>(std::popcount(face.corners));
+  const auto edges = std::count_if(faces.begin(), faces.end(), [&](const tile::Face& edge) {
+    return edge.dim == 1 && (edge.corners & ~face.corners) == 0;
+  });
+  const std::ptrdiff_t n = face.dim;
+  return (corners == 1 << n && edges == n << (n - 1)) || (n > 2 && corners == 2 * n && edges == 2 * n * (n - 1));
+}
+
 /// The resolution of a cell by a rule that reads the data. Ambiguous quadrilaterals by the mean of their corners or by
 /// the value at their saddle. By `mean` and `saddle` the insides of cubes by the mean or by the trilinear interpolant,
-/// and those of tesseracts by the mean; all others separate.
+/// and those of tesseracts, octahedra and 16-cells by the mean; all others separate.
 template <int N>
 std::vector<tile::Choice> choices_of(const tables::CellTable& table, const std::vector<tile::Face>& faces,
                                      const std::vector<double>& values, Ambiguity rule) {
@@ -178,8 +188,7 @@ std::vector<tile::Choice> choices_of(const tables::CellTable& table, const std::
   const bool joins = rule == Ambiguity::mean || rule == Ambiguity::saddle;
   std::vector<tile::Choice> choices(faces.size(), tile::Choice::separate);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const int count = std::popcount(faces[f].corners);
-    if (faces[f].dim < 2 || count != 1 << faces[f].dim || (faces[f].dim > 2 && !joins)) continue;
+    if (faces[f].dim < 2 || !is_cube_or_cross(faces[f], faces) || (faces[f].dim > 2 && !joins)) continue;
     double sum = 0, high = 1, low = 1;
     for (std::size_t v = 0; v < values.size(); ++v) {
       if ((faces[f].corners >> v & 1u) == 0) continue;
@@ -189,7 +198,7 @@ std::vector<tile::Choice> choices_of(const tables::CellTable& table, const std::
     const bool is_high = faces[f].dim > 2 || is_mean ? sum >= 0 : high >= low;
     choices[f] = is_high ? tile::Choice::high : tile::Choice::low;
     if constexpr (N > 2)
-      if (faces[f].dim == 3 && rule == Ambiguity::saddle)
+      if (faces[f].dim == 3 && std::popcount(faces[f].corners) == 8 && rule == Ambiguity::saddle)
         choices[f] = cube_choice<double>(values_of_cube<N>(table, faces[f].corners, values, faces), 0.0);
   }
   return choices;
