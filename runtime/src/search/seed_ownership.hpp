@@ -14,8 +14,8 @@
 
 namespace tegl::detail {
 
-/// Owners of tiles or trees, by part of their ranges. Owners are trees that stay.
-template <class Key>
+/// Owners of tiles or trees, by part of their ranges. Owners are trees that stay. `Index` counts all parts.
+template <class Key, class Index = std::uint64_t>
 class Ownership {
  public:
   explicit Ownership(std::size_t count) : parts_of_(count, kNone) {}
@@ -32,7 +32,7 @@ class Ownership {
   void offer(std::uint32_t i, Key least, Key greatest) {
     lowest_ = std::min(lowest_, least);
     highest_ = std::max(highest_, greatest);
-    const std::uint64_t first = parts_of_[i];
+    const Index first = parts_of_[i];
     offers_.push_back({least, greatest, std::min(parts_[first].end, greatest), parts_[first].owner, first});
   }
   /// If the offers cover i, i passes to their owners; otherwise i owns itself. Clears the offers. Returns whether i was
@@ -47,7 +47,7 @@ class Ownership {
   bool give_up_to_offers(std::uint32_t i, Key least, Key greatest) {
     // Most uncovered ranges are uncovered at an end.
     if (lowest_ > least || highest_ < greatest) return false;
-    const std::uint64_t first = parts_.size();
+    const auto first = static_cast<Index>(parts_.size());
     if (!divide(least, greatest, first)) {
       parts_.resize(first);
       return false;
@@ -58,7 +58,7 @@ class Ownership {
   }
   /// Sets one owner of the whole range of i: i itself if it is not given up.
   void set_one(std::uint32_t i, std::uint32_t owner, Key greatest) {
-    parts_of_[i] = parts_.size();
+    parts_of_[i] = static_cast<Index>(parts_.size());
     parts_.push_back({greatest, owner});
   }
   /// Gives i up to a single owner if one owner of `other`, whose range contains the range of i, has all of it; then
@@ -106,15 +106,15 @@ class Ownership {
   /// i then follow those of the tile resolved before. `level`, `end`: the range of i.
   template <class IsGone>
   void resolve(std::uint32_t i, Key level, Key end, const IsGone& is_gone) {
-    const std::uint64_t first = parts_.size();
-    for (std::uint64_t p = parts_of_[i]; level < end; ++p) {
+    const auto first = static_cast<Index>(parts_.size());
+    for (Index p = parts_of_[i]; level < end; ++p) {
       const Part part = parts_[p];
       if (!is_gone(part.owner)) {
         append(part, first);
         level = part.end;
         continue;
       }
-      std::uint64_t q = parts_of_[part.owner];
+      Index q = parts_of_[part.owner];
       while (parts_[q].end <= level) ++q;
       for (; level < part.end; ++q) {
         level = std::min(parts_[q].end, part.end);
@@ -126,7 +126,7 @@ class Ownership {
 
   /// Sets the parts of i, as owner and end, in ascending order.
   void set(std::uint32_t i, std::span<const std::pair<std::uint32_t, Key>> parts) {
-    parts_of_[i] = parts_.size();
+    parts_of_[i] = static_cast<Index>(parts_.size());
     for (const auto& [owner, end] : parts) parts_.push_back({end, owner});
   }
 
@@ -140,9 +140,9 @@ class Ownership {
     Key least, greatest;
     Key end;              ///< of the first part that may still matter; at most `greatest`
     std::uint32_t owner;  ///< of that part
-    std::uint64_t part;
+    Index part;
   };
-  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
 
   void forget_offers() noexcept {
     offers_.clear();
@@ -150,7 +150,7 @@ class Ownership {
     highest_ = 0;
   }
   /// Appends parts in ascending order, each as long as possible. Returns false at a gap.
-  bool divide(Key level, Key end, std::uint64_t first) {
+  bool divide(Key level, Key end, Index first) {
     while (level < end) {
       Part best{level, 0};
       for (Offer& offer : offers_) {
@@ -168,7 +168,7 @@ class Ownership {
     return true;
   }
   /// Adds a part to those from `first` on; equal owners in a row have one part.
-  void append(const Part& part, std::uint64_t first) {
+  void append(const Part& part, Index first) {
     if (parts_.size() > first && parts_.back().owner == part.owner)
       parts_.back().end = part.end;
     else
@@ -181,7 +181,7 @@ class Ownership {
     offer.owner = part.owner;
   }
 
-  std::vector<std::uint64_t> parts_of_;  ///< first part of each tile; the last part ends with the range
+  std::vector<Index> parts_of_;  ///< first part of each tile; the last part ends with the range
   std::vector<Part> parts_;
   std::vector<Offer> offers_;
   Key lowest_ = std::numeric_limits<Key>::max();  ///< of the offers

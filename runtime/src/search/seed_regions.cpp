@@ -60,6 +60,8 @@ class Widths {
     for (std::size_t i = 1; i < below_.size(); ++i) below_[i] += below_[i - 1];
     scale(sample, map);
   }
+  /// Whether many tiles have wide ranges.
+  [[nodiscard]] bool are_of_noise() const noexcept { return are_of_noise_; }
   /// One class per power of 2, the widest first. Finer classes would leave more tiles.
   [[nodiscard]] std::size_t class_of(Key least, Key greatest) const noexcept {
     const auto bits = static_cast<std::size_t>(std::bit_width(width(least, greatest)));
@@ -79,7 +81,8 @@ class Widths {
     const auto wide = static_cast<std::size_t>(std::count_if(sample.begin(), sample.end(), [&](Place tile) {
       return std::size_t{3} * width(map.least[tile], map.greatest[tile]) > ends;
     }));
-    const double widest = 4 * wide > sample.size() ? kWidestOfNoise : kWidest;
+    are_of_noise_ = 4 * wide > sample.size();
+    const double widest = are_of_noise_ ? kWidestOfNoise : kWidest;
     const auto all = static_cast<std::uint64_t>((std::uint64_t{1} << 19) / widest);
     for (std::uint32_t& below : below_)
       below = static_cast<std::uint32_t>(below * all / std::max<std::size_t>(1, ends));
@@ -91,6 +94,7 @@ class Widths {
 
   Key least_;
   unsigned shift_ = 0;
+  bool are_of_noise_ = false;
   std::uint64_t last_ = 0;            ///< bin
   std::vector<std::uint32_t> below_;  ///< number of range ends of the sample in lower bins; scaled
 };
@@ -214,7 +218,7 @@ template <class Key>
 struct FinishedBlock {
   std::vector<Place> roots;
   std::vector<KeyLink<Key>> links;            ///< a, b: roots
-  std::vector<std::pair<Place, Key>> owners;  ///< of its border tiles, one after the other: root, end
+  std::vector<std::pair<Place, Key>> owners;  ///< of its tiles beside later blocks, one after the other: root, end
 };
 
 /// Builds the trees of one block at a time. The tiles of a block are given up to one another and to trees of earlier
@@ -234,11 +238,12 @@ class BlockTrees {
         near_(neighbours_.size()),
         least_(grid.room() + kReadBeyond),
         greatest_(grid.room() + kReadBeyond),
-        places_(grid.room()),
         is_earlier_(grid.room()),
         owners_(grid.room()),
         outside_(grid.room()),
-        wanted_(grid.ahead().size()) {
+        wanted_(grid.ahead().size()),
+        low_(grid.ahead().size() * kMostOfRow),
+        high_(low_.size()) {
     for (const BlockGrid::Earlier& earlier : grid.earlier()) is_earlier_[earlier.tile] = true;
   }
 
@@ -274,26 +279,27 @@ class BlockTrees {
   /// Copies the ranges of the box, lists the tiles of the block, and gives the tiles of earlier blocks their owners.
   void load(std::size_t number) {
     const BlockGrid::Coordinates first = grid_.first(number);
-    std::fill(least_.begin(), least_.end(), Key{0});
-    std::fill(greatest_.begin(), greatest_.end(), Key{0});
+    origin_ = grid_.origin(first);
+    if (!grid_.is_whole(first)) {
+      std::fill(least_.begin(), least_.end(), Key{0});
+      std::fill(greatest_.begin(), greatest_.end(), Key{0});
+    }
     grid_.for_lines(first, [&](std::size_t tile, Place place, std::size_t length) {
-      for (std::size_t i = 0; i < length; ++i) {
-        least_[tile + i] = map_.least[place + i];
-        greatest_[tile + i] = map_.greatest[place + i];
-        places_[tile + i] = static_cast<Place>(place + i);
-      }
+      std::copy_n(&map_.least[place], length, &least_[tile]);
+      std::copy_n(&map_.greatest[place], length, &greatest_[tile]);
     });
     tiles_.clear();
     rows_.clear();
-    border_.clear();
-    add_tiles(grid_.dim() - 1, 0, first, false);
+    low_border_.clear();
+    high_border_.clear();
+    add_tiles(grid_.dim() - 1, 0, first, {});
     owners_.clear();
     outside_.clear();
     for (const BlockGrid::Earlier& earlier : grid_.earlier()) {
       if (constant(earlier.tile)) continue;
       const FinishedBlock<Key>& block = finished_[number - earlier.blocks_back];
       parts_.clear();
-      for (std::size_t i = first_owner_[places_[earlier.tile]];; ++i) {
+      for (std::size_t i = first_owner_[place_of_tile(earlier.tile)];; ++i) {
         const auto& [root, end] = block.owners[i];
         parts_.emplace_back(outside_(root), end);
         if (end >= greatest_[earlier.tile]) break;
@@ -302,17 +308,22 @@ class BlockTrees {
     }
     number_.assign(grid_.room() + outside_.size(), kNoNumber);
   }
-  void add_tiles(int axis, std::size_t at, const BlockGrid::Coordinates& first, bool outside) {
+  /// Whether a tile lies beside earlier blocks, and beside later ones.
+  struct AtBorder {
+    bool low = false, high = false;
+  };
+  void add_tiles(int axis, std::size_t at, const BlockGrid::Coordinates& first, AtBorder so_far) {
     const std::size_t count = std::min(grid_.width(), grid_.size(axis) - first[axis]);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t tile = at + (i + 1) * grid_.step(axis);
-      const bool at_border =
-          outside || (i == 0 && first[axis] > 0) || (i + 1 == count && first[axis] + count < grid_.size(axis));
+      const AtBorder border{so_far.low || (i == 0 && first[axis] > 0),
+                            so_far.high || (i + 1 == count && first[axis] + count < grid_.size(axis))};
       if (axis == 0 && i == 0) rows_.emplace_back(static_cast<std::uint32_t>(tile), static_cast<std::uint32_t>(count));
       if (axis > 0) {
-        add_tiles(axis - 1, tile, first, at_border);
+        add_tiles(axis - 1, tile, first, border);
       } else if (!constant(static_cast<std::uint32_t>(tile))) {
-        if (at_border) border_.push_back(static_cast<std::uint32_t>(tile));
+        if (border.low) low_border_.push_back(static_cast<std::uint32_t>(tile));
+        if (border.high) high_border_.push_back(static_cast<std::uint32_t>(tile));
         tiles_.push_back(static_cast<std::uint32_t>(tile));
       }
     }
@@ -322,7 +333,10 @@ class BlockTrees {
     return std::max(least_[a], least_[b]) < std::min(greatest_[a], greatest_[b]);
   }
   [[nodiscard]] Place place_of(std::uint32_t root) const noexcept {
-    return root < places_.size() ? places_[root] : outside_.place(root);
+    return root < grid_.room() ? place_of_tile(root) : outside_.place(root);
+  }
+  [[nodiscard]] Place place_of_tile(std::uint32_t tile) const noexcept {
+    return static_cast<Place>(origin_ + grid_.places()[tile]);
   }
 
   void give_up_tiles(Regions<Key>& trees) {
@@ -331,7 +345,7 @@ class BlockTrees {
     classes_.clear();
     for (const std::uint32_t tile : tiles_)
       classes_.push_back(
-          static_cast<std::uint8_t>(2 * widths_.class_of(least_[tile], greatest_[tile]) + places_[tile] % 2));
+          static_cast<std::uint8_t>(2 * widths_.class_of(least_[tile], greatest_[tile]) + place_of_tile(tile) % 2));
     const auto order = sort_by_class(2 * Widths<Key>::kClasses, [&](const auto& visit) {
       for (std::size_t i = 0; i < tiles_.size(); ++i) visit(tiles_[i], classes_[i]);
     });
@@ -343,7 +357,7 @@ class BlockTrees {
         number_[tile] = kNoNumber;
         continue;
       }
-      trees.roots.push_back(places_[tile]);
+      trees.roots.push_back(place_of_tile(tile));
       number_[tile] = static_cast<std::uint32_t>(trees.roots.size());
     }
   }
@@ -445,18 +459,19 @@ class BlockTrees {
     return false;
   }
 
-  /// As find_wanted_links, for one tile and neighbour.
-  [[nodiscard]] bool is_wanted(std::uint32_t tile, const BlockGrid::Ahead& ahead) const {
+  /// As find_wanted_links, for one tile and neighbour: the levels of the link, empty if it is superfluous.
+  [[nodiscard]] std::pair<Key, Key> wanted_levels(std::uint32_t tile, const BlockGrid::Ahead& ahead) const {
     const auto other = static_cast<std::uint32_t>(tile + ahead.distance);
-    const Key from = std::max(least_[tile], least_[other]), to = std::min(greatest_[tile], greatest_[other]);
-    Key low = from, high = to;
-    for (const std::ptrdiff_t distance : ahead.between) {
-      if (low >= high) return false;
-      const Key first = least_[tile + distance], end = greatest_[tile + distance];
-      if (first <= from && low < end) low = end;
-      if (to <= end && first < high) high = first;
+    Key low = std::max(least_[tile], least_[other]), high = std::min(greatest_[tile], greatest_[other]);
+    for (const auto& [by, and_by] : ahead.detours) {
+      if (low >= high) break;
+      const Key first = std::max(least_[tile + by], least_[tile + and_by]);
+      const Key end = std::min(greatest_[tile + by], greatest_[tile + and_by]);
+      if (first >= end) continue;
+      if (first <= low && low < end) low = end;
+      if (high <= end && first < high) high = first;
     }
-    return low < high;
+    return {low, high};
   }
   /// Collects the links among the tiles of the block and to earlier blocks, and numbers the trees of the latter.
   void link(Regions<Key>& trees) {
@@ -468,34 +483,34 @@ class BlockTrees {
       }
       return number_[root] - 1;
     };
-    for (const std::uint32_t tile : border_)
+    for (const std::uint32_t tile : high_border_)
       owners_.for_owners(tile, least_[tile], greatest_[tile], [&](std::uint32_t root, Key) { number(root); });
-    const auto add_links = [&](std::uint32_t tile, std::uint32_t other) {
-      owners_.add_links(tile, other, std::max(least_[tile], least_[other]), std::min(greatest_[tile], greatest_[other]),
-                        number, collector);
-    };
     for (const auto& [tile, count] : rows_) {
-      find_wanted_links(RangesOf<Key>(&least_[tile], &greatest_[tile]), count, grid_.ahead(), wanted_.data());
+      find_wanted_links(RowOfLinks<Key>{&least_[tile], &greatest_[tile], low_.data(), high_.data()}, count,
+                        grid_.ahead(), wanted_.data());
       for (std::size_t a = 0; a < wanted_.size(); ++a)
         for (std::uint64_t bits = wanted_[a]; bits != 0; bits &= bits - 1) {
-          const auto at = static_cast<std::uint32_t>(tile + static_cast<std::uint32_t>(std::countr_zero(bits)));
-          const auto other = static_cast<std::uint32_t>(at + grid_.ahead()[a].distance);
-          if (owners_.has(other)) add_links(at, other);
+          const auto i = static_cast<std::uint32_t>(std::countr_zero(bits));
+          const auto other = static_cast<std::uint32_t>(tile + i + grid_.ahead()[a].distance);
+          const std::size_t levels = a * kMostOfRow + i;
+          if (owners_.has(other)) owners_.add_links(tile + i, other, low_[levels], high_[levels], number, collector);
         }
     }
-    for (const std::uint32_t tile : border_)
+    for (const std::uint32_t tile : low_border_)
       for (const BlockGrid::Ahead& ahead : grid_.ahead()) {
         const auto other = static_cast<std::uint32_t>(tile - ahead.distance);
-        if (is_earlier_[other] && owners_.has(other) && is_wanted(other, ahead)) add_links(tile, other);
+        if (!is_earlier_[other] || !owners_.has(other)) continue;
+        const auto [low, high] = wanted_levels(other, ahead);
+        if (low < high) owners_.add_links(other, tile, low, high, number, collector);
       }
     trees.links = collector.take();
   }
 
-  /// Keeps the owners of the border tiles after all rounds of coarsening; no later block reads other tiles.
+  /// Keeps the owners of the tiles beside later blocks after all rounds of coarsening; these blocks read no others.
   void keep_border(const std::vector<Coarsening<Key>>& rounds, const std::vector<Place>& roots,
                    FinishedBlock<Key>& result) {
     std::vector<std::pair<std::uint32_t, Key>> parts, finer;
-    for (const std::uint32_t tile : border_) {
+    for (const std::uint32_t tile : high_border_) {
       const Key least = least_[tile];
       const auto add = [&](std::uint32_t owner, Key end) {
         if (!parts.empty() && parts.back().first == owner)
@@ -515,7 +530,7 @@ class BlockTrees {
           from = end;
         }
       }
-      first_owner_[places_[tile]] = static_cast<std::uint32_t>(result.owners.size());
+      first_owner_[place_of_tile(tile)] = static_cast<std::uint32_t>(result.owners.size());
       for (const auto& [tree, end] : parts) result.owners.emplace_back(roots[tree], end);
     }
   }
@@ -528,18 +543,20 @@ class BlockTrees {
   std::vector<std::ptrdiff_t> neighbours_;
   std::vector<std::uint32_t> near_;    ///< those that matter to a tile
   std::vector<Key> least_, greatest_;  ///< by tile of the box, and kReadBeyond more
-  std::vector<Place> places_;          ///< by tile of the box
+  Place origin_ = 0;                   ///< see BlockGrid::places
   std::vector<bool> is_earlier_;       ///< by tile of the box: whether it belongs to an earlier block
-  Ownership<Key> owners_;              ///< of the tiles of the box: tiles of the block, and roots outside
+  /// Of the tiles of the box: tiles of the block, and roots outside.
+  Ownership<Key, std::uint32_t> owners_;
   OutsideRoots outside_;
   std::vector<std::uint32_t> tiles_;                           ///< of the block, those that are not constant
   std::vector<std::pair<std::uint32_t, std::uint32_t>> rows_;  ///< of the block: first tile, number of tiles
-  std::vector<std::uint32_t> border_;                          ///< the tiles that have neighbours in other blocks
+  std::vector<std::uint32_t> low_border_, high_border_;        ///< the tiles beside earlier and beside later blocks
   std::vector<std::uint32_t> number_;                          ///< by root: number of its tree in the block
   std::vector<std::uint8_t> classes_;
   std::vector<KeyLink<Key>> offered_;  ///< a: the offering root
   std::vector<std::pair<std::uint32_t, Key>> parts_;
   std::vector<std::uint64_t> wanted_;  ///< by neighbour ahead (see find_wanted_links)
+  std::vector<Key> low_, high_;        ///< see RowOfLinks
 };
 
 /// The regions of all tiles. Blocks of a group are built at the same time; the result is that of building them one
@@ -549,7 +566,8 @@ Regions<Key> make_first_regions(const RangeMap<Key>& map, const Widths<Key>& wid
                                 unsigned threads, const Progress& progress) {
   Regions<Key> regions;
   if (map.tiles.rows() == 0) return regions;
-  const BlockGrid grid(map.tiles, neighbourhood);
+  // In noise, detours leave many short links, which take longer than those that they save.
+  const BlockGrid grid(map.tiles, neighbourhood, !widths.are_of_noise());
   std::vector<FinishedBlock<Key>> finished(grid.count());
   std::vector<std::uint32_t> of_place(map.tiles.room());  // first owners, then numbers of roots
   Workers<BlockTrees<Key>> workers(threads, [&] { return BlockTrees<Key>(map, widths, grid, finished, of_place); });

@@ -19,11 +19,18 @@ namespace tegl::detail {
 class BlockGrid {
  public:
   using Coordinates = std::array<std::size_t, kMostAxes>;
-  /// A neighbour ahead, and the tiles between: the step along some of its axes leads to them, so that they are
-  /// neighbours of both.
+  /// A way around a link: distances from the tile to two neighbouring tiles, or twice to the same. At levels at which
+  /// both are active, they connect the tile to the neighbour ahead.
+  struct Detour {
+    std::ptrdiff_t by, and_by;
+  };
+  /// A neighbour ahead, and the detours to it. Across an edge or a corner: by a tile between, to which the step along
+  /// some of its axes leads. Across a face: by the two tiles one step ahead along a higher axis. A detour may consist
+  /// of superfluous links, but their own detours have links across fewer axes, or across a face of a higher axis, or
+  /// farther ahead. So this ends, and some connection has all its links.
   struct Ahead {
     std::ptrdiff_t distance;
-    std::vector<std::ptrdiff_t> between;
+    std::vector<Detour> detours;
   };
   /// A tile in the margin of a box, which belongs to an earlier block.
   struct Earlier {
@@ -31,7 +38,8 @@ class BlockGrid {
     std::size_t blocks_back;  ///< number of the block minus that of the earlier one
   };
 
-  BlockGrid(const PaddedTiles& tiles, Neighbourhood neighbourhood)
+  /// `face_detours`: whether neighbours across faces have detours.
+  BlockGrid(const PaddedTiles& tiles, Neighbourhood neighbourhood, bool face_detours)
       : tiles_(tiles), dim_(tiles.dim()), width_(kWidth[static_cast<std::size_t>(tiles.dim())]) {
     Coordinates counts{};
     std::array<std::size_t, kMostAxes> axes{};
@@ -42,7 +50,8 @@ class BlockGrid {
       count_ *= counts[a];
     }
     room_ = steps_[dim_ - 1] * (width_ + 2);
-    find_neighbours(neighbourhood);
+    find_places();
+    find_neighbours(neighbourhood, face_detours);
     find_earlier(counts);
     order_blocks(counts);
   }
@@ -72,22 +81,30 @@ class BlockGrid {
     }
     return first;
   }
+  /// Whether a block has the full width along all axes.
+  [[nodiscard]] bool is_whole(const Coordinates& first) const noexcept {
+    for (int a = 0; a < dim_; ++a)
+      if (tiles_.size(a) - first[a] < width_) return false;
+    return true;
+  }
+  /// Places of the tiles of a box, minus the box's origin.
+  [[nodiscard]] const std::vector<Place>& places() const noexcept { return places_; }
+  /// Place of the first tile of a box, in its margin.
+  [[nodiscard]] Place origin(const Coordinates& first) const noexcept {
+    std::ptrdiff_t origin = static_cast<std::ptrdiff_t>(tiles_.row_place(0));
+    for (int a = 0; a < dim_; ++a) origin += (static_cast<std::ptrdiff_t>(first[a]) - 1) * tiles_.step(a);
+    return static_cast<Place>(origin);
+  }
   /// Calls visit(tile of the box, place, length) for the lines of a box along axis 0 that have tiles or a margin.
   template <class Visit>
   void for_lines(const Coordinates& first, const Visit& visit) const {
-    std::ptrdiff_t corner = static_cast<std::ptrdiff_t>(tiles_.row_place(0)) - 1;
-    corner += static_cast<std::ptrdiff_t>(first[0]);
-    for (int a = 1; a < dim_; ++a) corner += (static_cast<std::ptrdiff_t>(first[a]) - 1) * tiles_.step(a);
+    const Place corner = origin(first);
     Coordinates at{};
     const auto length = [&](int a) { return std::min(width_, tiles_.size(a) - first[a]) + 2; };
     for (int axis = 0; axis < dim_;) {
       std::size_t tile = 0;
-      std::ptrdiff_t place = corner;
-      for (int a = 1; a < dim_; ++a) {
-        tile += at[a] * steps_[a];
-        place += static_cast<std::ptrdiff_t>(at[a]) * tiles_.step(a);
-      }
-      visit(tile, static_cast<Place>(place), length(0));
+      for (int a = 1; a < dim_; ++a) tile += at[a] * steps_[a];
+      visit(tile, static_cast<Place>(corner + places_[tile]), length(0));
       for (axis = 1; axis < dim_; ++axis) {
         if (++at[axis] < length(axis)) break;
         at[axis] = 0;
@@ -98,7 +115,15 @@ class BlockGrid {
  private:
   static constexpr std::array<std::size_t, kMostAxes + 1> kWidth = {1, 4096, 64, 16, 8, 6};
 
-  void find_neighbours(Neighbourhood neighbourhood) {
+  void find_places() {
+    for (std::size_t tile = 0; tile < room_; ++tile) {
+      std::ptrdiff_t place = 0;
+      for (int a = 0; a < dim_; ++a)
+        place += static_cast<std::ptrdiff_t>(tile / steps_[a] % (width_ + 2)) * tiles_.step(a);
+      places_.push_back(static_cast<Place>(place));
+    }
+  }
+  void find_neighbours(Neighbourhood neighbourhood, bool face_detours) {
     const auto moved = [](const Step& step) {
       return std::count_if(step.begin(), step.end(), [](int to) { return to != 0; });
     };
@@ -114,7 +139,15 @@ class BlockGrid {
       }
       const std::ptrdiff_t distance = parts.back();
       neighbours_.push_back(distance);
-      if (distance > 0) ahead_.push_back({distance, {parts.begin() + 1, parts.end() - 1}});
+      if (distance <= 0) continue;
+      std::vector<Detour> detours;
+      for (std::size_t i = 1; i + 1 < parts.size(); ++i) detours.push_back({parts[i], parts[i]});
+      if (face_detours && parts.size() == 2)
+        for (int a = dim_; a-- > 0 && step[a] == 0;) {
+          const auto aside = static_cast<std::ptrdiff_t>(steps_[a]);
+          detours.push_back({aside, aside + distance});
+        }
+      ahead_.push_back({distance, std::move(detours)});
     }
   }
   void find_earlier(const Coordinates& counts) {
@@ -155,6 +188,7 @@ class BlockGrid {
   std::size_t count_ = 1;
   std::size_t room_ = 0;
   std::array<std::size_t, kMostAxes> steps_{};
+  std::vector<Place> places_;
   std::vector<std::ptrdiff_t> neighbours_;
   std::vector<Ahead> ahead_;
   std::vector<Earlier> earlier_;

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <variant>
 
 #include "search/tile_blocks.hpp"
@@ -15,17 +14,25 @@ namespace tegl::detail {
 
 /// find_wanted_links reads up to this many ranges beyond the last tile of a row and its neighbours.
 inline constexpr std::size_t kReadBeyond = 16;
+/// Maximum number of tiles of a row.
+inline constexpr std::size_t kMostOfRow = 64;
 
-/// The first minimum and maximum of the tiles of a row, in arrays of the box.
+/// The tiles of a row, in arrays of the box, and the levels of their links.
 template <class Key>
-using RangesOf = std::pair<const Key*, const Key*>;
-using RowRanges =
-    std::variant<RangesOf<std::uint8_t>, RangesOf<std::uint16_t>, RangesOf<std::uint32_t>, RangesOf<std::uint64_t>>;
+struct RowOfLinks {
+  const Key* least;  ///< of the first tile
+  const Key* greatest;
+  /// By neighbour ahead, kMostOfRow entries each: tile i needs a link to the neighbour from level `low` to `high`.
+  Key* low;
+  Key* high;
+};
+using AnyRowOfLinks = std::variant<RowOfLinks<std::uint8_t>, RowOfLinks<std::uint16_t>, RowOfLinks<std::uint32_t>,
+                                   RowOfLinks<std::uint64_t>>;
 
-/// For `count` tiles of a row, at most 64, and each neighbour ahead: sets bit i of `wanted` if tile i and the neighbour
-/// are active at a common level at which no tile between them is (as tested with one or two of these). At other levels
-/// the tile between is linked to both, or connected to them by tiles between, so that a link is superfluous.
-void find_wanted_links(const RowRanges& row, std::size_t count, std::span<const BlockGrid::Ahead> ahead,
+/// For `count` tiles of a row and each neighbour ahead: sets bit i of `wanted` if tile i needs a link to the neighbour,
+/// and then the levels of the link. Both are active there. At their other common levels a detour connects them (see
+/// BlockGrid::Ahead), so that the link is superfluous; gaps between the levels of detours are not used.
+void find_wanted_links(const AnyRowOfLinks& row, std::size_t count, std::span<const BlockGrid::Ahead> ahead,
                        std::uint64_t* wanted);
 
 }  // namespace tegl::detail
