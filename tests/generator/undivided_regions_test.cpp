@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "cells/region_search.hpp"
 #include "cells/region_tables.hpp"
 #include "cells/region_volumes.hpp"
 #include "regions/region_divisions.hpp"
@@ -204,6 +205,47 @@ TEST(RegionVolumes, ExactSignsAreTheSignsAtAllPositionsAndFewerThanThoseOfTheTer
           }
         }
   EXPECT_GT(sharper, 0u);
+}
+
+/// Whether the terms of some volume of an emitted division have both signs. `record`: without vertices near corners.
+bool has_balanced_volume(const tables::RegionDivisionTable& table, const tables::RegionRecord& record,
+                         const RegionVolumes& volumes) {
+  const auto is_balanced = [&](std::uint8_t apex, const std::uint8_t* t) {
+    const VolumeSigns of = volumes.signs({apex, t[1], t[2], t[3]});
+    return of.positive && of.negative;
+  };
+  for (unsigned i = 0; i < record.tetrahedra; ++i) {
+    const std::uint8_t* const t = table.tetrahedra + 4 * (record.first_tetrahedron + i);
+    if (t[0] < Vertices::kFirstOwn) {
+      if (is_balanced(t[0], t)) return true;
+      continue;
+    }
+    const std::uint32_t points = table.own[record.first_own + t[0] - Vertices::kFirstOwn];
+    for (std::uint8_t v = 0; v < Vertices::kFirstCentre; ++v)
+      if ((points >> v & 1u) != 0 && std::find(t, t + 4, v) == t + 4 && is_balanced(v, t)) return true;
+  }
+  return false;
+}
+
+TEST(RegionTables, VolumesWithTermsOfBothSignsOccurInFiveRegionsOfHexahedraWithTwoBarycentres) {
+  for (const auto shape : {tables::CellShape::tetrahedron, tables::CellShape::wedge, tables::CellShape::pyramid,
+                           tables::CellShape::hexahedron, tables::CellShape::octahedron}) {
+    const tables::RegionDivisionTable& table = *tables::region_division_table(shape);
+    int balanced = 0;
+    for (std::uint32_t i = 0; i < table.count; ++i) {
+      const tables::RegionRecord& record = table.records[i];
+      if (record.near != 0) continue;  // such a vertex need not see all triangles from each of its points
+      RegionTriangles boundary(record.triangles);
+      for (std::size_t j = 0; j < boundary.size(); ++j)
+        std::copy_n(table.triangles + 3 * (record.first_triangle + j), 3, boundary[j].begin());
+      const RegionVolumes volumes = volumes_with(tables::cell_table(shape, Triangulation::barycentric), boundary);
+      if (!has_balanced_volume(table, record, volumes)) continue;
+      ++balanced;
+      const std::uint64_t centres = detail::vertices_of(boundary) >> Vertices::kFirstCentre;
+      EXPECT_EQ(centres, 0b11u) << i;
+    }
+    EXPECT_EQ(balanced, shape == tables::CellShape::hexahedron ? 5 : 0);
+  }
 }
 
 /// The divisions that the runtime finds for all boundaries that can occur, by shape.
