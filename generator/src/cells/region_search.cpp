@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tetrahedra that are positive for all positions, and whose oriented boundaries
-// add up to the boundary of a region, cover the region once. Such a division is
-// sought by taking away tetrahedra from the boundary inwards, until the rest is
-// visible from one of its vertices, or from a mean of corners and points.
+// Tetrahedra that are positive for all positions, and whose oriented boundaries add up to the boundary of a region,
+// cover the region once. The search for such a division takes tetrahedra away from the boundary inwards, until the rest
+// is visible from one of its vertices, or from a mean of corners and points.
 #include "cells/region_search.hpp"
 
 #include <algorithm>

@@ -31,8 +31,8 @@ struct CapDivision {
 /// The volumes with the barycentres of a boundary's polygons.
 [[nodiscard]] RegionVolumes volumes_with(const tables::CellTable& shape, const RegionTriangles& boundary);
 
-/// Divides one region with a sorted boundary. No value if no division is found that is proved. The result depends on
-/// the boundary alone.
+/// Divides one region with a sorted boundary. No value if no division is found that is proved. The result depends only
+/// on the boundary.
 [[nodiscard]] std::optional<CapDivision> divide_region(const tables::CellTable& shape, const RegionTriangles& boundary);
 
 }  // namespace tegl::gen

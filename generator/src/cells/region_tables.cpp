@@ -238,7 +238,7 @@ void append(const RegionTriangles& boundary, const CapDivision& division, CapTab
   }
 }
 
-/// What a record refers to beyond the arrays or the shape, or null.
+/// The message about a record that refers to elements beyond the arrays or the shape; null if it does not.
 const char* missing(const Outline& outline, const CapTables& tables, const tables::RegionRecord& record) {
   const auto are_in = [](const auto& array, std::size_t first, std::size_t count) {
     return first <= array.size() && count <= array.size() - first;

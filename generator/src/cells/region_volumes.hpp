@@ -24,7 +24,7 @@ struct VolumeSigns {
 };
 
 /// A volume is linear in the position of each point, also if a point belongs to a barycentre: then the terms with that
-/// point twice are zero. So its least and greatest values are where all points are at ends of their edges.
+/// point twice are zero. So it has its minimum and maximum where all points are at ends of their edges.
 class RegionVolumes {
  public:
   /// `shape`: a 3D shape with its corners and edges; it must outlive the object.

@@ -49,8 +49,7 @@ std::optional<RegionDivision> in_frame(const tables::RegionTable& cube, const Cu
     Tetrahedron& t = division.tetrahedra.emplace_back();
     for (unsigned k = 0; k < 4; ++k) {
       const unsigned v = cube.simplices[(list.first_simplex + i) * 4 + k];
-      // barycentres are named by their order in the table, until their edges
-      // are known
+      // barycentres are named by their order in the table, until their edges are known
       t[k] = v < kFirstSlot  ? shared[v]
              : v < kFirstOwn ? static_cast<std::uint8_t>(Vertices::kFirstCentre + (v - kFirstSlot))
                              : static_cast<std::uint8_t>(Vertices::kFirstOwn + (v - kFirstOwn));

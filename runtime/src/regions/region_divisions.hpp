@@ -43,7 +43,7 @@ class RegionDivisions {
       : cube_(tables::region_table(3, triangulation, alternative)) {}
 
   /// The division of the high part of a shape with this boundary, whose triangles face outwards. It has the boundary's
-  /// triangles. The division depends on the boundary alone.
+  /// triangles. The division depends only on the boundary.
   [[nodiscard]] const RegionDivision& of(tables::CellShape shape, RegionTriangles boundary);
 
  private:

@@ -22,6 +22,7 @@ struct CubeFace {
 /// faces of one dimension this is the order of their lowest corners, then of their ascending axes.
 template <unsigned N>
 struct CubeFaceArrays {
+  /// Number of faces: 3^N.
   static constexpr std::size_t kCount = [] {
     std::size_t count = 1;
     for (unsigned a = 0; a < N; ++a) count *= 3;
@@ -30,6 +31,7 @@ struct CubeFaceArrays {
   std::array<CubeFace, kCount> faces{};                            ///< by number
   std::array<std::uint16_t, std::size_t{1} << (2 * N)> numbers{};  ///< at base << N | axes
 
+  /// Lists all faces.
   constexpr CubeFaceArrays() {
     std::array<std::uint8_t, std::size_t{1} << N> sets{};  // of axes, ascending lists in lexicographic order
     for (unsigned i = 0; i < 1u << N; ++i)
@@ -46,12 +48,14 @@ struct CubeFaceArrays {
   }
 };
 
+/// The faces of the N-cube.
 template <unsigned N>
 inline constexpr CubeFaceArrays<N> kCubeFaceArrays{};
 
 /// The faces of the n-cube, n = 1 ... 6, in the order of tile::FaceLattice. A view of constants.
 class CubeFaces {
  public:
+  /// `n`: from 1 to 6.
   constexpr explicit CubeFaces(int n) noexcept
       : CubeFaces(n == 1   ? CubeFaces(1, kCubeFaceArrays<1>.faces, kCubeFaceArrays<1>.numbers)
                   : n == 2 ? CubeFaces(2, kCubeFaceArrays<2>.faces, kCubeFaceArrays<2>.numbers)
