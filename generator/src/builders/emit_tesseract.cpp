@@ -271,6 +271,11 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
   constexpr const char* kBuiltTriangles =
       "{triangles_of_cubes_.data() + 4 * std::size_t{of_part.first_triangle},\n"
       "                          of_part.triangle_count, of_part.cube}";
+  const std::string sets = filled("builder4_sets.cpp", {{"ends_of_edges", ends_of_edges()},
+                                                        {"edges_with_vertices", edges_with_vertices()},
+                                                        {"differences", differences()},
+                                                        {"ambiguous_squares", ambiguous_squares()},
+                                                        {"with_neighbours", with_neighbours()}});
   return filled("builder4.cpp",
                 {{"banner", banner},
                  {"name", builder_name(request)},
@@ -282,11 +287,7 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                  {"ends", corner_sets(32, 8, ends_of)},
                  {"lifted_corners", lifted_corners()},
                  {"lifted_vertices", lifted_vertices()},
-                 {"ends_of_edges", ends_of_edges()},
-                 {"edges_with_vertices", edges_with_vertices()},
-                 {"differences", differences()},
-                 {"ambiguous_squares", ambiguous_squares()},
-                 {"with_neighbours", with_neighbours()},
+                 {"sets", sets},
                  {"local_functions", edges ? std::string(template_text("builder4_edges_local.cpp")) : std::string()},
                  {"find_parts", filled(parts, {{"add_cubes", add_all}})},
                  {"triangles_of_part", edges ? kBuiltTriangles : "cubes_.triangles(of_part)"},
