@@ -57,14 +57,14 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// ExtractOptions::ambiguity: on triangular and bcc there is no ambiguity. On fcc, fixed rules differ only in pyramids
 /// at the first and last layer; rules by the data resolve their bases, and cells are stored. In fcc_in_time,
-/// these resolve quadrilaterals between two times. `mean` and `saddle` decide the insides of octahedra and 16-cells
+/// they resolve quadrilaterals between two times. `mean` and `saddle` decide the insides of octahedra and 16-cells
 /// (tegl/ambiguity.hpp).
 ///
 /// Normals (Normals::differences) come from gradients by least squares on a sample and its neighbours on the lattice,
 /// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex` and, for options,
-/// of `extract` of complexes; InvalidArgument for Normals::sobel, and for periods that are not the number of samples x
-/// the step. The result does not depend on the number of threads. O(P) time; in 2D and 3D about 1.3 bytes per sample of
-/// fcc, with caps or periods those of `lattice_complex`, twice.
+/// of `extract` of complexes; InvalidArgument for other normals, and for periods that are not the number of samples x
+/// the step. The result does not depend on the number of threads. O(P) time; about 1.3 bytes per sample of fcc, or, if
+/// cells are stored, twice the memory of `lattice_complex`.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,

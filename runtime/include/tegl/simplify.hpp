@@ -81,7 +81,7 @@ struct SimplifyOptions {
   /// tests. A contour without intersecting pairs keeps this property. Simplices that intersect already are not
   /// contracted unless that ends their intersections. InvalidArgument for `fast`. Takes two to five times as long.
   bool keep_embedded = false;
-  WorkOptions work = {};  ///< threads (for bounds and for parts of `quadric`), progress
+  WorkOptions work = {};  ///< threads (for bounds and parts of `quadric`; if several, for moments one more), progress
 };
 
 /// Why a simplification ended.

@@ -339,7 +339,7 @@ void sort_by_own_times(const CellMeshOptions& options, std::vector<std::optional
 }
 
 /// Where the times of a series are from.
-enum class TimesFrom { caller, step, collection, files };
+enum class TimesFrom { caller, collection, files };
 
 /// Throws InvalidArgument unless times ascend; names the option, or the files, that the times are from.
 void require_ascending(const std::vector<double>& times, const std::vector<fs::path>& files, TimesFrom from,
@@ -353,10 +353,6 @@ void require_ascending(const std::vector<double>& times, const std::vector<fs::p
                     fmt::format("the given times (--times) have {} for {} after {} for {}; expected ascending times in "
                                 "the order of the files, or the files in the order of their times (--sort time)",
                                 times[i], here, times[i - 1], before));
-      case TimesFrom::step:
-        throw Error(ErrorCode::InvalidArgument, fmt::format("the time step (--time-step) is {}; expected a positive "
-                                                            "number, so that the times of the files ascend",
-                                                            times[1] - times[0]));
       case TimesFrom::collection:
         fail(ErrorCode::InvalidArgument, collection,
              "has the timestep {} of {} after {} of {}; expected ascending times: the order by times (--sort time), or "
@@ -384,7 +380,12 @@ std::vector<double> times_of(const std::vector<std::optional<double>>& own, cons
   if (!times.empty() && options.time_step)
     throw Error(ErrorCode::InvalidArgument, "times and a time step; expected one of the two");
   if (own.size() == 1) return {};
-  if (options.time_step) from = TimesFrom::step;
+  if (const auto step = options.time_step;
+      step && !(*step > 0.0 && std::isfinite(*step * static_cast<double>(own.size() - 1))))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the time step (--time-step) is {}; expected a positive number for which the times of all "
+                            "files are finite",
+                            *step));
   for (std::size_t i = 0; i < own.size() && options.time_step; ++i)
     times.push_back(static_cast<double>(i) * *options.time_step);
   if (!times.empty() && times.size() != own.size())

@@ -9,7 +9,7 @@
 namespace tegl::detail {
 
 /// The task runs once, on a thread of TBB if one is free, or else on the thread that calls `finish`. So it never waits
-/// for a thread. What it refers to must outlive this object.
+/// for a thread. Objects that the task refers to must outlive this one.
 class TaskAside {
  public:
   explicit TaskAside(std::function<void()> task);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What measurements of distances need of the contour that they measure from or to. Prepared once for several of them.
+// Data of a contour for measurements of distances to it, prepared once for several of them.
 #pragma once
 
 #include "base/progress.hpp"

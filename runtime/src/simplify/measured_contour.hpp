@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <optional>
 
 #include "base/progress.hpp"
@@ -23,14 +24,20 @@ class MeasuredContour {
   /// The contour must outlive it.
   MeasuredContour(const Contour<N, double>& contour, const std::array<double, N>& scale, unsigned threads)
       : contour_(contour), scale_(scale), threads_(threads) {}
+  /// If nobody has waited for the preparation, it is cancelled.
+  ~MeasuredContour() { is_wanted_ = false; }
+  MeasuredContour(const MeasuredContour&) = delete;
+  MeasuredContour& operator=(const MeasuredContour&) = delete;
 
-  /// With several threads, another one begins with the preparation. One thread prepares the contour in `measure`, when
-  /// the memory of what it does before is free.
+  /// With several threads, another one begins with the preparation. It comes on top of the threads of parallel loops
+  /// that run meanwhile. A single thread prepares the contour in `measure`, when the memory of its earlier work is
+  /// free.
   void begin() {
     if (threads_ == 1 || preparation_) return;
     preparation_.emplace([this] {
+      const Progress until_unwanted = [this](double) { return is_wanted_.load(); };
       simplices_.emplace(contour_, scale_);
-      target_.emplace(*simplices_);
+      target_.emplace(*simplices_, 1u, until_unwanted);
     });
     preparation_->begin();
   }
@@ -49,9 +56,10 @@ class MeasuredContour {
       const DeviationTarget<N> target(simplices, work.threads, part_of(work.progress, 0.0, 0.05));
       result.to_other = deviation_to(*simplices_, target, enough, {work.threads, part_of(work.progress, 0.05, 0.5)});
     }
-    if (!target_) target_.emplace(*simplices_, work.threads);  // when the memory of the other target is free
+    if (!target_)  // when the memory of the other target is free
+      target_.emplace(*simplices_, work.threads, part_of(work.progress, 0.5, 0.55));
     result.from_other = deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
-                                     {work.threads, part_of(work.progress, 0.5, 1.0)});
+                                     {work.threads, part_of(work.progress, 0.55, 1.0)});
     return result;
   }
 
@@ -61,6 +69,7 @@ class MeasuredContour {
   unsigned threads_;
   std::optional<ScaledSimplices<N>> simplices_;
   std::optional<DeviationTarget<N>> target_;
+  std::atomic<bool> is_wanted_ = true;
   std::optional<TaskAside> preparation_;  ///< the last member: it waits for the thread that uses the others
 };
 

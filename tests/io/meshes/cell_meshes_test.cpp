@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "io_support.hpp"
 #include "tegl/check.hpp"
@@ -368,7 +369,7 @@ TEST(CellMesh, FilesOfASeriesMustMatch) {
   expect_error(ErrorCode::InvalidArgument, {"times and a time step"}, [&] { read_cell_mesh(same, options); });
   options.times.clear();
   EXPECT_THAT(read_cell_mesh(same, options).times, testing::ElementsAre(0.0, 0.25));
-  for (const double step : {0.0, -0.25}) {
+  for (const double step : {0.0, -0.25, std::numeric_limits<double>::infinity()}) {
     options.time_step = step;
     expect_error(ErrorCode::InvalidArgument, {fmt::format("(--time-step) is {}; expected a positive number", step)},
                  [&] { read_cell_mesh(same, options); });

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -521,6 +522,24 @@ TEST(SimplifyErrors, NameWhatIsWrong) {
   expect_error(ErrorCode::InvalidArgument, "triangles", [&] { simplify(ball<2>(8), flat); });
   options.work.progress = [](double) { return false; };
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { simplify(contour, options); });
+}
+
+/// Another thread may prepare the measurement then.
+TEST(SimplifyErrors, CanBeCancelledAtAnyReport) {
+  const auto contour = ball<3>(4);
+  for (const unsigned threads : {1u, 3u}) {
+    std::size_t reports = 0, last = ~std::size_t{0};
+    SimplifyOptions<3> options;
+    options.ratio = 0.5;
+    options.work = {threads, [&](double) { return ++reports < last; }};
+    simplify(contour, options);
+    const std::size_t all = std::exchange(reports, 0);
+    ASSERT_GE(all, 20u);
+    for (last = 1; last <= all; last += all / 20, reports = 0) {
+      expect_error(ErrorCode::Cancelled, "cancelled", [&] { simplify(contour, options); });
+      EXPECT_EQ(reports, last);
+    }
+  }
 }
 
 TEST(SimplifyErrors, AnEarlierErrorIsANumberAndNotNegative) {
