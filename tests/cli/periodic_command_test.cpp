@@ -510,14 +510,16 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
 TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
   const std::string ball = path("ball.nrrd"), streamed = path("streamed.vtkhdf"), in_memory = path("memory.vtkhdf");
   (void)run_json({"sample", "ball", "--lattice", "fcc", "--size", "40", "-o", ball});
-  for (const char* const lattice : {"fcc", "bcc"}) {
-    const std::vector<std::string> options = {"contour", ball, "--iso", "0", "--lattice", lattice};
+  const auto contours = [&](const std::vector<std::string>& options) {  // streamed and in memory
     auto stream = options, memory = options;
     stream.insert(stream.end(), {"--stream", "-o", streamed});
     memory.insert(memory.end(), {"-o", in_memory});
     const nlohmann::json report = run_json(stream);
     EXPECT_EQ(report["tiles"], run_json(memory)["tiles"]);
-    const Mesh one = read_mesh(streamed), other = read_mesh(in_memory);
+    return std::pair(read_mesh(streamed), read_mesh(in_memory));
+  };
+  for (const char* const lattice : {"fcc", "bcc"}) {
+    const auto [one, other] = contours({"contour", ball, "--iso", "0", "--lattice", lattice});
     EXPECT_TRUE(std::ranges::equal(one.coordinates, other.coordinates)) << lattice;
     EXPECT_TRUE(std::ranges::equal(one.simplices, other.simplices)) << lattice;
     EXPECT_GT(one.simplices.size(), 1000u);
@@ -529,13 +531,7 @@ TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
   for (const char* const lattice : {"d4", "fcc_in_time"}) {  // with other numbers
     const std::string moving = path("moving.nrrd");
     (void)run_json({"sample", "ball", "--lattice", lattice, "--size", "9", "-o", moving});
-    const std::vector<std::string> options = {"contour", moving, "--iso", "0", "--ambiguity", "mean"};
-    auto stream = options, memory = options;
-    stream.insert(stream.end(), {"--stream", "-o", streamed});
-    memory.insert(memory.end(), {"-o", in_memory});
-    const nlohmann::json report = run_json(stream);
-    EXPECT_EQ(report["tiles"], run_json(memory)["tiles"]);
-    const Mesh one = read_mesh(streamed), other = read_mesh(in_memory);
+    const auto [one, other] = contours({"contour", moving, "--iso", "0", "--ambiguity", "mean"});
     EXPECT_EQ(one.coordinates.size(), other.coordinates.size()) << lattice;
     EXPECT_EQ(one.simplices.size(), other.simplices.size()) << lattice;
     EXPECT_GT(one.simplices.size(), 1000u);
