@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "collector.hpp"
@@ -32,16 +31,15 @@ FunctionLayers<double, N> layers_of(const OwnedImage<double, N>& image, std::siz
           }};
 }
 
-/// The streamed contour of an image on a lattice, and its size. All layers are read.
+/// Streams the contour of an image on a lattice into a sink. All layers are read.
 template <int N>
-std::pair<Collector<N, double>, ExtractedSize> streamed_of(const OwnedImage<double, N>& image, Lattice lattice,
-                                                           const ExtractOptions& options) {
+ExtractedSize stream_to(Collector<N, double>& sink, const OwnedImage<double, N>& image, Lattice lattice,
+                        const ExtractOptions& options) {
   std::size_t next = 0;
   auto layers = layers_of<N>(image, next);
-  Collector<N, double> sink;
   const ExtractedSize extracted = extract_lattice_streamed<double>(layers, lattice, kIsovalue, sink, options);
   EXPECT_EQ(next, image.grid.axes[N - 1].size());
-  return {std::move(sink), extracted};
+  return extracted;
 }
 
 template <int N>
@@ -62,7 +60,8 @@ void expect_streamed(Lattice lattice, const std::array<std::size_t, N>& sizes, u
     options.normals = seed % 2 == 0 ? Normals::differences : Normals::none;
     options.work.threads = 1 + seed % 3;
     const auto [contour, stats] = extract_lattice_with_stats<double>(image.view(), lattice, kIsovalue, options);
-    const auto [sink, extracted] = streamed_of(image, lattice, options);
+    Collector<N, double> sink;
+    const ExtractedSize extracted = stream_to(sink, image, lattice, options);
     EXPECT_EQ(extracted.size.vertices, contour.vertices.size());
     EXPECT_EQ(extracted.size.simplices, contour.simplices.size());
     EXPECT_EQ(extracted.stats.tiles, stats.tiles);
@@ -118,7 +117,8 @@ void expect_streamed_by_cells(Lattice lattice, const std::array<std::size_t, N>&
       options.normals = triangulation == Triangulation::compact ? Normals::differences : Normals::none;
       options.work.threads = 1 + seed % 3;
       const auto [contour, stats] = extract_lattice_with_stats<double>(image.view(), lattice, kIsovalue, options);
-      const auto [sink, extracted] = streamed_of(image, lattice, options);
+      Collector<N, double> sink;
+      const ExtractedSize extracted = stream_to(sink, image, lattice, options);
       EXPECT_GT(contour.simplices.size(), 100u);
       ASSERT_EQ(extracted.size.vertices, contour.vertices.size());
       ASSERT_EQ(extracted.size.simplices, contour.simplices.size());
