@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// bench/tile_pairs.hpp, by which bench/tile_intersections tests cells, finds the contours that find_intersections
+// bench/embedded/tile_pairs.hpp, by which bench/tile_intersections tests cells, finds the contours that find_intersections
 // finds.
 #include <gtest/gtest.h>
 
