@@ -27,6 +27,8 @@ Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const R
     }
   quick_ = rows_ != nullptr && !has_cubes_ && shape_.size(0) <= kMostListed;
   has_cubes_ = has_cubes_ || lists_cubes_;
+  if constexpr (N < 4)
+    if (estimator_ != nullptr) ambiguous_ = SignatureSet(ambiguous_signatures<N>());
   if (N < 4 && rows_ != nullptr) {
     owns_vertices_ = false;
     for (unsigned s = 0; s < 1u << (1u << std::min(N, 3)); ++s)
@@ -237,23 +239,6 @@ TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const
   return count;
 }
 
-/// Indices of tiles of a row, of up to 64 of them.
-using TilePlaces = std::array<std::uint32_t, kWordBits>;
-
-/// Lists the indices of those tiles in first ... end - 1 whose signatures are `wanted`. Returns their number.
-/// Branch-free in the tiles.
-template <class Wanted>
-static std::uint32_t list_tiles(const TileRoom& room, std::uint32_t first, std::uint32_t end, TilePlaces& out,
-                                const Wanted& wanted) {
-  std::uint32_t* const to = out.data();
-  std::uint32_t found = 0;
-  for (std::uint32_t i = first; i < end; ++i) {
-    to[found] = i;
-    found += wanted(room.signatures[i]) ? 1 : 0;
-  }
-  return found;
-}
-
 namespace {
 
 /// Replaces the signatures of a row's ambiguous tiles by the keys of their variants, and corrects the row's counts.
@@ -302,21 +287,27 @@ template <int N>
                                                  TileCount& count) const {
   if constexpr (N < 4) {
     constexpr std::uint32_t kMany = 2 * RowFaces<3>::kMany;  // one cube costs less than one tesseract
-    const auto& ambiguous = ambiguous_signatures<N>();
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
     TileResolver<N> resolver(*estimator_, *rows_, base, room, count);
+    const bool is_listed = shape_.size(0) <= kMostListed;
     // calls visit(word, numbers of its ambiguous tiles)
     const auto for_words = [&](const auto& visit) {
-      TilePlaces places;
-      std::uint32_t first = 0;  // of the word's tiles
-      for (std::size_t word = 0; first < count.active; ++word) {
-        const std::uint32_t end = first + static_cast<std::uint32_t>(std::popcount(room.active[word]));
-        const std::uint32_t found =
-            list_tiles(room, first, end, places, [&](unsigned signature) { return ambiguous[signature]; });
-        if (found != 0) visit(word, std::span<const std::uint32_t>(places.data(), found));
-        first = end;
+      std::array<std::uint32_t, kWordBits> found;
+      std::size_t many = 0, word = 0;
+      BitWalk walk(room.active);
+      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+        const std::size_t tiles = std::min<std::size_t>(count.active - first, kWordBits);
+        for (Word rest = members_of(ambiguous_, room.signatures + first, tiles); rest != 0; rest &= rest - 1) {
+          const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(rest));
+          const std::size_t at = (is_listed ? room.at[i] : walk.place_of(i)) / kWordBits;
+          if (at != word && many != 0) visit(word, std::span<const std::uint32_t>(found.data(), many));
+          if (at != word) many = 0;
+          word = at;
+          found[many++] = i;
+        }
       }
+      if (many != 0) visit(word, std::span<const std::uint32_t>(found.data(), many));
     };
     const auto resolve_each = [&](std::size_t word, std::span<const std::uint32_t> numbers) {
       for (const std::uint32_t i : numbers) resolver.resolve(i, word);

@@ -17,6 +17,7 @@
 #include "kernel/extract_rows.hpp"
 #include "kernel/table_set.hpp"
 #include "tegl/table_contract.hpp"
+#include "tile/signature_set.hpp"
 #include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
@@ -185,6 +186,7 @@ class Counter {
   bool has_cubes_ = false;
   bool lists_cubes_ = false;
   bool owns_vertices_ = true;  ///< N < 4: whether the tile of any signature does
+  SignatureSet ambiguous_;     ///< N < 4, with an estimator
 };
 
 }  // namespace tegl::detail

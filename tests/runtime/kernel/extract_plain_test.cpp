@@ -245,6 +245,24 @@ TEST(Plain, EqualsTheKernelInLongRows) {
   expect_plain<float>(view_of(noise<float, 2>({65536 + 70, 3}, 781)), 0.5, {}, builder);
 }
 
+/// Ambiguous cells are found at their positions in rows longer than positions of 16 bits: the same image along another
+/// axis has the same contour.
+TEST(Plain, RulesFromTheDataAreTheSameInLongRowsAndInManyLayers) {
+  const auto row = noise<float, 3>({65536 + 70, 3, 3}, 782);
+  OwnedImage<float, 3> column{Grid<3>::unit({3, 3, 65536 + 70}), std::vector<float>(row.values.size())};
+  for (std::size_t x = 0; x < 65536 + 70; ++x)
+    for (std::size_t yz = 0; yz < 9; ++yz) column.values[9 * x + yz] = row.values[x + (65536 + 70) * yz];
+  for (const Ambiguity rule : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares}) {
+    ExtractOptions options;
+    options.ambiguity = rule;
+    const auto along_row = extract<double>(view_of(row), 0.5, options);
+    const auto along_column = extract<double>(view_of(column), 0.5, options);
+    EXPECT_EQ(along_row.vertices.size(), along_column.vertices.size());
+    EXPECT_EQ(along_row.simplices.size(), along_column.simplices.size());
+    EXPECT_NE(along_row.simplices.size(), extract<double>(view_of(row), 0.5).simplices.size());
+  }
+}
+
 /// Images as large as several of the kernel's work units along every axis.
 TEST(Plain, EqualsTheKernelForImagesOfManyRowsAndLayers) {
   RecursiveBuilder<2> builder2(ExtractOptions{});

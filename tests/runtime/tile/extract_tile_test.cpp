@@ -17,9 +17,11 @@
 #include "ambiguity/variants.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
+#include "only_targets.hpp"
 #include "tegl/extract.hpp"
 #include "tile/edge_means.hpp"
 #include "tile/extract_tables.hpp"
+#include "tile/signature_set.hpp"
 #include "tile/variant_table.hpp"
 
 namespace tegl::test {
@@ -167,6 +169,26 @@ TEST(EdgeMeans, AreTheOwnVerticesOfCubes) {
 
 TEST(EdgeMeans, AreTheOwnVerticesOfTesseracts) {
   expect_own_vertices<4>([](auto& bits) { return static_cast<std::uint32_t>(bits() & bits()) | 1u << bits() % 32; });
+}
+
+TEST(SignatureSet, FindsItsMembersInARowOnAllInstructionSets) {
+  std::mt19937_64 bits(11);
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+    const OnlyTargets only(left & -left);
+    for (std::size_t count = 0; count <= 64; ++count) {
+      std::array<bool, 256> members{};
+      for (bool& member : members) member = bits() % (1 + count % 3) == 0;
+      const detail::SignatureSet set(members);
+      std::vector<std::uint16_t> row(64 + 31, 0xffff);  // what follows the last tile does not count
+      std::uint64_t expected = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        row[i] = static_cast<std::uint16_t>(bits() % 256);
+        expected |= std::uint64_t{members[row[i]]} << i;
+        ASSERT_EQ(set.contains(row[i]), members[row[i]]);
+      }
+      ASSERT_EQ(detail::members_of(set, row.data(), count), expected) << count;
+    }
+  }
 }
 
 }  // namespace
