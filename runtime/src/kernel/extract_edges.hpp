@@ -17,6 +17,7 @@
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
 #include "kernel/placement.hpp"
+#include "kernel/row_normals.hpp"
 
 namespace tegl::detail {
 
@@ -68,6 +69,9 @@ class EdgeWriter {
     if (placement.normals() == nullptr) return;
     normals_ = std::make_unique<NormalScratch>();
     for (List& list : lists_) list.normals.resize(room_together(shape.size(0)));
+    if constexpr (kHasRowNormals)
+      if (RowNormals<N>::suits(source, *placement.normals(), shape))
+        row_normals_ = std::make_unique<RowNormals<N>>(source, *placement.normals(), shape);
   }
 
   /// Bytes of an EdgeWriter for rows of `samples` samples.
@@ -75,7 +79,8 @@ class EdgeWriter {
     constexpr std::size_t kEach = sizeof(std::ptrdiff_t) + N * sizeof(double);
     const std::size_t vertices = room_together(samples) * (normals ? 2 : 1);
     return N * (sizeof(std::uint32_t) * room(samples) + kEach * room_at_once(samples) + sizeof(Vertex) * vertices) +
-           most_segments(samples) * sizeof(Segment) + (normals ? sizeof(NormalScratch) : 0);
+           most_segments(samples) * sizeof(Segment) +
+           (normals ? sizeof(NormalScratch) + (kHasRowNormals ? RowNormals<N>::bytes(samples) : 0) : 0);
   }
 
   /// Edges added between start() and finish() belong to `target`.
@@ -126,6 +131,7 @@ class EdgeWriter {
   }
 
  private:
+  static constexpr bool kHasRowNormals = std::is_same_v<Real, float>;
   static constexpr std::size_t kMargin = 16;   ///< entries that vector code reads or writes past the end of lists
   static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
   static constexpr std::size_t kAtOnce = 8;    ///< values per store
@@ -259,7 +265,8 @@ class EdgeWriter {
     for (int axis = 0; axis < N; ++axis)
       for (std::size_t first = 0; first < lists_[axis].size; first += kPiece) {
         const EdgesInRows edges = make_points(axis, first, points[axis] + first);
-        if (normals_) make_normals(axis, first, edges, normals[axis] + first);
+        if (!normals_ || (in_place && make_normals_of_row(axis, edges, normals[axis]))) continue;
+        make_normals(axis, first, edges, normals[axis] + first);
       }
     // copy
     if (!in_place)
@@ -299,6 +306,18 @@ class EdgeWriter {
       const std::size_t count = std::min(kWordBits, edges.count - first);
       moves_->move(run(axis).layer, axis, {edges.rows + first, edges.at + first, count}, alphas + first, out + first);
     }
+  }
+
+  /// Computes the normals of a row after make_points. Returns false if this is done by make_normals.
+  bool make_normals_of_row([[maybe_unused]] int axis, [[maybe_unused]] const EdgesInRows& edges,
+                           [[maybe_unused]] Vertex* out) noexcept {
+    if constexpr (kHasRowNormals) {
+      if (row_normals_ == nullptr || !row_normals_->are_enough(edges.count)) return false;
+      const std::size_t row = segments_.front().row;
+      row_normals_->write(row, start_in(row, axis), axis, edges, lists_[axis].alphas.data(), out);
+      return true;
+    }
+    return false;
   }
 
   /// Computes the normals of a piece after make_points.
@@ -355,6 +374,8 @@ class EdgeWriter {
   std::size_t full_;
   bool fetches_;                            ///< whether samples are requested before they are needed
   std::unique_ptr<NormalScratch> normals_;  ///< null: no normals requested
+  /// Null: none are computed by row.
+  std::unique_ptr<RowNormals<N>> row_normals_;
   EdgeTarget<Vertex> target_{};
   /// Where the ends of edges along an axis are in memory.
   struct Ends {

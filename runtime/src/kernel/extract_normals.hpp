@@ -74,6 +74,19 @@ class NormalWriter {
     return true;
   }
 
+  /// Whether normals are made of differences in float, with the same weights at all samples of a row but the first and
+  /// the last.
+  [[nodiscard]] bool is_by_equal_weights() const noexcept {
+    return kind_ == Normals::differences && around_edges_in_float_ != nullptr && steps_[0].is_uniform();
+  }
+  [[nodiscard]] const AxisSteps& steps(int axis) const noexcept { return steps_[axis]; }
+  /// Whether samples at the ends of a row have no neighbours beyond.
+  [[nodiscard]] bool ends_with_row() const noexcept {
+    return !steps_[0].has_backward(0) && !steps_[0].has_forward(sizes_[0] - 1);
+  }
+  /// By which gradients are multiplied, so that they point to the side that the contour faces.
+  [[nodiscard]] double sign() const noexcept { return sign_; }
+
   /// Writes the normals on edges along `axis`. They start in the row of `start`, or in several rows that are inside,
   /// one of which is the row of `start` (start[0] is ignored). `start_of(i)`: index of edge i's first sample. Up to 15
   /// entries past the end of `alphas` are read.
@@ -97,6 +110,21 @@ class NormalWriter {
     const std::array<double, N> there = gradient_at(index, {axis, -1});
     // Not a + alpha * (b - a), as the difference may overflow.
     for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
+    return normal(gradient);
+  }
+
+  /// As on_edge for differences, from the values around the edge: value(place), places as for kEdgeValues. Along the
+  /// row, there must be no neighbours beyond its ends.
+  template <class ValueAt>
+  [[nodiscard]] Vertex on_edge_among(Index index, int axis, double alpha, const ValueAt& value) const noexcept {
+    const auto own = 4 * static_cast<unsigned>(axis);
+    std::array<std::array<double, N>, 2> at_end;
+    for (unsigned end = 0; end < 2; ++end, ++index[axis])
+      for (unsigned a = 0; a < N; ++a)
+        at_end[end][a] = derivative(value(4 * a + 2 * end), value(own + 2 - end), value(4 * a + 2 * end + 1),
+                                    steps_[a].at(index[a]));
+    std::array<double, N> gradient;
+    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * at_end[0][a] + alpha * at_end[1][a];
     return normal(gradient);
   }
 
@@ -153,7 +181,7 @@ class NormalWriter {
     if constexpr (std::is_same_v<Calc, double>)
       if (mapped_) row.to_world = to_world_.data();
     if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
-    const bool all_read = !steps_[0].has_backward(0) && !steps_[0].has_forward(sizes_[0] - 1);
+    const bool all_read = ends_with_row();
     for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
       // values and weights
       row.count = std::min(kEdgesAtOnce, edges.count - i);
@@ -167,25 +195,13 @@ class NormalWriter {
       if (row.row_weights == nullptr || steps_[0].has_backward(0)) left |= at_ends;
       for (; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        row.out[j] = all_read ? on_edge(start_of(i + j), axis, alphas[i + j], scratch.values.data() + j)
+        const auto value = [&](unsigned place) {
+          return static_cast<double>(scratch.values[place * kEdgesAtOnce + j]);
+        };
+        row.out[j] = all_read ? on_edge_among(start_of(i + j), axis, alphas[i + j], value)
                               : on_edge(start_of(i + j), axis, alphas[i + j]);
       }
     }
-  }
-
-  /// As on_edge for differences, from the values around the edge (kEdgesAtOnce apart).
-  template <class Calc>
-  [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha, const Calc* values) const noexcept {
-    const auto value = [&](unsigned place) { return static_cast<double>(values[place * kEdgesAtOnce]); };
-    const auto own = 4 * static_cast<unsigned>(axis);
-    std::array<std::array<double, N>, 2> at_end;
-    for (unsigned end = 0; end < 2; ++end, ++index[axis])
-      for (unsigned a = 0; a < N; ++a)
-        at_end[end][a] = derivative(value(4 * a + 2 * end), value(own + 2 - end), value(4 * a + 2 * end + 1),
-                                    steps_[a].at(index[a]));
-    std::array<double, N> gradient;
-    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * at_end[0][a] + alpha * at_end[1][a];
-    return normal(gradient);
   }
 
   /// Sets what all edges have in common: weights, and which neighbours exist.

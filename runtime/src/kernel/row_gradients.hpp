@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Gradients at all samples of a row, and unit normals on those of its edges that are critical. Compiled for several
+// instruction sets; all give identical bytes, those of write_normals (edge_normals.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "image/bitplanes.hpp"
+#include "image/gradient.hpp"
+
+namespace tegl::detail {
+
+/// Samples that arrays over a row have room for past its end: vector code reads and writes whole registers.
+inline constexpr std::size_t kRowMargin = 32;
+
+/// Length of the shortest row whose gradients are computed by registers.
+inline constexpr std::size_t kLeastRow = 18;
+
+/// A row of adjacent samples and the rows beside it.
+template <int N>
+struct RowDifferences {
+  const float* here;
+  std::array<const float*, N> backward, forward;  ///< by axis from 1 on; `here` if there is no such row
+  std::array<StepWeights, N> weights;
+  std::size_t samples;  ///< at least kLeastRow
+  std::ptrdiff_t next;  ///< to the row that is probably next; 0: unknown
+  float* out;           ///< derivatives along axis a from a * pitch on
+  std::size_t pitch;    ///< at least samples + kRowMargin
+};
+
+/// Writes the gradients in axis coordinates, except at the first and the last sample of the row.
+template <int N>
+void write_row_gradients(const RowDifferences<N>& row) noexcept;
+
+/// Critical edges of a row, in ascending order.
+template <int N>
+struct EdgesOfRow {
+  /// Gradients at the first and second end, by the edge's first sample; derivatives are `pitch` apart.
+  std::array<const float*, 2> ends;
+  std::size_t pitch;
+  std::size_t samples;
+  const std::uint32_t* at;  ///< by edge: its first sample
+  const double* alphas;     ///< by edge: its vertex's position on it
+  std::size_t count;
+  float sign;
+  float* alphas_by_sample;  ///< samples + kRowMargin, kNoEdge everywhere before and after
+  float* gradients;         ///< N x pitch: working storage
+  std::array<float, N>* out;
+  Word* left;  ///< `count` bits: set where a normal is undefined, as write_normals returns them
+};
+
+/// In EdgesOfRow::alphas_by_sample. Positions are not negative.
+inline constexpr float kNoEdge = -1.0F;
+
+/// Writes normals of length 1.
+template <int N>
+void write_row_normals(const EdgesOfRow<N>& edges) noexcept;
+
+}  // namespace tegl::detail
