@@ -24,6 +24,7 @@ from . import _dates, _kinds, _tegl
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
+INDEX_SUFFIX = "_index"  #: of the dimensions of an xarray whose coordinates are those of a curved grid
 
 Progress = Callable[[float], object]
 #: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
@@ -382,7 +383,34 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
             time_axis = number
         coordinates.append(values)
         units.append(unit)
-    return coordinates, [str(dim) for dim in data.dims], units, time_axis, str(data.attrs.get("units", ""))
+    names = [str(dim) for dim in data.dims]
+    for axis in own_curved(data):
+        names[axis] = names[axis].removesuffix(INDEX_SUFFIX)
+        units[axis] = str(data.coords[names[axis]].attrs.get("units", ""))
+    return coordinates, names, units, time_axis, str(data.attrs.get("units", ""))
+
+
+def own_lattice(data) -> str | None:
+    """The lattice that an image of tegl.read or the attribute "sample_lattice" of an xarray records, or None."""
+    if is_xarray(data):
+        name = data.attrs.get("sample_lattice")
+        return None if name is None else as_text("the attribute 'sample_lattice'", name)
+    return data.lattice if hasattr(data, "__tegl_image__") else None
+
+
+def own_curved(data) -> dict[int, np.ndarray]:
+    """The coordinates of a curved grid, by axis, of an image of tegl.read or an xarray made of it: those of the dimension
+    "lon_index" are the coordinate "lon"."""
+    if not is_xarray(data):
+        return data.curved if hasattr(data, "__tegl_image__") else {}
+    found: dict[int, np.ndarray] = {}
+    for axis, dim in enumerate(data.dims):
+        name = str(dim).removesuffix(INDEX_SUFFIX)
+        if name == str(dim) or name not in data.coords or dim not in data.coords[name].dims:
+            continue
+        coordinate = data.coords[name].transpose(*(one for one in data.dims if one in data.coords[name].dims))
+        found[axis] = coordinate.values.reshape([data.sizes[one] if one in coordinate.dims else 1 for one in data.dims])
+    return found
 
 
 def _values(array: np.ndarray) -> np.ndarray:
@@ -447,12 +475,12 @@ def _masked(array: np.ndarray, mask) -> np.ndarray:
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
             time_axis=None, allow_curved: bool = False, allow_lattice: bool = False) -> Prepared:
     """The library's view of an array. Values are copied only if the type or a mask requires it."""
-    if not allow_curved and getattr(data, "curved", None):
+    if not allow_curved and own_curved(data):
         raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected its `array`, with "
                          "indices as coordinates, or a contour")
-    if not allow_lattice and getattr(data, "__tegl_image__", None) and getattr(data, "lattice", None):
-        raise ValueError(f"an image on the lattice {data.lattice}, which only tegl.contour and tegl.count know; expected its "
-                         "`array`, or an image on a cubic grid")
+    if not allow_lattice and own_lattice(data) not in (None, "cubic"):
+        raise ValueError(f"an image on the lattice {own_lattice(data)}, which only tegl.contour and tegl.count know; expected "
+                         "its `array`, or an image on a cubic grid")
     if isinstance(data, (str, os.PathLike)):
         raise TypeError(f"{data!r} is a path; expected an array, or tegl.read({data!r})")
     if hasattr(data, "data_vars"):

@@ -139,8 +139,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         spacing = prepared.turned(lattice_spacing(lattice, prepared.ndim))
         prepared = _arguments.prepare(array, spacing=spacing, origin=origin, mask=mask, axis_names=axis_names,
                                       axis_units=axis_units, time_axis=time_axis)
-    if curved is None and getattr(array, "curved", None):
-        curved = array.curved
+    if curved is None:
+        curved = _arguments.own_curved(array) or None
     lattice = _lattice_of(array, lattice)
     is_double = _arguments.is_double(dtype, prepared)
     values = _arguments.position_values(positions, positions_image, prepared)
@@ -313,7 +313,7 @@ _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_un
 def _lattice_of(array, lattice: _kinds.Lattice | typing.Literal["cubic"] | None) -> _kinds.Lattice | None:
     """The argument `lattice`, or the image's own."""
     if lattice is None:
-        lattice = getattr(array, "lattice", None) if isinstance(array, Image) else None
+        lattice = typing.cast("_kinds.Lattice | None", _arguments.own_lattice(array))
     return None if lattice == "cubic" else typing.cast("_kinds.Lattice | None", lattice)
 
 
@@ -424,20 +424,31 @@ class Image:
 
     def to_xarray(self) -> typing.Any:
         """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map is its
-        attribute "affine"."""
+        attribute "affine", the lattice its attribute "sample_lattice". On a curved grid, the coordinates "lat" and "lon" belong
+        to the dimensions "lat_index" and "lon_index". `tegl.contour` finds lattices and curved coordinates again."""
         try:
             import xarray
         except ImportError as error:
             raise ImportError(f"to_xarray needs xarray, which cannot be imported: {error}") from error
-        dims = [name or f"axis_{number}" for number, name in enumerate(self.axis_names)]
-        coords = {dim: (dim, values, {**({"units": unit} if unit else {}),
-                                      **({"positive": direction} if direction != "unknown" else {})})
-                  for dim, values, unit, direction in zip(dims, self.coords, self.axis_units, self.axis_directions)}
+        names = [name or f"axis_{number}" for number, name in enumerate(self.axis_names)]
+        dims = [name + _arguments.INDEX_SUFFIX if axis in self.curved else name for axis, name in enumerate(names)]
+        coords: dict[str, typing.Any] = {}
+        for axis, (name, values) in enumerate(zip(names, self.coords)):
+            unit, direction = self.axis_units[axis], self.axis_directions[axis]
+            along = [axis]
+            if axis in self.curved:
+                along = [one for one, size in enumerate(self.curved[axis].shape) if one == axis or size > 1]
+                values = self.curved[axis].reshape([self.curved[axis].shape[one] for one in along])
+            coords[name] = ([dims[one] for one in along], values,
+                            {**({"units": unit} if unit else {}),
+                             **({"positive": direction} if direction != "unknown" else {})})
         attrs: dict[str, typing.Any] = {"units": self.value_unit} if self.value_unit else {}
         if self.value_name:
             attrs["long_name"] = self.value_name
         if self.affine is not None:
             attrs["affine"] = self.affine
+        if self.lattice is not None:
+            attrs["sample_lattice"] = self.lattice
         return xarray.DataArray(self.array, dims=dims, coords=coords, name=self.variable or None, attrs=attrs)
 
 

@@ -244,6 +244,39 @@ def test_images_become_xarrays_and_back():
     assert_same(tegl.contour(data, 20.0), image.contour(20.0))
 
 
+def test_xarrays_keep_the_lattice(tmp_path):
+    pytest.importorskip("xarray")
+    np.savez(tmp_path / "a.npz", values=noise((8, 6, 6), 4), sample_lattice="fcc")
+    image = tegl.read(tmp_path / "a.npz", "values")
+    data = image.to_xarray()
+    assert data.attrs["sample_lattice"] == "fcc"
+    assert_same(tegl.contour(data, 0.1), image.contour(0.1))
+    assert tegl.count(data, 0.1) == tegl.count(image, 0.1)
+    assert_same(tegl.contour(data, 0.1, lattice="cubic"), image.contour(0.1, lattice="cubic"))
+    with pytest.raises(ValueError, match="on the lattice fcc, which only tegl.contour and tegl.count know"):
+        tegl.slice(data, 0.1, at=1.5)
+
+
+def test_xarrays_keep_the_coordinates_of_a_curved_grid():
+    pytest.importorskip("xarray")
+    angle, radius = np.meshgrid(np.linspace(0, 3, 20), np.linspace(1, 2, 10), indexing="ij")
+    values = np.stack([1.4 - radius, 1.6 - radius])
+    curved = {1: (radius * np.cos(angle))[None], 2: (radius * np.sin(angle))[None]}
+    image = tegl.Image(values, tuple(np.arange(n) * 1.0 for n in values.shape), ("time", "x", "y"), ("s", "m", "m"), None, 0, "",
+                       "", "netCDF", "", (), "", ("unknown",) * 3, ({},) * 3, curved)
+    data = image.to_xarray()
+    assert data.dims == ("time", "x_index", "y_index") and data.coords["x"].dims == ("x_index", "y_index")
+    contour = tegl.contour(data, 0.0)
+    assert_same(contour, tegl.contour(values, 0.0, curved=curved, axis_names=("time", "x", "y"), axis_units=("s", "m", "m")))
+    assert contour.axis_names == ("time", "x", "y") and contour.axis_units == ("s", "m", "m")
+    assert_same(tegl.contour(data.transpose("time", "y_index", "x_index")[:, :, :12], 0.0),
+                tegl.contour(values.transpose(0, 2, 1)[:, :, :12], 0.0, axis_names=("time", "y", "x"),
+                             axis_units=("s", "m", "m"), curved={2: curved[1].transpose(0, 2, 1)[:, :, :12],
+                                                                 1: curved[2].transpose(0, 2, 1)[:, :, :12]}))
+    with pytest.raises(ValueError, match="an image with a curved grid"):
+        tegl.slice(data, 0.0, at=0.5)
+
+
 # Other programs.
 
 def test_points_and_cells_are_x_y_z():

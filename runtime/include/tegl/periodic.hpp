@@ -97,9 +97,11 @@ struct Unrolled {
 };
 
 /// Unrolls a wrapped contour: each simplex across the seam is moved to the end of the period, with copies of its
-/// vertices at the start. Vertices keep their numbers, copies follow. Simplices keep their numbers. Normals and
-/// attributes are copied. A contour without periods is returned unchanged. Errors: InvalidArgument for a contour that
-/// is not sound; TooLarge. O(V + S) time.
+/// vertices at the start. Vertices keep their numbers, copies follow; a vertex of moved simplices only is moved itself.
+/// Simplices keep their numbers. Normals and attributes are copied. A manifold stays one: on lattices and beside
+/// missing values, where simplices that stay may only touch each other, these get copies of their common vertices, too.
+/// A contour without periods is returned unchanged. Errors: InvalidArgument for a contour that is not sound; TooLarge.
+/// O(V + S) time, for each round of copies.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Unrolled<N, Real> unroll(const Contour<N, Real>& contour);

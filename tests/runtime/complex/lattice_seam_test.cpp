@@ -81,13 +81,20 @@ TEST(LatticeSeam, ContoursAreClosedManifoldsAlongPeriodicAxes) {
           for (const auto& vertex : contour.vertices)
             for (int a = 0; a < N; ++a)
               EXPECT_TRUE((axes >> a & 1u) == 0 || (vertex[a] > -1e-12 && vertex[a] < 1.0)) << vertex[a];
-          if (axes == 1u && close) {  // no simplex is longer than a cell
-            const auto unrolled = unroll(contour).contour;
-            for (const auto& simplex : unrolled.simplices)
-              for (int j = 1; j < N; ++j)
-                EXPECT_LT(std::abs(unrolled.vertices[simplex[0]][0] - unrolled.vertices[simplex[j]][0]),
-                          1.01 / static_cast<double>(image.grid.axes[0].size()));
-          }
+          const auto [unrolled, originals] = unroll(contour);
+          expect_oriented_manifold(unrolled);
+          EXPECT_NEAR(measure(unrolled).size, measure(contour).size, 1e-9);
+          ASSERT_EQ(originals.size(), unrolled.vertices.size());
+          for (std::size_t s = 0; s < contour.simplices.size(); ++s)
+            for (int j = 0; j < N; ++j) {
+              const Index v = unrolled.simplices[s][j];
+              EXPECT_EQ(originals[v], contour.simplices[s][j]);
+              for (int a = 0; a < N; ++a) {  // no simplex is longer than a cell
+                const double length =
+                    std::abs(unrolled.vertices[unrolled.simplices[s][0]][a] - unrolled.vertices[v][a]);
+                EXPECT_LT(length, 2.01 / static_cast<double>(image.grid.axes[a].size()));
+              }
+            }
         }
   });
 }
