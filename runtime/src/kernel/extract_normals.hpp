@@ -15,9 +15,9 @@
 #include <Eigen/LU>
 
 #include "image/context_gradient.hpp"
+#include "image/edge_normals.hpp"
 #include "image/line_kernel.hpp"
 #include "image/sample_source.hpp"
-#include "kernel/edge_normals.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/extract.hpp"
 

@@ -12,10 +12,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "image/row_gradients.hpp"
 #include "image/row_source.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_normals.hpp"
-#include "kernel/row_gradients.hpp"
 
 namespace tegl::detail {
 

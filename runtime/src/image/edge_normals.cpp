@@ -3,14 +3,14 @@
 // Normals on critical edges (see edge_normals.hpp and row_gradients.hpp). Highway's foreach_target compiles this file
 // once per instruction set. Multiplications and additions are not fused, and roots and quotients are correctly rounded,
 // so that all instruction sets give identical bytes.
-#include "kernel/edge_normals.hpp"
+#include "image/edge_normals.hpp"
 
 #include <algorithm>
 
-#include "kernel/row_gradients.hpp"
+#include "image/row_gradients.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernel/edge_normals.cpp"
+#define HWY_TARGET_INCLUDE "image/edge_normals.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
 #include "hwy/cache_control.h"
