@@ -175,60 +175,35 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
 
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 
-/// Edges that are read together: a register of four adjacent samples for each, two of which share a longer register.
-#if HWY_MAX_BYTES >= 32
-constexpr std::size_t kTogether = 8;
-#else
-constexpr std::size_t kTogether = 4;
-#endif
-
-/// By edge: its first sample.
-using Samples = std::array<std::ptrdiff_t, kTogether>;
-
-/// The registers of edges `i` and, if they share one, `i` + 4: of sample x those at x - 1, x, x + 1 and x + 2.
-template <class D, class T>
-HWY_INLINE hn::Vec<D> load_edges(D d, const T* from, const Samples& at, std::size_t i) {
-  const hn::FixedTag<hn::TFromD<D>, 4> four;
-  const auto values = [&](std::size_t edge) HWY_ATTR { return load_values(four, from + at[edge] - 1); };
-#if HWY_MAX_BYTES >= 32
-  return hn::Combine(d, values(i + 4), values(i));
-#else
-  (void)d;
-  return values(i);
-#endif
-}
-
-/// Four adjacent samples of each of kTogether edges. One load for several values, and one store for all edges.
+/// Four adjacent samples of each of four edges: of sample i those at i - 1, i, i + 1 and i + 2. One load for several
+/// values, and one store for four edges.
 template <class D>
-struct AdjacentSamples {
+struct FourRows {
   using V = hn::Vec<D>;
-  using Pairs = hn::Repartition<std::uint64_t, D>;
   D d;
-  hn::Vec<Pairs> lower01, lower23, upper01, upper23;
+  V lower01, lower23, upper01, upper23;
 
   template <class T>
-  HWY_INLINE AdjacentSamples(D tag, const T* from, const Samples& at) : d(tag) {
-    const Pairs pairs;
-    const V v0 = load_edges(d, from, at, 0), v1 = load_edges(d, from, at, 1);
-    const V v2 = load_edges(d, from, at, 2), v3 = load_edges(d, from, at, 3);
-    lower01 = hn::BitCast(pairs, hn::InterleaveLower(d, v0, v1));
-    lower23 = hn::BitCast(pairs, hn::InterleaveLower(d, v2, v3));
-    upper01 = hn::BitCast(pairs, hn::InterleaveUpper(d, v0, v1));
-    upper23 = hn::BitCast(pairs, hn::InterleaveUpper(d, v2, v3));
+  HWY_INLINE FourRows(D tag, const T* from, const std::array<std::ptrdiff_t, 4>& at) : d(tag) {
+    const auto values = [&](unsigned i) HWY_ATTR { return load_values(d, from + at[i] - 1); };
+    const V v0 = values(0), v1 = values(1), v2 = values(2), v3 = values(3);
+    lower01 = hn::InterleaveLower(d, v0, v1);
+    lower23 = hn::InterleaveLower(d, v2, v3);
+    upper01 = hn::InterleaveUpper(d, v0, v1);
+    upper23 = hn::InterleaveUpper(d, v2, v3);
   }
-  HWY_INLINE V before() const { return hn::BitCast(d, hn::InterleaveLower(Pairs(), lower01, lower23)); }
-  HWY_INLINE V here() const { return hn::BitCast(d, hn::InterleaveUpper(Pairs(), lower01, lower23)); }
-  HWY_INLINE V next() const { return hn::BitCast(d, hn::InterleaveLower(Pairs(), upper01, upper23)); }
-  HWY_INLINE V after_next() const { return hn::BitCast(d, hn::InterleaveUpper(Pairs(), upper01, upper23)); }
+  HWY_INLINE V before() const { return hn::ConcatLowerLower(d, lower23, lower01); }
+  HWY_INLINE V here() const { return hn::ConcatUpperUpper(d, lower23, lower01); }
+  HWY_INLINE V next() const { return hn::ConcatLowerLower(d, upper23, upper01); }
+  HWY_INLINE V after_next() const { return hn::ConcatUpperUpper(d, upper23, upper01); }
 };
 
-/// Reads kTogether edges, whose first samples are at `at`. `single`, `singles`: places of neighbours in rows of their
-/// own.
+/// Reads four edges, whose first samples are at `at`. `single`, `singles`: places of neighbours in rows of their own.
 template <bool kAlongRow, class T, class Calc>
-HWY_INLINE void gather_some(const T* const* from, std::size_t own, const std::uint8_t* single, std::size_t singles,
-                            const Samples& at, Calc* out) {
-  const hn::FixedTag<Calc, kTogether> d;
-  using Rows = AdjacentSamples<hn::FixedTag<Calc, kTogether>>;
+HWY_INLINE void gather_four(const T* const* from, std::size_t own, const std::uint8_t* single, std::size_t singles,
+                            const std::array<std::ptrdiff_t, 4>& at, Calc* out) {
+  const hn::FixedTag<Calc, 4> d;
+  using Rows = FourRows<hn::FixedTag<Calc, 4>>;
   const auto store = [&](std::size_t place, auto values)
                          HWY_ATTR { hn::StoreU(values, d, out + place * kEdgesAtOnce); };
   if constexpr (kAlongRow) {
@@ -256,7 +231,7 @@ HWY_INLINE void gather_some(const T* const* from, std::size_t own, const std::ui
 }
 
 template <bool kAlongRow, class T, class Calc>
-HWY_INLINE std::uint64_t gather_together(const EdgesAnywhere<T, Calc>& edges) {
+HWY_INLINE std::uint64_t gather_fours(const EdgesAnywhere<T, Calc>& edges) {
   // local, because stores of vectors may change any memory
   const std::size_t count = edges.count, own = 4 * edges.axis;
   const std::ptrdiff_t* const rows = edges.rows;
@@ -269,19 +244,18 @@ HWY_INLINE std::uint64_t gather_together(const EdgesAnywhere<T, Calc>& edges) {
   for (std::size_t place = 4; place < edges.places; ++place)
     if (kAlongRow ? place % 4 < 2 : place != own + 1 && place != own + 2)
       single[singles++] = static_cast<std::uint8_t>(place);
-  const hn::FixedTag<std::uint32_t, kTogether> d;
+  const hn::FixedTag<std::uint32_t, 4> d;
   const auto most = hn::Set(d, static_cast<std::uint32_t>(edges.row_size - 4));
   std::uint64_t left = 0;
-  for (std::size_t i = 0; i < count; i += kTogether) {
-    const std::size_t first = std::min(i, count - kTogether);  // some edges are read twice
+  for (std::size_t i = 0; i < count; i += 4) {
+    const std::size_t first = std::min(i, count - 4);  // some edges are read twice
     const auto inside = hn::Sub(hn::LoadU(d, at + first), hn::Set(d, 1u));
     if (HWY_LIKELY(hn::AllTrue(d, hn::Eq(inside, hn::Min(inside, most))))) {
       const auto sample = [&](std::size_t j) HWY_ATTR { return rows[j] + static_cast<std::ptrdiff_t>(at[j]); };
-      Samples samples;
-      for (std::size_t j = 0; j < kTogether; ++j) samples[j] = sample(first + j);
-      gather_some<kAlongRow>(from, own, single.data(), singles, samples, out + first);
+      gather_four<kAlongRow>(from, own, single.data(), singles,
+                             {sample(first), sample(first + 1), sample(first + 2), sample(first + 3)}, out + first);
     } else {
-      left |= ((std::uint64_t{1} << kTogether) - 1) << first;
+      left |= std::uint64_t{15} << first;
     }
   }
   return left;
@@ -293,8 +267,8 @@ template <class T, class Calc>
 HWY_INLINE std::uint64_t gather(const EdgesAnywhere<T, Calc>& edges) {
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
   if constexpr (sizeof(Calc) == sizeof(float))
-    if (edges.count >= kTogether && edges.row_size >= 4)
-      return edges.axis == 0 ? gather_together<true>(edges) : gather_together<false>(edges);
+    if (edges.count >= 4 && edges.row_size >= 4)
+      return edges.axis == 0 ? gather_fours<true>(edges) : gather_fours<false>(edges);
 #endif
   return ~std::uint64_t{0} >> (kEdgesAtOnce - edges.count);
 }

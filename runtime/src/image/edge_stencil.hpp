@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads the values around edges: around edges of one row by whole registers, otherwise some at a time. Compiled for
+// Reads the values around edges: around edges of one row by whole registers, otherwise four at a time. Compiled for
 // several instruction sets.
 #pragma once
 

@@ -226,7 +226,7 @@ bool gather_row(const Places<T, N>& places, const EdgesInRows& edges, Calc* out,
   return true;
 }
 
-/// Reads the values of edges in any rows: some edges at a time, near the ends of rows one by one.
+/// Reads the values of edges in any rows: four edges at a time, near the ends of rows one by one.
 template <bool kAlongRow, Value T, int N, class Calc>
 std::uint64_t gather_any(const Places<T, N>& places, unsigned axis, const EdgesInRows& edges, Calc* out) noexcept {
   if (places.along != 1) return gather_each<kAlongRow>(places, edges, out);

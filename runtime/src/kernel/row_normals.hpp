@@ -86,7 +86,7 @@ class RowNormals {
 
  private:
   /// With fewer edges, it is faster to read the samples around each.
-  static constexpr std::size_t kSamplesPerEdge = 5;
+  static constexpr std::size_t kSamplesPerEdge = 3;
 
   static constexpr bool has_room(std::size_t samples) noexcept {
     return samples >= kLeastRow && samples <= kMostSamples;

@@ -272,7 +272,7 @@ TEST(Normals, AreThoseOfPlainCode) {
   expect_plain_normals_of<float, 4>({21, 3, 3, 3});
 }
 
-/// Contiguous samples are read by vector registers: of a row if its edges are dense, otherwise of some edges, except
+/// Contiguous samples are read by vector registers: of a row if its edges are dense, otherwise of four edges, except
 /// near the ends of rows. Others are read one by one. `broken`: some samples are missing, infinite, or so large that
 /// differences are.
 template <class Real, Value T, int N>
