@@ -15,6 +15,7 @@ import inspect
 import operator
 import os
 import re
+import reprlib
 import typing
 from collections.abc import Callable, Mapping, Sequence
 
@@ -275,7 +276,7 @@ def threads_of(threads: object) -> int:
 def as_bool(name: str, value: object) -> bool:
     """A truth value of Python or NumPy; text and numbers are refused."""
     if not isinstance(value, (bool, np.bool_)):
-        raise TypeError(f"{name} is {value!r}; expected True or False")
+        raise TypeError(f"{name} is {reprlib.repr(value)}; expected True or False")
     return bool(value)
 
 

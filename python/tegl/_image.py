@@ -314,6 +314,8 @@ def _lattice_of(array, lattice: _kinds.Lattice | typing.Literal["cubic"] | None)
     """The argument `lattice`, or the image's own."""
     if lattice is None:
         lattice = typing.cast("_kinds.Lattice | None", _arguments.own_lattice(array))
+    if isinstance(lattice, str) and lattice != "cubic" and lattice not in LATTICES:
+        raise ValueError(f"lattice is {lattice!r}; expected one of {', '.join(map(repr, LATTICES))}, or 'cubic'")
     return None if lattice == "cubic" else typing.cast("_kinds.Lattice | None", lattice)
 
 

@@ -95,7 +95,7 @@ def extent_around(vertices: np.ndarray) -> np.ndarray | None:
 
 def require_offsets(extent: np.ndarray | None, normal: Sequence[float], offsets: Sequence[float], dtype, of: str) -> None:
     """Raises a ValueError unless all hyperplanes <normal, x> = offset meet the extent, up to rounding."""
-    if extent is None or len(normal) != extent.shape[1] or not np.isfinite(normal).all():
+    if extent is None or len(normal) != extent.shape[1] or not np.isfinite(normal).all() or not np.any(normal):
         return
     ends = extent * np.asarray(normal, dtype=np.float64)
     low, high = np.min(ends, axis=0).sum(), np.max(ends, axis=0).sum()

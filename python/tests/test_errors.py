@@ -337,6 +337,7 @@ def test_oblique_planes_outside_of_the_image_are_an_error():
     assert said(lambda: moving.slice(normal=(1, 1, 0), offset=99)) == (
         "offset is 99.0; expected an offset between 0 and 13, the ends of the image along this normal, or allow_empty=True for an "
         "empty cut")
+    assert "normal of a hyperplane that is 0" in said(lambda: moving.slice(normal=(0, 0, 0), offset=99))
     assert "offset is 8.0; expected an offset between -7 and 6, " in said(lambda: moving.slice(normal=(1, -1, 0), offset=[-1, 8]))
     assert len(moving.slice(normal=(1, 1, 0), offset=99, allow_empty=True).simplices) == 0
     moving.slice(normal=(1, 1, 0), offset=13.0)

@@ -228,7 +228,7 @@ def test_contours_of_lattices_and_of_scattered_points():
         assert np.abs(normals - outwards).max() < 0.1
     with pytest.raises(ValueError, match="expected one of the two"):
         tegl.contour(ball, 0.0, lattice="fcc", division="kuhn")
-    with pytest.raises(ValueError, match="lattice"):
+    with pytest.raises(ValueError, match="lattice is 'hexagonal'; expected one of 'triangular', .*'fcc_in_time', or 'cubic'"):
         tegl.contour(ball, 0.0, lattice="hexagonal")
     with pytest.raises(ValueError, match="expected 4 dimensions"):
         tegl.contour(ball, 0.0, lattice="d4")

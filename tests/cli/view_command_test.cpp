@@ -222,6 +222,24 @@ TEST_F(View, OfACurvedGridHasItsCoordinatesLikeTheSavedContour) {
   EXPECT_LE(indices["axes"][0]["highest"], 6);
 }
 
+TEST_F(View, OfAPeriodicTimeTheTracksEndAtBothEnds) {
+  const RunResult run = run_tegl({"view", file(), "--iso", "0", "--periodic", "t", "-o", path("page.html"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the time is periodic: the contour is unrolled"));
+  ASSERT_EQ(run_tegl({"view", file(), "--iso", "0", "-o", path("plain.html"), "-q"}).exit, 0);
+  const auto last_event = [&](const std::string& page) {
+    const nlohmann::json of_page = scene(path(page));
+    double last = 0;
+    for (const nlohmann::json& event : of_page.at("layers").at(0).at("graph").at("events"))
+      last = std::max(last, event.at("time").get<double>());
+    return last;
+  };
+  EXPECT_NEAR(last_event("page.html"), last_event("plain.html") + 2, 1e-9);  // one more step, of 2 s
+  // another axis: the time is as it is
+  EXPECT_THAT(run_tegl({"view", file(), "--iso", "0", "--periodic", "x", "-o", path("page.html")}).err,
+              Not(HasSubstr("the time is periodic")));
+}
+
 TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {
   const auto view = [&](const std::string& input, const std::string& output) {
     return run_tegl({"view", input, "--iso", "0", "-o", output});

@@ -214,11 +214,15 @@ def images():
         refused(f"compressed by '{compressor}'" , "contour", path, "--iso", 0.1, "-o", FOLDER / "no.ply")
     # a parallel file
     path = FOLDER / "parallel.pvti"
-    path.write_text('<VTKFile type="PImageData"><PImageData WholeExtent="0 8 0 7 0 6"><Piece Extent="0 8 0 7 0 6" '
+    path.write_text('<?xml version="1.0"?>\n<VTKFile type="PImageData"><PImageData WholeExtent="0 8 0 7 0 6"><Piece Extent="0 8 0 7 0 6" '
                     'Source="type.vti"/></PImageData></VTKFile>')
     for command in ("contour", "info"):
         more = ["--iso", 0.1, "-o", FOLDER / "no.ply"] if command == "contour" else []
-        refused("names other files", command, path, *more)
+        refused("holds 'PImageData', which names other files", command, path, *more)
+    # the old format
+    path = FOLDER / "old.vtk"
+    path.write_text("# vtk DataFile Version 3.0\nvalues\nASCII\nDATASET STRUCTURED_POINTS\n")
+    refused("VTK's old format; expected VTK's XML", "info", path)
 
 
 def rectilinear_and_structured():

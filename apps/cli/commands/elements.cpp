@@ -108,7 +108,7 @@ class ElementsCommand final : public ContourInputCommand {
         read_contour(bar, per_ == "cell", per_ == "cell" ? CurvedGrids::refused : CurvedGrids::allowed);
     if (per_ == "cell" && input.lattice)
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--per cell on the lattice {}; expected --per simplex or vertex, or a cubic grid",
+                  fmt::format("--per cell on the lattice {}; expected --per simplex, or a cubic grid",
                               name_of(*input.lattice)));
     ElementReport report;
     std::visit([&](auto& contour) { make(contour, input, report, bar); }, input.contour);

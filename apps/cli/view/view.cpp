@@ -158,8 +158,16 @@ class ViewCommand final : public ContourInputCommand {
     const auto add = [&]<int N>(Contour<N, double>& contour) {
       here.thinned = thin(contour, view_limit(), {threads(), bar.stage("components")});
       std::optional<PageTracks> tracks;
-      if constexpr (N == 4)
+      if constexpr (N == 4) {
+        // A slider has two ends, so tracks end at both ends of a periodic time.
+        if (std::ranges::any_of(contour.periods,
+                                [](const Period<4>& p) { return p.vector[3] != 0 || p.dual[3] != 0; })) {
+          remark("the time is periodic: the contour is unrolled, and its tracks end at both ends of the time");
+          contour = unroll(contour).contour;
+          input.ends = {};
+        }
         tracks = page_tracks(contour, input.ends.first, input.ends.second, tracks_, {threads(), bar.stage("track")});
+      }
       if (!contour.periods.empty()) contour = unroll(contour).contour;  // simplices keep their numbers
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };

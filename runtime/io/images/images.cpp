@@ -55,7 +55,11 @@ Format format_of(const fs::path& path) {
   const auto prefix = read_prefix(path, 348);
   const std::string_view start(reinterpret_cast<const char*>(prefix.data()), prefix.size());
   if (start.starts_with("NRRD000")) return Format::Nrrd;
-  if (start.starts_with("<VTKFile")) return Format::Vtk;
+  if (start.starts_with("<VTKFile") || (start.starts_with("<?xml") && start.find("<VTKFile") != start.npos))
+    return Format::Vtk;
+  if (start.starts_with("# vtk DataFile"))
+    fail(ErrorCode::UnsupportedFormat, path,
+         "VTK's old format; expected VTK's XML: .vti, .vtr, .vts, .vtu or .pvd (ParaView saves data in these)");
   if (start.starts_with("\x93NUMPY")) return Format::Npy;
   if (start.starts_with("CDF") || start.starts_with("\x89HDF")) return Format::NetCdf;
   if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;

@@ -97,10 +97,11 @@ VtkFile::VtkFile(const fs::path& path, const Progress& progress) : path_(path), 
   // data
   constexpr std::array<std::string_view, 5> kParallel = {"PImageData", "PRectilinearGrid", "PStructuredGrid",
                                                          "PUnstructuredGrid", "PPolyData"};
-  if (std::find(kParallel.begin(), kParallel.end(), type_) != kParallel.end() || type_.starts_with("vtk"))
+  const bool is_parallel = std::find(kParallel.begin(), kParallel.end(), type_) != kParallel.end();
+  if (is_parallel || type_.starts_with("vtk"))
     fail(ErrorCode::UnsupportedFormat, path,
          "holds {}, which names other files with the data; expected a file with data, such as one of the pieces",
-         shown(type_));
+         is_parallel ? fmt::format("'{}'", type_) : shown(type_));
   data_ = root.child(type_);
   if (data_ == nullptr)
     fail(ErrorCode::MalformedFile, path, "<VTKFile> of type {} without an element of this name", shown(type_));

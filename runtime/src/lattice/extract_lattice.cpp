@@ -297,7 +297,8 @@ template <int N>
 void check_lattice_options(double isovalue, ExtractOptions options) {
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("normals on a lattice are {}; expected gradient (differences)", name_of(options.normals)));
+                fmt::format("normals on a lattice are {}; expected gradient (differences), geometric or flat",
+                            name_of(options.normals)));
   options.normals = Normals::none;
   check_complex_options(N, isovalue, options);
 }
