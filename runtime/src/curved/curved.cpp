@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -53,21 +54,31 @@ class Mover {
     return place;
   }
 
-  /// The axes, as bits, whose coordinates `move` reads and writes.
-  [[nodiscard]] unsigned read() const noexcept {
-    return is_straight_and_needed_ ? (1u << N) - 1 : map_.along() | map_.curved();
+  /// The axes, as bits, whose coordinates are moved.
+  [[nodiscard]] unsigned moved() const noexcept { return map_.curved(); }
+  /// Finds the edges of the first block.count of kMost points.
+  template <class Real>
+  void find_edges(const Real* points, detail::CurvedBlock& block) const noexcept {
+    if (!is_straight_and_needed_) {
+      map_.find_edges(points, steps_, block);
+      return;
+    }
+    block.inside = 0;
+    for (std::size_t i = 0; i < block.count; ++i) map_.set_edge(i, place_of(widened(points + i * N)), block);
   }
-  [[nodiscard]] unsigned written() const noexcept { return map_.curved(); }
-  /// Finds the places of points in the grid.
-  void look_up(detail::CurvedBlock& block) const noexcept {
-    is_straight_and_needed_ ? locate_all(block) : detail::find_places(block, steps_);
-    map_.look_up(block);
-  }
-  /// Starts to load coordinates at the places of a block that was looked up.
+  /// Starts to load coordinates at the edges of a block.
   void request(const detail::CurvedBlock& block) const noexcept { map_.request(block); }
-  /// Moves points that were looked up to space; NaN where coordinates are unknown. Meanwhile starts to load those of
-  /// `next`.
-  void move(detail::CurvedBlock& block, const detail::CurvedBlock& next) const noexcept { map_.move(block, next); }
+  /// Computes the curved coordinates of the points of a block, NaN where they are unknown; the others of `moved`
+  /// remain. Meanwhile starts to load those of `next`.
+  template <class Real, class Moved>
+  void move(const Real* points, const detail::CurvedBlock& block, const detail::CurvedBlock& next,
+            detail::CurvedBlock::Points<Moved>& moved) const noexcept {
+    map_.set_on_edges(block, next, moved.data());
+    for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
+      const std::size_t i = N * static_cast<std::size_t>(std::countr_zero(rest));
+      map_.set_inside(place_of(widened(points + i)), moved.data() + i);
+    }
+  }
 
   /// The normal in space of one on the index grid: the gradient g becomes the solution x of J^T x = g.
   [[nodiscard]] std::array<double, N> turned(const std::array<double, N>& point,
@@ -90,16 +101,11 @@ class Mover {
   }
 
  private:
-  void locate_all(detail::CurvedBlock& block) const noexcept {
-    for (std::size_t i = 0; i < block.count; ++i) {
-      std::array<double, N> point;
-      for (int a = 0; a < N; ++a) point[a] = block.point[a][i];
-      const detail::CellPlace<N> place = place_of(point);
-      for (int a = 0; a < N; ++a) {
-        block.base[a][i] = static_cast<double>(place.base[a]);
-        block.share[a][i] = place.share[a];
-      }
-    }
+  template <class Real>
+  [[nodiscard]] static std::array<double, N> widened(const Real* point) noexcept {
+    std::array<double, N> result;
+    std::copy_n(point, N, result.begin());
+    return result;
   }
 
   /// The step of the index grid along an axis.
@@ -117,16 +123,15 @@ class Mover {
   bool is_straight_and_needed_ = false;  ///< whether curved coordinates differ along an axis with its own coordinates
 };
 
-/// The first point with a coordinate along some axes that is not finite; block.count if there is none.
-template <int N>
-std::size_t first_unknown(const detail::CurvedBlock& block, unsigned axes) noexcept {
-  std::size_t i = 0;
-  if (detail::are_finite(block, axes)) return block.count;
-  for (bool is_known = true; i < block.count; ++i) {
-    for (int a = 0; a < N; ++a) is_known = is_known && ((axes >> a & 1u) == 0 || std::isfinite(block.point[a][i]));
-    if (!is_known) break;
-  }
-  return i;
+/// The first point of a block whose coordinates in space are not known; block.count if there is none.
+template <class Real, int N>
+std::size_t first_unknown(const Mover<N>& mover, const Real* points, const detail::CurvedBlock& block) noexcept {
+  detail::CurvedBlock::Points<double> moved{};  // not rounded to Real, which may be infinite
+  mover.move(points, block, {}, moved);
+  for (std::size_t i = 0; i < block.count; ++i)
+    for (int a = 0; a < N; ++a)
+      if ((mover.moved() >> a & 1u) != 0 && !std::isfinite(moved[N * i + static_cast<std::size_t>(a)])) return i;
+  return block.count;
 }
 
 template <int N>
@@ -144,34 +149,40 @@ template <class Real, int N>
 void move_contour(const Mover<N>& mover, std::span<const CurvedAxis> curved, const WorkOptions& work,
                   Contour<N, Real>& contour) {
   const std::size_t vertices = contour.vertices.size();
+  const bool moves_all = mover.moved() == (1u << N) - 1;
   // The first vertex without a place keeps its indices, for the message.
   std::atomic<std::size_t> unknown{vertices};
   detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
     // While one block is moved, the coordinates of the next one are requested, as memory is slow.
     constexpr std::size_t kMost = detail::CurvedBlock::kMost;
     std::array<detail::CurvedBlock, 2> blocks;
-    const auto look_up = [&](std::size_t first) -> detail::CurvedBlock& {
+    detail::CurvedBlock::Points<Real> moved{}, rest{};
+    const auto find_edges = [&](std::size_t first) -> detail::CurvedBlock& {
       detail::CurvedBlock& block = blocks[first / kMost % 2];
       block.count = first < to ? std::min(to - first, kMost) : 0;
       if (block.count == 0) return block;
-      detail::load_points(contour.vertices[first].data(), N, mover.read(), block);
-      mover.look_up(block);
+      const Real* points = contour.vertices[first].data();
+      if (block.count < kMost) points = (std::copy_n(points, N * block.count, rest.begin()), rest.data());
+      mover.find_edges(points, block);
       return block;
     };
-    mover.request(look_up(from));
+    mover.request(find_edges(from));
     for (std::size_t first = from; first < to; first += kMost) {
-      detail::CurvedBlock& block = blocks[first / kMost % 2];
-      mover.move(block, look_up(first + kMost));
-      if (const std::size_t i = first_unknown<N>(block, mover.written()); i < block.count) {
-        detail::lower_to(unknown, first + i);
-        continue;
-      }
+      const detail::CurvedBlock& block = blocks[first / kMost % 2];
+      Real* const points = contour.vertices[first].data();
+      if (!moves_all) std::copy_n(points, N * block.count, moved.begin());
+      mover.move(points, block, find_edges(first + kMost), moved);
+      if (!detail::are_finite(moved))
+        if (const std::size_t i = first_unknown(mover, points, block); i < block.count) {
+          detail::lower_to(unknown, first + i);
+          continue;
+        }
       for (std::size_t v = first; v < first + block.count && !contour.normals.empty(); ++v) {
         const auto normal =
             mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
         for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
       }
-      detail::store_points(block, N, mover.written(), contour.vertices[first].data());
+      std::copy_n(moved.begin(), N * block.count, points);
     }
   });
   if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));

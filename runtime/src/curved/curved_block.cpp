@@ -20,31 +20,64 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using BlockTag = hn::CappedTag<double, 8>;
+using BlockVector = hn::Vec<BlockTag>;
 
-void places(CurvedBlock& block, std::size_t axis, double step) {
+/// Vectors of coordinates as doubles.
+HWY_INLINE BlockVector widened(BlockTag d, hn::Vec<hn::Rebind<float, BlockTag>> v) { return hn::PromoteTo(d, v); }
+HWY_INLINE BlockVector widened(BlockTag /*d*/, BlockVector v) { return v; }
+
+/// The coordinates of as many points as fit into a vector, by axis.
+template <std::size_t Dim, class Real>
+HWY_INLINE void load_columns(const Real* points, BlockVector (&columns)[Dim]) {
   const BlockTag d;
-  for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
-    const auto index = hn::Max(hn::Mul(hn::LoadU(d, block.point[axis].data() + i), hn::Set(d, step)), hn::Zero(d));
-    const auto base = hn::Floor(index);
-    hn::StoreU(base, d, block.base[axis].data() + i);
-    hn::StoreU(hn::Sub(index, base), d, block.share[axis].data() + i);
-  }
+  const hn::Rebind<Real, BlockTag> of_points;
+  hn::Vec<decltype(of_points)> x, y, z, t;
+  if constexpr (Dim == 2) hn::LoadInterleaved2(of_points, points, x, y);
+  if constexpr (Dim == 3) hn::LoadInterleaved3(of_points, points, x, y, z);
+  if constexpr (Dim == 4) hn::LoadInterleaved4(of_points, points, x, y, z, t);
+  columns[0] = widened(d, x);
+  columns[1] = widened(d, y);
+  if constexpr (Dim > 2) columns[2] = widened(d, z);
+  if constexpr (Dim > 3) columns[3] = widened(d, t);
 }
 
-void edges(CurvedBlock& block, unsigned along) {
+/// The ends of edges in arrays: the numbers of their samples, and the weights of the second ends. `share` has an
+/// element other than 0 at most, `share_of_edge`. Numbers are exact as arrays have fewer than 2^53 samples.
+template <std::size_t Dim>
+HWY_INLINE void ends_in(const CurvedArrays& arrays, const BlockVector (&base)[Dim], const BlockVector (&share)[Dim],
+                        BlockVector share_of_edge, std::size_t i, CurvedBlock::Ends& ends) {
   const BlockTag d;
-  const auto one = hn::Set(d, 1.0);
+  const hn::RebindToSigned<BlockTag> di;
+  auto at = hn::Zero(d), step = hn::Zero(d);
+  for (std::size_t a = 0; a < Dim; ++a) {
+    const auto stride = hn::Set(d, static_cast<double>(arrays.strides[a]));
+    at = hn::MulAdd(base[a], stride, at);
+    step = hn::Add(step, hn::IfThenElseZero(hn::Ne(share[a], hn::Zero(d)), stride));
+  }
+  hn::StoreU(hn::ConvertTo(di, at), di, ends.first.data() + i);
+  hn::StoreU(hn::ConvertTo(di, hn::Add(at, step)), di, ends.second.data() + i);
+  // the weights 1 and 0 for a coordinate that does not differ along the edge
+  hn::StoreU(hn::IfThenElseZero(hn::Ne(step, hn::Zero(d)), share_of_edge), d, ends.weight.data() + i);
+}
+
+template <std::size_t Dim, class Real>
+void all_ends(const Real* points, const IndexSteps& steps, std::span<const CurvedArrays> arrays, CurvedBlock& block) {
+  const BlockTag d;
+  const auto zero = hn::Zero(d);
   block.inside = 0;
   for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
-    auto sum = hn::Zero(d), axes = hn::Zero(d);
-    for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a) {
-      if ((along >> a & 1u) == 0) continue;
-      const auto share = hn::LoadU(d, block.share[a].data() + i);
-      sum = hn::Add(sum, share);
-      axes = hn::Add(axes, hn::IfThenElseZero(hn::Ne(share, hn::Zero(d)), one));
+    BlockVector base[Dim], share[Dim];
+    load_columns<Dim>(points + Dim * i, base);
+    auto sum = zero, axes = zero;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      const auto index = hn::Max(hn::Mul(base[a], hn::Set(d, steps[a])), zero);
+      base[a] = hn::Floor(index);
+      share[a] = hn::Sub(index, base[a]);
+      sum = hn::Add(sum, share[a]);
+      axes = hn::Add(axes, hn::IfThenElseZero(hn::Ne(share[a], zero), hn::Set(d, 1.0)));
     }
-    hn::StoreU(sum, d, block.edge_share.data() + i);
-    const auto inside = hn::Or(hn::Gt(axes, one), hn::Eq(sum, one));
+    for (std::size_t k = 0; k < arrays.size(); ++k) ends_in<Dim>(arrays[k], base, share, sum, i, block.ends[k]);
+    const auto inside = hn::Gt(axes, hn::Set(d, 1.0));
     if (hn::AllFalse(d, inside)) continue;
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, inside, bits);
@@ -52,140 +85,29 @@ void edges(CurvedBlock& block, unsigned along) {
   }
 }
 
-/// The ends of edges in arrays: the numbers of their samples, and the weights of the second ends.
-void ends(const CurvedBlock& block, const CurvedArrays& arrays, CurvedBlock::Ends& of) {
-  const BlockTag d;
-  const hn::RebindToSigned<BlockTag> di;
-  for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
-    auto at = hn::Zero(d), step = hn::Zero(d);
-    for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a) {
-      if (arrays.strides[a] == 0) continue;
-      const auto stride = hn::Set(d, static_cast<double>(arrays.strides[a]));
-      at = hn::MulAdd(hn::LoadU(d, block.base[a].data() + i), stride, at);
-      const auto share = hn::LoadU(d, block.share[a].data() + i);
-      step = hn::Add(step, hn::IfThenElseZero(hn::Ne(share, hn::Zero(d)), stride));
-    }
-    hn::StoreU(hn::ConvertTo(di, at), di, of.first.data() + i);
-    hn::StoreU(hn::ConvertTo(di, hn::Add(at, step)), di, of.second.data() + i);
-    // the weights 1 and 0 for a coordinate that does not differ along the edge
-    hn::StoreU(hn::IfThenElseZero(hn::Ne(step, hn::Zero(d)), hn::LoadU(d, block.edge_share.data() + i)), d,
-               of.weight.data() + i);
-  }
+void ends_of_floats(const float* points, std::size_t dim, const IndexSteps& steps, std::span<const CurvedArrays> arrays,
+                    CurvedBlock& block) {
+  dim == 2   ? all_ends<2>(points, steps, arrays, block)
+  : dim == 3 ? all_ends<3>(points, steps, arrays, block)
+             : all_ends<4>(points, steps, arrays, block);
+}
+void ends_of_doubles(const double* points, std::size_t dim, const IndexSteps& steps,
+                     std::span<const CurvedArrays> arrays, CurvedBlock& block) {
+  dim == 2   ? all_ends<2>(points, steps, arrays, block)
+  : dim == 3 ? all_ends<3>(points, steps, arrays, block)
+             : all_ends<4>(points, steps, arrays, block);
 }
 
-void all_places(CurvedBlock& block, const IndexSteps& steps) {
-  for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a)
-    if (steps[a] != 0.0) places(block, a, steps[a]);
-}
-
-void all_ends(CurvedBlock& block, unsigned along, std::span<const CurvedArrays> arrays) {
-  edges(block, along);
-  for (std::size_t k = 0; k < arrays.size(); ++k) ends(block, arrays[k], block.ends[k]);
-}
-
-/// The coordinates between the values at the ends.
-void between(CurvedBlock& block, const CurvedBlock::Ends& ends, std::size_t k, std::size_t axis) {
-  const BlockTag d;
-  const auto one = hn::Set(d, 1.0);
-  for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
-    const auto share = hn::LoadU(d, ends.weight.data() + i);
-    const auto here = hn::LoadU(d, block.here[k].data() + i), next = hn::LoadU(d, block.next[k].data() + i);
-    hn::StoreU(hn::Add(hn::Mul(hn::Sub(one, share), here), hn::Mul(share, next)), d, block.point[axis].data() + i);
-  }
-}
-
-void all_between(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends) {
-  for (std::size_t k = 0; k < arrays.count; ++k) between(block, ends, k, arrays.axis[k]);
-}
-
-/// Vectors of coordinates as doubles, and back.
-HWY_INLINE hn::Vec<BlockTag> widened(BlockTag d, hn::Vec<hn::Rebind<float, BlockTag>> v) { return hn::PromoteTo(d, v); }
-HWY_INLINE hn::Vec<BlockTag> widened(BlockTag /*d*/, hn::Vec<BlockTag> v) { return v; }
 template <class Real>
-HWY_INLINE auto narrowed(hn::Vec<BlockTag> v) {
-  if constexpr (sizeof(Real) == sizeof(double))
-    return v;
-  else
-    return hn::DemoteTo(hn::Rebind<Real, BlockTag>(), v);
-}
-
-/// The coordinates of as many points as fit into a vector.
-template <std::size_t Dim, class D, class V>
-HWY_INLINE void load_columns(D d, const hn::TFromD<D>* points, V& x, V& y, V& z, V& t) {
-  if constexpr (Dim == 2) hn::LoadInterleaved2(d, points, x, y);
-  if constexpr (Dim == 3) hn::LoadInterleaved3(d, points, x, y, z);
-  if constexpr (Dim == 4) hn::LoadInterleaved4(d, points, x, y, z, t);
-}
-
-/// Loads points of `Dim` coordinates; of the last ones, which fill no vector, one by one.
-template <std::size_t Dim, class Real>
-void load(const Real* points, unsigned axes, CurvedBlock& block) {
-  const BlockTag d;
-  const hn::Rebind<Real, BlockTag> of_points;
-  std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= block.count; i += hn::Lanes(d)) {
-    hn::Vec<decltype(of_points)> x, y, z, t;
-    const auto keep = [&](std::size_t a, auto v) {
-      if ((axes >> a & 1u) != 0) hn::StoreU(widened(d, v), d, block.point[a].data() + i);
-    };
-    load_columns<Dim>(of_points, points + Dim * i, x, y, z, t);
-    keep(0, x);
-    keep(1, y);
-    if constexpr (Dim > 2) keep(2, z);
-    if constexpr (Dim > 3) keep(3, t);
-  }
-  for (std::size_t a = 0; a < Dim; ++a) {
-    if ((axes >> a & 1u) == 0) continue;
-    for (std::size_t j = i; j < block.count; ++j) block.point[a][j] = static_cast<double>(points[Dim * j + a]);
-    std::fill(block.point[a].begin() + block.count, block.point[a].end(), 0.0);
-  }
-}
-
-template <std::size_t Dim, class Real>
-void store(const CurvedBlock& block, unsigned axes, Real* points) {
-  const BlockTag d;
-  const hn::Rebind<Real, BlockTag> of_points;
-  std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= block.count; i += hn::Lanes(d)) {
-    hn::Vec<decltype(of_points)> x, y, z, t;
-    const auto take = [&](std::size_t a, auto& v) {
-      if ((axes >> a & 1u) != 0) v = narrowed<Real>(hn::LoadU(d, block.point[a].data() + i));
-    };
-    load_columns<Dim>(of_points, points + Dim * i, x, y, z, t);
-    take(0, x);
-    take(1, y);
-    if constexpr (Dim > 2) take(2, z);
-    if constexpr (Dim > 3) take(3, t);
-    if constexpr (Dim == 2) hn::StoreInterleaved2(x, y, of_points, points + Dim * i);
-    if constexpr (Dim == 3) hn::StoreInterleaved3(x, y, z, of_points, points + Dim * i);
-    if constexpr (Dim == 4) hn::StoreInterleaved4(x, y, z, t, of_points, points + Dim * i);
-  }
-  for (std::size_t a = 0; a < Dim; ++a)
-    for (std::size_t j = i; j < block.count && (axes >> a & 1u) != 0; ++j)
-      points[Dim * j + a] = static_cast<Real>(block.point[a][j]);
-}
-
-void load_float(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) {
-  dim == 2 ? load<2>(points, axes, block) : dim == 3 ? load<3>(points, axes, block) : load<4>(points, axes, block);
-}
-void load_double(const double* points, std::size_t dim, unsigned axes, CurvedBlock& block) {
-  dim == 2 ? load<2>(points, axes, block) : dim == 3 ? load<3>(points, axes, block) : load<4>(points, axes, block);
-}
-void store_float(const CurvedBlock& block, std::size_t dim, unsigned axes, float* points) {
-  dim == 2 ? store<2>(block, axes, points) : dim == 3 ? store<3>(block, axes, points) : store<4>(block, axes, points);
-}
-void store_double(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) {
-  dim == 2 ? store<2>(block, axes, points) : dim == 3 ? store<3>(block, axes, points) : store<4>(block, axes, points);
-}
-
-bool finite(const CurvedBlock& block, unsigned axes) {
-  const BlockTag d;
+bool finite(const CurvedBlock::Points<Real>& points) {
+  const hn::CappedTag<Real, 16> d;
   auto sum = hn::Zero(d);  // 0 times infinity or NaN is NaN
-  for (std::size_t a = 0; a < CurvedBlock::kMostAxes; ++a)
-    for (std::size_t i = 0; (axes >> a & 1u) != 0 && i < block.count; i += hn::Lanes(d))
-      sum = hn::MulAdd(hn::Zero(d), hn::LoadU(d, block.point[a].data() + i), sum);
+  for (std::size_t i = 0; i < points.size(); i += hn::Lanes(d))
+    sum = hn::MulAdd(hn::Zero(d), hn::LoadU(d, points.data() + i), sum);
   return hn::AllTrue(d, hn::Eq(sum, sum));
 }
+bool finite_floats(const CurvedBlock::Points<float>& points) { return finite(points); }
+bool finite_doubles(const CurvedBlock::Points<double>& points) { return finite(points); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
@@ -195,37 +117,26 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-HWY_EXPORT(all_places);
-HWY_EXPORT(all_ends);
-HWY_EXPORT(all_between);
-HWY_EXPORT(finite);
-HWY_EXPORT(load_float);
-HWY_EXPORT(load_double);
-HWY_EXPORT(store_float);
-HWY_EXPORT(store_double);
+HWY_EXPORT(ends_of_floats);
+HWY_EXPORT(ends_of_doubles);
+HWY_EXPORT(finite_floats);
+HWY_EXPORT(finite_doubles);
 
-void find_places(CurvedBlock& block, const IndexSteps& steps) noexcept {
-  HWY_DYNAMIC_DISPATCH(all_places)(block, steps);
+void find_ends(const float* points, std::size_t dim, const IndexSteps& steps, std::span<const CurvedArrays> arrays,
+               CurvedBlock& block) noexcept {
+  HWY_DYNAMIC_DISPATCH(ends_of_floats)(points, dim, steps, arrays, block);
 }
-
-void find_edges(CurvedBlock& block, unsigned along, std::span<const CurvedArrays> arrays) noexcept {
-  HWY_DYNAMIC_DISPATCH(all_ends)(block, along, arrays);
+void find_ends(const double* points, std::size_t dim, const IndexSteps& steps, std::span<const CurvedArrays> arrays,
+               CurvedBlock& block) noexcept {
+  HWY_DYNAMIC_DISPATCH(ends_of_doubles)(points, dim, steps, arrays, block);
 }
 
-void load_points(const float* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept {
-  HWY_DYNAMIC_DISPATCH(load_float)(points, dim, axes, block);
+bool are_finite(const CurvedBlock::Points<float>& points) noexcept {
+  return HWY_DYNAMIC_DISPATCH(finite_floats)(points);
 }
-void load_points(const double* points, std::size_t dim, unsigned axes, CurvedBlock& block) noexcept {
-  HWY_DYNAMIC_DISPATCH(load_double)(points, dim, axes, block);
+bool are_finite(const CurvedBlock::Points<double>& points) noexcept {
+  return HWY_DYNAMIC_DISPATCH(finite_doubles)(points);
 }
-void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, float* points) noexcept {
-  HWY_DYNAMIC_DISPATCH(store_float)(block, dim, axes, points);
-}
-void store_points(const CurvedBlock& block, std::size_t dim, unsigned axes, double* points) noexcept {
-  HWY_DYNAMIC_DISPATCH(store_double)(block, dim, axes, points);
-}
-
-bool are_finite(const CurvedBlock& block, unsigned axes) noexcept { return HWY_DYNAMIC_DISPATCH(finite)(block, axes); }
 
 void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
   for (std::size_t i = 0; arrays.is_large && i < count; ++i)
@@ -235,30 +146,51 @@ void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::siz
     }
 }
 
-/// Reads the values of `Count` arrays at ends.
-template <std::size_t Count>
-static void read_ends(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends,
-                      const CurvedBlock::Ends& next, std::size_t count) noexcept {
-  for (std::size_t i = 0; i < block.count; ++i) {
-    const std::int64_t first = ends.first[i], second = ends.second[i];
-    for (std::size_t k = 0; k < Count; ++k) {
-      block.here[k][i] = arrays.values[k][first];
-      block.next[k][i] = arrays.values[k][second];
-    }
-    if (i >= count) continue;
-    for (std::size_t k = 0; k < Count; ++k) {
-      hwy::Prefetch(arrays.values[k] + next.first[i]);
-      hwy::Prefetch(arrays.values[k] + next.second[i]);
-    }
+/// Sets the coordinates of `Count` arrays. Here, for the baseline: many processors load one by one faster than they
+/// gather, and results that go to memory once need no vectors.
+template <std::size_t Count, class Real>
+static void set_between(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+                        const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* points) noexcept {
+  std::array<const double*, Count> values;
+  std::array<Real*, Count> out;
+  for (std::size_t k = 0; k < Count; ++k) {
+    values[k] = arrays.values[k];
+    out[k] = points + arrays.axis[k];
   }
+  const auto set = [&](std::size_t i) {
+    const std::int64_t first = ends.first[i], second = ends.second[i];
+    const double share = ends.weight[i], rest = 1.0 - share;
+    for (std::size_t k = 0; k < Count; ++k)
+      out[k][dim * i] = static_cast<Real>(rest * values[k][first] + share * values[k][second]);
+  };
+  std::size_t i = 0;
+  for (; i < std::min(count, requested); ++i) {
+    const std::int64_t first = next.first[i], second = next.second[i];
+    for (std::size_t k = 0; k < Count; ++k) {
+      hwy::Prefetch(values[k] + first);
+      hwy::Prefetch(values[k] + second);
+    }
+    set(i);
+  }
+  for (; i < count; ++i) set(i);
 }
 
-void interpolate(CurvedBlock& block, const CurvedArrays& arrays, const CurvedBlock::Ends& ends,
-                 const CurvedBlock::Ends& next, std::size_t count) noexcept {
-  // here, for the baseline: many processors load one by one faster than they gather
-  constexpr std::array kRead = {&read_ends<1>, &read_ends<2>, &read_ends<3>, &read_ends<4>};
-  kRead[arrays.count - 1](block, arrays, ends, next, arrays.is_large ? count : 0);
-  HWY_DYNAMIC_DISPATCH(all_between)(block, arrays, ends);
+template <class Real>
+static void set_coordinates(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+                            const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim,
+                            Real* points) noexcept {
+  constexpr std::array kSet = {&set_between<1, Real>, &set_between<2, Real>, &set_between<3, Real>,
+                               &set_between<4, Real>};
+  kSet[arrays.count - 1](arrays, ends, count, next, arrays.is_large ? requested : 0, dim, points);
+}
+
+void interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+                 const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, float* points) noexcept {
+  set_coordinates(arrays, ends, count, next, requested, dim, points);
+}
+void interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+                 const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, double* points) noexcept {
+  set_coordinates(arrays, ends, count, next, requested, dim, points);
 }
 
 }  // namespace tegl::detail

@@ -126,29 +126,30 @@ void CurvedMap<N>::request_corner(const SampleIndex& cell) const noexcept {
 }
 
 template <int N>
-void CurvedMap<N>::look_up(CurvedBlock& block) const noexcept {
-  find_edges(block, along_, arrays_);  // nearly all places are on an edge
+void CurvedMap<N>::set_edge(std::size_t i, const CellPlace<N>& place, CurvedBlock& block) const noexcept {
+  double share = 0.0;
+  unsigned axes = 0;
+  for (int a = 0; a < N; ++a) {
+    if ((along_ >> a & 1u) == 0 || place.share[a] == 0.0) continue;
+    share += place.share[a];
+    axes |= 1u << a;
+  }
+  if (std::popcount(axes) > 1 || share == 1.0) block.inside |= std::uint64_t{1} << i;
+  for (std::size_t k = 0; k < arrays_.size(); ++k) {
+    std::size_t first = 0, step = 0;
+    for (int a = 0; a < N; ++a) {
+      first += place.base[a] * arrays_[k].strides[a];
+      if ((axes >> a & 1u) != 0) step += arrays_[k].strides[a];
+    }
+    block.ends[k].first[i] = static_cast<std::int64_t>(first);
+    block.ends[k].second[i] = static_cast<std::int64_t>(first + step);
+    block.ends[k].weight[i] = step != 0 ? share : 0.0;
+  }
 }
 
 template <int N>
 void CurvedMap<N>::request(const CurvedBlock& block) const noexcept {
   for (std::size_t k = 0; k < arrays_.size(); ++k) detail::request(arrays_[k], block.ends[k], block.count);
-}
-
-template <int N>
-void CurvedMap<N>::move(CurvedBlock& block, const CurvedBlock& next) const noexcept {
-  for (std::size_t k = 0; k < arrays_.size(); ++k)
-    interpolate(block, arrays_[k], block.ends[k], next.ends[k], next.count);
-  for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    CellPlace<N> place{};
-    for (int a = 0; a < N; ++a) {
-      if ((along_ >> a & 1u) == 0) continue;
-      place.base[a] = static_cast<std::size_t>(block.base[a][i]);
-      place.share[a] = block.share[a][i];
-    }
-    for (std::size_t k = 0; k < axes_.size(); ++k) block.point[axes_[k].axis][i] = inside(k, place);
-  }
 }
 
 template <int N>

@@ -45,13 +45,26 @@ class CurvedMap {
     }
   }
 
-  /// Finds the ends of the edges of places in the grid.
-  void look_up(CurvedBlock& block) const noexcept;
-  /// Starts to load coordinates at the places of a block that was looked up.
+  /// Finds the edges of the block's points, which are indices times steps.
+  template <class Real>
+  void find_edges(const Real* points, const IndexSteps& steps, CurvedBlock& block) const noexcept {
+    find_ends(points, N, steps, arrays_, block);
+  }
+  /// Sets the edge of point i of a block, and its bit of `inside`.
+  void set_edge(std::size_t i, const CellPlace<N>& place, CurvedBlock& block) const noexcept;
+  /// Starts to load coordinates at the edges of a block.
   void request(const CurvedBlock& block) const noexcept;
-  /// Replaces the curved coordinates of points, which were looked up, by those of their places in the grid. Meanwhile
-  /// starts to load those of `next`, which may have no points.
-  void move(CurvedBlock& block, const CurvedBlock& next) const noexcept;
+  /// Sets the curved coordinates of points on edges; of those inside cells `set_inside`. Meanwhile starts to load the
+  /// coordinates of `next`, which may have no points.
+  template <class Real>
+  void set_on_edges(const CurvedBlock& block, const CurvedBlock& next, Real* points) const noexcept {
+    for (std::size_t k = 0; k < arrays_.size(); ++k)
+      interpolate(arrays_[k], block.ends[k], block.count, next.ends[k], next.count, N, points);
+  }
+  template <class Real>
+  void set_inside(const CellPlace<N>& place, Real* point) const noexcept {
+    for (std::size_t k = 0; k < axes_.size(); ++k) point[axes_[k].axis] = static_cast<Real>(inside(k, place));
+  }
   /// The derivatives by index, derivatives[c][a], of coordinate c along axis a, at a place: central differences between
   /// samples, interpolated. Only those of curved coordinates are set, the others are 0.
   [[nodiscard]] Matrix<N> derivatives(const CellPlace<N>& place) const noexcept;
