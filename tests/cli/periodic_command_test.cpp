@@ -367,7 +367,8 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   EXPECT_NEAR(measure["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 216, 20);
   expect_refused({"--lattice", "d4", "-o", output}, "lattice d4 of a 3D image; expected 4 dimensions");
   expect_refused({"--lattice", "hexagonal", "-o", output}, "hexagonal");
-  expect_refused({"--lattice", "bcc", "--periodic", "y=19", "-o", output}, "the period of axis 1 is 19; expected 20");
+  expect_refused({"--lattice", "bcc", "--periodic", "y=19", "-o", output},
+                 "the period of axis 1 (y) is 19; expected 20");
   expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
   expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output},
                  "normals on a lattice are sobel; expected gradient");
@@ -489,8 +490,7 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
     refused({"scale-space", ball, "--sigmas", "1:2:3", "-o", path("s.nrrd")}, "lattice fcc");
     refused({"elements", ball, "--iso", "0", "--per", "cell", "-o", path("e.txt")}, "--per cell on the lattice fcc");
     for (const std::vector<std::string>& more :
-         std::vector<std::vector<std::string>>{{"--periodic", "x,y,z", "--stream", "-o", path("s.vtkhdf")},
-                                               {"--facets", "-o", path("s.vtkhdf")},
+         std::vector<std::vector<std::string>>{{"--facets", "-o", path("s.vtkhdf")},
                                                {"--pick", "0,0,0", "-o", output},
                                                {"--division", "kuhn", "-o", output},
                                                {"--samples-are", "cells", "-o", output},
@@ -499,42 +499,11 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
       std::vector<std::string> arguments = {"contour", ball, "--iso", "0"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       refused(arguments, "is on the lattice fcc; expected it without this, or --lattice cubic");
-      if (more.front() == "--facets" || more.front() == "--periodic") {
+      if (more.front() == "--facets") {
         arguments.insert(arguments.end(), {"--lattice", "cubic"});
         EXPECT_EQ(run_tegl(arguments).exit, 0) << more.front();
       }
     }
-  }
-}
-
-TEST_F(PeriodicCommand, StreamedContoursOnLatticesAreThoseInMemory) {
-  const std::string ball = path("ball.nrrd"), streamed = path("streamed.vtkhdf"), in_memory = path("memory.vtkhdf");
-  (void)run_json({"sample", "ball", "--lattice", "fcc", "--size", "40", "-o", ball});
-  const auto contours = [&](const std::vector<std::string>& options) {  // streamed and in memory
-    auto stream = options, memory = options;
-    stream.insert(stream.end(), {"--stream", "-o", streamed});
-    memory.insert(memory.end(), {"-o", in_memory});
-    const nlohmann::json report = run_json(stream);
-    EXPECT_EQ(report["tiles"], run_json(memory)["tiles"]);
-    return std::pair(read_mesh(streamed), read_mesh(in_memory));
-  };
-  for (const char* const lattice : {"fcc", "bcc"}) {
-    const auto [one, other] = contours({"contour", ball, "--iso", "0", "--lattice", lattice});
-    EXPECT_TRUE(std::ranges::equal(one.coordinates, other.coordinates)) << lattice;
-    EXPECT_TRUE(std::ranges::equal(one.simplices, other.simplices)) << lattice;
-    EXPECT_GT(one.simplices.size(), 1000u);
-  }
-  EXPECT_EQ(run_json({"contour", ball, "--iso", "0", "--stream", "-o", streamed})["tiles"],
-            run_json({"contour", ball, "--iso", "0", "-o", in_memory})["tiles"]);
-  expect_refused_of(ball, {"--stream", "--close", "-o", streamed}, "--close with --stream and the lattice fcc");
-  expect_refused_of(ball, {"--stream", "--lattice", "fcc", "--periodic", "z", "-o", streamed}, "z with --stream");
-  for (const char* const lattice : {"d4", "fcc_in_time"}) {  // with other numbers
-    const std::string moving = path("moving.nrrd");
-    (void)run_json({"sample", "ball", "--lattice", lattice, "--size", "9", "-o", moving});
-    const auto [one, other] = contours({"contour", moving, "--iso", "0", "--ambiguity", "mean"});
-    EXPECT_EQ(one.coordinates.size(), other.coordinates.size()) << lattice;
-    EXPECT_EQ(one.simplices.size(), other.simplices.size()) << lattice;
-    EXPECT_GT(one.simplices.size(), 1000u);
   }
 }
 

@@ -9,9 +9,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "sample_files.hpp"
+#include "tegl/check.hpp"
 #include "tegl/io.hpp"
+#include "tegl/measure.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {
@@ -39,7 +44,68 @@ class Stream : public ProgramTest {
     EXPECT_EQ(x.dim, y.dim);
     EXPECT_EQ(x.space_dim, y.space_dim);
   }
+  /// The contours with these options, streamed and in memory, which have equally many cells.
+  [[nodiscard]] std::pair<Mesh, Mesh> contours(const std::vector<std::string>& options) const {
+    const auto contour = [&](std::vector<std::string> more, const std::string& output) {
+      std::vector<std::string> arguments = {"contour", "--json", "-o", output};
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const RunResult run = run_tegl(arguments);
+      EXPECT_EQ(run.exit, 0) << run.err;
+      return run.exit == 0 ? run.json()["tiles"].get<std::size_t>() : 0;
+    };
+    const std::string streamed = path("streamed.vtkhdf"), whole = path("whole.vtkhdf");
+    EXPECT_EQ(contour({"--stream"}, streamed), contour({}, whole));
+    return {read_mesh(streamed), read_mesh(whole)};
+  }
 };
+
+TEST_F(Stream, OnLatticesGivesTheContourInMemory) {
+  const std::string ball = path("ball.nrrd");
+  ASSERT_EQ(run_tegl({"sample", "ball", "--lattice", "fcc", "--size", "40", "-o", ball}).exit, 0);
+  for (const char* const lattice : {"fcc", "bcc"}) {
+    const auto [one, other] = contours({ball, "--iso", "0", "--lattice", lattice});
+    EXPECT_EQ(one.coordinates, other.coordinates) << lattice;
+    EXPECT_EQ(one.simplices, other.simplices) << lattice;
+    EXPECT_GT(one.simplices.size(), 1000u);
+  }
+  // with other numbers
+  const auto expect_equal = [&](const std::vector<std::string>& options) {
+    const auto [one, other] = contours(options);
+    EXPECT_EQ(one.coordinates.size(), other.coordinates.size());
+    EXPECT_EQ(one.periods, other.periods);
+    const auto contour = to_contour<3>(one), expected = to_contour<3>(other);
+    const MeshReport report = check(contour);
+    EXPECT_EQ(report.simplices, check(expected).simplices);
+    EXPECT_EQ(report.boundary_simplices, check(expected).boundary_simplices);
+    EXPECT_EQ(report.euler, check(expected).euler);
+    EXPECT_EQ(report.bad_links + report.nonmanifold_simplices + report.orientation_conflicts, 0u);
+    EXPECT_NEAR(measure(contour).size, measure(expected).size, 1e-9 * measure(expected).size);
+    return report;
+  };
+  EXPECT_EQ(expect_equal({ball, "--iso", "-0.5", "--close"}).boundary_simplices, 0u);
+  EXPECT_GT(expect_equal({ball, "--iso", "-0.5"}).boundary_simplices, 0u);
+  (void)expect_equal({ball, "--iso", "-0.5", "--periodic", "x,y"});
+  const auto waves = [](const std::vector<double>& x) {
+    return x[2] > 30 && x[0] > 40 && x[1] > 60 && x[1] < 70 ? std::nan("")
+                                                            : std::sin(x[0]) + std::cos(x[1] / 3) + std::sin(x[2] / 2);
+  };
+  const std::string holes = write("holes.nrrd", nrrd_bytes(sample({150, 120, 36}, waves)));
+  (void)expect_equal({holes, "--iso", "0.3", "--lattice", "bcc"});
+  (void)expect_equal({holes, "--iso", "0.3", "--lattice", "fcc", "--periodic", "z", "--close"});
+  for (const char* const lattice : {"d4", "fcc_in_time"}) {
+    const std::string moving = path("moving.nrrd");
+    ASSERT_EQ(run_tegl({"sample", "ball", "--lattice", lattice, "--size", "9", "-o", moving}).exit, 0);
+    const auto [one, other] = contours({moving, "--iso", "0", "--ambiguity", "mean"});
+    EXPECT_EQ(one.coordinates.size(), other.coordinates.size()) << lattice;
+    EXPECT_EQ(one.simplices.size(), other.simplices.size()) << lattice;
+    EXPECT_GT(one.simplices.size(), 1000u);
+  }
+  const RunResult odd = run_tegl(
+      {"contour", holes, "--iso", "0.3", "--lattice", "fcc", "--periodic", "z=37", "--stream", "-o", path("s.vtkhdf")});
+  EXPECT_EQ(odd.exit, 2);
+  EXPECT_THAT(odd.err, HasSubstr("the period of axis 2 (z) is 37; expected 36"));
+}
 
 TEST_F(Stream, GivesTheFileThatTheWholeImageGives) {
   for (const std::vector<std::string>& more :

@@ -192,8 +192,7 @@ class ContourCommand final : public Command {
   void refuse_tiling_of_file(const ImageInfo& info) const {
     for_plain_cells([&](const char* with) {
       options_.refuse_cells(info.samples_are_cells, file(), with);
-      if (!is_streamed() || !options_.tiling().periodic.empty())
-        options_.refuse_lattice(info, file(), is_streamed() ? "--stream with --periodic" : with);
+      if (!is_streamed()) options_.refuse_lattice(info, file(), with);
     });
     if (attributes_.wanted()) options_.refuse_cells(info.samples_are_cells, file(), "--attribute");
     if (!positions_.are_linear()) options_.refuse_lattice(info, file(), "--positions");
@@ -206,7 +205,7 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--unroll with {}; expected one of the two", facets_ ? "--facets" : "--stream"));
     for_plain_cells([&](const char* with) {
-      if (is_streamed() && options_.tiling().lattice) return options_.refuse_periodic_with("--stream on a lattice");
+      if (is_streamed() && options_.tiling().lattice) return;
       is_streamed() || facets_ ? options_.refuse_other_tiling(with) : options_.refuse_tiling(with);
     });
     if (attributes_.wanted() && options_.tiling().of_cells) options_.refuse_tiling("--attribute");

@@ -92,11 +92,7 @@ template <class Real, class T, int N>
 std::vector<ExtractedSize> extract_all(LayerReader<T, N>& layers, std::span<const StreamedContour<N, Real>> contours,
                                        const StreamOptions& options, const AxisPeriods<N>& periods) {
   if (!options.lattice) return extract_streamed_several<Real>(layers, contours, options.extract, periods);
-  if (options.extract.close)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--close with --stream and the lattice {}; expected it without --stream",
-                            name_of(*options.lattice)));
-  return extract_lattice_streamed_several<Real>(layers, *options.lattice, contours, options.extract);
+  return extract_lattice_streamed_several<Real>(layers, *options.lattice, contours, options.extract, periods);
 }
 
 template <class Real, class T, int N>

@@ -81,29 +81,35 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_s
     LayerReader<T, N>& layers, std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours,
     const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {});
 
-/// As `extract_lattice` for each isovalue, for an image on a lattice that is read by layers, without periods: the same
-/// vertices and simplices, and normals that differ by rounding at most. In 2D and 3D, numbers are the same as well,
-/// except with ambiguity resolved from the data on fcc. There and in 4D (d4, fcc_in_time), vertices are numbered as
-/// they first appear, and simplices are passed part by part.
+/// As `extract_lattice` for each isovalue, for an image on a lattice that is read by layers: the same vertices and
+/// simplices, and normals that differ by rounding at most. In 2D and 3D, numbers are the same as well, except with
+/// ambiguity resolved from the data on fcc, with missing values, caps or periods. There and in 4D (d4, fcc_in_time),
+/// vertices are numbered as they first appear, and simplices are passed part by part. Copies at missing values may be
+/// others (in 4D also some simplices of zero size there).
 ///
-/// Layers are read once, in ascending order; the reader and the sinks are called by the calling thread. 2D and 3D:
+/// The reader and the sinks are called by the calling thread. Layers are read once, in ascending order; if the last
+/// axis is periodic, the last four are requested first, and stay in memory with the first six. 2D and 3D:
 /// parts of 16 layers or more are contoured together with up to ten layers around them, so the time is up to 1.6 times
-/// that of the whole image in memory (3 times with normals), and memory holds these layers and their contour. Otherwise
-/// the cells of parts of 2 layers or more are stored, and memory holds them and up to ten layers more. Errors: those of
-/// `extract_lattice` except TooLarge of the whole image, and of the reader and the sinks; InvalidArgument for
-/// ExtractOptions::close and a null sink; UnsupportedData for missing values.
+/// that of the whole image in memory (3 times with normals), and memory holds these layers and their contour. In 4D,
+/// with ambiguity from the data on fcc, with caps, with periods, and from the first missing value on, the cells of
+/// parts of 2 layers or more are stored, and memory holds them and up to ten layers more, with ExtractOptions::close
+/// also the cells of up to six layers around them, and with missing values the simplices beside them. Errors: those of
+/// `extract_lattice` except TooLarge of the whole image, and of the reader and the sinks; InvalidArgument for a null
+/// sink.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_streamed_several(
     LayerReader<T, N>& layers, Lattice lattice,
-    std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options = {});
+    std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options = {},
+    const AxisPeriods<N>& periods = {});
 
 /// As extract_lattice_streamed_several, for one isovalue.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_lattice_streamed(LayerReader<T, N>& layers, Lattice lattice,
                                                                           double isovalue, ContourSink<N, Real>& sink,
-                                                                          const ExtractOptions& options = {}) {
+                                                                          const ExtractOptions& options = {},
+                                                                          const AxisPeriods<N>& periods = {}) {
   const StreamedContour<N, Real> contour{isovalue, &sink};
-  return extract_lattice_streamed_several<Real>(layers, lattice, std::span(&contour, 1), options).front();
+  return extract_lattice_streamed_several<Real>(layers, lattice, std::span(&contour, 1), options, periods).front();
 }
 
 /// Contour::periods of the contours of an image on `grid` with periodic axes; empty if there are none.

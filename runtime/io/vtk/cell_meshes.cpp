@@ -347,22 +347,26 @@ void require_ascending(const std::vector<double>& times, const std::vector<fs::p
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) continue;
     const std::string before = files[i - 1].filename().string(), here = files[i].filename().string();
+    const bool are_equal = times[i] == times[i - 1];  // in any order
     switch (from) {
       case TimesFrom::caller:
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the given times (--times) have {} for {} after {} for {}; expected ascending times in "
-                                "the order of the files, or the files in the order of their times (--sort time)",
-                                times[i], here, times[i - 1], before));
+                    fmt::format("the given times (--times) have {} for {} after {} for {}; expected {}", times[i], here,
+                                times[i - 1], before,
+                                are_equal ? "a time of its own for each file"
+                                          : "ascending times in the order of the files, or the files in the order of "
+                                            "their times (--sort time)"));
       case TimesFrom::collection:
         fail(ErrorCode::InvalidArgument, collection,
-             "has the timestep {} of {} after {} of {}; expected ascending times: the order by times (--sort time), or "
-             "given times (--times)",
-             times[i], here, times[i - 1], before);
+             "has the timestep {} of {} after {} of {}; expected {}, or given times (--times)", times[i], here,
+             times[i - 1], before,
+             are_equal ? "a time of its own for each file" : "ascending times: the order by times (--sort time)");
       case TimesFrom::files:
         fail(ErrorCode::InvalidArgument, files[i],
-             "has the time {} (TimeValue), after {} of {}; expected ascending times: the files in the order of their "
-             "times (--sort time), or given times (--times)",
-             times[i], times[i - 1], before);
+             "has the time {} (TimeValue), after {} of {}; expected {}, or given times (--times)", times[i],
+             times[i - 1], before,
+             are_equal ? "a time of its own for each file"
+                       : "ascending times: the files in the order of their times (--sort time)");
     }
   }
 }

@@ -215,7 +215,7 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
   }
   ContourSize size = numbers.size();
   if (const auto caps =
-          detail::find_caps<N>(complex, numbers, isovalue, options, detail::part_of(counting, 0.5, 1.0))) {
+          detail::find_caps<N>(complex, numbers, nullptr, isovalue, options, detail::part_of(counting, 0.5, 1.0))) {
     size.vertices += caps->vertex_count();
     size.simplices += caps->simplices().size();
   }

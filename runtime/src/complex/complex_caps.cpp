@@ -421,12 +421,13 @@ Index ComplexCaps<N>::number(CapVertex vertex) const noexcept {
 }
 
 template <int N>
-std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers, double isovalue,
-                                        const ExtractOptions& options, const Progress& progress) {
+std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers,
+                                        const BorderFacets* border, double isovalue, const ExtractOptions& options,
+                                        const Progress& progress) {
   if (!options.close) return std::nullopt;
   const CellGroups& cells = ComplexAccess::cells(complex);
   BorderFacets found;
-  const BorderFacets* border = ComplexAccess::border(complex);
+  if (border == nullptr) border = ComplexAccess::border(complex);
   if (border == nullptr) {
     found = find_border(complex.points().size(), cells, {options.work.threads, part_of(progress, 0.0, 0.8)});
     border = &found;
@@ -434,12 +435,12 @@ std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const Contour
   return std::optional<ComplexCaps<N>>(std::in_place, cells, ComplexAccess::signs(complex), *border, complex.values(),
                                        isovalue, options, numbers, part_of(progress, 0.8, 1.0));
 }
-template std::optional<ComplexCaps<2>> find_caps<2>(const Complex<2>&, const ContourNumbers&, double,
-                                                    const ExtractOptions&, const Progress&);
-template std::optional<ComplexCaps<3>> find_caps<3>(const Complex<3>&, const ContourNumbers&, double,
-                                                    const ExtractOptions&, const Progress&);
-template std::optional<ComplexCaps<4>> find_caps<4>(const Complex<4>&, const ContourNumbers&, double,
-                                                    const ExtractOptions&, const Progress&);
+template std::optional<ComplexCaps<2>> find_caps<2>(const Complex<2>&, const ContourNumbers&, const BorderFacets*,
+                                                    double, const ExtractOptions&, const Progress&);
+template std::optional<ComplexCaps<3>> find_caps<3>(const Complex<3>&, const ContourNumbers&, const BorderFacets*,
+                                                    double, const ExtractOptions&, const Progress&);
+template std::optional<ComplexCaps<4>> find_caps<4>(const Complex<4>&, const ContourNumbers&, const BorderFacets*,
+                                                    double, const ExtractOptions&, const Progress&);
 
 template class ComplexCaps<2>;
 template class ComplexCaps<3>;

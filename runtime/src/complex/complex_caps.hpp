@@ -122,23 +122,25 @@ class ComplexCaps {
   std::vector<Simplex> simplices_;
 };
 
-/// The caps of a contour, if they are requested. Errors: TooLarge, Cancelled.
+/// The caps of a contour, if they are requested. `border`: the facets to close; null: those of the complex. Errors:
+/// TooLarge, Cancelled.
 template <int N>
 [[nodiscard]] std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers,
-                                                      double isovalue, const ExtractOptions& options,
-                                                      const Progress& progress);
+                                                      const BorderFacets* border, double isovalue,
+                                                      const ExtractOptions& options, const Progress& progress);
 
 /// Everything about a contour but its places: its numbers and its caps. Not movable.
 template <int N>
 class NumberedContour {
  public:
-  /// Reports progress from 0 to 1 and adds times to `stats`. `active`: as of ContourNumbers. Errors: TooLarge,
-  /// Cancelled.
+  /// Reports progress from 0 to 1 and adds times to `stats`. `active`: as of ContourNumbers; `border`: as of
+  /// find_caps. Errors: TooLarge, Cancelled.
   NumberedContour(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
-                  const std::vector<Index>* active, const Progress& progress, ExtractStats& stats)
+                  const std::vector<Index>* active, const BorderFacets* border, const Progress& progress,
+                  ExtractStats& stats)
       : numbers_(ComplexAccess::cells(complex), ComplexAccess::edges(complex), complex.values(), isovalue, options,
                  part_of(progress, 0.0, options.close ? 0.5 : 1.0), stats, active),
-        caps_(caps_of(complex, isovalue, options, part_of(progress, 0.5, 1.0), stats)) {
+        caps_(caps_of(complex, border, isovalue, options, part_of(progress, 0.5, 1.0), stats)) {
     watch_.add_to(stats.close_seconds);
   }
   [[nodiscard]] const ContourNumbers& numbers() const noexcept { return numbers_; }
@@ -151,11 +153,11 @@ class NumberedContour {
   }
 
  private:
-  std::optional<ComplexCaps<N>> caps_of(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
-                                        const Progress& progress, ExtractStats& stats) {
+  std::optional<ComplexCaps<N>> caps_of(const Complex<N>& complex, const BorderFacets* border, double isovalue,
+                                        const ExtractOptions& options, const Progress& progress, ExtractStats& stats) {
     watch_.add_to(stats.find_seconds);
     stats.find_seconds -= stats.classify_seconds;
-    return find_caps<N>(complex, numbers_, isovalue, options, progress);
+    return find_caps<N>(complex, numbers_, border, isovalue, options, progress);
   }
 
   Stopwatch watch_;

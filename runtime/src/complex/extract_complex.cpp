@@ -563,13 +563,19 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
   check_range<Real>(complex);
   Extraction<N, Real> result;
   const Progress& progress = options.work.progress;
-  const NumberedContour<N> numbered(complex, isovalue, options, around.active, part_of(progress, 0.0, 0.6),
-                                    result.stats);
-  if (around.keys != nullptr) *around.keys = {numbered.numbers().edge_ends(), numbered.numbers().polygons()};
+  const NumberedContour<N> numbered(complex, isovalue, options, around.active, around.border,
+                                    part_of(progress, 0.0, 0.6), result.stats);
+  std::vector<Index> touching;
+  if (around.keys == nullptr) {
+    touching = numbered.numbers().vertices_at_missing(ComplexAccess::cells(complex));
+  } else {
+    *around.keys = {numbered.numbers().edge_ends(), numbered.numbers().polygons(),
+                    static_cast<std::size_t>(numbered.numbers().size().vertices)};
+    if (numbered.caps() != nullptr) around.keys->corners = numbered.caps()->corners();
+  }
   Stopwatch watch;
   result.contour =
-      contour_of<Real>(complex, numbered, numbered.numbers().vertices_at_missing(ComplexAccess::cells(complex)),
-                       isovalue, options, around, part_of(progress, 0.6, 1.0));
+      contour_of<Real>(complex, numbered, std::move(touching), isovalue, options, around, part_of(progress, 0.6, 1.0));
   watch.add_to(result.stats.generate_seconds);
   return result;
 }
@@ -590,7 +596,7 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& 
   detail::check_range<Real>(complex);
   const bool with_normals = options.normals != Normals::none;
   ExtractedSize result;
-  const detail::NumberedContour<N> numbered(complex, isovalue, options, nullptr,
+  const detail::NumberedContour<N> numbered(complex, isovalue, options, nullptr, nullptr,
                                             detail::part_of(options.work.progress, 0.0, 0.6), result.stats);
   detail::check_room(room, result.size = numbered.size(), with_normals);
   detail::Stopwatch watch;

@@ -31,7 +31,10 @@ struct Surroundings {
   std::vector<Period<N>> periods = {};
   /// Numbers of the cells that may be active; null: any.
   const std::vector<Index>* active = nullptr;
-  /// Receives the keys of the contour's vertices (shared_points.hpp); null: not needed.
+  /// The facets at which ExtractOptions::close closes the contour; null: the border of the complex.
+  const std::vector<BorderFacet>* border = nullptr;
+  /// Receives the keys of the contour's vertices (shared_points.hpp), and the contour may touch itself beside missing
+  /// values, as it is part of another one; null: not needed.
   VertexKeys* keys = nullptr;
 };
 

@@ -41,10 +41,13 @@ struct SharedPoints {
   std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell; vertices in polytopes come last
 };
 
-/// What the first vertices of a contour are known by: those on edges, then those in common 3-faces.
+/// What vertices of a contour are known by: the first ones, on edges and in common 3-faces, and those of its caps at
+/// points.
 struct VertexKeys {
-  std::vector<EdgeEnds> edges;       ///< by the ends
-  std::vector<PolygonKey> polygons;  ///< by the vertices of the polygon
+  std::vector<EdgeEnds> edges = {};       ///< by the ends
+  std::vector<PolygonKey> polygons = {};  ///< by the vertices of the polygon
+  std::size_t before_caps = 0;            ///< number of vertices before those of the caps
+  std::vector<Index> corners = {};        ///< the points at which the first vertices of the caps are
 };
 
 /// Numbers the shared barycentres of all active cells. Errors: TooLarge, Cancelled.

@@ -1,190 +1,236 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Contours of a lattice's cells part by part, for streams: the cells of some layers are a complex of their own.
-// Vertices of the complex before are known by their keys, the ends of their edge or the vertices of their polygon.
+// Vertices that another part has, too, are known by their keys: the ends of their edge, the vertices of their polygon,
+// or their sample.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "complex/cell_groups.hpp"
 #include "complex/contour_numbers.hpp"
-#include "complex/image_points.hpp"
 #include "complex/point_gradients.hpp"
 #include "image/row_source.hpp"
-#include "lattice/lattice_cells.hpp"
 #include "lattice/lattice_gradients.hpp"
-#include "lattice/lattice_grid.hpp"
-#include "lattice/lattice_in_time.hpp"
-#include "tegl/stream.hpp"
+#include "lattice/part_cells.hpp"
+#include "lattice/part_output.hpp"
+#include "lattice/shared_numbers.hpp"
 
 namespace tegl::detail {
 
-/// The layers of a part: [begin, end) with those around its own, [first, last).
-struct PartLayers {
-  std::size_t begin, first, last, end;
-};
+/// The samples of a window that are at most two indices along each axis from a missing one: all corners of cells with
+/// a missing corner. Empty if none is missing. Bit a of `periodic`: axis a is.
+template <Value T, int N>
+std::vector<bool> near_missing(const Image<T, N>& window, unsigned periodic) {
+  const auto sizes = window.grid().sizes();
+  std::vector<bool> near;
+  for_each_sample<N>(sizes, [&](const auto& index) {
+    const auto value = static_cast<double>(window(index));
+    near.push_back(value != value);
+  });
+  if (std::find(near.begin(), near.end(), true) == near.end()) return {};
+  std::size_t stride = 1;
+  for (int a = 0; a < N; ++a) {
+    const std::size_t size = sizes[a];
+    const std::vector<bool> before = near;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (!before[i]) continue;
+      const std::size_t at = i / stride % size;
+      for (std::ptrdiff_t step = -2; step <= 2; ++step) {
+        const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(at) + step;
+        const bool is_inside = to >= 0 && to < static_cast<std::ptrdiff_t>(size);
+        if (is_inside || (periodic >> a & 1u) != 0) near[i - at * stride + layer_modulo(to, size) * stride] = true;
+      }
+    }
+    stride *= size;
+  }
+  return near;
+}
 
-/// Passes the contour of the cells of one part after the other to a sink.
+/// Passes the contour of the cells of one part after the other.
 template <class Real, int N>
 class CellParts {
  public:
-  CellParts(const StreamedContour<N, Real>& contour, Lattice lattice) : contour_(contour), lattice_(lattice) {}
+  using Ends = std::array<std::uint64_t, 2>;  ///< numbers of samples
+  using Output = PartOutput<N, Real>;
 
-  /// `image`: the layers [part.begin, part.end) of the image on `grid`. Errors: those of `lattice_complex` and
-  /// `extract`, and of the sink. Calls `refuse_missing`, which throws, if a value is missing.
-  template <Value T, class RefuseMissing>
-  void add(const Image<T, N>& image, const Grid<N>& grid, const PartLayers& part, const ExtractOptions& options,
-           const RefuseMissing& refuse_missing) {
-    if (lattice_ == Lattice::fcc_in_time && part.first + 1 == part.end) return;  // no interval is left
-    const auto [complex, first_point] = cells_of(image, part);
-    if (std::any_of(complex.values().begin(), complex.values().end(), [](double value) { return std::isnan(value); }))
-      refuse_missing();
-    Grid<N> at_start = image.grid();  // weights of gradients as for the whole image
-    if (grid.axes[N - 1].is_uniform()) at_start.axes[N - 1] = grid.axes[N - 1].part(0, image.size(N - 1));
-    const Image<T, N> around_part(image.data(), at_start, image.strides());
-    const ImageSource<T, N> source(around_part, contour_.isovalue, options.epsilon);
+  /// `grid`: of the whole image. The arguments must outlive this object.
+  CellParts(const Grid<N>& grid, double isovalue, Lattice lattice, const AxisPeriods<N>& periods,
+            std::vector<Period<N>> contour_periods, Output& output)
+      : grid_(grid),
+        isovalue_(isovalue),
+        lattice_(lattice),
+        periods_(periods),
+        contour_periods_(std::move(contour_periods)),
+        output_(output),
+        cells_(grid, lattice, periods),
+        count_(grid.axes[N - 1].size()) {
+    for (int a = 0; a + 1 < N; ++a) layer_size_ *= grid.axes[a].size();
+  }
+
+  /// Number of the vertex on an edge that the contour passed before the first part has.
+  void know(const Ends& ends, std::uint64_t number) { edges_.add(ends, number, {.behind = true}, false); }
+  void end_known() { edges_.end_part(); }
+
+  /// `window`: the layers [part.begin, part.end). Errors: those of `lattice_complex` and `extract`, and of the sink.
+  template <Value T>
+  void add(const Image<T, N>& window, const PartLayers& part, const ExtractOptions& options, ExtractStats& stats) {
+    const bool is_ring = periods_[N - 1] != 0.0;
+    if (lattice_ == Lattice::fcc_in_time && !is_ring && part.first + 1 == part.end) return;  // no interval is left
+    auto made = cells_.of(part, options.close, {options.work.threads});
+    made.complex.set_values(values_in(window, made.layers));
+    Grid<N> at_start = window.grid();  // weights of gradients as for the whole image
+    if (const Axis& axis = grid_.axes[N - 1]; axis.is_uniform())
+      at_start.axes[N - 1] = Axis::uniform(window.size(N - 1), axis[0], axis.step());
+    const Image<T, N> around_part(window.data(), at_start, window.strides());
+    const ImageSource<T, N> source(around_part, isovalue_, options.epsilon);
+    const unsigned periodic = periodic_axes<N>(periods_) & ~(1u << (N - 1));
     std::optional<LatticeGradients<N>> gradients;
     Surroundings<N> around;
     VertexKeys keys;
     around.keys = &keys;
+    around.periods = contour_periods_;
+    if (options.close) around.border = &made.border;
     if (options.normals != Normals::none) {
-      gradients.emplace(source, at_start, lattice_, options.direction);
-      const std::size_t skipped = first_point - part.begin * layer_size(image.grid());
-      around.gradient = [&gradients, skipped, sizes = image.grid().sizes()](Index p) {
-        std::size_t at = p + skipped;
+      gradients.emplace(source, at_start, lattice_, options.direction, periodic, contour_periods_);
+      around.gradient = [&, sizes = window.grid().sizes()](Index p) {
+        std::size_t at = in_window(made.layers, p);
         std::array<std::size_t, N> index;
         for (int a = 0; a < N; at /= sizes[a], ++a) index[a] = at % sizes[a];
         return gradients->at(index);
       };
     }
-    const auto made = extract_in<Real>(complex, contour_.isovalue, options, around);
-    pass(made.contour, keys, first_point, part, layer_size(image.grid()), options.normals != Normals::none);
-    add_stats(made.stats);
+    const auto [contour, more] = extract_in<Real>(made.complex, isovalue_, options, around);
+    number(contour, keys, made.layers, part);
+    pass(contour, keys, made.layers, near_missing(window, periodic));
+    add_to(stats, more);
   }
-  [[nodiscard]] const ContourSize& size() const noexcept { return size_; }
-  [[nodiscard]] const ExtractStats& stats() const noexcept { return stats_; }
 
  private:
-  using Ends = std::array<std::uint64_t, 2>;      ///< numbers of samples
+  using Layers = std::vector<typename PartCells<N>::Layer>;
   using Polygon = std::array<std::uint64_t, 12>;  ///< numbers of vertices, ascending; unused ones are kNone
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
-  static std::size_t layer_size(const Grid<N>& grid) noexcept {
-    std::size_t size = 1;
-    for (int a = 0; a + 1 < N; ++a) size *= grid.axes[a].size();
-    return size;
+  /// The places of a point in the window and in the image.
+  [[nodiscard]] std::size_t in_window(const Layers& layers, Index p) const {
+    return layers[p / layer_size_].in_window * layer_size_ + p % layer_size_;
   }
-
-  /// The cells of a part, and the number of its first point in the whole image.
+  [[nodiscard]] std::uint64_t in_image(const Layers& layers, Index p) const {
+    return std::uint64_t{layers[p / layer_size_].number} * layer_size_ + p % layer_size_;
+  }
   template <Value T>
-  std::pair<Complex<N>, std::size_t> cells_of(const Image<T, N>& image, const PartLayers& part) {
-    const bool is_in_time = lattice_ == Lattice::fcc_in_time;
-    // prisms are between their time and the next one, other cells between the layers before and behind theirs
-    const std::size_t from = is_in_time ? part.first : part.first - std::min<std::size_t>(part.first, 2);
-    const std::size_t to = std::min(part.last + 1, part.end), skipped = from - part.begin;
-    Grid<N> grid = image.grid();
-    grid.axes[N - 1] = image.grid().axes[N - 1].part(skipped, to - from);
-    const Image<T, N> of_part(image.data() + static_cast<std::ptrdiff_t>(skipped) * image.strides()[N - 1], grid,
-                              image.strides());
-    const std::size_t first_point = from * layer_size(grid);
-    if constexpr (N == 4)
-      if (is_in_time) {
-        if (!at_a_time_) at_a_time_ = fcc_at_a_time(grid);
-        return {fcc_over_times(*at_a_time_, grid, values_of(of_part)), first_point};
-      }
-    const LatticeCells cells = cells_of_lattice(lattice_, four_sizes(grid), {}, {part.first - from, part.last - from});
-    Complex<N> complex(points_of(grid, N - 1), cells.types, cells.corners);
-    complex.set_values(values_of(of_part));
-    return {std::move(complex), first_point};
+  [[nodiscard]] std::vector<double> values_in(const Image<T, N>& window, const Layers& layers) const {
+    std::vector<double> values;
+    for (const auto& layer : layers) {
+      const T* const from = window.data() + layer.in_window * layer_size_;
+      for (std::size_t i = 0; i < layer_size_; ++i) values.push_back(static_cast<double>(from[i]));
+    }
+    return values;
   }
 
-  /// Passes the vertices that no part had before, and the simplices.
-  void pass(const Contour<N, Real>& part, const VertexKeys& keys, std::size_t first_point, const PartLayers& layers,
-            std::size_t layer, bool normals) {
-    numbers_.assign(part.vertices.size(), kNone);
-    // Cells have corners in the layer before theirs, except prisms.
-    const std::uint64_t known_to = (layers.first + 1) * layer;
-    const std::uint64_t kept_from = (lattice_ == Lattice::fcc_in_time ? layers.last : layers.last - 1) * layer;
-    std::map<Ends, std::uint64_t> edges;
-    std::map<Polygon, std::uint64_t> polygons;
+  /// Whether cells on both sides of a layer, those from it on and those before, may have a sample.
+  [[nodiscard]] bool is_at(std::uint64_t sample, std::ptrdiff_t layer) const {
+    const bool is_in_time = lattice_ == Lattice::fcc_in_time;  // prisms end at their own time
+    const std::size_t first = layer_modulo(layer - (is_in_time ? 0 : 1), count_);
+    const std::size_t behind = (sample / layer_size_ + count_ - first) % count_;
+    return behind < (is_in_time ? 1u : 3u);
+  }
+  [[nodiscard]] BetweenParts between(std::uint64_t sample, const PartLayers& part) const {
+    return {is_at(sample, part.first), is_at(sample, part.last), periods_[N - 1] != 0.0 && is_at(sample, 0)};
+  }
+  static BetweenParts both(const BetweenParts& a, const BetweenParts& b) {
+    return {a.before && b.before, a.behind && b.behind, a.seam && b.seam};
+  }
+
+  /// Numbers the vertices of a part; those that no part had before are gathered.
+  void number(const Contour<N, Real>& contour, const VertexKeys& keys, const Layers& layers, const PartLayers& part) {
+    const bool is_first = part.first == 0;
+    numbers_.assign(contour.vertices.size(), kNone);
+    std::vector<BetweenParts> where;
     for (std::size_t v = 0; v < keys.edges.size(); ++v) {
-      const Ends ends = {keys.edges[v][0] + first_point, keys.edges[v][1] + first_point};
-      if (ends[1] < known_to)
-        if (const auto found = edges_.find(ends); found != edges_.end()) numbers_[v] = found->second;
-      if (numbers_[v] == kNone) numbers_[v] = next(part, v);
-      if (ends[0] >= kept_from) edges.emplace_hint(edges.end(), ends, numbers_[v]);
+      const Ends ends = {in_image(layers, keys.edges[v][0]), in_image(layers, keys.edges[v][1])};
+      where.push_back(both(between(ends[0], part), between(ends[1], part)));
+      number_one(contour, v, ends, where[v], is_first, edges_);
     }
-    const std::uint64_t first_shared = keys.edges.size();
     for (std::size_t i = 0; i < keys.polygons.size(); ++i) {
-      const std::size_t v = first_shared + i;
       const PolygonKey& key = keys.polygons[i];
       if (key.back() == kInCube || key.back() == kInFacet) continue;  // in one cell each, at the border
       Polygon polygon;
       polygon.fill(kNone);
-      bool may_be_known = true, is_kept = true;
+      BetweenParts all{true, true, true};
       for (std::size_t k = 0; k < key.size() && key[k] != kNoPoint; ++k) {
         polygon[k] = numbers_[key[k]];
-        may_be_known = may_be_known && keys.edges[key[k]][1] + first_point < known_to;
-        is_kept = is_kept && keys.edges[key[k]][0] + first_point >= kept_from;
+        all = both(all, where[key[k]]);
       }
       std::sort(polygon.begin(), polygon.end());
-      if (may_be_known)
-        if (const auto found = polygons_.find(polygon); found != polygons_.end()) numbers_[v] = found->second;
-      if (numbers_[v] == kNone) numbers_[v] = next(part, v);
-      if (is_kept) polygons.emplace(polygon, numbers_[v]);
+      number_one(contour, keys.edges.size() + i, polygon, all, is_first, polygons_);
     }
-    for (std::size_t v = first_shared; v < part.vertices.size(); ++v)
-      if (numbers_[v] == kNone) numbers_[v] = next(part, v);
-    edges_ = std::move(edges);
-    polygons_ = std::move(polygons);
-    send(part, normals);
+    for (std::size_t i = 0; i < keys.corners.size(); ++i) {
+      const std::uint64_t sample = in_image(layers, keys.corners[i]);
+      number_one(contour, keys.before_caps + i, sample, between(sample, part), is_first, corners_);
+    }
+    for (std::size_t v = 0; v < numbers_.size(); ++v)
+      if (numbers_[v] == kNone) numbers_[v] = next(contour, v);
+    edges_.end_part();
+    polygons_.end_part();
+    corners_.end_part();
+  }
+  template <class Key>
+  void number_one(const Contour<N, Real>& contour, std::size_t v, const Key& key, const BetweenParts& where,
+                  bool is_first_part, SharedNumbers<Key>& known) {
+    const auto found = known.find(key, where);
+    numbers_[v] = found ? *found : next(contour, v);
+    known.add(key, numbers_[v], where, is_first_part);
   }
   /// The number of a new vertex.
   std::uint64_t next(const Contour<N, Real>& part, std::size_t v) {
     vertices_.push_back(part.vertices[v]);
     if (!part.normals.empty()) normals_.push_back(part.normals[v]);
-    return size_.vertices++;
-  }
-  void send(const Contour<N, Real>& part, bool normals) {
-    contour_.sink->add_vertices(vertices_);
-    if (normals) contour_.sink->add_normals(normals_);
-    vertices_.clear();
-    normals_.clear();
-    simplices_.clear();
-    for (const auto& simplex : part.simplices) {
-      auto& wide = simplices_.emplace_back();
-      for (int j = 0; j < N; ++j) wide[j] = numbers_[simplex[j]];
-    }
-    contour_.sink->add_simplices(simplices_);
-    size_.simplices += simplices_.size();
-  }
-  void add_stats(const ExtractStats& stats) {
-    stats_.tiles += stats.tiles;
-    stats_.active_tiles += stats.active_tiles;
-    stats_.classify_seconds += stats.classify_seconds;
-    stats_.find_seconds += stats.find_seconds;
-    stats_.generate_seconds += stats.generate_seconds;
+    return output_.size().vertices + vertices_.size() - 1;
   }
 
-  StreamedContour<N, Real> contour_;
+  /// `near`: samples of the window near to missing ones, or empty.
+  void pass(const Contour<N, Real>& contour, const VertexKeys& keys, const Layers& layers,
+            const std::vector<bool>& near) {
+    output_.add(vertices_, normals_);
+    vertices_.clear();
+    normals_.clear();
+    std::vector<bool> touching;
+    if (!near.empty()) {
+      touching.resize(contour.vertices.size());
+      for (std::size_t v = 0; v < keys.edges.size(); ++v) touching[v] = near[in_window(layers, keys.edges[v][0])];
+      for (std::size_t i = 0; i < keys.corners.size(); ++i)
+        touching[keys.before_caps + i] = near[in_window(layers, keys.corners[i])];
+    }
+    output_.add(contour, contour.simplices, numbers_, touching);
+  }
+  static void add_to(ExtractStats& stats, const ExtractStats& more) {
+    stats.tiles += more.tiles;
+    stats.active_tiles += more.active_tiles;
+    stats.classify_seconds += more.classify_seconds;
+    stats.find_seconds += more.find_seconds;
+    stats.generate_seconds += more.generate_seconds;
+    stats.close_seconds += more.close_seconds;
+  }
+
+  const Grid<N>& grid_;
+  double isovalue_;
   Lattice lattice_;
-  std::optional<Complex<3>> at_a_time_;  ///< fcc_in_time
-  // those that later parts may have
-  std::map<Ends, std::uint64_t> edges_;
-  std::map<Polygon, std::uint64_t> polygons_;
+  AxisPeriods<N> periods_;
+  std::vector<Period<N>> contour_periods_;
+  Output& output_;
+  PartCells<N> cells_;
+  std::size_t count_, layer_size_ = 1;
+  SharedNumbers<Ends> edges_;
+  SharedNumbers<Polygon> polygons_;
+  SharedNumbers<std::uint64_t> corners_;
   std::vector<std::uint64_t> numbers_;  ///< by vertex of the part
   std::vector<std::array<Real, N>> vertices_, normals_;
-  std::vector<typename ContourSink<N, Real>::Simplex> simplices_;
-  ContourSize size_;
-  ExtractStats stats_;
 };
 
 }  // namespace tegl::detail

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "complex/image_points.hpp"
+#include "periodic/periods.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
 
@@ -39,8 +40,8 @@ void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
     for (std::size_t i = 1; i < axis.size(); ++i)
       if (std::abs(axis[i] - axis[i - 1] - step) > 1e-6 * std::abs(step))
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("lattice {}: axis {} has a step of {}; expected {}, that of all others",
-                                name_of(lattice), a, axis[i] - axis[i - 1], step));
+                    fmt::format("lattice {}: {} has a step of {}; expected {}, that of all others", name_of(lattice),
+                                label_of_axis(axis, a), axis[i] - axis[i - 1], step));
   }
   if (grid.axes[layers].size() < 2)
     throw Error(ErrorCode::InvalidArgument,

@@ -24,8 +24,6 @@ namespace tegl::detail {
 
 namespace {
 
-constexpr std::size_t kMargin = 2;  // even, so that layers keep their parity
-
 [[noreturn]] void refuse(Lattice lattice, const std::string& text) {
   throw Error(ErrorCode::InvalidArgument, fmt::format("lattice {}: {}", name_of(lattice), text));
 }
@@ -40,14 +38,16 @@ void check_lattice_periods(const Grid<N>& grid, Lattice lattice, const AxisPerio
     const std::size_t size = axis.size();
     // farther than half a period apart, points of one cell would have no nearest places
     if (a == layer_axis(lattice) && (size % 2 != 0 || size < 6))
-      refuse(lattice, fmt::format("the periodic axis {} has {} layers; expected an even number, at least 6, as odd "
+      refuse(lattice, fmt::format("{} is periodic and has {} layers; expected an even number, at least 6, as odd "
                                   "layers are shifted",
-                                  a, size));
-    if (size < 3) refuse(lattice, fmt::format("the periodic axis {} has {} samples; expected at least 3", a, size));
+                                  label_of_axis(axis, a), size));
+    if (size < 3)
+      refuse(lattice,
+             fmt::format("{} is periodic and has {} samples; expected at least 3", label_of_axis(axis, a), size));
     const double expected = static_cast<double>(size) * std::abs(axis.step());
     if (axis.is_uniform() && !(std::abs(periods[a] - expected) <= 1e-6 * expected))
-      refuse(lattice, fmt::format("the period of axis {} is {}; expected {}, the number of samples x the step", a,
-                                  periods[a], expected));
+      refuse(lattice, fmt::format("the period of {} is {}; expected {}, the number of samples x the step",
+                                  label_of_axis(axis, a), periods[a], expected));
   }
 }
 
@@ -58,8 +58,8 @@ Complex<N> periodic_lattice_complex(const Image<T, N>& image, Lattice lattice, c
   std::array<std::size_t, 4> margin{};
   for (int a = 0; a < N; ++a) {
     if (periods[a] == 0.0) continue;
-    margin[a] = kMargin;
-    longer.axes[a] = wrapped_axis(image.grid().axes[a], periods[a], kMargin, kMargin);
+    margin[a] = kLatticeMargin;
+    longer.axes[a] = wrapped_axis(image.grid().axes[a], periods[a], kLatticeMargin, kLatticeMargin);
   }
   if (lattice == Lattice::fcc_in_time && periods[N - 1] != 0.0) {  // as many intervals as times
     margin[N - 1] = 0;

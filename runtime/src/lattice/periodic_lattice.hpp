@@ -3,10 +3,15 @@
 // Complexes of images on lattices with periodic axes.
 #pragma once
 
+#include <cstddef>
+
 #include "tegl/lattice.hpp"
 #include "tegl/periodic.hpp"
 
 namespace tegl::detail {
+
+/// Samples that are repeated at both ends of a periodic axis; even, so that layers keep their parity.
+inline constexpr std::size_t kLatticeMargin = 2;
 
 /// Bit a: axis a has a period.
 template <int N>

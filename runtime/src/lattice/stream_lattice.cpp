@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Streamed contours of images on lattices. Some layers at a time are contoured together with the layers around them, on
-// which their cells, vertices and gradients depend; the part of the contour that is theirs is passed on. In 4D, and if
-// fcc is resolved from the data, their cells are stored (CellParts).
+// which their cells, vertices and gradients depend; the part of the contour that is theirs is passed on. In 4D, if fcc
+// is resolved from the data, with caps, with periodic axes and from the first missing value on, their cells are stored
+// (CellParts).
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -20,6 +25,7 @@
 #include "lattice/cell_parts.hpp"
 #include "lattice/lattice_grid.hpp"
 #include "lattice/lattice_rows.hpp"
+#include "periodic/periods.hpp"
 #include "tegl/error.hpp"
 #include "tegl/stream.hpp"
 
@@ -29,21 +35,20 @@ namespace {
 
 /// Layers before and behind the own layers of a part. Cells have their corners at most two layers away, and so have
 /// edges and neighbours for gradients. Even, so that a part's odd layers are the image's.
-constexpr std::size_t kBefore = 4, kBehind = 6;
-
-/// What the own layers of a part have of the part's contour.
-struct OwnNumbers {
-  std::uint64_t first_vertex = 0, end_vertex = 0, first_simplex = 0, end_simplex = 0, cells = 0, active = 0;
-};
+constexpr std::ptrdiff_t kBefore = 4, kBehind = 6;
+/// By rows of bits, the simplices of a part's last layers come with the next part, when all their vertices have
+/// numbers.
+constexpr std::ptrdiff_t kLag = 2;
 
 void refuse(const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); }
 
-/// Throws InvalidArgument for what only lattices in memory have.
 template <class Real, int N>
-void check_stream(const Grid<N>& grid, Lattice lattice, const ExtractOptions& options) {
+void check_stream(const Grid<N>& grid, Lattice lattice, const ExtractOptions& options, const AxisPeriods<N>& periods) {
   check_dimension(lattice, N);
-  if (options.close)
-    refuse(fmt::format("close of a streamed contour on the lattice {}; expected an image in memory", name_of(lattice)));
+  if (periodic_axes<N>(periods) != 0) {
+    check_lattice_periods<N>(grid, lattice, periods);
+    check_periods<N>(grid, periods, options);
+  }
   check_grid(grid, lattice, layer_axis(lattice));
   if (const std::size_t times = grid.axes[N - 1].size(); lattice == Lattice::fcc_in_time && times < 2)
     refuse(fmt::format("{} times; expected at least 2", times));
@@ -63,129 +68,233 @@ void check_stream(const Grid<N>& grid, Lattice lattice, const ExtractOptions& op
 template <class Real, int N>
 class LatticeStream {
  public:
-  /// `by_rows`: whether rows of bits give the contour.
-  LatticeStream(const StreamedContour<N, Real>& contour, Lattice lattice, bool by_rows)
-      : contour_(contour), lattice_(lattice) {
-    if (!by_rows) parts_.emplace(contour, lattice);
+  /// `grid`: of the whole image; must outlive this object. `by_rows`: whether rows of bits give the contour.
+  LatticeStream(const StreamedContour<N, Real>& contour, const Grid<N>& grid, Lattice lattice,
+                const AxisPeriods<N>& periods, const ExtractOptions& options, bool by_rows)
+      : isovalue_(contour.isovalue),
+        grid_(grid),
+        lattice_(lattice),
+        output_(*contour.sink, options.normals != Normals::none, world_periods<N>(grid, periods)) {
+    if (!by_rows) parts_.emplace(grid, isovalue_, lattice, periods, world_periods<N>(grid, periods), output_);
   }
 
-  /// `image`: the layers [part.begin, part.end) of the image on `grid`.
+  /// `window`: the layers [part.begin, part.end) of the image. `by_rows`: false if a value is missing there or before.
   template <Value T>
-  void add(const Image<T, N>& image, const Grid<N>& grid, const PartLayers& part, const ExtractOptions& options) {
-    if (parts_) return parts_->add(image, grid, part, options, [&] { refuse_missing(part); });
-    if constexpr (N < 4) add_rows(image, grid, part, options);
+  void add(const Image<T, N>& window, const PartLayers& part, const ExtractOptions& options, bool by_rows) {
+    if constexpr (N < 4) {
+      if (!parts_ && by_rows) return add_rows(window, part, options);
+      if (!parts_) hand_over(window, part, options);
+    }
+    parts_->add(window, part, options, stats_);
   }
-  [[nodiscard]] ExtractedSize result(double read_seconds) const {
-    ExtractedSize result = parts_ ? ExtractedSize{parts_->size(), parts_->stats()} : ExtractedSize{size_, stats_};
-    result.stats.read_seconds = read_seconds;
-    return result;
+  [[nodiscard]] ExtractedSize finish(double read_seconds) {
+    output_.separate_sheets();
+    stats_.read_seconds = read_seconds;
+    return {output_.size(), stats_};
   }
 
  private:
-  [[noreturn]] void refuse_missing(const PartLayers& part) const {
-    throw Error(ErrorCode::UnsupportedData,
-                fmt::format("missing values between layers {} and {} of a streamed image on the lattice {}; expected "
-                            "none, or an image in memory",
-                            part.begin, part.end - 1, name_of(lattice_)));
-  }
+  using Ends = typename CellParts<Real, N>::Ends;
+
   template <Value T>
-  void add_rows(const Image<T, N>& image, const Grid<N>& grid, const PartLayers& part, const ExtractOptions& options) {
-    const OwnNumbers own = own_numbers(image, part, options);
-    ExtractOptions without = options;
-    const bool weighs_as_whole = options.normals != Normals::none && grid.axes[N - 1].is_uniform();
-    if (weighs_as_whole) without.normals = Normals::none;
-    auto made = extract_lattice_with_stats<Real>(image, lattice_, contour_.isovalue, without);
-    if (weighs_as_whole) made.contour.normals = normals_of(image, grid, options);
-    pass(made.contour, own, options.normals != Normals::none);
-    stats_.tiles += own.cells;
-    stats_.active_tiles += own.active;
-    stats_.classify_seconds += made.stats.classify_seconds;
-    stats_.find_seconds += made.stats.find_seconds;
-    stats_.generate_seconds += made.stats.generate_seconds;
-  }
-  template <Value T>
-  OwnNumbers own_numbers(const Image<T, N>& image, const PartLayers& part, const ExtractOptions& options) const {
-    const auto sizes = image.grid().sizes();
-    const std::size_t rows_in_layer = N == 3 ? sizes[1] : 1;
-    const auto patterns = make_patterns<N>(lattice_, image.grid(), options);
-    LatticeRows rows({sizes[0], rows_in_layer, sizes[N - 1]}, patterns);
-    const ImageSource<T, N> samples(image, contour_.isovalue, options.epsilon);
-    if (rows.template classify<N>(samples, {options.work.threads})) refuse_missing(part);
+  LatticeRows rows_of(const Image<T, N>& window, const std::array<LayerPattern, 2>& patterns,
+                      const ExtractOptions& options) const {
+    const auto sizes = window.grid().sizes();
+    LatticeRows rows({sizes[0], rows_in_layer(), sizes[N - 1]}, patterns);
+    const ImageSource<T, N> samples(window, isovalue_, options.epsilon);
+    (void)rows.template classify<N>(samples, {options.work.threads});
     rows.count({options.work.threads});
-    const std::size_t from = (part.first - part.begin) * rows_in_layer, to = (part.last - part.begin) * rows_in_layer;
-    OwnNumbers own{rows.row(from).first, rows.vertices(), rows.row(from).first_simplex, rows.simplices()};
-    if (to < rows.row_count()) {
-      own.end_vertex = rows.row(to).first;
-      own.end_simplex = rows.row(to).first_simplex;
-    }
-    for (std::size_t r = from; r < to; ++r) {
-      own.cells += rows.row(r).cells;
-      own.active += rows.row(r).active;
-    }
-    return own;
+    return rows;
   }
-  /// The normals by weights from the image's first layers, as for the whole image.
-  template <Value T>
-  Buffer<std::array<Real, N>> normals_of(const Image<T, N>& image, const Grid<N>& grid,
-                                         const ExtractOptions& options) const {
-    Grid<N> at_start = image.grid();
-    at_start.axes[N - 1] = grid.axes[N - 1].part(0, image.size(N - 1));
-    return std::move(extract_lattice<Real>(Image<T, N>(image.data(), at_start, image.strides()), lattice_,
-                                           contour_.isovalue, options)
-                         .normals);
+  [[nodiscard]] std::size_t rows_in_layer() const { return N == 3 ? grid_.axes[1].size() : 1; }
+  /// The number of the first row of a layer.
+  [[nodiscard]] std::size_t first_row(const PartLayers& part, std::ptrdiff_t layer) const {
+    return static_cast<std::size_t>(layer - part.begin) * rows_in_layer();
   }
-  void pass(const Contour<N, Real>& part, const OwnNumbers& own, bool normals) {
-    const std::size_t count = own.end_vertex - own.first_vertex;
-    contour_.sink->add_vertices(std::span(part.vertices).subspan(own.first_vertex, count));
-    if (normals) contour_.sink->add_normals(std::span(part.normals).subspan(own.first_vertex, count));
-    // Vertices are numbered by layers, so the part's numbers differ from the image's by a constant.
-    const std::uint64_t more = size_.vertices - own.first_vertex;
-    simplices_.clear();
-    for (std::uint64_t s = own.first_simplex; s < own.end_simplex; ++s) {
-      auto& wide = simplices_.emplace_back();
-      for (int j = 0; j < N; ++j) wide[j] = part.simplices[s][j] + more;
-    }
-    contour_.sink->add_simplices(simplices_);
-    size_.vertices += count;
-    size_.simplices += simplices_.size();
+  static std::uint64_t first_vertex(const LatticeRows& rows, std::size_t r) {
+    return r < rows.row_count() ? rows.row(r).first : rows.vertices();
+  }
+  static std::uint64_t first_simplex(const LatticeRows& rows, std::size_t r) {
+    return r < rows.row_count() ? rows.row(r).first_simplex : rows.simplices();
   }
 
-  StreamedContour<N, Real> contour_;
+  /// The contour of a window with the normals of the whole image.
+  template <Value T>
+  Contour<N, Real> contour_of(const Image<T, N>& window, const ExtractOptions& options) {
+    ExtractOptions without = options;
+    const bool weighs_as_whole = options.normals != Normals::none && grid_.axes[N - 1].is_uniform();
+    if (weighs_as_whole) without.normals = Normals::none;
+    auto [contour, stats] = extract_lattice_with_stats<Real>(window, lattice_, isovalue_, without);
+    stats_.classify_seconds += stats.classify_seconds;
+    stats_.find_seconds += stats.find_seconds;
+    stats_.generate_seconds += stats.generate_seconds;
+    if (!weighs_as_whole) return std::move(contour);
+    // by weights from the image's first layers
+    Grid<N> at_start = window.grid();
+    at_start.axes[N - 1] = grid_.axes[N - 1].part(0, window.size(N - 1));
+    const Image<T, N> moved(window.data(), at_start, window.strides());
+    contour.normals = std::move(extract_lattice<Real>(moved, lattice_, isovalue_, options).normals);
+    return std::move(contour);
+  }
+
+  template <Value T>
+  void add_rows(const Image<T, N>& window, const PartLayers& part, const ExtractOptions& options) {
+    const auto patterns = make_patterns<N>(lattice_, window.grid(), options);
+    const LatticeRows rows = rows_of(window, patterns, options);
+    const Contour<N, Real> contour = contour_of(window, options);
+    const std::size_t from = first_row(part, part.first), to = first_row(part, part.last);
+    const std::uint64_t first = first_vertex(rows, from), count = first_vertex(rows, to) - first;
+    // Vertices are numbered by layers, so the part's numbers differ from the image's by a constant.
+    number_by_rows(contour.vertices.size(), first);
+    output_.add(
+        std::span(contour.vertices).subspan(first, count),
+        std::span(contour.normals).subspan(contour.normals.empty() ? 0 : first, contour.normals.empty() ? 0 : count));
+    const auto last = static_cast<std::ptrdiff_t>(grid_.axes[N - 1].size());
+    const std::ptrdiff_t simplices_to = part.last == last ? last : part.last - kLag;
+    add_simplices(contour, rows, first_row(part, part.first - (part.first == 0 ? 0 : kLag)),
+                  first_row(part, simplices_to));
+    for (std::size_t r = from; r < to; ++r) {
+      stats_.tiles += rows.row(r).cells;
+      stats_.active_tiles += rows.row(r).active;
+    }
+  }
+  /// Numbers the vertices of a window; `first`: the first one that was not passed.
+  void number_by_rows(std::size_t vertices, std::uint64_t first) {
+    numbers_.resize(vertices);
+    for (std::size_t v = 0; v < vertices; ++v) numbers_[v] = output_.size().vertices - first + v;
+  }
+  void add_simplices(const Contour<N, Real>& contour, const LatticeRows& rows, std::size_t from, std::size_t to) {
+    const std::uint64_t first = first_simplex(rows, from), end = first_simplex(rows, to);
+    output_.add(contour, std::span(contour.simplices).subspan(first, end - first), numbers_, {});
+  }
+
+  /// From this part on, cells are stored. Passes the simplices that are still missing before them.
+  template <Value T>
+  void hand_over(const Image<T, N>& window, const PartLayers& part, const ExtractOptions& options) {
+    parts_.emplace(grid_, isovalue_, lattice_, AxisPeriods<N>{}, std::vector<Period<N>>{}, output_);
+    if (part.first == 0) return;
+    // no value is missing in the layers that the part before had
+    const std::ptrdiff_t end = std::min(part.end, part.first + kBehind);
+    Grid<N> grid = window.grid();
+    grid.axes[N - 1] = grid.axes[N - 1].part(0, static_cast<std::size_t>(end - part.begin));
+    const Image<T, N> known(window.data(), grid, window.strides());
+    const auto patterns = make_patterns<N>(lattice_, grid, options);
+    const LatticeRows rows = rows_of(known, patterns, options);
+    const Contour<N, Real> contour = contour_of(known, options);
+    const std::uint64_t passed = first_vertex(rows, first_row(part, part.first));
+    number_by_rows(contour.vertices.size(), passed);
+    // vertices in front, on edges only, in the order of the simplices that have them
+    constexpr std::uint64_t kNone = ~std::uint64_t{0};
+    std::fill(numbers_.begin() + static_cast<std::ptrdiff_t>(passed), numbers_.end(), kNone);
+    const std::size_t from = first_row(part, part.first - kLag), to = first_row(part, part.first);
+    for (std::uint64_t s = first_simplex(rows, from); s < first_simplex(rows, to); ++s)
+      for (const Index v : contour.simplices[s]) {
+        if (numbers_[v] != kNone) continue;
+        numbers_[v] = output_.size().vertices;
+        const auto normals = std::span(contour.normals);
+        output_.add(std::span(contour.vertices).subspan(v, 1),
+                    normals.subspan(normals.empty() ? 0 : v, normals.empty() ? 0 : 1));
+      }
+    add_simplices(contour, rows, from, to);
+    for (std::size_t r = first_row(part, part.first - 1); r < first_row(part, std::min(end, part.first + 2)); ++r)
+      know_edges(rows, r, part);
+    parts_->end_known();
+  }
+  /// Tells the parts to come the vertices on the edges of a row that have numbers.
+  void know_edges(const LatticeRows& rows, std::size_t r, const PartLayers& part) {
+    const std::size_t layer = r / rows_in_layer(), samples = grid_.axes[0].size();
+    const auto& kinds = rows.pattern(layer).edges;
+    const auto start =
+        static_cast<std::ptrdiff_t>((static_cast<std::size_t>(part.begin) * rows_in_layer() + r) * samples);
+    Index v = rows.row(r).first;
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const auto& to = kinds[kind].to;
+      const std::ptrdiff_t step =
+          (to[2] * static_cast<std::ptrdiff_t>(rows_in_layer()) + to[1]) * static_cast<std::ptrdiff_t>(samples) + to[0];
+      for (std::size_t w = 0; w < rows.words(); ++w)
+        for (Word rest = rows.crossed(r, kind).bits[w]; rest != 0; rest &= rest - 1, ++v) {
+          if (numbers_[v] == ~std::uint64_t{0}) continue;
+          const std::ptrdiff_t from =
+              start + static_cast<std::ptrdiff_t>(w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
+          parts_->know({static_cast<std::uint64_t>(from), static_cast<std::uint64_t>(from + step)}, numbers_[v]);
+        }
+    }
+  }
+
+  double isovalue_;
+  const Grid<N>& grid_;
   Lattice lattice_;
+  PartOutput<N, Real> output_;
   std::optional<CellParts<Real, N>> parts_;  ///< none: by rows
-  ContourSize size_;
   ExtractStats stats_;
-  std::vector<typename ContourSink<N, Real>::Simplex> simplices_;
+  std::vector<std::uint64_t> numbers_;  ///< by vertex of the window
 };
 
-/// The layers of a reader that a part needs.
+/// The layers of a reader that a part needs. If the last axis is periodic, those that come again are kept.
 template <Value T, int N>
 class LayerWindow {
  public:
-  /// `least`: own layers of a part; `samples`: if they have fewer samples than this, parts have more layers.
-  LayerWindow(LayerReader<T, N>& reader, std::size_t least, std::size_t samples)
-      : reader_(reader), least_(least), samples_(samples) {
+  /// `period`: of the last axis, or 0.
+  LayerWindow(LayerReader<T, N>& reader, double period) : reader_(reader), period_(period) {
     for (int a = 0; a + 1 < N; ++a) layer_ *= reader.grid().axes[a].size();
+    if (period_ != 0.0) kept_.resize(count());
   }
-  /// Number of layers of a part: large ones are few, so that the layers around them are not the most.
-  [[nodiscard]] std::size_t own_layers() const noexcept { return std::max(least_, samples_ / layer_ / 2 * 2); }
-  /// A view of the layers [begin, end). They ascend from call to call.
-  [[nodiscard]] Image<T, N> layers(std::size_t begin, std::size_t end) {
-    const auto passed = static_cast<std::ptrdiff_t>((begin - begin_) * layer_);
-    std::move(values_.begin() + passed, values_.begin() + static_cast<std::ptrdiff_t>((read_ - begin_) * layer_),
-              values_.begin());
-    begin_ = begin;
-    values_.resize((end - begin) * layer_);
-    for (; read_ < end; ++read_) reader_.read(read_, values_.data() + (read_ - begin) * layer_);
+  [[nodiscard]] std::size_t count() const { return reader_.grid().axes[N - 1].size(); }
+  /// Number of layers of a part with so many samples, but `least` at least: large layers are few, so that the layers
+  /// around them are not the most.
+  [[nodiscard]] std::ptrdiff_t layers_with(std::size_t samples, std::size_t least) const noexcept {
+    return static_cast<std::ptrdiff_t>(std::max(least, samples / layer_ / 2 * 2));
+  }
+  /// The own layers from `first` on.
+  [[nodiscard]] PartLayers part(std::ptrdiff_t first, std::ptrdiff_t layers) const {
+    const auto count = static_cast<std::ptrdiff_t>(this->count());
+    PartLayers part{first - kBefore, first, std::min(count, first + layers), 0};
+    part.end = part.last + kBehind;
+    if (period_ == 0.0) {
+      part.begin = std::max<std::ptrdiff_t>(part.begin, 0);
+      part.end = std::min(part.end, count);
+    }
+    return part;
+  }
+  /// A view of the part's layers. They begin and end later from call to call, or end earlier.
+  [[nodiscard]] Image<T, N> layers(const PartLayers& part) {
+    if (!has_begun_) begin_ = read_ = part.begin;
+    has_begun_ = true;
+    const auto at = [&](std::ptrdiff_t k) {
+      return values_.begin() + (k - begin_) * static_cast<std::ptrdiff_t>(layer_);
+    };
+    std::move(at(part.begin), at(read_), values_.begin());
+    begin_ = part.begin;
+    values_.resize(static_cast<std::size_t>(std::max(part.end, read_) - begin_) * layer_);
+    for (; read_ < part.end; ++read_) read(values_.data() + (read_ - begin_) * static_cast<std::ptrdiff_t>(layer_));
     Grid<N> grid = reader_.grid();
-    grid.axes[N - 1] = grid.axes[N - 1].part(begin, end - begin);
+    grid.axes[N - 1] = axis_of_layers(grid.axes[N - 1], period_, part.begin, part.end);
     return Image<T, N>(values_.data(), std::move(grid));
   }
+  /// Whether a value of the layers read so far is missing.
+  [[nodiscard]] bool any_missing() const noexcept { return any_missing_; }
 
  private:
+  void read(T* to) {
+    const std::size_t k = layer_modulo(read_, count());
+    const std::ptrdiff_t layer = static_cast<std::ptrdiff_t>(k), last = static_cast<std::ptrdiff_t>(count());
+    if (period_ != 0.0 && !kept_[k].empty()) {
+      std::copy(kept_[k].begin(), kept_[k].end(), to);
+      return;
+    }
+    reader_.read(k, to);
+    if constexpr (std::is_floating_point_v<T>)
+      any_missing_ = any_missing_ || std::any_of(to, to + layer_, [](T value) { return std::isnan(value); });
+    if (period_ != 0.0 && (layer < kBehind || layer + kBefore >= last)) kept_[k].assign(to, to + layer_);
+  }
+
   LayerReader<T, N>& reader_;
-  std::size_t least_, samples_, layer_ = 1, begin_ = 0, read_ = 0;
+  double period_;
+  std::size_t layer_ = 1;
+  bool has_begun_ = false, any_missing_ = false;
+  std::ptrdiff_t begin_ = 0, read_ = 0;  ///< the first layer in `values_`, and the one after the last
   Buffer<T> values_;
+  std::vector<std::vector<T>> kept_;
 };
 
 }  // namespace
@@ -194,43 +303,53 @@ class LayerWindow {
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_streamed_several(
     LayerReader<T, N>& layers, Lattice lattice,
-    std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options) {
+    std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options,
+    const AxisPeriods<N>& periods) {
   for (const auto& contour : contours)
     if (contour.sink == nullptr) detail::refuse("a contour without a sink; expected one each");
   const Grid<N> grid = layers.grid();
-  detail::check_stream<Real>(grid, lattice, options);
-  std::vector<detail::LatticeStream<Real, N>> streams;
-  const bool by_rows = detail::has_rows(lattice, options.ambiguity);
-  for (const auto& contour : contours) streams.emplace_back(contour, lattice, by_rows);
+  detail::check_stream<Real>(grid, lattice, options, periods);
+  bool by_rows = detail::has_rows(lattice, options.ambiguity) && !options.close && periods == AxisPeriods<N>{};
+  std::deque<detail::LatticeStream<Real, N>> streams;  // not movable
+  for (const auto& contour : contours) streams.emplace_back(contour, grid, lattice, periods, options, by_rows);
   if (contours.empty()) return {};
-  detail::LayerWindow<T, N> window(layers, by_rows ? 16 : 2, std::size_t{1} << (by_rows ? 18 : 16));
-  const std::size_t count = grid.axes[N - 1].size(), own = window.own_layers();
+  detail::LayerWindow<T, N> window(layers, periods[N - 1]);
+  const auto count = static_cast<std::ptrdiff_t>(window.count());
   double read_seconds = 0.0;
-  for (std::size_t first = 0; first < count; first += own) {
-    const std::size_t last = std::min(count, first + own);
-    const detail::PartLayers part{first - std::min(first, detail::kBefore), first, last,
-                                  std::min(count, last + detail::kBehind)};
+  for (std::ptrdiff_t first = 0; first < count;) {
+    const auto next_part = [&] {
+      return window.part(
+          first, by_rows ? window.layers_with(std::size_t{1} << 18, 16) : window.layers_with(std::size_t{1} << 16, 2));
+    };
+    detail::PartLayers part = next_part();
     detail::Stopwatch watch;
-    const Image<T, N> image = window.layers(part.begin, part.end);
+    Image<T, N> image = window.layers(part);
+    if (by_rows && window.any_missing()) {
+      by_rows = false;
+      image = window.layers(part = next_part());
+    }
     watch.add_to(read_seconds);
     for (std::size_t i = 0; i < streams.size(); ++i) {
       const auto share = [&](std::size_t done) {
         const double of_part = static_cast<double>(done) / static_cast<double>(streams.size());
-        return (static_cast<double>(first) + of_part * static_cast<double>(last - first)) / static_cast<double>(count);
+        return (static_cast<double>(first) + of_part * static_cast<double>(part.last - first)) /
+               static_cast<double>(count);
       };
       ExtractOptions one = options;
       one.work.progress = detail::part_of(options.work.progress, share(i), share(i + 1));
-      streams[i].add(image, grid, part, one);
+      streams[i].add(image, part, one, by_rows);
     }
+    first = part.last;
   }
   std::vector<ExtractedSize> results;
-  for (const auto& stream : streams) results.push_back(stream.result(read_seconds));
+  for (auto& stream : streams) results.push_back(stream.finish(read_seconds));
   return results;
 }
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real)                                            \
-  template std::vector<ExtractedSize> extract_lattice_streamed_several<Real, T, N>( \
-      LayerReader<T, N>&, Lattice, std::span<const StreamedContour<N, Real>>, const ExtractOptions&);
+#define TEGL_INSTANTIATE_ONE(T, N, Real)                                                             \
+  template std::vector<ExtractedSize> extract_lattice_streamed_several<Real, T, N>(                  \
+      LayerReader<T, N>&, Lattice, std::span<const StreamedContour<N, Real>>, const ExtractOptions&, \
+      const AxisPeriods<N>&);
 #define TEGL_INSTANTIATE(T)          \
   TEGL_INSTANTIATE_ONE(T, 2, float)  \
   TEGL_INSTANTIATE_ONE(T, 2, double) \

@@ -22,25 +22,22 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); }
 
-std::string label_of(const Axis& axis, int a) {
-  return axis.name.empty() ? fmt::format("axis {}", a) : fmt::format("axis {} ({})", a, axis.name);
-}
-
 double length_of(const Axis& axis) { return std::abs(axis[axis.size() - 1] - axis[0]); }
 
 void require_samples(const Axis& axis, int a) {
   if (axis.size() < 3)
-    refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", label_of(axis, a), axis.size()));
+    refuse(fmt::format("{} is periodic and has {} samples; expected at least 3", detail::label_of_axis(axis, a),
+                       axis.size()));
 }
 
 void check_period(const Axis& axis, int a, double period) {
   if (!std::isfinite(period) || period < 0.0)
     refuse(fmt::format("the period of {} is {}; expected a positive number, or 0 if it is not periodic",
-                       label_of(axis, a), period));
+                       detail::label_of_axis(axis, a), period));
   require_samples(axis, a);
   if (!(period > length_of(axis)))
     refuse(fmt::format("the period of {} is {}; expected more than {}, the distance between its first and last sample",
-                       label_of(axis, a), period, length_of(axis)));
+                       detail::label_of_axis(axis, a), period, length_of(axis)));
 }
 
 bool is_longitude(const Axis& axis) {
@@ -78,6 +75,11 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> longitude_periods(const Grid<N
 }
 
 namespace detail {
+
+std::string label_of_axis(const Axis& axis, int number) {
+  const std::string name = axis.name.empty() ? std::string(1, "xyzt"[number]) : axis.name;
+  return fmt::format("axis {} ({})", number, name);
+}
 
 bool is_longitude_unit(std::string_view unit) noexcept {
   constexpr std::array<std::string_view, 6> kUnits = {"degrees_east", "degree_east", "degree_E",

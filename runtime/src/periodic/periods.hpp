@@ -3,6 +3,7 @@
 // Checks of periodic axes, and their periods in the world.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace tegl::detail {
 
 /// Whether a unit is that of longitudes: degrees_east and its other spellings.
 [[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
+
+/// An axis in messages, such as "axis 0 (lon)"; one without a name is x, y, z or t.
+[[nodiscard]] std::string label_of_axis(const Axis& axis, int number);
 
 /// Throws InvalidArgument for bad periods, and for options that periodic extraction does not have.
 template <int N>

@@ -464,6 +464,10 @@ TEST(CellMesh, CollectionsNameFilesInTheirFolder) {
              collection("<DataSet timestep=\"2\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"b.vtu\"/>"));
   expect_error(ErrorCode::InvalidArgument, {"b.pvd: has the timestep 1 of b.vtu after 2 of a.vtu", "--sort time"},
                [&] { read(dir / "b.pvd", {.order = SeriesOrder::by_name}); });
+  const CellMeshOptions equal{.times = {2.0, 2.0}};
+  const auto error = error_of([&] { read_cell_mesh(std::array{dir / "a.vtu", dir / "b.vtu"}, equal); });
+  EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("2 for b.vtu after 2 for a.vtu; expected a time of its"),
+                                           testing::Not(testing::HasSubstr("--sort"))));
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"<DataSet timestep=\"x\" file=\"a.vtu\"/>", "timestep='x'"},
       {"<DataSet timestep=\"1\" file=\"../a.vtu\"/>", "a.vtu"},

@@ -461,12 +461,15 @@ TEST(LatticeSeam, BadPeriodsAreRefused) {
                  [&] { (void)extract_lattice(image.view(), lattice, 0.5, {}, periods); });
   };
   using Sizes = std::array<std::size_t, 3>;
-  refused(Lattice::fcc, Sizes{6, 6, 7}, 4u, "lattice fcc: the periodic axis 2 has 7 layers; expected an even number");
-  refused(Lattice::bcc, Sizes{6, 6, 4}, 4u, "lattice bcc: the periodic axis 2 has 4 layers; expected an even number");
-  refused(Lattice::fcc, Sizes{2, 6, 8}, 1u, "the periodic axis 0 has 2 samples; expected at least 3");
-  refused(Lattice::fcc, Sizes{6, 6, 8}, 2u, "the period of axis 1 is 1.25; expected 1, the number of samples", 1.25);
-  refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 7, 4}, 4u, "the periodic axis 2 has 7 layers");
-  refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 6, 2}, 8u, "the periodic axis 3 has 2 samples");
+  refused(Lattice::fcc, Sizes{6, 6, 7}, 4u,
+          "lattice fcc: axis 2 (z) is periodic and has 7 layers; expected an even number");
+  refused(Lattice::bcc, Sizes{6, 6, 4}, 4u,
+          "lattice bcc: axis 2 (z) is periodic and has 4 layers; expected an even number");
+  refused(Lattice::fcc, Sizes{2, 6, 8}, 1u, "axis 0 (x) is periodic and has 2 samples; expected at least 3");
+  refused(Lattice::fcc, Sizes{6, 6, 8}, 2u, "the period of axis 1 (y) is 1.25; expected 1, the number of samples",
+          1.25);
+  refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 7, 4}, 4u, "axis 2 (z) is periodic and has 7 layers");
+  refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 6, 2}, 8u, "axis 3 (t) is periodic and has 2 samples");
 }
 
 /// Errors of size and content, and the Euler characteristic, at spacings of which each is half of the one before.

@@ -328,7 +328,7 @@ TEST(Lattice, BadGridsAreRefused) {
                "lattice fcc of a 4D image; expected 3 dimensions, or the lattice fcc_in_time for fcc over time",
                [&] { (void)extract_lattice(moving.view(), Lattice::fcc, 0.0); });
   image.grid.axes[0] = Axis::rectilinear({0.0, 1.0, 2.0, 4.0, 5.0, 6.0});
-  expect_error(ErrorCode::InvalidArgument, "axis 0 has a step of",
+  expect_error(ErrorCode::InvalidArgument, "axis 0 (x) has a step of",
                [&] { (void)lattice_complex(image.view(), Lattice::fcc); });
   ExtractOptions options;
   options.normals = Normals::sobel;
