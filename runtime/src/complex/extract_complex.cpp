@@ -559,13 +559,15 @@ Contour<N, Real> contour_of(const Complex<N>& complex, const NumberedContour<N>&
 template <class Real, int N>
 Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
                                const Surroundings<N>& around) {
-  check_complex_options(N, isovalue, options);
+  check_complex_options(isovalue, options);
   check_range<Real>(complex);
   Extraction<N, Real> result;
   const Progress& progress = options.work.progress;
   const NumberedContour<N> numbered(complex, isovalue, options, around.active, part_of(progress, 0.0, 0.6),
                                     result.stats);
   if (around.keys != nullptr) *around.keys = {numbered.numbers().edge_ends(), numbered.numbers().polygons()};
+  if (around.simplices != nullptr)
+    *around.simplices = numbered.numbers().simplices_by_cell(ComplexAccess::cells(complex));
   Stopwatch watch;
   result.contour =
       contour_of<Real>(complex, numbered, numbered.numbers().vertices_at_missing(ComplexAccess::cells(complex)),
@@ -586,7 +588,7 @@ template <int N, Coordinate Real, VertexNumber I>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& complex, double isovalue,
                                                               const ContourRoom<N, Real, I>& room,
                                                               const ExtractOptions& options) {
-  detail::check_complex_options(N, isovalue, options);
+  detail::check_complex_options(isovalue, options);
   detail::check_range<Real>(complex);
   const bool with_normals = options.normals != Normals::none;
   ExtractedSize result;
