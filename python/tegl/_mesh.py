@@ -67,8 +67,7 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
         arrays #P or #P x k (with `times` #T x #P or #T x #P x k); for a mesh also names in its `point_data`.
     triangulation, ambiguity, direction, close, epsilon, normals, dtype, allow_empty, threads, progress
         As for `tegl.contour`. `close` makes caps at the border of the mesh. Normals: True or "gradient", "geometric" or
-        "flat". In 4D, `close` with rules that read the values needs triangulation="barycentric";
-        with "mean" and "saddle" it is for tetrahedra over time.
+        "flat".
 
     The columns of the vertices are the columns of `points`, then the time. Errors: ValueError, with the library's message;
     TypeError for an argument of a wrong type; Cancelled if `progress` returns False.

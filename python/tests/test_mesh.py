@@ -188,8 +188,6 @@ def test_an_index_gives_the_contours_of_the_mesh():
     (dict(times=[0.0, 1.0]), ValueError, "values have the shape (27,); expected (2, 27)"),
     (dict(times=[1.0, 0.0], values=np.zeros((2, 27))), ValueError, "expected ascending times"),
     (dict(level=7.0), ValueError, "level is 7.0; expected a level above"),
-    (dict(ambiguity="mean", close=True, times=[0.0, 1.0], values=np.zeros((2, 27))), ValueError,
-     "expected the barycentric one"),
     (dict(normals="sobel"), ValueError, "normals of a mesh are 'sobel'; expected True"),
     (dict(dtype="int32"), ValueError, "expected float32 or float64"),
 ])

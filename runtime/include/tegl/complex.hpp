@@ -200,8 +200,7 @@ requires DimensionBetween<N, 2, 4>
 ///   (The interpolant of a wedge has no tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous. The 3D
 ///   facets of 4D cells are resolved in the same way, by their own values. Hexahedra over time are resolved as the
 ///   tesseracts of an image. In other 4D cells spheres of the boundary are filled one by one.
-/// - close: not in 4D with rules that read the data if the triangulation is compact, nor with mean and saddle if a cell
-///   has a hexahedron as a facet. Caps are the high part of the complex's border, the facets of one cell only. Without
+/// - close: caps are the high part of the complex's border, the facets of one cell only. Without
 ///   missing values, the contour is then closed if the border is a manifold. Facets of cells with missing corners have
 ///   no caps.
 /// - normals: differences. The gradient at a point belongs to the linear function that best fits the differences to

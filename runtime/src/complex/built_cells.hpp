@@ -17,6 +17,7 @@
 #include "ambiguity/lone_pair.hpp"
 #include "complex/border_facets.hpp"
 #include "complex/cell_contour.hpp"
+#include "regions/decided_regions.hpp"
 #include "regions/face_fillings.hpp"
 #include "regions/sigma_pieces.hpp"
 #include "tegl/tile/choices.hpp"
@@ -55,6 +56,15 @@ struct BuiltContour {
   bool of_image = false;  ///< of a tesseract in images
 };
 
+/// The contour in a facet of a 4D cell. Polygons that it has not in triangles are coned from their barycentres.
+struct DecidedFacet {
+  /// In compact contours: its triangles, between edges of the facet, oriented alike.
+  bool is_compact = false;
+  std::span<const FaceFillings::Triangle> triangles{};
+  std::optional<CubeContour> cube{};  ///< of a hexahedron that is decided
+  std::optional<LonePair> tunnel{};   ///< of an octahedron with a tunnel
+};
+
 /// The contours of the cells of one 4D shape that occur: found by keys, built, and kept in a table.
 class BuiltCells {
  public:
@@ -65,6 +75,8 @@ class BuiltCells {
   /// The key of a cell with these points at its corners. `values`: of all points.
   [[nodiscard]] virtual CellKey key(unsigned signature, const Index* corners,
                                     std::span<const double> values) const noexcept = 0;
+  /// The contour in a facet. `corners`: the points at the cell's corners.
+  [[nodiscard]] virtual DecidedFacet in_facet(std::size_t facet, const CellKey& key, const Index* corners) const = 0;
   /// Builds the contours of `keys`, which ascend and are distinct. To be called once. Errors: Cancelled.
   void build(std::vector<CellKey> keys, const WorkOptions& work);
   /// The number of a contour that was built.
@@ -113,14 +125,15 @@ class CompactCells final : public BuiltCells {
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
                             std::span<const double> values) const noexcept override;
-  /// The triangles of the contour in a facet, as edges of the facet, oriented by the facet's own corners.
-  [[nodiscard]] std::span<const FaceFillings::Triangle> in_facet(std::size_t facet, const CellKey& key) const;
+  [[nodiscard]] DecidedFacet in_facet(std::size_t facet, const CellKey& key, const Index* corners) const override;
 
  private:
   /// Builds one contour.
   class Filler;
 
   void fill(std::span<const CellKey> keys, std::span<BuiltContour> contours) const override;
+  /// The triangles of the contour in a facet, as edges of the facet, oriented by the facet's own corners.
+  [[nodiscard]] std::span<const FaceFillings::Triangle> triangles_in(std::size_t facet, const CellKey& key) const;
 
   bool high_connected_;
   const tables::CellTable& barycentric_;
@@ -146,6 +159,7 @@ class DecidedCells final : public BuiltCells {
 
   [[nodiscard]] CellKey key(unsigned signature, const Index* corners,
                             std::span<const double> values) const noexcept override;
+  [[nodiscard]] DecidedFacet in_facet(std::size_t facet, const CellKey& key, const Index* corners) const override;
 
  private:
   /// Builds one contour.

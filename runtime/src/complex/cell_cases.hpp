@@ -104,8 +104,6 @@ class CellCases {
   [[nodiscard]] const ResolvedCells* resolved() const noexcept { return resolved_.get(); }
   /// Null: the contours are in the table. Contours are built when the active cells are known.
   [[nodiscard]] BuiltCells* built() const noexcept { return built_.get(); }
-  /// Null: the contours are not compact ones that are built.
-  [[nodiscard]] const CompactCells* compact() const noexcept { return dynamic_cast<const CompactCells*>(built_.get()); }
 
   /// Whether all vertices are on edges and depend on the signature alone. Then `of_signature` and `ordinals` have all
   /// that there is to write.

@@ -131,7 +131,7 @@ requires DimensionBetween<N, 2, 4> Extraction<N, Real> extract_with_stats(const 
                 fmt::format("an index of {} cells and {} points; the complex has {} and {}", index.cell_count(),
                             index.point_count(), complex.cell_count(), complex.points().size()));
   if (index.has_missing()) return extract_with_stats<Real>(complex, isovalue, options);
-  detail::check_complex_options(N, isovalue, options);
+  detail::check_complex_options(isovalue, options);
   detail::Stopwatch watch;
   const std::vector<Index> active = index.find(isovalue);
   double seconds = 0;

@@ -94,8 +94,12 @@ CellKey CompactCells::key(unsigned signature, const Index* corners, std::span<co
   return key;
 }
 
-std::span<const Triangle> CompactCells::in_facet(std::size_t f, const CellKey& key) const {
+std::span<const Triangle> CompactCells::triangles_in(std::size_t f, const CellKey& key) const {
   return fillings_of_[f]->triangles(facet_signature(facets_[f], key.signature), key.fillings[f]);
+}
+
+DecidedFacet CompactCells::in_facet(std::size_t f, const CellKey& key, const Index*) const {
+  return {true, triangles_in(f, key)};
 }
 
 class CompactCells::Filler {
@@ -106,7 +110,8 @@ class CompactCells::Filler {
       for (const std::uint8_t e : std::span(cells.facets_[f].edges).first(table_of_facet(f).edge_count))
         facets_of_edge_[e] |= 1u << f;
       const auto& edges = cells.facets_[f].edges;
-      for (const Triangle& t : cells.in_facet(f, key)) sigma_.push_back({{edges[t[0]], edges[t[1]], edges[t[2]]}, f});
+      for (const Triangle& t : cells.triangles_in(f, key))
+        sigma_.push_back({{edges[t[0]], edges[t[1]], edges[t[2]]}, f});
     }
   }
 

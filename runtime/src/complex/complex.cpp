@@ -196,7 +196,7 @@ const noexcept { return edges_ == nullptr ? 0 : edges_->ends.size(); }
 template <int N>
 requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, double isovalue,
                                                      const ExtractOptions& options) {
-  detail::check_complex_options(N, isovalue, options);
+  detail::check_complex_options(isovalue, options);
   ExtractStats stats;
   const Progress& progress = options.work.progress;
   const auto is_missing = [](double value) { return std::isnan(value); };

@@ -14,24 +14,13 @@
 
 #include "ambiguity/face_decision.hpp"
 #include "base/progress.hpp"
+#include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
+#include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
-
-template <int N>
-struct ComplexCaps<N>::Facet {
-  const CellFacet& of;
-  std::array<Index, 8> points;
-  unsigned high = 0;
-  bool flip;
-  /// Of compact 4D cells: the contour's triangles in the facet, as edges of the facet.
-  bool is_compact = false;
-  std::span<const FaceFillings::Triangle> triangles = {};
-
-  [[nodiscard]] bool is_high(unsigned i) const noexcept { return (high >> i & 1u) != 0; }
-};
 
 template <int N>
 ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, const BorderFacets& border,
@@ -76,11 +65,10 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       corners_.push_back(facet.points[v]);
     }
     if (facet.high == 0) continue;
-    if (const CellCases& cases = numbers.cases(g); cases.compact() != nullptr) {
+    if (const BuiltCells* const built = numbers.cases(g).built()) {
       unsigned signature = 0;
       for (unsigned v = 0; v < group.corner_count; ++v) signature |= (values[corners[v]] >= isovalue ? 1u : 0u) << v;
-      facet.is_compact = true;
-      facet.triangles = cases.compact()->in_facet(number, cases.compact()->key(signature, corners, values));
+      facet.contour = built->in_facet(number, built->key(signature, corners, values), corners);
     }
     add_facet(facet);
   }
@@ -176,11 +164,7 @@ void ComplexCaps<N>::add_tabled(const PrismFacet& facet, const Index* points, bo
     corners_.push_back(of.points[v]);
   }
   if (of.high == 0) return;
-  of.is_compact = options_.triangulation == Triangulation::compact;
-  if (of.is_compact && of.high + 1 != 1u << of.of.corner_count) {
-    const FaceFillings fillings(of.of.shape, options_.ambiguity == Ambiguity::high);
-    of.triangles = fillings.triangles(of.high, fillings.choose(of.high, of.points.data()));
-  }
+  of.contour = decide(of);
   add_facet(of);
 }
 
@@ -303,8 +287,14 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
     std::rotate(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(fan_start(facet, part)), part.end());
     for (std::size_t i = 2; i < part.size(); ++i) boundary.triangles.push_back({part[0], part[i - 1], part[i]});
   }
-  if (facet.is_compact)
-    add_compact(facet, next, boundary.triangles);
+  boundary.sides = boundary.triangles.size();
+  if (!facet.is_active()) return boundary;
+  if (facet.contour.cube)
+    add_cube(facet, next, boundary);
+  else if (facet.contour.tunnel)
+    add_tunnel_centres(facet, boundary);
+  else if (facet.contour.is_compact)
+    add_compact(facet, next, boundary);
   else
     add_polygons(facet, next, boundary);
   return boundary;
@@ -333,24 +323,131 @@ void ComplexCaps<N>::add_polygons(const Facet& facet, Segments next, Boundary& t
   }
 }
 
-/// All triangles have the same orientation in the facet, so one side of the contour fixes it.
+/// One side of the contour fixes the orientation of all triangles.
 template <int N>
-void ComplexCaps<N>::add_compact(const Facet& facet, const Segments& next,
-                                 std::vector<RegionDivision::Triangle>& triangles) const {
-  const std::size_t first = triangles.size();
-  for (const FaceFillings::Triangle& edges : facet.triangles) {
+void ComplexCaps<N>::add_oriented(const Segments& next, const std::vector<RegionDivision::Triangle>& triangles,
+                                  Boundary& to) {
+  const auto is_segment = [&](Local start, Local end) { return start < next.size() && next[start] == end; };
+  const auto is_along = [&](const auto& t) {
+    return is_segment(t[0], t[1]) || is_segment(t[1], t[2]) || is_segment(t[2], t[0]);
+  };
+  const auto is_reversed = [&](const auto& t) {
+    return is_segment(t[1], t[0]) || is_segment(t[2], t[1]) || is_segment(t[0], t[2]);
+  };
+  const auto at_border =
+      std::find_if(triangles.begin(), triangles.end(), [&](const auto& t) { return is_along(t) != is_reversed(t); });
+  const bool reverses = at_border != triangles.end() && is_reversed(*at_border);
+  for (RegionDivision::Triangle t : triangles) {
+    if (reverses) std::swap(t[1], t[2]);
+    to.triangles.push_back(t);
+  }
+}
+
+template <int N>
+void ComplexCaps<N>::add_compact(const Facet& facet, const Segments& next, Boundary& to) const {
+  std::vector<RegionDivision::Triangle> triangles;
+  for (const FaceFillings::Triangle& edges : facet.contour.triangles) {
     auto& t = triangles.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) t[i] = static_cast<Local>(ShapeVertices::kFirstEdge + edges[i]);
   }
-  const auto is_along = [&](const auto& t) { return next[t[0]] == t[1] || next[t[1]] == t[2] || next[t[2]] == t[0]; };
-  const auto is_reversed = [&](const auto& t) {
-    return next[t[1]] == t[0] || next[t[2]] == t[1] || next[t[0]] == t[2];
+  add_oriented(next, triangles, to);
+}
+
+/// The number of an own vertex of the resolved cube's list in a hexahedron.
+template <int N>
+Index ComplexCaps<N>::own_of_cube(const Facet& facet, unsigned own) const {
+  const ResolvedCubes& cubes = ResolvedCubes::instance(options_.triangulation);
+  const auto& [frame, list] = *facet.contour.cube;
+  const std::uint32_t mask = cubes.mask(list, own);
+  const auto crossing = [&](unsigned p, unsigned q) {
+    return static_cast<Index>(on_edge(facet.points[p], facet.points[q]).number());
   };
-  const auto added = std::span(triangles).subspan(first);
-  const auto at_border =
-      std::find_if(added.begin(), added.end(), [&](const auto& t) { return is_along(t) != is_reversed(t); });
-  if (at_border == added.end() || !is_reversed(*at_border)) return;
-  for (auto& t : added) std::swap(t[1], t[2]);
+  CubePoint point{facet.points, 0, 0};
+  std::vector<Index> around;
+  for (unsigned v = 0; v < 8; ++v) point.mask |= (mask >> v & 1u) << frame.corner(v);
+  for (unsigned e = 0; e < 12; ++e) {
+    if ((mask >> (8 + e) & 1u) == 0) continue;
+    const unsigned base = edge_base(3, e), p = frame.corner(base), q = frame.corner(base | 1u << e / 4);
+    point.mask |= 256u << edge_number(3, static_cast<unsigned>(std::countr_zero(p ^ q)), p);
+    around.push_back(crossing(p, q));
+  }
+  if (own < cubes.summary(list).barycentres) return numbers_.polygon(around);
+  Index first = kNoPoint;
+  for (unsigned e = 0; e < 12; ++e) {
+    const unsigned p = edge_base(3, e), q = p | 1u << e / 4;
+    if (facet.is_high(p) != facet.is_high(q)) first = std::min(first, crossing(p, q));
+  }
+  return numbers_.in_cube(point, first);
+}
+
+template <int N>
+void ComplexCaps<N>::add_cube(const Facet& facet, const Segments& next, Boundary& to) const {
+  const ResolvedCubes& cubes = ResolvedCubes::instance(options_.triangulation);
+  const auto& [frame, list] = *facet.contour.cube;
+  for (unsigned j = 0; j < cubes.own_vertices(list); ++j)
+    to.centres.push_back(CapVertex::of_contour(own_of_cube(facet, j)));
+  std::vector<RegionDivision::Triangle> triangles;
+  const std::span<const std::uint8_t> of = cubes.triangles_of(list);
+  for (std::size_t i = 0; i < of.size(); i += 3) {
+    auto& t = triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const unsigned v = of[i + k];
+      if (v >= 12) {
+        t[k] = static_cast<Local>(ShapeVertices::kFirstCentre + v - 12);
+        continue;
+      }
+      const unsigned base = edge_base(3, v), p = frame.corner(base), q = frame.corner(base | 1u << v / 4);
+      t[k] = static_cast<Local>(ShapeVertices::kFirstEdge + edge_between(table_of(facet.of.shape), p, q));
+    }
+  }
+  add_oriented(next, triangles, to);
+}
+
+template <int N>
+void ComplexCaps<N>::add_tunnel_centres(const Facet& facet, Boundary& to) const {
+  const unsigned p = 2 * facet.contour.tunnel->pair;
+  const auto around = corners_around(facet.contour.tunnel->pair);
+  for (unsigned i = 0; i < 4; ++i) {
+    std::vector<Index> quadrilateral;
+    for (const unsigned v : {around[i], around[(i + 1) % 4]})
+      for (const unsigned end : {p, p + 1})
+        quadrilateral.push_back(static_cast<Index>(on_edge(facet.points[end], facet.points[v]).number()));
+    to.centres.push_back(CapVertex::of_contour(numbers_.polygon(quadrilateral)));
+  }
+}
+
+template <int N>
+DecidedFacet ComplexCaps<N>::decide(const Facet& facet) const {
+  using tables::CellShape;
+  DecidedFacet result;
+  const bool is_compact = options_.triangulation == Triangulation::compact;
+  unsigned variant = options_.ambiguity == Ambiguity::high ? 1 : 0;
+  if (is_estimated(options_.ambiguity)) {
+    std::array<double, 8> at{};
+    for (unsigned v = 0; v < facet.of.corner_count; ++v) at[v] = values_[facet.points[v]];
+    const FaceRule rule = face_rule(options_.ambiguity);
+    unsigned ambiguous = 0, high = 0;
+    const auto quadrilaterals = quadrilaterals_of(facet.of.shape);
+    for (unsigned q = 0; q < quadrilaterals.size(); ++q) {
+      const auto& [a, b, c, d] = quadrilaterals[q];
+      if (!is_ambiguous_square(facet.high, quadrilaterals[q])) continue;
+      ambiguous |= 1u << q;
+      const std::array<double, 4> square = {at[a], at[b], at[c], at[d]};
+      high |= (is_square_high(rule, square, isovalue_) ? 1u : 0u) << q;
+    }
+    if (facet.of.shape == CellShape::hexahedron) {
+      result.cube.emplace(CubeFrame::number_of(facet.points.data()), facet.high, high,
+                          cube_key(rule, at, isovalue_, facet.high).choice());
+      return result;
+    }
+    variant = ResolvedCells::variant(facet.high, ambiguous, high);
+  }
+  result.is_compact = is_compact && variant < 2;
+  if (result.is_compact && facet.is_active()) {
+    const FaceFillings fillings(facet.of.shape, variant == 1);
+    result.triangles = fillings.triangles(facet.high, fillings.choose(facet.high, facet.points.data()));
+  }
+  return result;
 }
 
 template <int N>
@@ -368,10 +465,25 @@ ShapePlaces ComplexCaps<N>::places_of(const Facet& facet, const Boundary& bounda
   return places;
 }
 
+/// Decided hexahedra have the regions of the resolved cube, as images have, if the diagonals in their faces are the
+/// same or can be exchanged; others without a tunnel have emitted divisions of their boundary, if these are proved.
+template <int N>
+const RegionDivision& ComplexCaps<N>::division_of(const Facet& facet, Boundary& boundary) {
+  const auto sides = std::span(boundary.triangles).first(boundary.sides);
+  const RegionTriangles in_faces(sides.begin(), sides.end());
+  const auto& [is_compact, triangles, cube, tunnel] = facet.contour;
+  if (tunnel && facet.is_active()) return decided_ = divide_around_tunnel(tunnel->pair, tunnel->is_high, in_faces);
+  if (!cube) return divisions_.of(facet.of.shape, std::move(boundary.triangles));
+  decided_ = divide_cube(*cube, options_.triangulation, in_faces);
+  if (decided_.is_proved || has_tunnel(cube->list)) return decided_;
+  const RegionDivision& listed = divisions_.of(facet.of.shape, std::move(boundary.triangles));
+  return listed.is_proved ? listed : decided_;
+}
+
 template <int N>
 void ComplexCaps<N>::add_regions(const Facet& facet) {
   Boundary boundary = boundary_of(facet);
-  const RegionDivision& division = divisions_.of(facet.of.shape, std::move(boundary.triangles));
+  const RegionDivision& division = division_of(facet, boundary);
   std::array<CapVertex, ShapeVertices::kEnd> vertices;
   for (std::size_t i = 0; i < boundary.centres.size(); ++i)
     vertices[ShapeVertices::kFirstCentre + i] = boundary.centres[i];

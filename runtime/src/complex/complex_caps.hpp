@@ -14,6 +14,7 @@
 #include "complex/border_facets.hpp"
 #include "complex/contour_numbers.hpp"
 #include "polytope/prism_facets.hpp"
+#include "regions/decided_regions.hpp"
 #include "regions/region_divisions.hpp"
 #include "tegl/table_contract.hpp"
 
@@ -70,14 +71,24 @@ class ComplexCaps {
   [[nodiscard]] Index number(CapVertex vertex) const noexcept;
 
  private:
-  /// A facet's corners and what is known about them.
-  struct Facet;
+  /// A facet's corners and the contour in it.
+  struct Facet {
+    const CellFacet& of;
+    std::array<Index, 8> points;
+    unsigned high = 0;
+    bool flip;
+    DecidedFacet contour = {};
+
+    [[nodiscard]] bool is_high(unsigned i) const noexcept { return (high >> i & 1u) != 0; }
+    [[nodiscard]] bool is_active() const noexcept { return high != 0 && high + 1 != 1u << of.corner_count; }
+  };
   /// Vertices of a facet, numbered as ShapeVertices; parts of polygons are convex and in the order around it.
   using Local = std::uint8_t;
   using Part = std::vector<Local>;
   /// The boundary of a facet's high part, facing outwards, and the barycentres of the contour's polygons in it.
   struct Boundary {
     std::vector<RegionDivision::Triangle> triangles;
+    std::size_t sides = 0;  ///< number of triangles in the facet's faces, which are the first ones
     std::vector<CapVertex> centres;
     std::vector<Part> polygons;  ///< by barycentre
   };
@@ -95,8 +106,17 @@ class ComplexCaps {
   /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.
   using Segments = std::array<Local, ShapeVertices::kFirstCentre>;
   void add_polygons(const Facet& facet, Segments next, Boundary& to) const;
-  void add_compact(const Facet& facet, const Segments& next, std::vector<RegionDivision::Triangle>& triangles) const;
+  /// Adds triangles of the contour that are oriented alike.
+  static void add_oriented(const Segments& next, const std::vector<RegionDivision::Triangle>& triangles, Boundary& to);
+  void add_compact(const Facet& facet, const Segments& next, Boundary& to) const;
+  /// Of a hexahedron that is decided, and of an octahedron with a tunnel.
+  void add_cube(const Facet& facet, const Segments& next, Boundary& to) const;
+  void add_tunnel_centres(const Facet& facet, Boundary& to) const;
+  [[nodiscard]] Index own_of_cube(const Facet& facet, unsigned own) const;
+  /// The contour in a hexahedron or wedge of a prism over a polyhedron.
+  [[nodiscard]] DecidedFacet decide(const Facet& facet) const;
   void add_regions(const Facet& facet);
+  [[nodiscard]] const RegionDivision& division_of(const Facet& facet, Boundary& boundary);
   [[nodiscard]] ShapePlaces places_of(const Facet& facet, const Boundary& boundary) const;
   [[nodiscard]] static std::size_t fan_start(const Facet& facet, const Part& part);
   [[nodiscard]] CapVertex on_edge(Index p, Index q) const;
@@ -115,6 +135,7 @@ class ComplexCaps {
   const ExtractOptions& options_;
   const ContourNumbers& numbers_;
   RegionDivisions divisions_;
+  RegionDivision decided_;  ///< of the current facet
   std::vector<Index> corners_;
   std::vector<CapVertex> points_;
   std::vector<std::uint64_t> first_point_{0};

@@ -22,36 +22,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// Whether a 4D shape has hexahedra or octahedra as facets: contours in them may have tunnels.
-bool may_have_tunnels(tables::CellShape shape) {
-  const auto facets = facets_of(shape);
-  return std::any_of(facets.begin(), facets.end(), [](const CellFacet& facet) {
-    return facet.shape == tables::CellShape::hexahedron || facet.shape == tables::CellShape::octahedron;
-  });
-}
-
-bool may_have_tunnels(const Polytopes& polytopes) {
-  if (polytopes.dim() != 4) return false;
-  for (std::size_t c = 0; c < polytopes.size(); ++c)
-    for (std::size_t f = 0; f < polytopes.shape(c).face_count(); ++f)
-      if (polytopes.shape(c).ring(f).size() == 4) return true;
-  return false;
-}
-
-/// Errors: InvalidArgument.
-void check_caps(const CellGroups& cells, const ExtractOptions& options) {
-  if (!options.close || !is_estimated(options.ambiguity) || face_rule(options.ambiguity).separates) return;
-  if (may_have_tunnels(cells.polytopes) ||
-      std::any_of(cells.groups.begin(), cells.groups.end(),
-                  [](const CellGroup& group) { return may_have_tunnels(group.shape); }))
-    throw Error(ErrorCode::InvalidArgument,
-                "close and ambiguity by means or saddles in 4D cells with hexahedra or octahedra as facets; expected "
-                "low, high, "
-                "squares or decider");
-}
-
 CellTables tables_of(const CellGroups& cells, double isovalue, const ExtractOptions& options) {
-  check_caps(cells, options);
   CellTables tables;
   for (const CellGroup& group : cells.groups) {
     const tables::CellTable& table = tables::cell_table(group.shape, options.triangulation);
@@ -105,17 +76,12 @@ PolytopeRules rules_of(const ExtractOptions& options, double isovalue) {
   return rules;
 }
 
-void check_complex_options(int dim, double isovalue, const ExtractOptions& options) {
+void check_complex_options(double isovalue, const ExtractOptions& options) {
   check_arguments(isovalue, options);
   if (options.ambiguity == Ambiguity::custom)
     throw Error(
         ErrorCode::InvalidArgument,
         "ambiguity resolved by a custom estimator; expected another rule for meshes, lattices and divided cells");
-  if (dim == 4 && options.close && is_estimated(options.ambiguity) && options.triangulation == Triangulation::compact)
-    throw Error(
-        ErrorCode::InvalidArgument,
-        "ambiguity resolved from the data, the compact triangulation and close; expected the barycentric one in "
-        "4D for meshes, lattices and divided cells");
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("normals are {}; expected gradient (differences) for meshes, lattices and divided cells",
@@ -174,10 +140,38 @@ Index ContourNumbers::polygon_in(const std::array<Index, 4>& facet, std::span<co
   return number_of(key_of_loop(*std::min_element(vertices.begin(), vertices.end()), facet));
 }
 
+Index ContourNumbers::in_cube(const CubePoint& point, Index crossing) const {
+  return number_of(key_of(point, crossing));
+}
+
 Index ContourNumbers::number_of(const PolygonKey& key) const {
   const auto found = std::lower_bound(shared_.keys.begin(), shared_.keys.end(), key);
   if (found == shared_.keys.end() || *found != key) return kNoPoint;
   return static_cast<Index>(edge_ends().size() + static_cast<std::size_t>(found - shared_.keys.begin()));
+}
+
+std::vector<CellSimplices> ContourNumbers::simplices_by_cell(const CellGroups& cells) const {
+  std::vector<CellSimplices> all;
+  std::vector<Index> first_cell;  // by group, then of the polytopes
+  Index count = 0;
+  for (const CellGroup& group : cells.groups) first_cell.push_back(std::exchange(count, count + group.size()));
+  std::uint32_t end = 0;
+  for (const ActiveBlock& block : blocks_)
+    for (const ActiveCell& cell : block.cells) {
+      end += tables_.of_group[block.group].of(cell.signature, cell.variant).list().simplex_count;
+      all.push_back({first_cell[block.group] + cell.cell, static_cast<std::uint16_t>(cell.signature), end});
+    }
+  for (const PolytopeBlock& block : polytopes_) {
+    std::uint32_t from = 0;
+    for (const PolytopeBlock::Piece& piece : block.pieces) {
+      const std::uint32_t size = piece.end - std::exchange(from, piece.end);
+      end += size == 2 ? 1 : (piece.is_coned ? size : size - 2);
+      const Index cell = count + piece.cell;
+      if (all.empty() || all.back().cell != cell) all.push_back({cell, 0, end});
+      all.back().end = end;
+    }
+  }
+  return all;
 }
 
 std::vector<Index> ContourNumbers::vertices_at_missing(const CellGroups& cells) const {

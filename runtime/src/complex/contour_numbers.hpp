@@ -13,11 +13,18 @@
 
 namespace tegl::detail {
 
-/// Checks the options of an extraction from a complex of dimension `dim`. Errors: InvalidIsovalue, InvalidArgument.
-void check_complex_options(int dim, double isovalue, const ExtractOptions& options);
+/// Checks the options of an extraction from a complex. Errors: InvalidIsovalue, InvalidArgument.
+void check_complex_options(double isovalue, const ExtractOptions& options);
 
 /// How polygons and polyhedra are resolved.
 [[nodiscard]] PolytopeRules rules_of(const ExtractOptions& options, double isovalue);
+
+/// The simplices of an active cell.
+struct CellSimplices {
+  Index cell;               ///< number among all cells: by group, polygons and polyhedra last
+  std::uint16_t signature;  ///< 0 for polygons and polyhedra
+  std::uint32_t end;        ///< the number of the first simplex behind them
+};
 
 /// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells,
 /// those of polygons and polyhedra last. Simplices: by cell, likewise.
@@ -63,11 +70,18 @@ class ContourNumbers {
   /// The same for a facet of prisms with a key (key_of_facet).
   [[nodiscard]] Index polygon_in(const std::array<Index, 4>& facet, std::span<const Index> vertices) const;
 
+  /// The number of a vertex in a hexahedron between two cells (`point.number` is not read). `crossing`: the smallest
+  /// number of a vertex on the hexahedron's edges.
+  [[nodiscard]] Index in_cube(const CubePoint& point, Index crossing) const;
+
   /// The vertices of an active cell: by edge, then by added vertex.
   using CellVertices = std::array<Index, 256>;
   /// Calls visit(cell, first simplex, contour, vertices) for the active cells of a block.
   template <class Visit>
   void for_each_cell(std::size_t block, const Visit& visit) const;
+
+  /// The simplices of the active cells, ascending, in 2D and 3D.
+  [[nodiscard]] std::vector<CellSimplices> simplices_by_cell(const CellGroups& cells) const;
 
   /// The numbers of vertices on edges of cells with missing corners, ascending: the contour may touch itself there.
   [[nodiscard]] std::vector<Index> vertices_at_missing(const CellGroups& cells) const;

@@ -17,7 +17,6 @@
 #include "base/disjoint_sets.hpp"
 #include "complex/built_cells.hpp"
 #include "complex/cell_cases.hpp"
-#include "regions/cube_frame.hpp"
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
 #include "regions/separating_planes.hpp"
@@ -38,25 +37,6 @@ using Local = std::uint16_t;
 constexpr Local kShared = 64, kCones = 256, kSides = 512, kCorners = 768, kCentres = 1024, kLocals = 2048;
 using Triangle = std::array<Local, 3>;
 using Tetrahedron = std::array<Local, 4>;
-
-/// A contour in a cube, as the cube sees it.
-struct CubeContour {
-  CubeFrame frame;
-  std::uint16_t list;
-
-  CubeContour(unsigned number, unsigned signature, unsigned squares, tile::Choice choice) noexcept
-      : frame(CubeFrame::of_number(number)) {
-    unsigned high = 0;
-    for (unsigned q = 0; q < 6; ++q) high |= (squares >> frame.square(q) & 1u) << q;
-    list = ResolvedCubes::list(frame.signature(signature), high, choice);
-  }
-};
-
-bool has_tunnel(const ResolvedCubes& cubes, unsigned list) noexcept {
-  bool has_corners = false;
-  for (unsigned j = 0; j < cubes.own_vertices(list); ++j) has_corners = has_corners || is_on_ray(cubes.mask(list, j));
-  return has_corners;
-}
 
 }  // namespace
 
@@ -96,7 +76,7 @@ DecidedCells::~DecidedCells() = default;
 
 bool DecidedCells::has_frame(unsigned signature, unsigned squares, tile::Choice choice) const noexcept {
   if (triangulation_ == Triangulation::compact) return true;
-  return has_tunnel(ResolvedCubes::instance(triangulation_), CubeContour(0, signature, squares, choice).list);
+  return has_tunnel(CubeContour(0, signature, squares, choice).list);
 }
 
 /// Builds contours one after the other.
@@ -330,7 +310,7 @@ class DecidedCells::Filler {
     centres_.clear();
     for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
       for (std::size_t f = 0; f < cells_.facets_.size(); ++f)
-        if ((contours_[f] && has_tunnel(cubes_, contours_[f]->list)) == tunnels)
+        if ((contours_[f] && has_tunnel(contours_[f]->list)) == tunnels)
           tunnels ? add_cube_regions(f, high) : add_regions(f, high);
     DisjointSets sets(kLocals);
     for (const Tetrahedron& t : regions_)

@@ -559,7 +559,7 @@ Contour<N, Real> contour_of(const Complex<N>& complex, const NumberedContour<N>&
 template <class Real, int N>
 Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
                                const Surroundings<N>& around) {
-  check_complex_options(N, isovalue, options);
+  check_complex_options(isovalue, options);
   check_range<Real>(complex);
   Extraction<N, Real> result;
   const Progress& progress = options.work.progress;
@@ -573,6 +573,8 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
                     static_cast<std::size_t>(numbered.numbers().size().vertices)};
     if (numbered.caps() != nullptr) around.keys->corners = numbered.caps()->corners();
   }
+  if (around.simplices != nullptr)
+    *around.simplices = numbered.numbers().simplices_by_cell(ComplexAccess::cells(complex));
   Stopwatch watch;
   result.contour =
       contour_of<Real>(complex, numbered, std::move(touching), isovalue, options, around, part_of(progress, 0.6, 1.0));
@@ -592,7 +594,7 @@ template <int N, Coordinate Real, VertexNumber I>
 requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& complex, double isovalue,
                                                               const ContourRoom<N, Real, I>& room,
                                                               const ExtractOptions& options) {
-  detail::check_complex_options(N, isovalue, options);
+  detail::check_complex_options(isovalue, options);
   detail::check_range<Real>(complex);
   const bool with_normals = options.normals != Normals::none;
   ExtractedSize result;

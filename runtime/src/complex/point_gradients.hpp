@@ -20,6 +20,7 @@
 
 namespace tegl::detail {
 
+struct CellSimplices;
 struct VertexKeys;
 
 /// What is known beside a complex, for the positions and normals of its contour.
@@ -36,6 +37,8 @@ struct Surroundings {
   /// Receives the keys of the contour's vertices (shared_points.hpp), and the contour may touch itself beside missing
   /// values, as it is part of another one; null: not needed.
   VertexKeys* keys = nullptr;
+  /// Receives the active cells in the order of their simplices; null: not needed.
+  std::vector<CellSimplices>* simplices = nullptr;
 };
 
 /// As `extract_with_stats` of a complex with surroundings.

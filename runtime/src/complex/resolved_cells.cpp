@@ -29,15 +29,6 @@ using tables::CellShape;
 /// Lists of hexahedra: three for each entry of kTile3Resolved, then one for each signature that is not ambiguous.
 constexpr std::size_t kPlainHexahedra = 3 * 656;
 
-/// The edge of a cell between two corners.
-unsigned edge_between(const tables::CellTable& table, unsigned p, unsigned q) noexcept {
-  unsigned e = 0;
-  while (!((table.edges[2 * e] == p && table.edges[2 * e + 1] == q) ||
-           (table.edges[2 * e] == q && table.edges[2 * e + 1] == p)))
-    ++e;
-  return e;
-}
-
 /// The number of a wedge's list: corner `odd` of the upper triangle is unlike the others of its layer, as are two
 /// corners of the lower one; `joined` is the corner whose side with `odd` is high-connected.
 constexpr unsigned wedge_list(unsigned odd, unsigned joined, bool is_odd_high) noexcept {
@@ -323,6 +314,33 @@ CellKey DecidedCells::key(unsigned signature, const Index* corners, std::span<co
     key.tile = is_mean_high(at, isovalue_) ? tile::Choice::high : tile::Choice::low;
   if (shape_ == CellShape::cell16 && !rule_.separates) key.tile = choice_of_cross_polytope(signature, at);
   return key;
+}
+
+DecidedFacet DecidedCells::in_facet(std::size_t f, const CellKey& key, const Index* corners) const {
+  const Facet& facet = facets_[f];
+  const unsigned bits = facet_signature(facet, key.signature);
+  DecidedFacet result;
+  if (facet.of->shape == CellShape::hexahedron) {
+    const auto choice = static_cast<tile::Choice>(key.cubes >> 2 * f & 3u);
+    const unsigned squares = high_in(f, key);
+    const std::array<Index, 8> points = points_of(facet, corners);
+    // contours that are the same in all frames: the frame in which neighbouring cubes of a grid have the same diagonals
+    const bool is_active = bits != 0 && bits != 255;
+    const unsigned frame =
+        is_active && has_frame(bits, squares, choice) ? key.fillings[f] : CubeFrame::number_of(points.data());
+    result.cube.emplace(frame, bits, squares, choice);
+    return result;
+  }
+  if (has_ring(f, key)) {
+    result.tunnel = lone_pair_in(f, bits);
+    return result;
+  }
+  const unsigned variant = facet.of->shape == CellShape::octahedron
+                               ? 0
+                               : ResolvedCells::variant(bits, ambiguous_in(f, key.signature), high_in(f, key));
+  result.is_compact = triangulation_ == Triangulation::compact && variant < 2;
+  if (result.is_compact) result.triangles = fillings_.at(facet.of->shape)[variant].triangles(bits, key.fillings[f]);
+  return result;
 }
 
 tile::Choice DecidedCells::choice_of_cross_polytope(unsigned signature, std::span<const double> at) const noexcept {

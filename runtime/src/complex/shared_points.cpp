@@ -59,26 +59,6 @@ CubePoint cube_point(const CellGroup& group, const tables::CellTable& table, con
   return point;
 }
 
-/// The key of a vertex in a hexahedron, the same for all cells that have it: a crossed edge, the ends of the diagonal
-/// from the smallest point, and the mask in the frame of the points' numbers.
-PolygonKey key_of(const CubePoint& point, Index crossing) noexcept {
-  const CubeFrame frame = CubeFrame::of_number(CubeFrame::number_of(point.corners.data()));
-  Index mask = 0;
-  for (unsigned v = 0; v < 8; ++v) mask |= (point.mask >> frame.corner(v) & 1u) << v;
-  for (unsigned e = 0; e < 12; ++e) {
-    const unsigned base = edge_base(3, e);
-    mask |= (point.mask >> (8 + cube_edge(frame.corner(base), frame.corner(base | 1u << e / 4))) & 1u) << (8 + e);
-  }
-  PolygonKey key;
-  key.fill(kNoPoint);
-  key[0] = crossing;
-  key[1] = point.corners[frame.corner(0)];
-  key[2] = point.corners[frame.corner(7)];
-  key[3] = mask;
-  key.back() = kInCube;
-  return key;
-}
-
 /// The smallest number of a vertex on the edges of a facet.
 Index first_crossing(const CellGroup& group, const tables::CellTable& table, unsigned signature, std::uint64_t mask,
                      const Index* numbers) noexcept {
@@ -134,6 +114,24 @@ void list_uses(const PolytopeBlock& block, std::uint64_t first, SharedUse* uses,
 }
 
 }  // namespace
+
+PolygonKey key_of(const CubePoint& point, Index crossing) noexcept {
+  const CubeFrame frame = CubeFrame::of_number(CubeFrame::number_of(point.corners.data()));
+  Index mask = 0;
+  for (unsigned v = 0; v < 8; ++v) mask |= (point.mask >> frame.corner(v) & 1u) << v;
+  for (unsigned e = 0; e < 12; ++e) {
+    const unsigned base = edge_base(3, e);
+    mask |= (point.mask >> (8 + cube_edge(frame.corner(base), frame.corner(base | 1u << e / 4))) & 1u) << (8 + e);
+  }
+  PolygonKey key;
+  key.fill(kNoPoint);
+  key[0] = crossing;
+  key[1] = point.corners[frame.corner(0)];
+  key[2] = point.corners[frame.corner(7)];
+  key[3] = mask;
+  key.back() = kInCube;
+  return key;
+}
 
 PolygonKey key_of_loop(Index smallest, const std::array<Index, 4>& facet) noexcept {
   PolygonKey key;

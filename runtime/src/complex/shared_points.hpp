@@ -24,6 +24,11 @@ struct CubePoint {
   Index number;        ///< in SharedPoints
 };
 
+/// The key of a vertex in a hexahedron, the same for all cells that have it: a crossed edge, the ends of the diagonal
+/// from the smallest point, and the mask in the frame of the points' numbers. `crossing`: the smallest number of a
+/// vertex on the hexahedron's edges.
+[[nodiscard]] PolygonKey key_of(const CubePoint& point, Index crossing) noexcept;
+
 /// The barycentre of a loop in a facet of prisms over polyhedra, which may have more vertices than a PolygonKey.
 struct LoopPoint {
   std::vector<Index> vertices;  ///< ascending numbers

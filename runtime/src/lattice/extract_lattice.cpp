@@ -300,7 +300,7 @@ void check_lattice_options(double isovalue, ExtractOptions options) {
                 fmt::format("normals on a lattice are {}; expected gradient (differences), geometric or flat",
                             name_of(options.normals)));
   options.normals = Normals::none;
-  check_complex_options(N, isovalue, options);
+  check_complex_options(isovalue, options);
 }
 
 /// The contour of an image on a lattice. `places`: of samples, in place of those on the grid, without normals and

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "prisms/prism_cell.hpp"
+#include "regions/decided_regions.hpp"
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
 #include "regions/tunnel_regions.hpp"
@@ -15,10 +16,7 @@
 namespace tegl::detail {
 
 bool PrismCell::has_tunnel(std::size_t f) const noexcept {
-  if (!contours_[f]) return false;
-  for (unsigned j = 0; j < cubes_.own_vertices(contours_[f]->list); ++j)
-    if (is_on_ray(cubes_.mask(contours_[f]->list, j))) return true;
-  return false;
+  return contours_[f] && detail::has_tunnel(contours_[f]->list);
 }
 
 /// Fills components with copies of the regions beside them on one side, and removes them: those that are no spheres,

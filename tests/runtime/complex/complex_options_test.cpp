@@ -177,8 +177,7 @@ void expect_embedded_closed(Complex<4> complex, const std::string& name) {
   options.close = true;
   for (options.triangulation = Triangulation::compact;; options.triangulation = Triangulation::barycentric) {
     const bool is_compact = options.triangulation == Triangulation::compact;
-    for (const Ambiguity rule : {Ambiguity::low, Ambiguity::high, Ambiguity::decider}) {
-      if (is_compact && rule == Ambiguity::decider) continue;
+    for (const Ambiguity rule : kAllRules) {
       SCOPED_TRACE(testing::Message() << name << (is_compact ? " compact " : " barycentric ")
                                       << static_cast<int>(rule));
       options.ambiguity = rule;
@@ -497,16 +496,6 @@ TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {
     o.estimator.choose = [](const AmbiguousFace&) { return tile::Choice::low; };
   });
   refuse(complex, "normals are sobel; expected gradient", [](ExtractOptions& o) { o.normals = Normals::sobel; });
-  const Complex<4> swept = in_time(complex, std::vector<double>{0.0, 1.0}, std::vector<double>(2 * mesh.points.size()));
-  refuse(swept, "expected the barycentric one in 4D for meshes, lattices and divided cells", [](ExtractOptions& o) {
-    o.ambiguity = Ambiguity::squares;
-    o.close = true;
-  });
-  refuse(swept, "expected low, high, squares or decider", [](ExtractOptions& o) {
-    o.ambiguity = Ambiguity::mean;
-    o.triangulation = Triangulation::barycentric;
-    o.close = true;
-  });
 }
 
 }  // namespace
