@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // `tegl contour --facets` and `--triangulation fan|zigzag|halving-chord|halving-kink`.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -34,6 +40,34 @@ class FacetsCommand : public ProgramTest {
     EXPECT_EQ(files(), before);
   }
 };
+
+TEST_F(FacetsCommand, WritesThePolygonsInTheCellsOfAMesh) {
+  std::string solid = "x,y,z,c\n", plane = "x,y,c\n";
+  for (int x = -3; x <= 3; ++x)
+    for (int y = -3; y <= 3; ++y) {
+      plane += fmt::format("{},{},{}\n", x, y, 2.3 - std::hypot(x + 0.1 * y, y));
+      for (int z = -3; z <= 3; ++z)
+        solid += fmt::format("{},{},{},{}\n", x, y, z, 2.3 - std::hypot(x + 0.1 * y, y + 0.1 * z, z));
+    }
+  for (const auto& [table, kind] : {std::pair{solid, "polygons"}, {plane, "segments"}}) {
+    const std::string file = write("points.csv", table);
+    for (const char* const name : {"out.vtu", "out.vtkhdf"}) {
+      const nlohmann::json report = contour({file, "--var", "c", "--iso", "0", "--facets", "-o", path(name)});
+      const nlohmann::json expected = contour({file, "--var", "c", "--iso", "0", "-o", path("simplices.vtkhdf")});
+      for (const char* key : {"euler", "components", "image_dim", "tiles", "active_tiles"})
+        EXPECT_EQ(report[key], expected[key]) << kind << " " << key;
+      for (const char* key : {"nonmanifold_facets", "orientation_conflicts", "open_boundaries", "boundary_facets"})
+        EXPECT_EQ(report[key], 0) << kind << " " << key;
+      EXPECT_EQ(report["facets"][kind], report["active_tiles"]);  // one facet in each simplex
+    }
+    contour({file, "--var", "c", "--iso", "0", "--facets", "-o", path("out.vtu")});
+    std::ifstream written(path("out.vtu"));
+    const std::string text{std::istreambuf_iterator<char>(written), {}};
+    EXPECT_THAT(text, HasSubstr("Name=\"cell\""));
+    expect_failure(2, {file, "--var", "c", "--iso", "0", "--facets", "--close", "-o", path("o.vtu")},
+                   {"close of facets in cells of a mesh"});
+  }
+}
 
 TEST_F(FacetsCommand, WritesFacetsWithTheTopologyOfTheContour) {
   const std::vector<std::string> images = {write("flat.nrrd", nrrd_bytes(noise({20, 21}, 1))),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The C++ snippets of docs/guides.md and docs/coming-from.md stand between [name] and [/name]. The code around them
-// provides their context and checks their results.
+// The C++ snippets of docs/guides.md, docs/facets.md and docs/coming-from.md stand between [name] and [/name]. The code
+// around them provides their context and checks their results.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,6 +19,7 @@
 #include "tegl/curved.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/facet_hierarchy.hpp"
 #include "tegl/io.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/pick.hpp"
@@ -281,6 +282,19 @@ TEST(OtherTilings, ACurvedGridAroundTheGlobeIsPeriodic) {
   // [/seams]
   ASSERT_EQ(closed.periods.size(), 1u);
   EXPECT_EQ(closed.periods[0].vector[0], 360.0);
+}
+
+TEST(Facets, OfAMeshHaveTheNumbersOfTheirCells) {
+  const std::vector<std::array<double, 3>> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  tegl::Complex<3> mesh(corners, tegl::CellType::tetrahedron, std::vector<tegl::Index>{0, 1, 2, 3, 1, 2, 3, 4});
+  mesh.set_values({-1, 1, -1, 1, -1});
+  // [facets_of_a_mesh]
+  const auto polygons = tegl::extract_facets<double>(mesh, 0.0);
+  std::vector<std::size_t> cells;  // of the polygons
+  for (const tegl::FacetPlace& place : polygons.levels[2].places) cells.push_back(place.base);
+  // [/facets_of_a_mesh]
+  EXPECT_EQ(cells, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(polygons.down(2, 0).size(), 4u);
 }
 
 }  // namespace

@@ -376,9 +376,9 @@ class ContourCommand final : public Command {
 
   /// Options of this command that need an image.
   [[nodiscard]] std::vector<std::string> given_for_images() const {
-    std::vector<std::string> given = {
-        "--facets",          "--stream",           "--index", "--pick",        "--positions",
-        "--positions-image", "--last-axis-weight", "--label", "--scale-space", "--factors"};
+    std::vector<std::string> given = {"--stream",    "--index",           "--pick",
+                                      "--positions", "--positions-image", "--last-axis-weight",
+                                      "--label",     "--scale-space",     "--factors"};
     std::erase_if(given, [&](const std::string& name) { return app().count(name) == 0; });
     return given;
   }
@@ -588,18 +588,7 @@ class ContourCommand final : public Command {
   }
 
   void require_facets_options(const std::vector<std::string>& outputs) const {
-    const auto given = options_.given();
-    if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format(
-              "--facets with {}; expected one of the two: facets need the image in memory and are not triangulated",
-              is_streamed() ? "--stream" : "--triangulation " + options_.triangulation()));
-    if (options_.wants_shape_normals() || attributes_.wanted())
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--facets with {}, which is for simplices; expected {}",
-                              attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
-                              attributes_.wanted() ? "none" : "normals from the gradient"));
+    refuse_with_facets(options_, is_streamed(), attributes_.wanted());
     for (const std::string& output : outputs) {
       require_facets_output(output, files());
       compress_.require_known(output, true);
@@ -611,6 +600,15 @@ class ContourCommand final : public Command {
     require_facets_options(outputs);
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
+    const FacetsWork work = {
+        0.0, options, options_.single_precision(), no_check_, compress_.compression(), {}, options_.allows_empty()};
+    if (are_cell_meshes(files(), images())) {
+      const MeshInput mesh = read_mesh_input(files(), images(), bar.stage("read"), isovalues.size() > 1);
+      remark(mesh.mesh.remarks);
+      take_order(mesh.mesh.files);
+      const auto of_mesh = write_mesh_facets(mesh, inputs(), watch.lap(), isovalues, outputs, work, bar);
+      return tell(streams, of_mesh);
+    }
     const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
     refuse_tiling_of_file(input.info);
     std::vector<FacetsResult> results(isovalues.size());

@@ -99,6 +99,25 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
   result.seconds.write = watch.lap();
 }
 
+template <int N>
+void write_facets_of(const Complex<N>& complex, const CellMesh& mesh, const FacetsWork& work, ProgressBar& bar,
+                     FacetsResult& result, WrittenFiles& written) {
+  if constexpr (N == 4) {
+    throw Error(ErrorCode::InvalidArgument, "--facets of a 3D mesh over time; expected a mesh at one time or in 2D");
+  } else {
+    Stopwatch watch;
+    const auto finish = [&](auto facets) {
+      for (std::size_t a = 0; a < N; ++a)
+        facets.axis_names[a] = a < mesh.axis_names.size() ? mesh.axis_names[a] : std::string("t");
+      result.seconds.generate = watch.lap();
+      result.stats = stats_of(facets, facets.cells, result.seconds.generate);
+      check_and_write(facets, work, bar, result, written);
+    };
+    work.single_precision ? finish(extract_facets<float>(complex, work.isovalue, work.options))
+                          : finish(extract_facets<double>(complex, work.isovalue, work.options));
+  }
+}
+
 [[noreturn]] void fail_output(const fs::path& output, std::string_view why) {
   throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", output.string(), why));
 }
@@ -171,6 +190,20 @@ void require_facets_output(const fs::path& output, const std::vector<std::string
   require_text_output(output, inputs);
 }
 
+void refuse_with_facets(const ExtractionOptions& extraction, bool is_streamed, bool has_attributes) {
+  const auto given = extraction.given();
+  if (is_streamed || std::find(given.begin(), given.end(), "--triangulation") != given.end())
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format(
+            "--facets with {}; expected one of the two: facets need the image in memory and are not triangulated",
+            is_streamed ? "--stream" : "--triangulation " + extraction.triangulation()));
+  if (extraction.wants_shape_normals() || has_attributes)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--facets with {}, which is for simplices; expected {}",
+                                                        has_attributes ? "--attribute" : "--normals geometric or flat",
+                                                        has_attributes ? "none" : "normals from the gradient"));
+}
+
 void require_output_holds_facets(const fs::path& output, int image_dim) {
   if (image_dim == 4 && !has_extension(output, ".vtu"))
     fail_output(output, fmt::format("'{}' cannot hold the polyhedra of a 4D contour; expected .vtu",
@@ -189,6 +222,30 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
   };
   const auto of_owned = [&](const auto& owned) { use_facets<void>(owned, work, options, finish); };
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+}
+
+std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputFiles& files, double read_seconds,
+                                            const std::vector<SpelledNumber>& isovalues,
+                                            const std::vector<std::string>& outputs, FacetsWork work,
+                                            ProgressBar& bar) {
+  std::vector<FacetsResult> results(isovalues.size());
+  WrittenFiles written;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    FacetsResult& result = results[i];
+    result.input = files;
+    result.variable = input.mesh.variable;
+    result.output = outputs[i];
+    result.image_dim = input.space_dim();
+    result.isovalue = work.isovalue = isovalues[i].value;
+    result.seconds.read = std::exchange(read_seconds, 0.0);
+    require_mesh_contour(input.mesh, work.isovalue, work.allows_empty);
+    work.options.work.progress = bar.stage("facets");
+    std::visit([&](const auto& complex) { write_facets_of(complex, input.mesh, work, bar, result, written); },
+               input.complex);
+  }
+  written.keep();
+  bar.clear();
+  return results;
 }
 
 std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(const AnyImage& image,

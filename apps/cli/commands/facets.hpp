@@ -8,6 +8,8 @@
 #include <variant>
 
 #include "base/progress.hpp"
+#include "input/extraction.hpp"
+#include "input/mesh_input.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
 #include "tegl/facet_hierarchy.hpp"
@@ -44,6 +46,9 @@ std::string to_text(const Console& console, const FacetsResult& result);
 void require_facets_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 void require_output_holds_facets(const std::filesystem::path& output, int image_dim);
 
+/// Throws InvalidArgument for options of the extraction that facets do not have.
+void refuse_with_facets(const ExtractionOptions& extraction, bool is_streamed, bool has_attributes);
+
 /// How contours are extracted and written.
 struct FacetsWork {
   double isovalue = 0;
@@ -52,12 +57,19 @@ struct FacetsWork {
   bool no_check = false;
   Compression compression = Compression::none;
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
+  bool allows_empty = false;               ///< of meshes
 };
 
 /// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of
 /// the result.
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written);
+
+/// The same for a mesh of cells, which was read in this time, and several isovalues with a file for each. Throws
+/// InvalidArgument if a 3D mesh has several times, and EmptyResult.
+std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputFiles& files, double read_seconds,
+                                            const std::vector<SpelledNumber>& isovalues,
+                                            const std::vector<std::string>& outputs, FacetsWork work, ProgressBar& bar);
 
 /// The contour of a 3D image, triangulated from its polygons. Throws InvalidArgument for images of other dimensions.
 std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(const AnyImage& image,

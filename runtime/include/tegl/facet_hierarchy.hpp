@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tegl/complex.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
@@ -20,9 +21,11 @@
 
 namespace tegl {
 
-/// The face of the grid that contains a facet.
+/// The face of the grid that contains a facet, or the cell of a complex.
 struct FacetPlace {
-  std::uint64_t base;       ///< the face's lowest sample: i_0 + size_0 (i_1 + size_1 (i_2 + ...))
+  /// The face's lowest sample: i_0 + size_0 (i_1 + size_1 (i_2 + ...)). In a complex, the number of a cell that
+  /// has the facet.
+  std::uint64_t base;
   std::uint16_t signature;  ///< the face's high corners; bit v is the corner at v >> j & 1 along its j-th axis
   std::uint8_t axes;        ///< bit a: the face extends from its lowest sample to the next one along axis a
   std::uint8_t number;      ///< number of the facet among those in this face
@@ -70,7 +73,8 @@ struct FacetHierarchy {
   std::array<Level, N> levels = {};            ///< by dimension k
   Buffer<Vertex> vertices = {};                ///< #0-facets x N world coordinates, row = 0-facet
   Buffer<Vertex> normals = {};                 ///< as vertices, of length 1 or 0, if requested; else empty
-  std::array<std::size_t, N> sizes{};          ///< of the image
+  std::array<std::size_t, N> sizes{};          ///< of the image; 0 for a complex
+  std::size_t cells = 0;                       ///< of the complex; 0 for an image
   std::array<std::string, N> axis_names = {};  ///< taken from the grid
   std::array<std::string, N> axis_units = {};  ///< taken from the grid
   GradientDirection direction = GradientDirection::descent;  ///< the side that facets face
@@ -153,6 +157,29 @@ requires DimensionBetween<N, 2, 4>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
                                                      const ExtractOptions& options = {},
                                                      const AxisPeriods<N>& periods = {});
+
+/// Extracts the contour {value = isovalue} of a complex of cells as facets, N = 2 or 3: points on edges, segments in
+/// faces, and in 3D polygons in cells. `options` as for `extract` of a complex, except that `triangulation` is ignored
+/// and ExtractOptions::close is not supported. The compact contour of `extract` subdivides the result: it has the same
+/// points, in the same order, and the same components and Euler characteristic. A complex of the cells of a grid has
+/// the facets of the image, in another order. (By rules that read the data, a cell with a tunnel has triangles, with
+/// points and segments inside the cell.) Lattices: extract_facets(lattice_complex(image, lattice), isovalue).
+///
+/// FacetHierarchy::cells is the number of cells. Cells are numbered by type, in the order of the numbers below, and
+/// within a type in the order of the input: triangles, quadrilaterals, tetrahedra, wedges, pyramids, hexahedra,
+/// octahedra, then polygons or polyhedra; so the numbers are those of the input if all cells have one type. Points,
+/// segments and polygons are in the order of the contour's vertices, of their points, and of the cells. Signatures are
+/// 0 in polygons and polyhedra; in other cells bit v is corner v of the cell, in hexahedra and quadrilaterals the
+/// corner at v >> j & 1 along their j-th axis. Segments go from the point with the smaller number to the other one.
+/// FacetPlace::axes is 0 and `number` counts the facets of a cell.
+///
+/// Errors: those of `extract`; InvalidArgument for `close`; TooLarge also for 2^32 incidences. O(C + P + S log S) time
+/// for S facets; what is not `extract` runs on one thread. The result is the same for any number of threads. Memory
+/// besides the result: that of `extract`, the compact contour, and 12 bytes for each side of a polygon.
+template <Coordinate Real = float, int N>
+requires DimensionBetween<N, 2, 3>
+[[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
+                                                     const ExtractOptions& options = {});
 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus. For a polyhedron it
 /// is half the Euler characteristic of its boundary: each handle subtracts 1, each boundary component after the first

@@ -154,7 +154,7 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const PendingPath& 
   const auto add_cell_array = [&](const char* name, const char* type, unsigned bytes, auto put) {
     grid.cell_arrays.push_back({name, type, 1, places.size(), bytes, places.size(), put});
   };
-  add_cell_array("sample", "Int64", sizeof(std::int64_t),
+  add_cell_array(facets.cells > 0 ? "cell" : "sample", "Int64", sizeof(std::int64_t),
                  [&places](ByteSink& sink, std::size_t f) { sink.put(static_cast<std::int64_t>(places[f].base)); });
   add_cell_array("signature", "Int32", sizeof(std::int32_t),
                  [&places](ByteSink& sink, std::size_t f) { sink.put(std::int32_t{places[f].signature}); });
@@ -245,7 +245,8 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const PendingPat
       table.append(H5T_NATIVE_DOUBLE, attribute.values.data() + from, to - from);
     });
   };
-  add_cell_array("sample", [](const FacetPlace& place) { return static_cast<double>(place.base); });
+  add_cell_array(facets.cells > 0 ? "cell" : "sample",
+                 [](const FacetPlace& place) { return static_cast<double>(place.base); });
   add_cell_array("signature", [](const FacetPlace& place) { return static_cast<double>(place.signature); });
   add_cell_array("cap", [](const FacetPlace& place) { return place.is_cap ? 1.0 : 0.0; });
   io_detail::tick(options.work.progress, 1.0, file.target());
