@@ -12,14 +12,13 @@
 
 #include "base/progress.hpp"
 #include "base/workers.hpp"
-#include "simplify/equal_keys.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
 namespace {
 
-constexpr std::size_t kBorderBlock = 1024;
+constexpr std::size_t kBorderBlock = 4096;
 
 template <std::size_t N>
 int position(const std::array<Index, N>& simplex, Index v) {
@@ -35,12 +34,14 @@ bool contains(const std::array<Index, N>& simplex, Index v) {
 
 template <int N>
 CollapsibleComplex<N>::CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count,
-                                          unsigned threads, const Progress& progress)
+                                          unsigned threads, const Progress& progress,
+                                          std::shared_ptr<const FacetNeighbours<N>> known)
     : simplices_(simplices.begin(), simplices.end()),
       border_faces_(simplices.size(), 0),
       border_vertex_(vertex_count, 0),
       star_of_(vertex_count, Star{}),
-      alive_(simplices.size()) {
+      alive_(simplices.size()),
+      neighbours_(std::move(known)) {
   if (simplices.size() > kNone / N)
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
@@ -74,84 +75,68 @@ void CollapsibleComplex<N>::fill_stars(std::size_t vertex_count, const Progress&
     for (const Index v : simplices_[s]) stars_[star_of_[v].first + star_of_[v].size++] = s;
 }
 
-/// Finds border faces by their lowest vertex: all simplices with the face are in that vertex's star. Use one per
-/// thread.
+/// The number of simplices with the face of s opposite to a corner.
 template <int N>
-class CollapsibleComplex<N>::BorderSearch {
- public:
-  explicit BorderSearch(CollapsibleComplex& complex) : complex_(complex) {}
+std::size_t CollapsibleComplex<N>::count_at_face(Index s, int corner) const {
+  const Simplex& simplex = simplices_[s];
+  int smallest = corner == 0 ? 1 : 0;  // the corner with the smallest star: some vertices have very large ones
+  for (int i = 0; i < N; ++i)
+    if (i != corner && star_of_[simplex[i]].size < star_of_[simplex[smallest]].size) smallest = i;
+  std::size_t count = 0;
+  visit_star(simplex[smallest], [&](Index other) {
+    int shared = 0;
+    for (int i = 0; i < N; ++i) shared += i != corner && contains(simplices_[other], simplex[i]);
+    count += shared == N - 1;
+  });
+  return count;
+}
 
-  /// Marks the border faces with v as their lowest vertex. Returns a simplex with a face that is in more than two, and
-  /// their number, if there is one.
-  std::pair<Index, std::size_t> search(Index v) {
-    gather(v);
-    for (const auto& group : equal_.groups(faces_.size(), [&](auto i) { return faces_[i].others; })) {
-      if (group.count > 2) return {faces_[group.first].simplex, group.count};
-      if (group.count == 1) mark(faces_[group.first]);
-    }
-    return {kNone, 0};
-  }
+/// Several threads may mark faces with a vertex in common, but not those of one simplex.
+template <int N>
+void CollapsibleComplex<N>::mark_border(Index s, int corner) {
+  border_faces_[s] |= static_cast<std::uint8_t>(1u << corner);
+  for (int i = 0; i < N; ++i)
+    if (i != corner) std::atomic_ref(border_vertex_[simplices_[s][i]]).store(1, std::memory_order_relaxed);
+}
 
- private:
-  struct FaceOfSimplex {
-    std::uint64_t others;  ///< the other vertices of the face
-    Index simplex;
-    int omitted;
-  };
-
-  void gather(Index v) {
-    faces_.clear();
-    for (const Index s : complex_.clean_star(v))
-      for (int omitted = 0; omitted < N; ++omitted) {
-        const Simplex& simplex = complex_.simplices_[s];
-        if (simplex[omitted] == v) continue;
-        std::uint64_t low = 0, high = 0;
-        bool is_lowest = true;
-        for (int i = 0; i < N; ++i) {
-          const Index a = simplex[i];
-          if (i == omitted || a == v) continue;
-          is_lowest = is_lowest && a > v;
-          low = high == 0 ? a : std::min<std::uint64_t>(high, a);
-          high = std::max<std::uint64_t>(high, a);
-        }
-        if (is_lowest) faces_.push_back({low << 32 | high, s, omitted});
-      }
-  }
-
-  /// Several threads may mark faces of one simplex, or one vertex.
-  void mark(const FaceOfSimplex& face) {
-    const auto bit = static_cast<std::uint8_t>(1u << face.omitted);
-    std::atomic_ref(complex_.border_faces_[face.simplex]).fetch_or(bit, std::memory_order_relaxed);
-    for (int i = 0; i < N; ++i)
-      if (i != face.omitted)
-        std::atomic_ref(complex_.border_vertex_[complex_.simplices_[face.simplex][i]])
-            .store(1, std::memory_order_relaxed);
-  }
-
-  CollapsibleComplex& complex_;
-  std::vector<FaceOfSimplex> faces_;
-  EqualKeys equal_;
-};
-
+/// Counts the simplices only at faces without a neighbour: those on the border, in more than two simplices, or between
+/// simplices of opposite orientations.
 template <int N>
 void CollapsibleComplex<N>::find_border(unsigned threads, const Progress& progress) {
-  std::atomic<Index> failed = kNone;  // the first vertex of a face in more than two simplices
-  for_each_block(
-      star_of_.size(), kBorderBlock, threads, progress, [&] { return BorderSearch(*this); },
-      [&](std::size_t, std::size_t from, std::size_t to, BorderSearch& search) {
-        for (auto v = static_cast<Index>(from); v < to; ++v) {
-          if (search.search(v).second == 0) continue;
-          Index first = failed.load(std::memory_order_relaxed);
-          while (v < first && !failed.compare_exchange_weak(first, v, std::memory_order_relaxed)) {
-          }
-          return;
-        }
-      });
-  if (failed == kNone) return;
-  const auto [simplex, count] = BorderSearch(*this).search(failed);
-  throw Error(
-      ErrorCode::UnsupportedData,
-      fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold", simplex, count));
+  if (!neighbours_)
+    neighbours_ = std::make_shared<const FacetNeighbours<N>>(
+        std::span<const Simplex>(simplices_), star_of_.size(),
+        [&](std::size_t v) { return clean_star(static_cast<Index>(v)); }, threads, part_of(progress, 0.0, 0.9));
+  const auto lowest_of = [&](Index s, int corner) {
+    Index lowest = kNone;
+    for (int i = 0; i < N; ++i)
+      if (i != corner) lowest = std::min(lowest, simplices_[s][i]);
+    return lowest;
+  };
+  constexpr std::uint64_t kNever = ~std::uint64_t{0};
+  std::atomic<std::uint64_t> failed = kNever;  // the lowest vertex of a face in more than two simplices, and a simplex
+  for_each_block(simplices_.size(), kBorderBlock, threads, part_of(progress, 0.9, 1.0),
+                 [&](std::size_t, std::size_t from, std::size_t to) {
+                   for (auto s = static_cast<Index>(from); s < to; ++s)
+                     for (int corner = 0; corner < N; ++corner) {
+                       if (neighbours_->across(s, corner) != FacetNeighbours<N>::kNone) continue;
+                       const std::size_t count = count_at_face(s, corner);
+                       if (count == 1) mark_border(s, corner);
+                       if (count <= 2) continue;
+                       const std::uint64_t found = std::uint64_t{lowest_of(s, corner)} << 32 | s;
+                       std::uint64_t first = failed.load(std::memory_order_relaxed);
+                       while (found < first && !failed.compare_exchange_weak(first, found, std::memory_order_relaxed)) {
+                       }
+                     }
+                 });
+  if (failed == kNever) return;
+  const auto simplex = static_cast<Index>(failed.load());
+  for (int corner = 0; corner < N; ++corner)
+    if (const std::size_t count = count_at_face(simplex, corner);
+        count > 2 && lowest_of(simplex, corner) == failed.load() >> 32)
+      throw Error(
+          ErrorCode::UnsupportedData,
+          fmt::format("a face of simplex {} is in {} simplices; expected 1 or 2, as in a manifold", simplex, count));
 }
 
 template <int N>

@@ -11,9 +11,12 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "simplify/facet_neighbours.hpp"
 #include "simplify/few_vertices.hpp"
 #include "simplify/link_condition.hpp"
 #include "tegl/contour.hpp"
@@ -38,9 +41,14 @@ class CollapsibleComplex {
   };
 
   /// Errors: InvalidArgument for a vertex number beyond `vertex_count`; UnsupportedData for a simplex that repeats a
-  /// vertex, and for a face of more than two simplices; Cancelled.
+  /// vertex, and for a face of more than two simplices; Cancelled. `known`: the neighbours of these simplices, if
+  /// they were found before.
   CollapsibleComplex(std::span<const Simplex> simplices, std::size_t vertex_count, unsigned threads = 1,
-                     const Progress& progress = {});
+                     const Progress& progress = {}, std::shared_ptr<const FacetNeighbours<N>> known = nullptr);
+
+  /// The neighbours of the simplices before the first contraction. Only the first call returns them: they take much
+  /// memory, and contractions do not need them.
+  [[nodiscard]] std::shared_ptr<const FacetNeighbours<N>> take_neighbours() { return std::move(neighbours_); }
 
   [[nodiscard]] std::size_t alive() const noexcept { return alive_; }
   [[nodiscard]] std::size_t simplex_count() const noexcept { return simplices_.size(); }
@@ -92,8 +100,9 @@ class CollapsibleComplex {
   using Face = typename LinkCondition<N>::Face;
 
   void fill_stars(std::size_t vertex_count, const Progress& progress);
-  class BorderSearch;
   void find_border(unsigned threads, const Progress& progress);
+  [[nodiscard]] std::size_t count_at_face(Index s, int corner) const;
+  void mark_border(Index s, int corner);
   template <class Visit>
   bool visit_link(std::span<const Index> star, Index v, const Visit& visit) const;
   template <class Visit>
@@ -117,6 +126,7 @@ class CollapsibleComplex {
   Buffer<Star> star_of_;  ///< by vertex
   Buffer<Index> stars_;   ///< simplices, vertex by vertex
   std::size_t alive_ = 0;
+  std::shared_ptr<const FacetNeighbours<N>> neighbours_;  ///< until they are taken
 
   // Scratch.
   FewVertices few_;

@@ -3,6 +3,8 @@
 // Data of a contour for measurements of distances to it, prepared once for several of them.
 #pragma once
 
+#include <utility>
+
 #include "base/progress.hpp"
 #include "simplify/boundary_faces.hpp"
 #include "simplify/box_tree.hpp"
@@ -18,9 +20,13 @@ namespace tegl::detail {
 template <int N>
 struct DeviationTarget {
   explicit DeviationTarget(const ScaledSimplices<N>& to, unsigned threads = 1, const Progress& progress = {})
+      : DeviationTarget(to, {to.simplices, to.points.size(), threads, part_of(progress, 0.0, 0.5)}, threads,
+                        part_of(progress, 0.5, 1.0)) {}
+  /// `next`: the neighbours of the simplices of `to`.
+  DeviationTarget(const ScaledSimplices<N>& to, FacetNeighbours<N> next, unsigned threads, const Progress& progress)
       : contour(to),
-        neighbours(to.simplices, to.points.size(), threads, part_of(progress, 0.0, 0.5)),
-        open(to, neighbours, threads, part_of(progress, 0.5, 1.0)),
+        neighbours(std::move(next)),
+        open(to, neighbours, threads, progress),
         tree(to.corners, threads),
         gradients(to.corners, threads, {}) {}
   DeviationTarget(const DeviationTarget&) = delete;

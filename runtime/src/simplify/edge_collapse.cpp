@@ -42,7 +42,8 @@ PointN<N> unit(const PointN<N>& vector, double length) {
 
 template <int N>
 EdgeCollapse<N>::EdgeCollapse(CollapseInput<N> input)
-    : complex_(input.simplices, input.points.size(), input.threads, part_of(input.progress, 0.0, 0.6)),
+    : complex_(input.simplices, input.points.size(), input.threads, part_of(input.progress, 0.0, 0.6),
+               std::move(input.neighbours)),
       points_(std::move(input.points)),
       scaled_(points_.size()),
       scale_(input.scale),

@@ -40,8 +40,9 @@ struct CollapseInput {
   bool border_fixed = true;
   bool single_precision = false;
   bool keep_embedded = false;  ///< refuses contractions that make simplices intersect
-  unsigned threads = 1;        ///< of the constructor
-  Progress progress = {};      ///< of the constructor
+  std::shared_ptr<const FacetNeighbours<N>> neighbours = nullptr;  ///< of the simplices, if they are known
+  unsigned threads = 1;                                            ///< of the constructor
+  Progress progress = {};                                          ///< of the constructor
 };
 
 template <int N>

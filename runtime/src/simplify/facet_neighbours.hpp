@@ -27,16 +27,31 @@ class FacetNeighbours {
   FacetNeighbours(std::span<const std::array<Index, N>> simplices, std::size_t vertex_count, unsigned threads,
                   const Progress& progress)
       : across_(simplices.size()) {
-    std::array<Index, N> none;
-    none.fill(kNone);
-    std::fill(across_.begin(), across_.end(), none);
     const std::span<const Index> rows(simplices.empty() ? nullptr : simplices[0].data(), simplices.size() * N);
     const Stars stars = make_stars<N>(rows, vertex_count, threads, part_of(progress, 0.0, 0.3));
-    for_each_block(
-        vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0), [] { return Sides(); },
-        [&](std::size_t, std::size_t from, std::size_t to, Sides& sides) {
-          for (std::size_t v = from; v < to; ++v) join_at(static_cast<Index>(v), stars.of(v), simplices, sides);
-        });
+    join(
+        simplices, vertex_count, [&](std::size_t v) { return stars.of(v); }, threads, part_of(progress, 0.3, 1.0));
+  }
+  /// `star_of(v)`: the simplices at vertex v, ascending. Threads call it at the same time, for different vertices.
+  template <class StarOf>
+  FacetNeighbours(std::span<const std::array<Index, N>> simplices, std::size_t vertex_count, const StarOf& star_of,
+                  unsigned threads, const Progress& progress)
+      : across_(simplices.size()) {
+    join(simplices, vertex_count, star_of, threads, progress);
+  }
+  /// For the same simplices in another order: simplex i is simplex `order[i]` of `other`, with its corners in the same
+  /// places.
+  FacetNeighbours(const FacetNeighbours& other, std::span<const Index> order, unsigned threads,
+                  const Progress& progress)
+      : across_(order.size()) {
+    std::vector<Index> place(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<Index>(i);
+    for_each_item(order.size(), threads, progress, [&](std::size_t i) {
+      for (int corner = 0; corner < N; ++corner) {
+        const Index next = other.across(order[i], corner);
+        across_[i][corner] = next == kNone ? kNone : place[next];
+      }
+    });
   }
 
   /// The simplex across the facet opposite to this corner; kNone if the facet is on the border, in more than two
@@ -70,6 +85,19 @@ class FacetNeighbours {
     std::vector<Side> all;
     EqualKeys equal;
   };
+
+  template <class StarOf>
+  void join(std::span<const std::array<Index, N>> simplices, std::size_t vertex_count, const StarOf& star_of,
+            unsigned threads, const Progress& progress) {
+    std::array<Index, N> none;
+    none.fill(kNone);
+    std::fill(across_.begin(), across_.end(), none);
+    for_each_block(
+        vertex_count, kBlock, threads, progress, [] { return Sides(); },
+        [&](std::size_t, std::size_t from, std::size_t to, Sides& sides) {
+          for (std::size_t v = from; v < to; ++v) join_at(static_cast<Index>(v), star_of(v), simplices, sides);
+        });
+  }
 
   /// Joins the simplices at the facets whose smallest vertex is v. Each facet is joined at one vertex, so no two
   /// threads write the same entry.

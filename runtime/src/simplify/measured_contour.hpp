@@ -6,7 +6,9 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/progress.hpp"
 #include "base/task_aside.hpp"
@@ -29,6 +31,9 @@ class MeasuredContour {
   MeasuredContour(const MeasuredContour&) = delete;
   MeasuredContour& operator=(const MeasuredContour&) = delete;
 
+  /// The neighbours of the contour's simplices, if they are known: call it before `begin`.
+  void set_neighbours(std::shared_ptr<const FacetNeighbours<N>> neighbours) { neighbours_ = std::move(neighbours); }
+
   /// With several threads, another one begins with the preparation. It comes on top of the threads of parallel loops
   /// that run meanwhile. A single thread prepares the contour in `measure`, when the memory of its earlier work is
   /// free.
@@ -37,7 +42,7 @@ class MeasuredContour {
     preparation_.emplace([this] {
       const Progress until_unwanted = [this](double) { return is_wanted_.load(); };
       simplices_.emplace(contour_, scale_);
-      target_.emplace(*simplices_, 1u, until_unwanted);
+      make_target(1, until_unwanted);
     });
     preparation_->begin();
   }
@@ -57,16 +62,27 @@ class MeasuredContour {
       result.to_other = deviation_to(*simplices_, target, enough, {work.threads, part_of(work.progress, 0.05, 0.5)});
     }
     if (!target_)  // when the memory of the other target is free
-      target_.emplace(*simplices_, work.threads, part_of(work.progress, 0.5, 0.55));
+      make_target(work.threads, part_of(work.progress, 0.5, 0.55));
     result.from_other = deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
                                      {work.threads, part_of(work.progress, 0.55, 1.0)});
     return result;
   }
 
  private:
+  void make_target(unsigned threads, const Progress& progress) {
+    if (!neighbours_) {
+      target_.emplace(*simplices_, threads, progress);
+      return;
+    }
+    FacetNeighbours<N> neighbours(*neighbours_, simplices_->order.simplices, threads, part_of(progress, 0.0, 0.5));
+    neighbours_.reset();
+    target_.emplace(*simplices_, std::move(neighbours), threads, part_of(progress, 0.5, 1.0));
+  }
+
   const Contour<N, double>& contour_;
   std::array<double, N> scale_;
   unsigned threads_;
+  std::shared_ptr<const FacetNeighbours<N>> neighbours_;  ///< in the order of the contour, until they are used
   std::optional<ScaledSimplices<N>> simplices_;
   std::optional<DeviationTarget<N>> target_;
   std::atomic<bool> is_wanted_ = true;

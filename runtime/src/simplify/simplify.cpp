@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "base/progress.hpp"
 #include "mesh/validate.hpp"
 #include "simplify/collapsible_complex.hpp"
+#include "simplify/contour_coordinates.hpp"
 #include "simplify/edge_collapse.hpp"
 #include "simplify/error_attribute.hpp"
 #include "simplify/measured_contour.hpp"
@@ -339,6 +341,7 @@ class Simplifier {
                        const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     EdgeCollapse<N> collapse = prepared_collapse(tolerance, detail::part_of(progress, 0.0, kReady));
+    keep_neighbours(collapse.complex().take_neighbours());
     // contract
     CollapseGoal goal{stop, options_.max_curvature, kind.by_mean, &progress, kReady, kCollapsed, options_.work.threads};
     if (!kind.is_trial && (options_.measure || options_.max_error)) goal.ready = [this] { measured_.begin(); };
@@ -362,6 +365,13 @@ class Simplifier {
     return round;
   }
 
+  /// Keeps the neighbours of the original for its measurement, and for further rounds.
+  void keep_neighbours(std::shared_ptr<const FacetNeighbours<N>> neighbours) {
+    if (stats_.rounds > 1 || !(options_.measure || options_.max_error)) return;
+    measured_.set_neighbours(neighbours);
+    if (!takes_one_round() || options_.max_error) neighbours_ = std::move(neighbours);
+  }
+
   /// The contour before its first contraction, bound to its hyperplanes.
   EdgeCollapse<N> prepared_collapse(const std::vector<double>& tolerance, const Progress& progress) const {
     CollapseInput<N> input;
@@ -379,6 +389,7 @@ class Simplifier {
     input.border_fixed = options_.border == SimplifyBorder::fixed;
     input.single_precision = is_single_;
     input.keep_embedded = options_.keep_embedded;
+    input.neighbours = neighbours_;
     input.threads = options_.work.threads;
     input.progress = progress;
     EdgeCollapse<N> collapse(std::move(input));
@@ -655,27 +666,9 @@ class Simplifier {
   double earlier_error_ = 0.0;
   double progress_ = 0.0;  ///< reported so far
   SimplifyStats stats_;
+  std::shared_ptr<const FacetNeighbours<N>> neighbours_;  ///< of the original, once they are found, for further rounds
   MeasuredContour<N> measured_{contour_, options_.scale, options_.work.threads};
 };
-
-/// The contour with coordinates of another type. The rest is copied, or moved from a temporary.
-template <class To, int N, class Source>
-Contour<N, To> with_coordinates(Source&& contour) {
-  const auto converted = [](const auto& from) {
-    Buffer<std::array<To, N>> to(from.size());
-    for (std::size_t v = 0; v < from.size(); ++v)
-      for (int a = 0; a < N; ++a) to[v][a] = static_cast<To>(from[v][a]);
-    return to;
-  };
-  return {converted(contour.vertices),
-          std::forward<Source>(contour).simplices,
-          converted(contour.normals),
-          std::forward<Source>(contour).axis_names,
-          std::forward<Source>(contour).axis_units,
-          contour.direction,
-          std::forward<Source>(contour).vertex_attributes,
-          std::forward<Source>(contour).simplex_attributes};
-}
 
 }  // namespace
 }  // namespace detail

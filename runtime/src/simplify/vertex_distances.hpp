@@ -50,13 +50,19 @@ class VertexDistances {
     std::vector<Index> order;
     for (Index v = 0; v < points_.size(); ++v)
       if (parents_[v] != kUnused) order.push_back(v);
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const auto is_farther = [&](Index a, Index b) {
       return near_[a].distance != near_[b].distance ? near_[a].distance > near_[b].distance : a < b;
-    });
+    };
     double largest = 0.0;
-    for (std::size_t i = 0; i < order.size() && near_[order[i]].distance > largest;) {
+    for (std::size_t i = 0; i < order.size();) {
       // a fixed number in each step: the result does not depend on the number of threads
-      const std::span<const Index> step(order.data() + i, std::min(kStep, order.size() - i));
+      const std::span<Index> step(order.data() + i, std::min(kStep, order.size() - i));
+      // mostly one step is enough, so the others are sorted only if they are needed
+      if (i == 0 && step.size() < order.size())
+        std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kStep), order.end(), is_farther);
+      if (i == 0) std::sort(step.begin(), step.end(), is_farther);
+      if (i == kStep) std::sort(order.begin() + static_cast<std::ptrdiff_t>(i), order.end(), is_farther);
+      if (!(near_[step.front()].distance > largest)) break;
       search(step, part_of(progress, static_cast<double>(i) / static_cast<double>(order.size()), 1.0));
       for (const Index v : step) largest = std::max(largest, near_[v].distance);
       i += step.size();
