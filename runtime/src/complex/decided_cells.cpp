@@ -4,11 +4,13 @@
 // boundary, is put together from the contours in its facets. Components that are spheres are coned: in compact contours
 // from one of their vertices if every triangle in a facet with that vertex has it, otherwise from their barycentre.
 // Other components, and all if the cell's centre joins them, are filled with copies of the regions of one side of the
-// boundary, moved towards the centre. A region of a facet is a cone, as each of its polygons is a disc; in a hexahedron
-// with a tunnel it is the table's (CubeRegions), around a tunnel in an octahedron a ring of cones. A tesseract whose
-// facets are those of an image's tesseract has the image's contour.
+// boundary, moved towards the centre. If components are to stay separate, such a copy passes the spheres beside its
+// region: it is a copy of the region with everything behind them. A region of a facet is a cone, as each of its
+// polygons is a disc; in a hexahedron with a tunnel it is the table's (CubeRegions), around a tunnel in an octahedron a
+// ring of cones. A tesseract whose facets are those of an image's tesseract has the image's contour.
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -19,6 +21,7 @@
 #include "complex/cell_cases.hpp"
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
+#include "regions/region_parts.hpp"
 #include "regions/separating_planes.hpp"
 #include "regions/tunnel_regions.hpp"
 #include "tegl/generated/cells.hpp"
@@ -34,7 +37,8 @@ namespace {
 using tables::CellShape;
 /// Vertices of a cell while its contour is built: edges, then shared vertices; the others from these numbers on.
 using Local = std::uint16_t;
-constexpr Local kShared = 64, kCones = 256, kSides = 512, kCorners = 768, kCentres = 1024, kLocals = 2048;
+constexpr Local kShared = 64, kCones = 256, kSides = 512, kCollars = 768, kCorners = 1024, kCentres = 1280,
+                kLocals = 2304;
 using Triangle = std::array<Local, 3>;
 using Tetrahedron = std::array<Local, 4>;
 
@@ -108,6 +112,7 @@ class DecidedCells::Filler {
  private:
   using Piece = SigmaPiece<Local>;
   using Component = std::vector<Piece>;
+  using Components = std::map<Index, Component>;
 
   void begin(const CellKey& key) {
     key_ = &key;
@@ -116,21 +121,23 @@ class DecidedCells::Filler {
     tetrahedra_.clear();
     fans_.clear();
     centres_.clear();
-    side_of_.assign(kLocals, 0);
     contours_.assign(cells_.facets_.size(), std::nullopt);
   }
 
   void fill() {
     for (std::size_t f = 0; f < cells_.facets_.size(); ++f) add_contour(f);
     auto components = components_of(sigma_, kCones);
-    const bool joins = key_->tile != tile::Choice::separate && components.size() > 1;
-    if (joins || std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
+    if ((joins() && components.size() > 1) ||
+        std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
       copy_regions(key_->tile != tile::Choice::high, components);
     else
       copy_if_cones_meet(components);
     for (const auto& [root, component] : components) add_sphere(component);
     finish();
   }
+
+  /// Whether the cell's centre joins components. By a fixed rule, `tile` has only the side that is copied.
+  [[nodiscard]] bool joins() const noexcept { return !cells_.high_connected_ && key_->tile != tile::Choice::separate; }
 
   static Local corner_of(const Facet& facet, unsigned v) { return static_cast<Local>(kCorners + facet.of->corners[v]); }
   [[nodiscard]] std::uint64_t bit_of(Local v) const noexcept {
@@ -215,18 +222,6 @@ class DecidedCells::Filler {
     }
   }
 
-  static std::vector<Local> vertices_of(const Component& component) {
-    std::vector<Local> vertices;
-    for (const Piece& piece : component) vertices.insert(vertices.end(), piece.triangle.begin(), piece.triangle.end());
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-  }
-  /// By the Euler characteristic of a closed surface.
-  static bool is_sphere(const Component& component) {
-    return 2 * vertices_of(component).size() == component.size() + 4;
-  }
-
   /// The tetrahedron between a triangle and a vertex inside the cell, with its positive side towards high.
   [[nodiscard]] Tetrahedron cone_of(const Piece& piece, Local apex) const noexcept {
     return detail::cone_of(piece.triangle, cells_.facets_[piece.facet].of->is_inverted, apex);
@@ -274,7 +269,7 @@ class DecidedCells::Filler {
   }
 
   /// If the cones of two spheres intersect for some positions, fills each with a copy of a region that it alone bounds.
-  void copy_if_cones_meet(std::map<Index, Component>& components) {
+  void copy_if_cones_meet(Components& components) {
     if (components.size() != 2) return;  // of three, hyperplanes divide any two
     const Component &a = components.begin()->second, &b = components.rbegin()->second;
     if (!SeparatingPlanes(cells_.shape_).may_meet(cone_on_edges(a), cone_on_edges(b))) return;
@@ -289,29 +284,88 @@ class DecidedCells::Filler {
   }
 
   /// Fills components with copies of the regions beside them on one side, and removes them.
-  void copy_regions(bool high, std::map<Index, Component>& components) {
+  void copy_regions(bool high, Components& components) {
     DisjointSets sets = find_regions(high);
     std::map<Index, std::vector<const Component*>> beside;
-    for (const auto& [root, component] : components)
-      beside[sets.find(component.front().triangle[0])].push_back(&component);
+    for (const auto& [root, component] : components) beside[sets.find(first_of(component))].push_back(&component);
     std::map<Index, bool> is_copied;
-    for (const auto& [region, of] : beside)
-      is_copied[region] =
-          (of.size() > 1 && key_->tile != tile::Choice::separate) ||
-          std::any_of(of.begin(), of.end(), [](const Component* component) { return !is_sphere(*component); });
+    std::vector<Index> passing;  // regions whose copies pass spheres beside them
+    for (const auto& [region, of] : beside) {
+      const auto spheres =
+          std::count_if(of.begin(), of.end(), [](const Component* component) { return is_sphere(*component); });
+      const bool has_others = static_cast<std::size_t>(spheres) < of.size();
+      is_copied[region] = has_others || (of.size() > 1 && joins());
+      if (has_others && spheres > 0 && !joins()) passing.push_back(region);
+    }
+    for (std::size_t f = 0; f < contours_.size() && !passing.empty(); ++f)  // its regions cannot be divided otherwise
+      if (has_tunnel(f) && components_in(f, components) > 1) passing.clear();
+    if (!passing.empty()) pass_spheres(high, sets, passing, components);
+    for (const Index region : passing) is_copied[region] = false;
     copy(
         sets, [&](Index region) { return is_copied[region]; }, components);
+  }
+
+  /// Fills the components beside regions whose copies pass spheres, and removes them. A sphere that is alone beside the
+  /// region behind it is filled with a copy of that region, nearer to the boundary, otherwise coned.
+  void pass_spheres(bool high, DisjointSets& sets, const std::vector<Index>& passing, Components& components) {
+    const std::vector<Tetrahedron> regions = std::move(regions_);
+    DisjointSets behind = find_regions(!high);
+    std::map<Index, unsigned> around;  // components by region
+    for (const auto& [root, component] : components) ++around[behind.find(first_of(component))];
+    const auto is_done = [&](const Component& c) {
+      return std::find(passing.begin(), passing.end(), sets.find(first_of(c))) != passing.end();
+    };
+    for (const auto& [root, sphere] : components) {
+      if (!is_done(sphere) || !is_sphere(sphere)) continue;
+      const Index region = behind.find(first_of(sphere));
+      if (around[region] > 1)
+        add_sphere(sphere);
+      else
+        add_copies(tetrahedra_in(region, behind, regions_), sphere, true);
+    }
+    for (const Index region : passing) copy_past_spheres(high, region, sets, behind, components);
+    std::erase_if(components, [&](const auto& c) { return is_done(c.second); });
+    regions_ = regions;
+  }
+
+  /// Fills the components beside a region that are no spheres: with a copy of the region as it were if everything
+  /// behind the spheres was on its side.
+  void copy_past_spheres(bool high, Index region, DisjointSets& sets, DisjointSets& behind,
+                         const Components& components) {
+    RegionParts parts(sets, behind, kLocals, region);
+    auto [sigma, boundary] = parts.pass_spheres(components);
+    CellKey key = *key_;
+    for (unsigned v = 0; v < corners_; ++v) {
+      const bool is_near = (key_->signature >> v & 1u) == (high ? 1u : 0u);
+      if (!is_near && parts.is_passed(kCorners + v)) key.signature ^= static_cast<std::uint16_t>(1u << v);
+    }
+    auto contours = contours_;
+    for (std::size_t f = 0; f < contours.size(); ++f) {
+      if (std::any_of(sigma.begin(), sigma.end(), [&](const Piece& piece) { return piece.facet == f; })) continue;
+      contours[f].reset();
+      key.cubes = static_cast<std::uint16_t>(key.cubes & ~(3u << 2 * f));
+    }
+    const CellKey* const own = std::exchange(key_, &key);
+    sigma_.swap(sigma);
+    contours_.swap(contours);
+    DisjointSets joined = find_regions(high);
+    add_copies(tetrahedra_in(joined.find(first_of(boundary)), joined, regions_), boundary, false);
+    key_ = own;
+    sigma_.swap(sigma);
+    contours_.swap(contours);
+  }
+
+  [[nodiscard]] bool has_tunnel(std::size_t f) const noexcept {
+    return contours_[f] && detail::has_tunnel(contours_[f]->list);
   }
 
   /// Divides the regions of one side into tetrahedra, and returns those that are connected, by vertices.
   DisjointSets find_regions(bool high) {
     regions_.clear();
     fans_.clear();
-    centres_.clear();
     for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
       for (std::size_t f = 0; f < cells_.facets_.size(); ++f)
-        if ((contours_[f] && has_tunnel(contours_[f]->list)) == tunnels)
-          tunnels ? add_cube_regions(f, high) : add_regions(f, high);
+        if (has_tunnel(f) == tunnels) tunnels ? add_cube_regions(f, high) : add_regions(f, high);
     DisjointSets sets(kLocals);
     for (const Tetrahedron& t : regions_)
       for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
@@ -320,36 +374,43 @@ class DecidedCells::Filler {
 
   /// Adds copies of regions, and removes the components beside them. `sets`: of find_regions.
   template <class IsCopied>
-  void copy(DisjointSets& sets, const IsCopied& is_copied, std::map<Index, Component>& components) {
-    std::vector<Triangle> starts;
+  void copy(DisjointSets& sets, const IsCopied& is_copied, Components& components) {
+    Component boundary;
     for (auto at = components.begin(); at != components.end();) {
       if (!is_copied(sets.find(at->second.front().triangle[0]))) {
         ++at;
         continue;
       }
-      for (const Piece& piece : at->second) starts.push_back(face_of(cone_of(piece, kLocals), 3));
+      boundary.insert(boundary.end(), at->second.begin(), at->second.end());
       at = components.erase(at);
     }
-    std::vector<bool> is_sigma(kLocals);
-    for (const Piece& piece : sigma_)
-      for (const Local v : piece.triangle) is_sigma[v] = true;
-    std::vector<Tetrahedron> copies;
-    for (Tetrahedron t : regions_) {
-      if (!is_copied(sets.find(t[0]))) continue;
-      for (Local& v : t)
-        if (!is_sigma[v]) v = copy_of(v);
-      copies.push_back(t);
-    }
-    orient(copies, std::move(starts));
-    tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
+    std::vector<Tetrahedron> copied;
+    std::copy_if(regions_.begin(), regions_.end(), std::back_inserter(copied),
+                 [&](const Tetrahedron& t) { return is_copied(sets.find(t[0])); });
+    add_copies(std::move(copied), boundary, false);
   }
 
-  Local copy_of(Local v) {
-    if (side_of_[v] == 0) {
-      side_of_[v] = static_cast<Local>(kSides + built_.sides.size());
-      built_.sides.push_back(v < kCentres ? bit_of(v) : centres_[v - kCentres]);
+  /// Adds copies of tetrahedra, which keep the vertices of their boundary. `collars`: half as far from there as others.
+  void add_copies(std::vector<Tetrahedron> copies, const Component& boundary, bool collars) {
+    std::vector<bool> is_kept(kLocals);
+    std::vector<Triangle> starts;
+    for (const Piece& piece : boundary) {
+      starts.push_back(face_of(cone_of(piece, kLocals), 3));
+      for (const Local v : piece.triangle) is_kept[v] = true;
     }
-    return side_of_[v];
+    std::vector<Local> copy_of(kLocals);  // 0: no copy yet
+    std::vector<std::uint64_t>& masks = collars ? built_.collars : built_.sides;
+    for (Tetrahedron& t : copies)
+      for (Local& v : t) {
+        if (is_kept[v]) continue;
+        if (copy_of[v] == 0) {
+          copy_of[v] = static_cast<Local>((collars ? kCollars : kSides) + masks.size());
+          masks.push_back(v < kCentres ? bit_of(v) : centres_[v - kCentres]);
+        }
+        v = copy_of[v];
+      }
+    orient(copies, std::move(starts));
+    tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
   }
 
   Local add_centre(std::uint64_t mask) {
@@ -479,13 +540,15 @@ class DecidedCells::Filler {
   }
 
   void finish() {
-    const std::size_t first_cone = edges_ + built_.shared.size(), first_side = first_cone + built_.cones.size();
-    if (first_side + built_.sides.size() > 256) throw std::length_error("a cell with more than 256 vertices");
+    const std::size_t first_cone = edges_ + built_.shared.size(), first_side = first_cone + built_.cones.size(),
+                      first_collar = first_side + built_.sides.size();
+    if (first_collar + built_.collars.size() > 256) throw std::length_error("a cell with more than 256 vertices");
     for (const Tetrahedron& t : tetrahedra_) {
       auto& to = built_.tetrahedra.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t v = t[k];
-        to[k] = static_cast<std::uint8_t>(v >= kSides    ? first_side + v - kSides
+        to[k] = static_cast<std::uint8_t>(v >= kCollars  ? first_collar + v - kCollars
+                                          : v >= kSides  ? first_side + v - kSides
                                           : v >= kCones  ? first_cone + v - kCones
                                           : v >= kShared ? edges_ + v - kShared
                                                          : v);
@@ -598,7 +661,6 @@ class DecidedCells::Filler {
   std::vector<Tetrahedron> tetrahedra_, regions_;
   std::map<unsigned, std::vector<Triangle>> fans_;  ///< by corners of the quadrilateral: its triangles, sorted
   std::vector<std::uint64_t> centres_;              ///< masks
-  std::vector<Local> side_of_;                      ///< 0: no copy yet
   std::vector<std::optional<CubeContour>> contours_;
   std::array<Local, 16> first_own_{};
 };

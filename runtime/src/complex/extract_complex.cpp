@@ -57,6 +57,7 @@ void check_range(const Complex<N>& complex) {
 /// all corners.
 template <int N>
 std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumbers& numbers) {
+  using Kind = PolytopeBlock::InnerVertex::Kind;
   std::vector<Index> points;
   for (std::size_t b = 0; b < numbers.blocks().size(); ++b) {
     const CellGroup& group = ComplexAccess::cells(complex).groups[numbers.blocks()[b].group];
@@ -70,7 +71,7 @@ std::vector<Index> corners_of_sides(const Complex<N>& complex, const ContourNumb
     points.insert(points.end(), point.corners.begin(), point.corners.end());
   for (const PolytopeBlock& block : numbers.polytopes())
     for (const PolytopeBlock::InnerVertex& vertex : block.own_vertices)
-      if (vertex.kind == PolytopeBlock::InnerVertex::Kind::inwards) {
+      if (vertex.kind == Kind::inwards || vertex.kind == Kind::collar) {
         const std::span<const Index> corners = ComplexAccess::cells(complex).polytopes.points_of(vertex.cell);
         points.insert(points.end(), corners.begin(), corners.end());
       }
@@ -342,6 +343,7 @@ class ComplexWriter {
         if (is_inverted != descends_) std::swap((*simplex)[N - 1], (*simplex)[N - 2]);
       }
     }
+    using Kind = PolytopeBlock::InnerVertex::Kind;
     auto number = static_cast<Index>(numbers_.first_of_polytopes(b));
     std::vector<Index> vertices;
     for (const PolytopeBlock::InnerVertex& own : block.own_vertices) {
@@ -353,8 +355,8 @@ class ComplexWriter {
       for (const Index v : vertices) mean.add_vertex(v);
       for (std::uint32_t v = own.first_corner; v < own.corners_end; ++v) mean.add_corner(block.inner_corners[v]);
       write(number, mean);
-      if (own.kind == PolytopeBlock::InnerVertex::Kind::inwards)
-        contour_.vertices[number] = inwards(cells_.polytopes.points_of(own.cell), mean, 0.5);
+      if (const bool is_collar = own.kind == Kind::collar; is_collar || own.kind == Kind::inwards)
+        contour_.vertices[number] = inwards(cells_.polytopes.points_of(own.cell), mean, is_collar ? 0.25 : 0.5);
       ++number;
     }
   }

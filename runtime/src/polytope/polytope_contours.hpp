@@ -44,6 +44,7 @@ struct PolytopeBlock {
       in_cube,  ///< a vertex of a hexahedron's own, as in images: known by the hexahedron and the mask
       mean,     ///< of the cell: the mean of its points
       inwards,  ///< of the cell: half-way from there to the mean of the cell's corners
+      collar,   ///< likewise, a quarter of the way
     };
     Kind kind;
     Index cell;

@@ -23,9 +23,6 @@ Triangulation triangulation_of(const PolytopeRules& rules) noexcept {
   return rules.is_compact ? Triangulation::compact : Triangulation::barycentric;
 }
 
-/// By the Euler characteristic of a closed surface.
-bool is_sphere(std::size_t vertices, std::size_t triangles) noexcept { return 2 * vertices == triangles + 4; }
-
 }  // namespace
 
 std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const PrismFacet& facet,
@@ -68,12 +65,11 @@ void PrismCell::build(const PolytopeFaces& shape, const Index* points, const dou
   entangled_ = entangled;
   sigma_.clear();
   tetrahedra_.clear();
-  for (auto* const inner : {&shared_, &cones_, &sides_}) inner->clear();
+  for (auto* const inner : {&shared_, &cones_, &sides_, &collars_}) inner->clear();
   contours_.assign(facets_.size(), std::nullopt);
   for (std::size_t f = 0; f < facets_.size(); ++f) add_contour(f);
   Components components = components_of(sigma_, kCones);
-  if (std::any_of(components.begin(), components.end(),
-                  [](const auto& c) { return !is_sphere(vertices_of(c.second).size(), c.second.size()); }))
+  if (std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
     copy_regions(rules_.rule.has_value() || !rules_.joins_high, components);
   for (const auto& [root, component] : components) add_sphere(component, vertices_of(component));
 }
@@ -203,15 +199,6 @@ void PrismCell::add_cube(std::size_t f, unsigned signature) {
     if (frame.is_mirrored()) std::swap(t[1], t[2]);
     sigma_.push_back({t, f});
   }
-}
-
-std::vector<PrismCell::Local> PrismCell::vertices_of(const Component& component) {
-  std::vector<Local> vertices;
-  vertices.reserve(3 * component.size());
-  for (const Piece& piece : component) vertices.insert(vertices.end(), piece.triangle.begin(), piece.triangle.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
 }
 
 bool PrismCell::is_in_facet(Local edge, std::size_t f) const noexcept {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "polytope/loops.hpp"
 #include "polytope/prism_facets.hpp"
 #include "regions/cube_frame.hpp"
@@ -36,11 +37,13 @@ struct EntangledPrism {
 /// hexahedron there, which is the same in any cell with the facet. Components of Sigma that are spheres are coned: in
 /// compact contours from one of their vertices if every triangle in a facet with that vertex has it, otherwise from
 /// their barycentre. Others are filled with copies of the regions of one side, moved towards the centre of the cell.
+/// Such a copy passes the spheres beside its region: it is a copy of the region with everything behind them.
 class PrismCell {
  public:
   /// A vertex of the cell: its edges have the first numbers.
   using Local = std::uint16_t;
-  static constexpr Local kShared = 512, kCones = 2048, kCorners = 2304, kCentres = 2432, kSides = 8192, kLocals = 16384;
+  static constexpr Local kShared = 512, kCones = 2048, kCorners = 2304, kCentres = 2432, kSides = 8192,
+                         kCollars = 12288, kLocals = 16384;
   using Tetrahedron = std::array<Local, 4>;
 
   /// A vertex that is not on an edge.
@@ -65,6 +68,8 @@ class PrismCell {
   [[nodiscard]] const std::vector<Inner>& shared() const noexcept { return shared_; }  ///< from kShared
   [[nodiscard]] const std::vector<Inner>& cones() const noexcept { return cones_; }    ///< from kCones
   [[nodiscard]] const std::vector<Inner>& sides() const noexcept { return sides_; }    ///< from kSides
+  /// From kCollars: half as far from their places as `sides`.
+  [[nodiscard]] const std::vector<Inner>& collars() const noexcept { return collars_; }
 
  private:
   using Triangle = std::array<Local, 3>;
@@ -91,22 +96,24 @@ class PrismCell {
   [[nodiscard]] bool has_tunnel(std::size_t f) const noexcept;
 
   // filling
-  [[nodiscard]] static std::vector<Local> vertices_of(const Component& component);
   [[nodiscard]] bool is_in_facet(Local edge, std::size_t f) const noexcept;
   [[nodiscard]] Local apex_of(const Component& component, const std::vector<Local>& vertices);
   void add_sphere(const Component& component, const std::vector<Local>& vertices);
   [[nodiscard]] Tetrahedron cone_of(const Piece& piece, Local apex) const noexcept;
   void copy_regions(bool high, Components& components);
+  void pass_spheres(bool high, DisjointSets& sets, const std::vector<Index>& passing, Components& components);
+  void copy_past_spheres(bool high, Index region, DisjointSets& sets, DisjointSets& behind,
+                         const Components& components);
+  void add_copies(std::vector<Tetrahedron> copies, const Component& boundary, bool collars);
 
   // regions
-  void find_regions(bool high);
+  [[nodiscard]] DisjointSets find_regions(bool high);
   void add_regions(std::size_t f, bool high);
   void add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
                  std::vector<Triangle>& triangles) const;
   void add_cube_regions(std::size_t f, bool high);
   [[nodiscard]] bool is_in_square(Local v, const Square& square) const noexcept;
   [[nodiscard]] Local add_centre(std::vector<Local> points);
-  [[nodiscard]] Local copy_of(Local v);
 
   const PolytopeRules& rules_;
   FaceFillings fillings_;  ///< of hexahedra, by fixed rules
@@ -122,11 +129,11 @@ class PrismCell {
   EntangledPrism entangled_;
   Component sigma_;
   std::vector<Tetrahedron> tetrahedra_, regions_;
-  std::vector<Inner> shared_, cones_, sides_;
+  std::vector<Inner> shared_, cones_, sides_, collars_;
   std::vector<std::optional<CubeContour>> contours_;  ///< by facet
   std::vector<std::vector<Local>> centres_;
+  std::vector<bool> is_high_;                     ///< corners, while regions are found
   std::map<Square, std::vector<Triangle>> fans_;  ///< by corners of the quadrilateral: its triangles, sorted
-  std::vector<Local> side_of_;                    ///< 0: no copy yet
   std::vector<std::uint16_t> around_;             ///< by vertex of a sphere: number of its triangles
 };
 

@@ -120,11 +120,15 @@ class PrismBlockBuilder {
     for (const PrismCell::Inner& inner : cell_.cones()) add_inner(block_.own_vertices, Kind::mean, cell, inner, points);
     for (const PrismCell::Inner& inner : cell_.sides())
       add_inner(block_.own_vertices, Kind::inwards, cell, inner, points);
+    for (const PrismCell::Inner& inner : cell_.collars())
+      add_inner(block_.own_vertices, Kind::collar, cell, inner, points);
+    const auto collars = static_cast<std::uint32_t>(sides + cell_.sides().size());
     for (const PrismCell::Tetrahedron& t : cell_.tetrahedra()) {
       auto& to = block_.tetrahedra.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t v = t[k];
-        to[k] = v >= PrismCell::kSides    ? PolytopeBlock::kOwn | (sides + v - PrismCell::kSides)
+        to[k] = v >= PrismCell::kCollars  ? PolytopeBlock::kOwn | (collars + v - PrismCell::kCollars)
+                : v >= PrismCell::kSides  ? PolytopeBlock::kOwn | (sides + v - PrismCell::kSides)
                 : v >= PrismCell::kCones  ? PolytopeBlock::kOwn | (cones + v - PrismCell::kCones)
                 : v >= PrismCell::kShared ? PolytopeBlock::kShared | (shared + v - PrismCell::kShared)
                                           : vertex_on_[v];

@@ -3,12 +3,14 @@
 // Fills components of Sigma with copies of the regions beside them. A region of a facet is a cone, as each of its
 // polygons is a disc; in a hexahedron with a tunnel it is the table's (CubeRegions).
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "prisms/prism_cell.hpp"
 #include "regions/decided_regions.hpp"
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
+#include "regions/region_parts.hpp"
 #include "regions/tunnel_regions.hpp"
 #include "tegl/tile/diagonal_edges.hpp"
 #include "tile/extract_tables.hpp"
@@ -19,46 +21,106 @@ bool PrismCell::has_tunnel(std::size_t f) const noexcept {
   return contours_[f] && detail::has_tunnel(contours_[f]->list);
 }
 
-/// Fills components with copies of the regions beside them on one side, and removes them: those that are no spheres,
-/// and spheres beside the same region.
+/// Fills components with copies of the regions beside them on one side, and removes them: those that are no spheres.
 void PrismCell::copy_regions(bool high, Components& components) {
-  find_regions(high);
-  DisjointSets sets(kLocals);
-  for (const Tetrahedron& t : regions_)
-    for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
-  const auto region_of = [&](const Component& component) { return sets.find(component.front().triangle[0]); };
-  std::vector<bool> is_copied(kLocals), is_sigma(kLocals);
+  centres_.clear();
+  is_high_.clear();
+  for (std::size_t v = 0; v < shape_->corner_count(); ++v) is_high_.push_back(values_[v] >= rules_.isovalue);
+  DisjointSets sets = find_regions(high);
+  const auto region_of = [&](const Component& component) { return sets.find(first_of(component)); };
+  std::vector<bool> is_copied(kLocals);
+  std::vector<Index> passing;  // regions whose copies pass spheres beside them
   for (const auto& [root, component] : components)
-    if (2 * vertices_of(component).size() != component.size() + 4) is_copied[region_of(component)] = true;
-  std::vector<Triangle> starts;
+    if (!is_sphere(component)) is_copied[region_of(component)] = true;
+  for (const auto& [root, component] : components)
+    if (is_copied[region_of(component)] && is_sphere(component)) passing.push_back(region_of(component));
+  std::sort(passing.begin(), passing.end());
+  passing.erase(std::unique(passing.begin(), passing.end()), passing.end());
+  for (std::size_t f = 0; f < facets_.size() && !passing.empty(); ++f)  // its regions cannot be divided otherwise
+    if (has_tunnel(f) && components_in(f, components) > 1) passing.clear();
+  if (!passing.empty()) pass_spheres(high, sets, passing, components);
+  for (const Index region : passing) is_copied[region] = false;
+  Component boundary;
   for (auto at = components.begin(); at != components.end();) {
     if (!is_copied[region_of(at->second)]) {
       ++at;
       continue;
     }
-    for (const Piece& piece : at->second) starts.push_back(face_of(cone_of(piece, kLocals), 3));
+    boundary.insert(boundary.end(), at->second.begin(), at->second.end());
     at = components.erase(at);
   }
-  for (const Piece& piece : sigma_)
-    for (const Local v : piece.triangle) is_sigma[v] = true;
-  side_of_.assign(kSides, 0);
-  std::vector<Tetrahedron> copies;
-  for (Tetrahedron t : regions_) {
-    if (!is_copied[sets.find(t[0])]) continue;
-    for (Local& v : t)
-      if (!is_sigma[v]) v = copy_of(v);
-    copies.push_back(t);
-  }
-  orient(copies, std::move(starts));
-  tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
+  std::vector<Tetrahedron> copied;
+  std::copy_if(regions_.begin(), regions_.end(), std::back_inserter(copied),
+               [&](const Tetrahedron& t) { return is_copied[sets.find(t[0])]; });
+  add_copies(std::move(copied), boundary, false);
 }
 
-PrismCell::Local PrismCell::copy_of(Local v) {
-  if (side_of_[v] == 0) {
-    side_of_[v] = static_cast<Local>(kSides + sides_.size());
-    sides_.emplace_back().points = v < kCentres ? std::vector<Local>{v} : centres_[v - kCentres];
+/// Fills the components beside regions whose copies pass spheres, and removes them. A sphere that is alone beside the
+/// region behind it is filled with a copy of that region, nearer to the boundary, otherwise coned.
+void PrismCell::pass_spheres(bool high, DisjointSets& sets, const std::vector<Index>& passing, Components& components) {
+  const std::vector<Tetrahedron> regions = std::move(regions_);
+  DisjointSets behind = find_regions(!high);
+  std::map<Index, unsigned> around;  // components by region
+  for (const auto& [root, component] : components) ++around[behind.find(first_of(component))];
+  const auto is_done = [&](const Component& component) {
+    return std::binary_search(passing.begin(), passing.end(), sets.find(first_of(component)));
+  };
+  for (const auto& [root, sphere] : components) {
+    if (!is_done(sphere) || !is_sphere(sphere)) continue;
+    const Index region = behind.find(first_of(sphere));
+    if (around[region] > 1)
+      add_sphere(sphere, vertices_of(sphere));
+    else
+      add_copies(tetrahedra_in(region, behind, regions_), sphere, true);
   }
-  return side_of_[v];
+  for (const Index region : passing) copy_past_spheres(high, region, sets, behind, components);
+  std::erase_if(components, [&](const auto& component) { return is_done(component.second); });
+  regions_ = regions;
+}
+
+/// Fills the components beside a region that are no spheres: with a copy of the region as it were if everything behind
+/// the spheres was on its side.
+void PrismCell::copy_past_spheres(bool high, Index region, DisjointSets& sets, DisjointSets& behind,
+                                  const Components& components) {
+  RegionParts parts(sets, behind, kLocals, region);
+  auto [sigma, boundary] = parts.pass_spheres(components);
+  const std::vector<bool> is_high = is_high_;
+  for (Index v = 0; v < is_high.size(); ++v)
+    if (is_high[v] != high && parts.is_passed(kCorners + v)) is_high_[v] = high;
+  auto contours = contours_;
+  for (std::size_t f = 0; f < contours.size(); ++f)
+    if (std::none_of(sigma.begin(), sigma.end(), [&](const Piece& piece) { return piece.facet == f; }))
+      contours[f].reset();
+  sigma_.swap(sigma);
+  contours_.swap(contours);
+  DisjointSets joined = find_regions(high);
+  add_copies(tetrahedra_in(joined.find(first_of(boundary)), joined, regions_), boundary, false);
+  is_high_ = is_high;
+  sigma_.swap(sigma);
+  contours_.swap(contours);
+}
+
+/// Adds copies of tetrahedra, which keep the vertices of their boundary. `collars`: half as far from there as others.
+void PrismCell::add_copies(std::vector<Tetrahedron> copies, const Component& boundary, bool collars) {
+  std::vector<bool> is_kept(kLocals);
+  std::vector<Triangle> starts;
+  for (const Piece& piece : boundary) {
+    starts.push_back(face_of(cone_of(piece, kLocals), 3));
+    for (const Local v : piece.triangle) is_kept[v] = true;
+  }
+  std::vector<Local> copy_of(kSides);  // 0: no copy yet
+  std::vector<Inner>& inner = collars ? collars_ : sides_;
+  for (Tetrahedron& t : copies)
+    for (Local& v : t) {
+      if (is_kept[v]) continue;
+      if (copy_of[v] == 0) {
+        copy_of[v] = static_cast<Local>((collars ? kCollars : kSides) + inner.size());
+        inner.emplace_back().points = v < kCentres ? std::vector<Local>{v} : centres_[v - kCentres];
+      }
+      v = copy_of[v];
+    }
+  orient(copies, std::move(starts));
+  tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
 }
 
 PrismCell::Local PrismCell::add_centre(std::vector<Local> points) {
@@ -66,14 +128,17 @@ PrismCell::Local PrismCell::add_centre(std::vector<Local> points) {
   return static_cast<Local>(kCentres + centres_.size() - 1);
 }
 
-/// Divides the regions of one side into tetrahedra.
-void PrismCell::find_regions(bool high) {
+/// Divides the regions of one side into tetrahedra, and returns those that are connected, by vertices.
+DisjointSets PrismCell::find_regions(bool high) {
   regions_.clear();
   fans_.clear();
-  centres_.clear();
   for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
     for (std::size_t f = 0; f < facets_.size(); ++f)
       if (has_tunnel(f) == tunnels) tunnels ? add_cube_regions(f, high) : add_regions(f, high);
+  DisjointSets sets(kLocals);
+  for (const Tetrahedron& t : regions_)
+    for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
+  return sets;
 }
 
 /// The regions of a facet in which all polygons are discs.
@@ -96,7 +161,7 @@ void PrismCell::add_parts(std::size_t f, std::size_t face, bool high, std::vecto
   const auto corner = [&](std::size_t i) { return static_cast<Local>(kCorners + facet.corners[ring[i % count]]); };
   const auto edge = [&](std::size_t i) { return Local{facet.edges[edges[i % count]]}; };
   const auto value = [&](std::size_t i) { return values_[facet.corners[ring[i % count]]]; };
-  const auto is_in = [&](std::size_t i) { return (value(i) >= rules_.isovalue) == high; };
+  const auto is_in = [&](std::size_t i) { return is_high_[facet.corners[ring[i % count]]] == high; };
   std::size_t runs = 0, start = 0;  // a run begins after `start`, if there is one
   for (std::size_t i = 0; i < count; ++i)
     if (!is_in(i) && is_in(i + 1)) ++runs, start = i;

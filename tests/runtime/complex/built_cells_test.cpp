@@ -404,6 +404,24 @@ TEST(Decided4d, RandomCellsDoNotIntersectThemselves) {
   }
 }
 
+/// In some of these cells, spheres are beside the same region as a torus, whose filling passes them.
+TEST(Decided4d, FillingsThatPassSpheresDoNotIntersectThem) {
+  const Complex<4> complex = octahedra_over_time(std::array{253u, 819u, 3859u});
+  for (const Ambiguity rule : kFromData) {
+    std::vector<MeshReport> reports;
+    for (const Triangulation triangulation : kOfEach) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(rule) << " " << static_cast<int>(triangulation));
+      const auto contour = extract<double>(complex, 0.0, decided_by(rule, triangulation));
+      const auto found = find_intersections(contour);
+      EXPECT_TRUE(found.is_embedded()) << found.pair_count << " pairs";
+      reports.push_back(check(contour));
+      EXPECT_EQ(0u, reports.back().nonmanifold_simplices + reports.back().bad_links);
+    }
+    EXPECT_EQ(reports[0].components, reports[1].components);
+    EXPECT_GT(reports[0].components, complex.cell_count());
+  }
+}
+
 TEST(Decided4d, CellsWithTunnelsBetweenOppositeCornersDoNotIntersectThemselves) {
   for (const CellType type : {CellType::octahedron_prism, CellType::cell16}) {
     constexpr std::size_t kCount = 400;

@@ -16,6 +16,7 @@
 #include "complex/cell_groups.hpp"
 #include "complex/complex_cases.hpp"
 #include "complex/engine_cells.hpp"
+#include "invariants.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/generated/cells.hpp"
@@ -170,6 +171,7 @@ bool expect_topology_of_the_engine(CellType type, RandomCells<N>& cells, const s
       options.triangulation = triangulation;
       options.ambiguity = rule;
       const auto contour = extract<double>(cells.complex, 0.0, options);
+      expect_oriented_manifold(contour);
       std::vector<CellPieces<N>> pieces(count);
       for (const auto& simplex : contour.simplices) {
         const double x = contour.vertices[simplex[0]][0];
@@ -234,8 +236,9 @@ TEST(EngineCells, CompactContoursAndRulesThatReadTheDataHaveTheTopologyOfTheGene
   for (const CellType type :
        {CellType::simplex4, CellType::tetrahedron_prism, CellType::pyramid_prism, CellType::wedge_prism,
         CellType::hexahedron_prism, CellType::voxel_prism, CellType::cell16, CellType::octahedron_prism})
-    // a pyramid over time has only one cube, which rarely has a tunnel
-    expect_topology_of_the_engine<4>(type, type == CellType::pyramid_prism ? 600 : 100, 5);
+    // rare: tunnels in the only cube of a pyramid over time; spheres beside the same region as a torus in octahedra
+    expect_topology_of_the_engine<4>(
+        type, type == CellType::pyramid_prism || type == CellType::octahedron_prism ? 600 : 100, 5);
 }
 
 /// The corners around the faces of a wedge: the triangles, then the sides in the order of quadrilaterals_of.

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "ambiguity/face_estimator.hpp"
 #include "compare.hpp"
 #include "complex/cell_groups.hpp"
 #include "complex/complex_cases.hpp"
@@ -54,7 +55,7 @@ Named named(std::array<Around, 4> t, bool flip) {
 struct CellContourOf {
   std::vector<std::array<std::size_t, 4>> tetrahedra = {};
   std::map<std::size_t, Around> around = {};
-  bool has_sides = false;
+  bool has_sides = false, has_cones = false;
 
   [[nodiscard]] std::multiset<Named> named_tetrahedra(bool flip) const {
     std::multiset<Named> result;
@@ -102,6 +103,22 @@ struct CellContourOf {
   }
 };
 
+/// Number of connected components.
+std::size_t components_of(const CellContourOf& contour) {
+  std::map<std::size_t, std::size_t> parent;
+  const auto root = [&](std::size_t v) {
+    while (parent.at(v) != v) v = parent.at(v);
+    return v;
+  };
+  for (const auto& t : contour.tetrahedra)
+    for (const std::size_t v : t) {
+      parent.try_emplace(v, v);
+      parent[root(v)] = root(t[0]);
+    }
+  return static_cast<std::size_t>(
+      std::count_if(parent.begin(), parent.end(), [](const auto& each) { return each.first == each.second; }));
+}
+
 CellContourOf prism_by_engine(tile::FacetBuilder& builder, tile::Signature signature,
                               const tile::Resolution& resolution) {
   const tile::TileFacets& facets = builder.build(signature, resolution);
@@ -121,7 +138,9 @@ CellContourOf prism_by_engine(tile::FacetBuilder& builder, tile::Signature signa
         if (is_on_edge(simplex[static_cast<std::size_t>(i)])) around.insert(edge(simplex[static_cast<std::size_t>(i)]));
   }
   for (const tile::Facet& facet : facets.facets) {
-    contour.has_sides = contour.has_sides || facet.filling == tile::Filling::side;
+    const bool is_side = facet.filling == tile::Filling::side;
+    contour.has_sides = contour.has_sides || is_side;
+    contour.has_cones = contour.has_cones || !is_side;
     for (const auto& s : facet.simplices) contour.tetrahedra.push_back({s[0], s[1], s[2], s[3]});
   }
   return contour;
@@ -152,30 +171,45 @@ CellContourOf prism_by_library(const PrismCell& cell, const detail::PolytopeShap
   return contour;
 }
 
-/// Compares contours of the prism over a polyhedron, which may be one with a table. Returns how many have copied sides.
-std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, std::uint64_t step) {
-  // the lattice
-  std::vector<tile::Signature> facets;
-  tile::Signature all = (tile::Signature{1} << corners) - 1;
-  facets.push_back(all);
-  facets.push_back(all << corners);
-  detail::Polytopes polyhedra;
-  std::vector<std::uint8_t> rings;
-  std::vector<std::uint16_t> ends;
-  std::vector<Index> points;
-  for (Index v = 0; v < corners; ++v) points.push_back(v);
-  for (const FaceRing& ring : faces) {
-    tile::Signature bits = 0;
-    for (const Index v : ring) {
-      bits |= tile::Signature{1} << v;
-      rings.push_back(static_cast<std::uint8_t>(v));
+/// The prism over a polyhedron, which may be one with a table: as a cell, and for the engine.
+struct EnginePrism {
+  EnginePrism(const CellFaces3& faces, std::size_t corners)
+      : prisms(prisms_over(faces, corners)), builder(tile::FaceLattice(4, facets_over(faces, corners))) {}
+
+  detail::Polytopes prisms;
+  tile::FacetBuilder builder;
+
+ private:
+  static detail::Polytopes prisms_over(const CellFaces3& faces, std::size_t corners) {
+    detail::Polytopes polyhedra;
+    std::vector<std::uint8_t> rings;
+    std::vector<std::uint16_t> ends;
+    std::vector<Index> points(corners);
+    std::iota(points.begin(), points.end(), Index{0});
+    for (const FaceRing& ring : faces) {
+      for (const Index v : ring) rings.push_back(static_cast<std::uint8_t>(v));
+      ends.push_back(static_cast<std::uint16_t>(rings.size()));
     }
-    ends.push_back(static_cast<std::uint16_t>(rings.size()));
-    facets.push_back(bits | bits << corners);
+    polyhedra.add_polyhedron(points, rings, ends);
+    return polyhedra.in_time(corners, 1);
   }
-  polyhedra.add_polyhedron(points, rings, ends);
-  const detail::Polytopes prisms = polyhedra.in_time(corners, 1);
-  tile::FacetBuilder builder(tile::FaceLattice(4, facets));
+  static std::vector<tile::Signature> facets_over(const CellFaces3& faces, std::size_t corners) {
+    const tile::Signature all = (tile::Signature{1} << corners) - 1;
+    std::vector<tile::Signature> facets = {all, all << corners};
+    for (const FaceRing& ring : faces) {
+      tile::Signature bits = 0;
+      for (const Index v : ring) bits |= tile::Signature{1} << v;
+      facets.push_back(bits | bits << corners);
+    }
+    return facets;
+  }
+};
+
+/// Compares contours of the prism over a polyhedron. Returns how many have copied sides.
+std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, std::uint64_t step) {
+  EnginePrism prism(faces, corners);
+  const detail::Polytopes& prisms = prism.prisms;
+  tile::FacetBuilder& builder = prism.builder;
   const std::uint64_t count = std::uint64_t{1} << (2 * corners);
   std::mt19937_64 random(corners);
   std::size_t compared = 0, reversed = 0, sides = 0, fewer = 0;
@@ -198,6 +232,8 @@ std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, st
       EXPECT_EQ(sigma, contour.boundary(flip)) << s;
       EXPECT_EQ(expected.has_sides, contour.has_sides) << s;
       EXPECT_EQ(expected.euler(), contour.euler()) << s;
+      const std::size_t components = components_of(expected);
+      EXPECT_EQ(components, components_of(contour)) << s;
       ++compared;
       reversed += flip ? 1 : 0;
       sides += contour.has_sides ? 1 : 0;
@@ -210,6 +246,7 @@ std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, st
       }
       // compact: other diagonals, the same topology
       EXPECT_EQ(expected.euler(), other.euler()) << s;
+      EXPECT_EQ(components, components_of(other)) << s;
       (void)other.boundary(false);  // tests the neighbours of triangles
       if (::testing::Test::HasFailure()) return sides;
     }
@@ -275,6 +312,52 @@ TEST(Prisms, ContoursOverLargerPolyhedraAreThoseOfTheEngine) {
     std::size_t corners = 0;
     const CellFaces3 faces = faces_by_library(hull(points), corners);
     (void)compare_with_engine(faces, corners, step);
+  }
+}
+
+/// Compares the topology of prisms with random values by the rule that decides each polygon by its mean, and joins
+/// nothing else. Returns in how many the engine copies a side and cones a sphere.
+std::size_t compare_separate_components(const CellFaces3& faces, std::size_t corners, std::size_t count) {
+  EnginePrism prism(faces, corners);
+  const std::vector<tile::Face>& of_lattice = prism.builder.lattice().faces();
+  std::mt19937_64 random(corners);
+  std::size_t mixed = 0;
+  detail::PolytopeRules rules;
+  rules.rule = detail::face_rule(Ambiguity::squares);
+  for (std::size_t c = 0; c < count; ++c) {
+    std::vector<double> values(2 * corners);
+    tile::Signature signature = 0;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      values[v] = static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
+      signature |= tile::Signature{values[v] >= 0.0} << v;
+    }
+    std::vector<tile::Choice> choices(of_lattice.size(), tile::Choice::separate);
+    for (std::size_t f = 0; f < of_lattice.size(); ++f) {
+      double sum = 0.0;
+      for (std::size_t v = 0; v < values.size(); ++v) sum += (of_lattice[f].corners >> v & 1u) != 0 ? values[v] : 0.0;
+      if (of_lattice[f].dim == 2) choices[f] = sum >= 0.0 ? tile::Choice::high : tile::Choice::low;
+    }
+    const CellContourOf expected = prism_by_engine(prism.builder, signature, {choices, tile::Alternative::low});
+    mixed += expected.has_sides && expected.has_cones ? 1 : 0;
+    for (const bool is_compact : {false, true}) {
+      rules.is_compact = is_compact;
+      PrismCell cell(rules);
+      cell.build(prism.prisms.shape(0), prism.prisms.cell(0), values.data());
+      const CellContourOf contour = prism_by_library(cell, prism.prisms.shape(0));
+      EXPECT_EQ(expected.euler(), contour.euler()) << signature;
+      EXPECT_EQ(components_of(expected), components_of(contour)) << signature;
+      (void)contour.boundary(false);  // tests the neighbours of triangles
+    }
+  }
+  return mixed;
+}
+
+/// Spheres beside the same region as a component of another kind are rare.
+TEST(Prisms, ComponentsBesideOneRegionStaySeparate) {
+  for (const auto& [points, count] : {std::pair{prism_points(6), 1000u}, std::pair{dodecahedron_points(), 100u}}) {
+    std::size_t corners = 0;
+    const CellFaces3 faces = faces_by_library(hull(points), corners);
+    EXPECT_GT(compare_separate_components(faces, corners, count), 0u);
   }
 }
 
