@@ -14,6 +14,7 @@
 
 #include "hwy/cache_control.h"
 #include "image/vertex_moves.hpp"
+#include "kernel/contour_output.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
 #include "kernel/placement.hpp"
