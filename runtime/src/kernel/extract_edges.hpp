@@ -14,6 +14,7 @@
 
 #include "hwy/cache_control.h"
 #include "image/vertex_moves.hpp"
+#include "kernel/contour_output.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
 #include "kernel/placement.hpp"
@@ -308,10 +309,12 @@ class EdgeWriter {
     }
   }
 
-  /// Computes the normals of a row after make_points. Returns false if this is done by make_normals.
+  /// Computes the normals of a row after make_points; its edges must be one piece. Returns false if this is done by
+  /// make_normals.
   bool make_normals_of_row([[maybe_unused]] int axis, [[maybe_unused]] const EdgesInRows& edges,
                            [[maybe_unused]] Vertex* out) noexcept {
     if constexpr (kHasRowNormals) {
+      static_assert(RowNormals<N>::kMostSamples <= kPiece);
       if (row_normals_ == nullptr || !row_normals_->are_enough(edges.count)) return false;
       const std::size_t row = segments_.front().row;
       row_normals_->write(row, start_in(row, axis), axis, edges, lists_[axis].alphas.data(), out);
@@ -372,10 +375,9 @@ class EdgeWriter {
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;
   std::size_t full_;
-  bool fetches_;                            ///< whether samples are requested before they are needed
-  std::unique_ptr<NormalScratch> normals_;  ///< null: no normals requested
-  /// Null: none are computed by row.
-  std::unique_ptr<RowNormals<N>> row_normals_;
+  bool fetches_;                                ///< whether samples are requested before they are needed
+  std::unique_ptr<NormalScratch> normals_;      ///< null: no normals requested
+  std::unique_ptr<RowNormals<N>> row_normals_;  ///< null: none are computed by row
   EdgeTarget<Vertex> target_{};
   /// Where the ends of edges along an axis are in memory.
   struct Ends {
