@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "base/workers.hpp"
@@ -54,6 +56,31 @@ void sort_by_bits(std::vector<Item>& items, unsigned bits, const Key& key, unsig
     for_parts([&](std::size_t part) {
       for (std::size_t i = first_of(part); i < first_of(part + 1); ++i) other[next[part][digit(items[i])]++] = items[i];
     });
+    items.swap(other);
+  }
+}
+
+/// Sorts stably by key(item), integers below 2^bits, items that fit in the processor's cache, with few digits. `other`:
+/// room for the items, kept between calls.
+template <class Item, class Key>
+void sort_in_cache(std::vector<Item>& items, std::vector<Item>& other, unsigned bits, const Key& key) {
+  constexpr unsigned kDigitBits = 9;
+  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  constexpr std::size_t kMostPasses = (64 + kDigitBits - 1) / kDigitBits;
+  std::array<std::array<std::uint32_t, kDigits>, kMostPasses> next;  // by pass and digit: counts, then places
+  const std::size_t passes = (bits + kDigitBits - 1) / kDigitBits;
+  const auto digit = [&](const Item& item, std::size_t pass) {
+    return static_cast<std::size_t>(key(item) >> (pass * kDigitBits)) & (kDigits - 1);
+  };
+  std::fill_n(next.begin(), passes, std::array<std::uint32_t, kDigits>{});
+  for (const Item& item : items)
+    for (std::size_t pass = 0; pass < passes; ++pass) ++next[pass][digit(item, pass)];
+  other.resize(items.size());
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    auto& places = next[pass];
+    if (!items.empty() && places[digit(items[0], pass)] == items.size()) continue;  // all have this digit
+    std::exclusive_scan(places.begin(), places.end(), places.begin(), std::uint32_t{0});
+    for (const Item& item : items) other[places[digit(item, pass)]++] = item;
     items.swap(other);
   }
 }

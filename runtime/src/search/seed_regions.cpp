@@ -9,11 +9,13 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/progress.hpp"
 #include "base/workers.hpp"
+#include "levels/block_components.hpp"
 #include "search/range_sample.hpp"
 #include "search/seed_links.hpp"
 #include "search/seed_ownership.hpp"
@@ -29,6 +31,7 @@ constexpr std::size_t kTreesAtOnce = std::size_t{1} << 14;
 constexpr std::size_t kLinksAtOnce = std::size_t{1} << 18;  ///< between two progress reports
 constexpr unsigned kMostRounds = 16;
 constexpr unsigned kMostRoundsOfBlocks = 3;
+constexpr unsigned kMostRoundsOfComponents = 1;  ///< their roots are few; more rounds would leave more seeds
 
 /// Widths of ranges, measured as the number of range ends of a sample inside, so that the order does not depend on the
 /// scale of the values.
@@ -244,6 +247,9 @@ class BlockTrees {
         wanted_(grid.ahead().size()),
         low_(grid.ahead().size() * kMostOfRow),
         high_(low_.size()) {
+    // In noise most tiles divide or join components, and giving tiles up leaves fewer seeds.
+    if (grid.dim() <= 3 && !widths.are_of_noise())
+      components_.emplace(grid.room(), grid.steps(), grid.neighbourhood(), grid.neighbours());
     for (const BlockGrid::Earlier& earlier : grid.earlier()) is_earlier_[earlier.tile] = true;
   }
 
@@ -251,12 +257,15 @@ class BlockTrees {
     load(number);
     FinishedBlock<Key> result;
     Regions<Key> trees;  // trees of the block first
-    give_up_tiles(trees);
+    LinkCollector<Key> collector(tiles_.size() / 2);
+    const bool by_components = take_components(trees, collector);
+    if (!by_components) give_up_tiles(trees);
     std::size_t loose = trees.roots.size();
-    link(trees);
+    link(trees, !by_components, collector);
     std::vector<Coarsening<Key>> rounds;
     rounds.reserve(kMostRoundsOfBlocks);
-    for (unsigned round = 0; round < kMostRoundsOfBlocks && loose > 0; ++round) {
+    const unsigned most_rounds = by_components ? kMostRoundsOfComponents : kMostRoundsOfBlocks;
+    for (unsigned round = 0; round < most_rounds && loose > 0; ++round) {
       const Regions<Key>& fine = rounds.empty() ? trees : rounds.back().coarse();
       const std::size_t before = loose;
       rounds.emplace_back(map_, widths_, fine, loose, round, Progress());
@@ -473,9 +482,49 @@ class BlockTrees {
     }
     return {low, high};
   }
-  /// Collects the links among the tiles of the block and to earlier blocks, and numbers the trees of the latter.
-  void link(Regions<Key>& trees) {
-    LinkCollector<Key> collector(tiles_.size() / 2);
+  /// Takes the roots of all components of the block as trees, sets the owners of border tiles, and collects the links
+  /// among the trees. False if this takes too long.
+  bool take_components(Regions<Key>& trees, LinkCollector<Key>& collector) {
+    if (!components_ || !components_->find(least_.data(), greatest_.data(), tiles_, rows_)) return false;
+    for (const std::uint32_t tile : components_->roots()) {
+      trees.roots.push_back(place_of_tile(tile));
+      number_[tile] = static_cast<std::uint32_t>(trees.roots.size());
+    }
+    for (const auto* border : {&low_border_, &high_border_})
+      for (const std::uint32_t tile : *border) {
+        if (owners_.has(tile)) continue;
+        find_parts(tile);
+        owners_.set(tile, parts_);
+      }
+    for (const std::uint32_t tile : components_->roots()) {
+      find_parts(tile);
+      Key from = least_[tile];
+      for (const auto& [root, to] : parts_) {
+        const std::uint32_t a = std::min(number_[root], number_[tile]) - 1;
+        const std::uint32_t b = std::max(number_[root], number_[tile]) - 1;
+        if (a != b) collector.add({a, b, from, to});
+        from = to;
+      }
+    }
+    return true;
+  }
+  /// Sets `parts_` to the roots of the components of a tile.
+  void find_parts(std::uint32_t tile) {
+    parts_.clear();
+    Key from = least_[tile];
+    components_->for_roots(tile, [&](std::uint32_t root, const TileEvents::Event& event) {
+      const Key to = event.leaves ? greatest_[event.tile] : least_[event.tile];
+      if (to == from) return;
+      if (!parts_.empty() && parts_.back().first == root)
+        parts_.back().second = to;
+      else
+        parts_.emplace_back(root, to);
+      from = to;
+    });
+  }
+  /// Collects the links among the tiles of the block, if `in_block`, and to earlier blocks, and numbers the trees of
+  /// the latter.
+  void link(Regions<Key>& trees, bool in_block, LinkCollector<Key>& collector) {
     const auto number = [&](std::uint32_t root) {
       if (number_[root] == kNoNumber) {
         trees.roots.push_back(place_of(root));
@@ -485,6 +534,7 @@ class BlockTrees {
     };
     for (const std::uint32_t tile : high_border_)
       owners_.for_owners(tile, least_[tile], greatest_[tile], [&](std::uint32_t root, Key) { number(root); });
+    if (!in_block) rows_.clear();
     for (const auto& [tile, count] : rows_) {
       find_wanted_links(RowOfLinks<Key>{&least_[tile], &greatest_[tile], low_.data(), high_.data()}, count,
                         grid_.ahead(), wanted_.data());
@@ -555,6 +605,7 @@ class BlockTrees {
   std::vector<std::uint8_t> classes_;
   std::vector<KeyLink<Key>> offered_;  ///< a: the offering root
   std::vector<std::pair<std::uint32_t, Key>> parts_;
+  std::optional<BlockComponents> components_;
   std::vector<std::uint64_t> wanted_;  ///< by neighbour ahead (see find_wanted_links)
   std::vector<Key> low_, high_;        ///< see RowOfLinks
 };

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/workers.hpp"
@@ -40,7 +41,10 @@ class BlockGrid {
 
   /// `face_detours`: whether neighbours across faces have detours.
   BlockGrid(const PaddedTiles& tiles, Neighbourhood neighbourhood, bool face_detours)
-      : tiles_(tiles), dim_(tiles.dim()), width_(kWidth[static_cast<std::size_t>(tiles.dim())]) {
+      : tiles_(tiles),
+        neighbourhood_(neighbourhood),
+        dim_(tiles.dim()),
+        width_(kWidth[static_cast<std::size_t>(tiles.dim())]) {
     Coordinates counts{};
     std::array<std::size_t, kMostAxes> axes{};
     for (int a = 0; a < dim_; ++a) {
@@ -58,8 +62,12 @@ class BlockGrid {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t room() const noexcept { return room_; }  ///< number of tiles of a box
   [[nodiscard]] int dim() const noexcept { return dim_; }
+  [[nodiscard]] Neighbourhood neighbourhood() const noexcept { return neighbourhood_; }
   [[nodiscard]] std::size_t width() const noexcept { return width_; }
   [[nodiscard]] std::size_t step(int axis) const noexcept { return steps_[axis]; }  ///< in a box
+  [[nodiscard]] std::span<const std::size_t> steps() const noexcept {
+    return {steps_.data(), static_cast<std::size_t>(dim_)};
+  }
   [[nodiscard]] std::size_t size(int axis) const noexcept { return tiles_.size(axis); }
   /// Number of neighbours across faces.
   [[nodiscard]] std::size_t faces() const noexcept { return 2 * static_cast<std::size_t>(dim_); }
@@ -183,6 +191,7 @@ class BlockGrid {
   }
 
   const PaddedTiles& tiles_;
+  Neighbourhood neighbourhood_;
   int dim_;
   std::size_t width_;
   std::size_t count_ = 1;
