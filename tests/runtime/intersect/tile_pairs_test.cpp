@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// bench/embedded/tile_pairs.hpp, by which bench/tile_intersections tests cells, finds the contours that find_intersections
-// finds.
+// bench/embedded/tile_pairs.hpp, by which bench/tile_intersections tests cells, finds the contours that
+// find_intersections finds.
 #include <gtest/gtest.h>
 
 #include <array>
