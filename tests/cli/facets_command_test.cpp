@@ -69,6 +69,22 @@ TEST_F(FacetsCommand, WritesThePolygonsInTheCellsOfAMesh) {
   }
 }
 
+TEST_F(FacetsCommand, RefusesCellsIn4D) {
+  const std::string points = "x,y,z,t,c\n0,0,0,0,1\n1,0,0,0,0\n0,1,0,0,0\n0,0,1,0,0\n0,0,0,1,0\n";
+  expect_failure(2, {write("points.csv", points), "--iso", "0.5", "--facets", "-o", path("o.vtu")},
+                 {"--facets of points in 4D; expected points in 2D or 3D"});
+  const std::string tetrahedron =
+      R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">
+<PointData><DataArray type="Float64" Name="f" format="ascii">0 1 1 1</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
+  const std::string first = write("first.vtu", tetrahedron), second = write("second.vtu", tetrahedron);
+  expect_failure(2, {first, second, "--time-step", "1", "--iso", "0.5", "--facets", "-o", path("o.vtu")},
+                 {"--facets of a 3D mesh at 2 times; expected one time, or a 2D mesh"});
+}
+
 TEST_F(FacetsCommand, WritesFacetsWithTheTopologyOfTheContour) {
   const std::vector<std::string> images = {write("flat.nrrd", nrrd_bytes(noise({20, 21}, 1))),
                                            write("solid.nrrd", nrrd_bytes(noise({9, 10, 11}, 2))),

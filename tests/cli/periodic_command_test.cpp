@@ -567,7 +567,10 @@ TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {
     EXPECT_THAT(remarks({way}, to), HasSubstr("lon spans 360 degrees, and the contour ends at both its ends"));
     EXPECT_THAT(remarks({way, "--periodic", "auto"}, to), HasSubstr("lon spans 360 degrees, so it is periodic"));
   }
-  EXPECT_THAT(remarks({"--positions", "linear"}), HasSubstr("--periodic auto continues it across"));
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--positions", "linear"}, {"--lattice", "triangular", "--stream"}})
+    EXPECT_THAT(remarks(more), HasSubstr("--periodic auto continues it across"));
+  EXPECT_THAT(remarks({"--lattice", "triangular", "--stream", "--periodic", "auto"}), HasSubstr("so it is periodic"));
   // --periodic auto is refused with these
   for (const std::vector<std::string>& more :
        {std::vector<std::string>{"--pick", "170,0"}, {"--merge"}, {"--positions", "gravitation"}})

@@ -103,7 +103,11 @@ template <int N>
 void write_facets_of(const Complex<N>& complex, const CellMesh& mesh, const FacetsWork& work, ProgressBar& bar,
                      FacetsResult& result, WrittenFiles& written) {
   if constexpr (N == 4) {
-    throw Error(ErrorCode::InvalidArgument, "--facets of a 3D mesh over time; expected a mesh at one time or in 2D");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        mesh.times.size() > 1
+            ? fmt::format("--facets of a 3D mesh at {} times; expected one time, or a 2D mesh", mesh.times.size())
+            : "--facets of points in 4D; expected points in 2D or 3D");
   } else {
     Stopwatch watch;
     const auto finish = [&](auto facets) {

@@ -167,7 +167,6 @@ bool ExtractionOptions::knows_periods(const Tiling& tiling) const {
   };
   if (app_ == nullptr || polygon_triangulation()) return false;
   if (is_given("--attribute") && !tiling.curved.empty()) return false;
-  if (is_given("--stream") && tiling.lattice) return false;
   return std::none_of(without_periods_.begin(), without_periods_.end(), [&](const std::string& name) {
     return is_given(name.c_str()) && app_->get_option(name)->as<std::string>() != "linear";  // of --positions
   });

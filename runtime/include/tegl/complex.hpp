@@ -197,12 +197,12 @@ requires DimensionBetween<N, 2, 4>
 /// - triangulation: the diagonals of compact 4D contours in faces between cells depend on the numbers of the points.
 /// - ambiguity: all but custom. With rules that read the data, hexahedra are resolved as the cubes of an image; in
 ///   wedges, pyramids and polyhedra every polygon is a disc; faces of five corners or more are decided by their mean.
-///   (The interpolant of a wedge has no tunnels; so in wedges `saddle` is exact.) Octahedra are not ambiguous. The 3D
-///   facets of 4D cells are resolved in the same way, by their own values. Hexahedra over time are resolved as the
-///   tesseracts of an image. In other 4D cells spheres of the boundary are filled one by one.
-/// - close: caps are the high part of the complex's border, the facets of one cell only. Without
-///   missing values, the contour is then closed if the border is a manifold. Facets of cells with missing corners have
-///   no caps.
+///   (The interpolant of a wedge has no tunnels; so in wedges `saddle` is exact.) Octahedra and 16-cells have no
+///   ambiguous faces; mean and saddle decide their insides (tegl/ambiguity.hpp). The 3D facets of 4D cells are resolved
+///   in the same way, by their own values. Hexahedra over time are resolved as the tesseracts of an image. In other 4D
+///   cells spheres of the boundary are filled one by one.
+/// - close: caps are the high part of the complex's border, the facets of one cell only. Without missing values, the
+///   contour is then closed if the border is a manifold. Facets of cells with missing corners have no caps.
 /// - normals: differences. The gradient at a point belongs to the linear function that best fits the differences to
 ///   the points at the other ends of its edges, by least squares weighted by the inverse squares of the distances. At
 ///   the points of a grid it is the mean of forward and backward difference quotients, as for images. Normals are

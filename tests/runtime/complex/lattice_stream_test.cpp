@@ -173,6 +173,7 @@ struct StreamedCase {
   unsigned periodic = 0;                   ///< bit a: axis a
   std::size_t missing_from = ~0u;          ///< layer from which on some values are missing
   std::vector<ExtractOptions> rules = {};  ///< empty: one, by the seed
+  bool has_peaks = false;                  ///< high samples are so high that mean and saddle connect them by tunnels
 };
 
 /// Coordinates as multiples of 1e-6: rows of bits place vertices as cells do, but round otherwise.
@@ -247,6 +248,9 @@ void expect_streamed_as_in_memory(Lattice lattice, const std::array<std::size_t,
     if ((of.periodic >> a & 1u) != 0) periods[a] = 0.1 * static_cast<double>(sizes[a]);
   }
   auto image = sampled_on_lattice<N>(lattice, grid, noise_everywhere<N>(seed));
+  if (of.has_peaks)
+    for (double& value : image.values)
+      if (value >= kIsovalue) value += 10.0;
   const bool is_missing = of.missing_from < sizes[N - 1];
   if (is_missing) remove_values<N>(image, of.missing_from);
   auto rules = of.rules;
@@ -308,6 +312,16 @@ TEST(StreamedLattice, WithCapsIsTheContourInMemory) {
   expect_streamed_as_in_memory<3>(Lattice::fcc, {130, 130, 6}, {.close = true, .rules = by_data()}, 5);
   expect_streamed_as_in_memory<4>(Lattice::d4, {26, 25, 26, 6}, {.close = true}, 6);
   expect_streamed_as_in_memory<4>(Lattice::fcc_in_time, {26, 25, 26, 5}, {.close = true}, 7);
+}
+
+TEST(StreamedLattice, WithCapsOverTunnelsIsTheContourInMemory) {
+  const StreamedCase of = {
+      .close = true, .rules = rules_of_streams({Ambiguity::mean, Ambiguity::saddle}), .has_peaks = true};
+  expect_streamed_as_in_memory<4>(Lattice::d4, {26, 25, 26, 5}, of, 8);
+  expect_streamed_as_in_memory<4>(Lattice::fcc_in_time, {26, 25, 26, 4}, of, 9);
+  StreamedCase along_seam = of;
+  along_seam.periodic = 8u;
+  expect_streamed_as_in_memory<4>(Lattice::fcc_in_time, {26, 25, 26, 4}, along_seam, 10);
 }
 
 TEST(StreamedLattice, WithPeriodicAxesIsTheContourInMemory) {
