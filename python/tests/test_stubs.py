@@ -86,7 +86,7 @@ def test_the_names_of_options_are_the_librarys():
     contour = tegl.contour(volume, 0.0)
     calls = {"Triangulation": lambda: tegl.contour(volume, 0.0, triangulation="?"),
              "Ambiguity": lambda: tegl.contour(volume, 0.0, ambiguity="?"),
-             "Lattice": lambda: tegl.contour(volume, 0.0, lattice="?"),
+             "Lattice": lambda: tegl.sample("ball", 8, lattice="?"),
              "Division": lambda: tegl.contour(volume, 0.0, division="?"),
              "Direction": lambda: tegl.contour(volume, 0.0, direction="?"),
              "FilterBorder": lambda: tegl.filter(volume, median=1, border="?"),
@@ -100,6 +100,8 @@ def test_the_names_of_options_are_the_librarys():
              "ElementComponents": lambda: contour.elements().save("a.dat", components="?")}
     for name, call in calls.items():
         assert sorted(refused(call)) == sorted(typing.get_args(getattr(_kinds, name))), name
+    lattices = refused(lambda: tegl.contour(volume, 0.0, lattice="?"))
+    assert sorted(lattices) == sorted(["cubic", *typing.get_args(_kinds.Lattice)])
     for kind in typing.get_args(_kinds.Normals):
         tegl.contour(volume, 0.0, normals=kind)
     headers = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "runtime/include/tegl"
