@@ -78,7 +78,6 @@ class TileEvents {
     Key key;
     Tile tile;
   };
-  /// Without initial values.
   template <class Key>
   using Items = std::vector<Item<Key>>;
   struct KeyOf {

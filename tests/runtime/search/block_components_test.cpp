@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Roots of components of the tiles of a block, against a search at each level.
+// Roots of components of the tiles of a block, against a search at each level, and the tiles around each tile on all
+// instruction sets.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <random>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include "levels/block_components.hpp"
+#include "only_targets.hpp"
 
 namespace tegl::test {
 namespace {
@@ -170,6 +175,83 @@ TEST(BlockComponents, OfARampHaveTheFewestRoots) {
     std::uint32_t widest = 0;
     for (const Tile tile : block.tiles) widest = std::max(widest, block.greatest[tile] - block.least[tile]);
     EXPECT_EQ(expect_one_root_of_each_component(block, neighbourhood, moved), (most + widest - 1) / widest);
+  }
+}
+
+/// The neighbours among the active tiles around a tile, and kApart if these do not connect them, by definition.
+std::uint32_t around_by_definition(std::uint32_t active, int dim, int moved) {
+  const auto steps_between = [](int a, int b) {
+    const std::array<int, 3> apart = {std::abs(a % 3 - b % 3), std::abs(a / 3 % 3 - b / 3 % 3),
+                                      std::abs(a / 9 - b / 9)};
+    return std::pair(*std::max_element(apart.begin(), apart.end()),
+                     static_cast<int>(std::count_if(apart.begin(), apart.end(), [](int by) { return by != 0; })));
+  };
+  const auto are_neighbours = [&](int a, int b) {
+    const auto [farthest, axes] = steps_between(a, b);
+    return farthest == 1 && axes <= moved;
+  };
+  const int self = detail::bit_of_step(0, 0, 0);
+  std::uint32_t ends = 0;
+  for (int bit = dim == 2 ? 9 : 0; bit < (dim == 2 ? 18 : 27); ++bit)
+    if ((active >> bit & 1u) != 0 && are_neighbours(self, bit)) ends |= 1u << bit;
+  std::uint32_t reached = ends & -ends;
+  for (bool more = true; more;) {
+    more = false;
+    for (int a = 0; a < 27; ++a)
+      for (int b = 0; b < 27; ++b)
+        if ((reached >> a & 1u) != 0 && (active >> b & 1u) != 0 && (reached >> b & 1u) == 0 && are_neighbours(a, b)) {
+          reached |= 1u << b;
+          more = true;
+        }
+  }
+  return (ends & ~reached) == 0 ? ends : ends | detail::kApart;
+}
+
+TEST(TilesAround, AreThoseByDefinitionOnAllInstructionSets) {
+  for (const int dim : {2, 3}) {
+    const std::vector<std::size_t> steps =
+        dim == 2 ? std::vector<std::size_t>{1, 70} : std::vector<std::size_t>{1, 30, 150};
+    const std::size_t first = dim == 2 ? 71 : 181, room = 2 * first + 80;
+    std::mt19937 random(static_cast<unsigned>(dim));
+    std::vector<std::int32_t> enter(room), leave(room);
+    std::vector<std::int32_t> order(2 * room);
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), random);
+    for (std::size_t i = 0; i < room; ++i) std::tie(enter[i], leave[i]) = std::minmax(order[2 * i], order[2 * i + 1]);
+    std::vector<detail::TileAround> around;
+    for (int code = dim == 2 ? 9 : 0; code < (dim == 2 ? 18 : 27); ++code) {
+      const std::ptrdiff_t distance = (code % 3 - 1) + (code / 3 % 3 - 1) * static_cast<std::ptrdiff_t>(steps[1]) +
+                                      (dim == 2 ? 0 : (code / 9 - 1) * static_cast<std::ptrdiff_t>(steps.back()));
+      if (distance != 0) around.push_back({distance, static_cast<std::uint32_t>(code)});
+    }
+    const auto expected = [&](std::size_t tile, std::int32_t now, int moved) {
+      std::uint32_t active = 0;
+      for (const auto& other : around) {
+        const std::size_t at = tile + static_cast<std::size_t>(other.distance);
+        if (enter[at] < now && now < leave[at]) active |= 1u << other.bit;
+      }
+      return around_by_definition(active, dim, moved);
+    };
+    for (const auto& [neighbourhood, moved] : neighbourhoods_of(static_cast<std::size_t>(dim))) {
+      const std::uint32_t neighbours = around_by_definition((1u << 27) - 1, dim, moved) & ~detail::kApart;
+      // In 2D both are the same, and the function takes `faces`.
+      const Neighbourhood kind = dim == 2 && moved == 1 ? Neighbourhood::faces : neighbourhood;
+      std::size_t apart = 0;
+      for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+        const OnlyTargets only(left & -left);
+        for (const std::size_t count : {1, 5, 16, 29}) {
+          std::vector<std::uint32_t> at_enter(count + detail::kEventsBeyond), at_leave(count + detail::kEventsBeyond);
+          detail::find_tiles_around({&enter[first], &leave[first], at_enter.data(), at_leave.data()}, count, around,
+                                    neighbours, kind);
+          for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_EQ(at_enter[i], expected(first + i, enter[first + i], moved)) << dim << " " << moved << " " << i;
+            ASSERT_EQ(at_leave[i], expected(first + i, leave[first + i], moved)) << dim << " " << moved << " " << i;
+            apart += at_enter[i] >> 31;
+          }
+        }
+      }
+      EXPECT_GT(apart, std::size_t{0});
+    }
   }
 }
 

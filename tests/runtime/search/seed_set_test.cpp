@@ -239,18 +239,21 @@ TEST(SeedSet, OfManyNoisyTilesWithDiagonalNeighboursMeetsAllComponents) {
   EXPECT_LT(set.tiles.size(), set.stats.tiles / 50);
 }
 
-TEST(SeedSet, OfASmoothImageHasFewerThanTwiceTheBound) {
+TEST(SeedSet, OfASmoothImageHasAtMostFourTenthsMoreThanTheBound) {
   // Links that detours replace must leave the components whole: each part that they split off needs one more seed.
+  // Trees of tiles that are given up, instead of roots of components, leave 1.52 to 1.58 times the bound.
   const auto image = sample_field<float>(centred_grid<3>(64, 31.5), [](const Point<3>& x) {
     double sum = 0;
     for (int a = 0; a < 3; ++a) sum += std::sin(0.2 * x[a] + 0.3 * a) * std::cos(0.13 * x[(a + 1) % 3]);
     return sum;
   });
-  SeedSetOptions options;
-  options.neighbourhood = Neighbourhood::faces;
-  const SeedSet set = find_seeds(image.view(), options);
-  EXPECT_TRUE(set.stats.reduced);
-  EXPECT_LT(set.tiles.size(), 2 * seed_lower_bound(image.view(), options));
+  for (const Neighbourhood neighbourhood : kNeighbourhoods) {
+    SeedSetOptions options;
+    options.neighbourhood = neighbourhood;
+    const SeedSet set = find_seeds(image.view(), options);
+    EXPECT_TRUE(set.stats.reduced);
+    EXPECT_LE(10 * set.tiles.size(), 14 * seed_lower_bound(image.view(), options)) << name_of(neighbourhood);
+  }
 }
 
 /// Seeds and their bound per tile, for noise with few samples along the first axes and many along the last.
