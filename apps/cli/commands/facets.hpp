@@ -66,7 +66,7 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
                         WrittenFiles& written);
 
 /// The same for a mesh of cells, which was read in this time, and several isovalues with a file for each. Throws
-/// InvalidArgument for 4D cells, as those of a 3D mesh at several times, and EmptyResult.
+/// InvalidArgument for 4D cells, such as a 3D mesh at several times has, and EmptyResult.
 std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputFiles& files, double read_seconds,
                                             const std::vector<SpelledNumber>& isovalues,
                                             const std::vector<std::string>& outputs, FacetsWork work, ProgressBar& bar);

@@ -167,7 +167,7 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// FacetHierarchy::cells is the number of cells. Cells are numbered by type, in the order of the numbers below, and
 /// within a type in the order of the input: triangles, quadrilaterals, tetrahedra, wedges, pyramids, hexahedra,
-/// octahedra, then polygons or polyhedra; so the numbers are those of the input if all cells have one type. Points,
+/// octahedra, then polygons or polyhedra; so the numbers are the input's if all cells have one type. Points,
 /// segments and polygons are in the order of the contour's vertices, of their points, and of the cells. Signatures are
 /// 0 in polygons and polyhedra; in other cells bit v is corner v of the cell, in hexahedra and quadrilaterals the
 /// corner at v >> j & 1 along their j-th axis. Segments go from the point with the smaller number to the other one.

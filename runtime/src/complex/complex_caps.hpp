@@ -143,7 +143,7 @@ class ComplexCaps {
   std::vector<Simplex> simplices_;
 };
 
-/// The caps of a contour, if they are requested. `border`: the facets to close; null: those of the complex. Errors:
+/// The caps of a contour, if they are requested. `border`: the facets to close; null: all of the complex. Errors:
 /// TooLarge, Cancelled.
 template <int N>
 [[nodiscard]] std::optional<ComplexCaps<N>> find_caps(const Complex<N>& complex, const ContourNumbers& numbers,

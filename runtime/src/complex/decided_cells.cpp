@@ -7,7 +7,7 @@
 // boundary, moved towards the centre. If components are to stay separate, such a copy passes the spheres beside its
 // region: it is a copy of the region with everything behind them. A region of a facet is a cone, as each of its
 // polygons is a disc; in a hexahedron with a tunnel it is the table's (CubeRegions), around a tunnel in an octahedron a
-// ring of cones. A tesseract whose facets are those of an image's tesseract has the image's contour.
+// ring of cones. A tesseract with the facets of an image's tesseract has the image's contour.
 #include <algorithm>
 #include <bit>
 #include <iterator>

@@ -46,12 +46,12 @@ struct SharedPoints {
   std::vector<Index> numbers;  ///< into `keys`, by shared vertex, counted in each cell; vertices in polytopes come last
 };
 
-/// What vertices of a contour are known by: the first ones, on edges and in common 3-faces, and those of its caps at
+/// What vertices of a contour are known by: the first ones, on edges and in common 3-faces, and vertices of its caps at
 /// points.
 struct VertexKeys {
   std::vector<EdgeEnds> edges = {};       ///< by the ends
   std::vector<PolygonKey> polygons = {};  ///< by the vertices of the polygon
-  std::size_t before_caps = 0;            ///< number of vertices before those of the caps
+  std::size_t before_caps = 0;            ///< number of vertices before the caps' vertices
   std::vector<Index> corners = {};        ///< the points at which the first vertices of the caps are
 };
 

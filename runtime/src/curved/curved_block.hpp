@@ -11,7 +11,7 @@
 
 namespace tegl::detail {
 
-/// The edges of some points. Ends after the last one are those of the origin, as whole vectors are written.
+/// The edges of some points. Ends after the last one are the origin's, as whole vectors are written.
 struct CurvedBlock {
   static constexpr std::size_t kMost = 64;  ///< a multiple of all numbers of lanes
   static constexpr std::size_t kMostAxes = 4;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Gradients at all samples of a row, and unit normals on those of its edges that are critical. Compiled for several
-// instruction sets; all give identical bytes, those of write_normals (edge_normals.hpp).
+// instruction sets; all give the bytes of write_normals (edge_normals.hpp).
 #pragma once
 
 #include <array>

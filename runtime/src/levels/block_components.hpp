@@ -24,7 +24,7 @@ namespace tegl::detail {
 /// Nearly all tiles enter beside one component and leave without dividing it, which the active tiles around show (see
 /// tiles_around.hpp). At other events, components are joined, or searches decide whether they are divided.
 ///
-/// Arrays have the tiles of a box: those of a block and a margin. 2D and 3D.
+/// Arrays have the tiles of a box: a block and a margin. 2D and 3D.
 class BlockComponents {
  public:
   using Tile = TileEvents::Tile;

@@ -101,7 +101,7 @@ class Unroller {
     }
   }
 
-  /// The number of a place that is met for the first time: that of the vertex itself if it stays nowhere.
+  /// The number of a place that is met for the first time: the vertex's own number if it stays nowhere.
   Index number_of(const Moved<N>& corner) {
     std::array<double, N> x = detail::widened_point<N>(contour_.vertices[corner.vertex]);
     for (std::size_t p = 0; p < contour_.periods.size(); ++p)

@@ -91,7 +91,7 @@ std::size_t CollapsibleComplex<N>::count_at_face(Index s, int corner) const {
   return count;
 }
 
-/// Several threads may mark faces with a vertex in common, but not those of one simplex.
+/// Several threads may mark faces with a vertex in common, but not faces of one simplex.
 template <int N>
 void CollapsibleComplex<N>::mark_border(Index s, int corner) {
   border_faces_[s] |= static_cast<std::uint8_t>(1u << corner);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Caps of 4D contours whose ambiguous faces are decided from the data: closed manifolds, with the volume of the closed
-// contours of 3D meshes, and equal to those of images.
+// contours of 3D meshes, and equal to the caps of images.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Facets of complexes: equal to those of images, and subdivided by the contours of `extract`.
+// Facets of complexes: equal to the facets of images, and subdivided by the contours of `extract`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
