@@ -25,7 +25,7 @@ from . import _dates, _kinds, _tegl
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
-INDEX_SUFFIX = "_index"  #: of the dimensions of an xarray whose coordinates are those of a curved grid
+INDEX_SUFFIX = "_index"  #: of the dimensions of an xarray with the coordinates of a curved grid
 
 Progress = Callable[[float], object]
 #: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.

@@ -69,7 +69,7 @@ class Mover {
   /// Starts to load coordinates at the edges of a block.
   void request(const detail::CurvedBlock& block) const noexcept { map_.request(block); }
   /// Computes the curved coordinates of the points of a block, NaN where they are unknown; the others of `moved`
-  /// remain. Meanwhile starts to load those of `next`.
+  /// remain. Meanwhile starts to load the same of `next`.
   template <class Real, class Moved>
   void move(const Real* points, const detail::CurvedBlock& block, const detail::CurvedBlock& next,
             detail::CurvedBlock::Points<Moved>& moved) const noexcept {

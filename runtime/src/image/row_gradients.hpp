@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Gradients at all samples of a row, and unit normals on those of its edges that are critical. Compiled for several
+// Gradients at all samples of a row, and unit normals on its critical edges. Compiled for several
 // instruction sets; all give the bytes of write_normals (edge_normals.hpp).
 #pragma once
 

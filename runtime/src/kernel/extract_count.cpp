@@ -301,9 +301,11 @@ template <int N>
         for (Word rest = members_of(ambiguous_, room.signatures + first, tiles); rest != 0; rest &= rest - 1) {
           const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(rest));
           const std::size_t at = (is_listed ? room.at[i] : walk.place_of(i)) / kWordBits;
-          if (at != word && many != 0) visit(word, std::span<const std::uint32_t>(found.data(), many));
-          if (at != word) many = 0;
-          word = at;
+          if (at != word) {
+            if (many != 0) visit(word, std::span<const std::uint32_t>(found.data(), many));
+            many = 0;
+            word = at;
+          }
           found[many++] = i;
         }
       }
