@@ -220,11 +220,8 @@ class ContourCommand final : public Command {
     WrittenFiles written;
     const auto finished = [&](ContourResult& result) {
       if (result.stats) result.seconds.add(*result.stats);
-      const std::size_t left = result.mesh.simplices.size();
-      if (result.merging)
-        remark(MergeArguments::require_left(*result.merging, left, true));
-      else if (left == 0)
-        remark(remark_without_contour(input.image, *result.isovalue, result.isovalue_of_samples));
+      remark_if_empty(
+          result, [&] { return remark_without_contour(input.image, *result.isovalue, result.isovalue_of_samples); });
       if (given_.one_file) return;
       if (&result == &results.back()) input.image = AnyImage();  // frees the image's memory for the check
       check_and_write(result, bar, written);
@@ -240,6 +237,14 @@ class ContourCommand final : public Command {
     }
     if (given_.one_file) results = {merged(results, bar, written)};
     written.keep();
+  }
+
+  /// Adds a remark on an empty contour. `why`: returns the reason if no simplices were extracted.
+  template <class Why>
+  void remark_if_empty(const ContourResult& result, const Why& why) {
+    if (!result.mesh.simplices.empty()) return;
+    const bool vanished = result.merging && result.merging->counts.before.simplices > 0;
+    remark(vanished ? MergeArguments::require_left(*result.merging, 0, true) : why());
   }
 
   void contour_mesh(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
@@ -266,6 +271,7 @@ class ContourCommand final : public Command {
             add_point_arrays(extraction.contour, input, *result.isovalue, options, arrays);
             return with_additions(std::move(extraction.contour), options.work.threads, bar, result);
           });
+      remark_if_empty(result, [&] { return remark_without_contour(input.mesh, *result.isovalue); });
       result.seconds.add(*result.stats);
       if (given_.one_file) continue;
       check_and_write(result, bar, written);
@@ -441,6 +447,8 @@ class ContourCommand final : public Command {
       remark(mesh.mesh.remarks);
       take_order(mesh.mesh.files);
       const auto of_mesh = write_mesh_facets(mesh, inputs(), watch.lap(), isovalues, outputs, work, bar);
+      for (const FacetsResult& result : of_mesh)
+        if (result.facets[0] == 0) remark(remark_without_contour(mesh.mesh, result.isovalue));
       return tell(streams, of_mesh);
     }
     const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
