@@ -204,17 +204,24 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
                 fmt::format("--periodic {} with {}; expected one of the two", fmt::join(periodic_, ","), other));
 }
 
+std::string ExtractionOptions::given_tiling() const {
+  return periodic().empty() ? given_other_tiling() : fmt::format("--periodic {}", fmt::join(periodic_, ","));
+}
+
+std::string ExtractionOptions::given_other_tiling() const {
+  if (has_lattice()) return "--lattice " + lattice_;
+  if (!division_.empty()) return "--division " + division_;
+  return samples_ == "cells" ? "--samples-are " + samples_ : std::string();
+}
+
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
   refuse_periodic_with(with);
   refuse_other_tiling(with);
 }
 
 void ExtractionOptions::refuse_other_tiling(const std::string& with) const {
-  refuse_lattice_with(with);
-  refuse_division_with(with);
-  if (samples_ == "cells")
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--samples-are {} with {}; expected one of the two", samples_, with));
+  if (const std::string given = given_other_tiling(); !given.empty())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} with {}; expected one of the two", given, with));
 }
 
 void ExtractionOptions::refuse_cells(bool samples_are_cells, const std::string& file, const std::string& with) const {

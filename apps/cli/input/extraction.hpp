@@ -58,6 +58,8 @@ class ExtractionOptions {
   void add_samples_are_to(CLI::App& app);
   /// The values of these options. Throws InvalidArgument if two are given.
   [[nodiscard]] Tiling tiling() const;
+  /// The first of them that is given, with its value, as in "--periodic x"; empty: none.
+  [[nodiscard]] std::string given_tiling() const;
   /// Throws InvalidArgument with one of them. `with`: another option or a command. With --samples-are file it depends
   /// on the file: see refuse_cells.
   void refuse_tiling(const std::string& with) const;
@@ -126,6 +128,8 @@ class ExtractionOptions {
   [[nodiscard]] std::vector<std::string> periodic() const;
   /// Whether --periodic may be given with the other options.
   [[nodiscard]] bool knows_periods(const Tiling& tiling) const;
+  /// As given_tiling, without --periodic.
+  [[nodiscard]] std::string given_other_tiling() const;
   void refuse_lattice_with(const std::string& other) const;
   void refuse_division_with(const std::string& other) const;
 

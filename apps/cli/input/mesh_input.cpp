@@ -52,12 +52,13 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
   if (!refused.empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected it with an image", refused.front(), file));
-  extraction.refuse_tiling(fmt::format("{}, which is not an image", file));
-  const ExtractOptions options = extraction.library_options(true);
   const auto fail = [&](const std::string& option, const char* expected) {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
   };
+  if (const std::string tiling = extraction.given_tiling(); !tiling.empty())
+    fail(tiling, "an image, or the mesh without this option");
+  const ExtractOptions options = extraction.library_options(true);
   if (options.normals != Normals::none && options.normals != Normals::differences)
     fail("--normals " + extraction.normals(), "--normals gradient, geometric or flat");
   if (extraction.polygon_triangulation())
