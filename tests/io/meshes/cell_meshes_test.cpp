@@ -558,6 +558,22 @@ TEST(PointTable, ColumnsOfTextAreLeftOut) {
   expect_error(ErrorCode::MalformedFile, {"line 2", "a, b"}, [&] { read(dir / "b.csv"); });
 }
 
+TEST(CellTable, ColumnsOfOneNameAreErrorsIfTheyAreRead) {
+  const TempDir dir;
+  CellMeshOptions options;
+  const auto refused = [&](const std::string& names, const std::vector<std::string>& parts) {
+    write_file(dir / "a.csv", names + "\n0,0,1,5\n1,0,2,5\n0,1,3,5\n");
+    expect_error(ErrorCode::MalformedFile, parts, [&] { (void)read(dir / "a.csv", options); });
+  };
+  refused("x,X,y,v", {"a.csv", "columns 1 and 2", "'x'"});
+  refused("lon,lat,lat,v", {"columns 2 and 3", "'lat'"});
+  options.variable = "v";
+  refused("x,y,v,v", {"columns 3 and 4", "'v'", "different names"});
+  // columns that are not read may have any names
+  write_file(dir / "b.csv", "x,y,v,note,note\n0,0,1,a,a\n1,0,2,b,b\n0,1,3,c,c\n");
+  EXPECT_THAT(read(dir / "b.csv", options).values, testing::ElementsAre(1, 2, 3));
+}
+
 TEST(PointTable, WrongRowsAreErrorsWithTheirLine) {
   TempDir dir;
   const std::vector<WrongMesh> all = {

@@ -79,11 +79,10 @@ struct CellMeshOptions {
 /// value that is empty or "nan" is missing.
 ///
 /// Errors, naming the file (and of a table the line): FileNotFound; MalformedFile (damaged, or numbers that contradict
-/// each other; two equal points of a table); UnsupportedFormat (a compressor other than zlib; parallel files, which
-/// name others); UnsupportedData (curved cells and other types; no cells of 2 or 3 dimensions; values of
-/// cells without cells_to_points; files of a series that do not match); VariableNotFound; InvalidArgument (times;
-/// cells_to_points with values of points);
-/// TooLarge; Cancelled.
+/// each other; two equal points of a table, two columns of the name of a coordinate or of the chosen one);
+/// UnsupportedFormat (a compressor other than zlib; parallel files, which name others); UnsupportedData (curved cells
+/// and other types; no cells of 2 or 3 dimensions; values of cells without cells_to_points; files of a series that do
+/// not match); VariableNotFound; InvalidArgument (times; cells_to_points with values of points); TooLarge; Cancelled.
 [[nodiscard]] CellMesh read_cell_mesh(std::span<const std::filesystem::path> files,
                                       const CellMeshOptions& options = {});
 
