@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -41,6 +42,35 @@ Axis make_axis(std::vector<double> coordinates) {
       if (equal) return uniform;
     }
   return Axis::rectilinear(std::move(coordinates));
+}
+
+enum class Coordinate { other, longitude, latitude, vertical, projected_x, projected_y };
+
+Coordinate coordinate_of(const NcFile& file, const NcVariable& variable) {
+  const std::string unit = lower(file.text(variable, "units"));
+  const std::string name = lower(file.text(variable, "standard_name"));
+  const std::string axis = lower(file.text(variable, "axis"));
+  const auto is_degrees = [&](std::string_view to) {
+    return unit.starts_with("degree") && (unit.ends_with(to) || unit.ends_with(fmt::format("_{}", to.substr(0, 1))));
+  };
+  if (name == "longitude" || is_degrees("_east")) return Coordinate::longitude;
+  if (name == "latitude" || is_degrees("_north")) return Coordinate::latitude;
+  if (name == "projection_x_coordinate" || axis == "x") return Coordinate::projected_x;
+  if (name == "projection_y_coordinate" || axis == "y") return Coordinate::projected_y;
+  if (axis == "z" || !file.text(variable, "positive").empty()) return Coordinate::vertical;
+  return Coordinate::other;
+}
+
+/// Coordinates of larger size, such as 1e20, are no places but mark missing ones.
+struct Limit {
+  double most;
+  std::string_view expected;
+};
+
+Limit limit_of(Coordinate coordinate) {
+  if (coordinate == Coordinate::longitude) return {720.0, "-720 to 720"};  // also of other turns
+  if (coordinate == Coordinate::latitude) return {90.01, "-90 to 90"};     // rounded numbers
+  return {1e19, "less than 1e19"};
 }
 
 /// From the attribute "positive" of a vertical coordinate. Without it, pressures increase downwards (CF conventions,
@@ -98,6 +128,12 @@ AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t
     std::vector<double> values =
         std::visit([](const auto& stored) { return std::vector<double>(stored.begin(), stored.end()); },
                    unpack(file.values(*coordinate, whole(*coordinate)), read_packing(file, *coordinate)));
+    const Coordinate meaning = coordinate_of(file, *coordinate);
+    const auto [most, expected] = limit_of(meaning);
+    const auto wrong = std::ranges::find_if(values, [most = most](double x) { return std::abs(x) > most; });
+    if (wrong != values.end() && (meaning == Coordinate::longitude || meaning == Coordinate::latitude))
+      fail(ErrorCode::MalformedFile, file.path(), "coordinate variable '{}': number {} is {}; expected degrees from {}",
+           coordinate->name, wrong - values.begin(), *wrong, expected);
     try {
       axis = make_axis(std::move(values));
     } catch (const Error& e) {
@@ -131,21 +167,6 @@ void add_single(const NcFile& file, const NcVariable& variable, std::size_t dime
 
 // ---- coordinates in arrays of two or more dimensions (CF conventions, section 5.2) ---------------------------------
 
-enum class Coordinate { other, longitude, latitude, vertical };
-
-Coordinate coordinate_of(const NcFile& file, const NcVariable& variable) {
-  const std::string unit = lower(file.text(variable, "units"));
-  const std::string name = lower(file.text(variable, "standard_name"));
-  const auto is_degrees = [&](std::string_view to) {
-    return unit.starts_with("degree") && (unit.ends_with(to) || unit.ends_with(fmt::format("_{}", to.substr(0, 1))));
-  };
-  if (name == "longitude" || is_degrees("_east")) return Coordinate::longitude;
-  if (name == "latitude" || is_degrees("_north")) return Coordinate::latitude;
-  if (lower(file.text(variable, "axis")) == "z" || !file.text(variable, "positive").empty())
-    return Coordinate::vertical;
-  return Coordinate::other;
-}
-
 /// A coordinate variable with the axes of the image that it differs along.
 struct CurvedVariable {
   NcVariable variable;
@@ -153,11 +174,13 @@ struct CurvedVariable {
   unsigned along = 0;
 };
 
+using CurvedVariables = std::multimap<Coordinate, CurvedVariable>;
+
 /// The variables that the attribute "coordinates" names and that differ along two or more axes of the image, by
-/// meaning.
-std::map<Coordinate, CurvedVariable> curved_variables(const NcFile& file, const NcVariable& of,
-                                                      const VariableGrid& grid, std::vector<std::string>& remarks) {
-  std::map<Coordinate, CurvedVariable> result;
+/// meaning: the first of each, and all others.
+CurvedVariables curved_variables(const NcFile& file, const NcVariable& of, const VariableGrid& grid,
+                                 std::vector<std::string>& remarks) {
+  CurvedVariables result;
   const std::string names = file.text(of, "coordinates");
   const std::vector<NcVariable> all = file.variables();
   for (const std::string_view word : words(names))
@@ -176,16 +199,50 @@ std::map<Coordinate, CurvedVariable> curved_variables(const NcFile& file, const 
       }
       if (!is_known || variable.dimensions.size() < 2) continue;
       const Coordinate meaning = coordinate_of(file, variable);
-      if (one.axes.size() >= 2)
-        result.emplace(meaning, std::move(one));
-      else if (one.axes.size() == 1 && meaning != Coordinate::other)
+      if (one.axes.size() >= 2) {
+        if (meaning == Coordinate::other || !result.contains(meaning)) result.emplace(meaning, std::move(one));
+      } else if (one.axes.size() == 1 && meaning != Coordinate::other)
         remarks.push_back(
             fmt::format("the coordinate '{}' is not used: one index is read of its other dimensions; the axis "
                         "'{}' has indices or its own coordinates",
                         variable.name, grid.grid.axes[one.axes.front()].name));
     }
-  result.erase(Coordinate::other);
   return result;
+}
+
+/// Adds a remark on two or more coordinates of unknown meaning along two axes that have no others. `two_free`: see
+/// find_curved.
+template <class TwoFree>
+void remark_on_unused(const CurvedVariables& variables, const TwoFree& two_free, std::vector<std::string>& remarks) {
+  std::vector<std::string> names;
+  for (auto [at, end] = variables.equal_range(Coordinate::other); at != end; ++at)
+    if (two_free(at->second.along) != 0) names.push_back(fmt::format("'{}'", at->second.variable.name));
+  if (names.size() < 2) return;
+  remarks.push_back(fmt::format(
+      "the coordinates {} are not used, and the axes have indices: they are neither longitude and latitude nor x and y "
+      "by their attributes 'axis' (X and Y) or 'standard_name' (projection_x_coordinate, projection_y_coordinate)",
+      fmt::join(names, ", ")));
+}
+
+/// Makes coordinates missing that are too large to be places, and adds a remark on them.
+void hide_large(Coordinate meaning, const CurvedVariable& one, const std::vector<Axis>& axes,
+                std::vector<double>& values, std::vector<std::string>& remarks) {
+  const auto [most, expected] = limit_of(meaning);
+  const auto is_large = [most = most](double x) { return std::abs(x) > most; };
+  const auto first = std::ranges::find_if(values, is_large);
+  if (first == values.end()) return;
+  std::vector<std::size_t> index;
+  auto rest = static_cast<std::size_t>(first - values.begin());
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if ((one.along >> a & 1u) == 0) continue;
+    index.push_back(rest % axes[a].size());
+    rest /= axes[a].size();
+  }
+  const auto others = std::count_if(first + 1, values.end(), is_large);
+  remarks.push_back(fmt::format("the coordinate '{}' is {} at ({}){}; expected {}: such places are unknown",
+                                one.variable.name, *first, fmt::join(index, ", "),
+                                others == 0 ? "" : fmt::format(", and too large at {} more", others), expected));
+  std::ranges::replace_if(values, is_large, std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Continues longitudes across 360 degrees, from each value to the next.
@@ -271,34 +328,41 @@ std::vector<CurvedAxis> find_curved(const NcFile& file, const NcVariable& variab
   std::vector<Axis>& axes = grid.grid.axes;
   std::vector<CurvedAxis> result;
   const auto variables = curved_variables(file, variable, grid, remarks);
-  const auto add = [&](const CurvedVariable& one, std::size_t axis) {
+  const auto add = [&](const std::pair<const Coordinate, CurvedVariable>& found, std::size_t axis) {
+    const auto& [meaning, one] = found;
     Axis indices = Axis::uniform(axes[axis].size());
     indices.name = axes[axis].name;
     axes[axis] = std::move(indices);
-    result.push_back({static_cast<int>(axis), one.along, read_curved(file, variable, slab, one, axes),
+    std::vector<double> values = read_curved(file, variable, slab, one, axes);
+    hide_large(meaning, one, axes, values, remarks);
+    if (meaning == Coordinate::longitude) unwrap(values, axes[axis].size());
+    result.push_back({static_cast<int>(axis), one.along, std::move(values),
                       one.variable.name.substr(one.variable.name.rfind('/') + 1), file.text(one.variable, "units")});
     grid.directions[axis] = direction_of(file, one.variable);
   };
   const std::size_t in_space = axes.size() - (grid.has_time ? 1 : 0);
+  // the first two of these axes without coordinate variables of their own, as bits; 0: fewer
+  const auto two_free = [&](unsigned along) {
+    unsigned free = 0;
+    for (std::size_t a = 0; a < in_space && std::popcount(free) < 2; ++a)
+      if ((along >> a & 1u) != 0 && !file.coordinate(variable, grid.dimensions[a])) free |= 1u << a;
+    return std::popcount(free) == 2 ? free : 0u;
+  };
   unsigned taken = 0;
-  const auto longitude = variables.find(Coordinate::longitude);
-  const auto latitude = variables.find(Coordinate::latitude);
-  if (longitude != variables.end() && latitude != variables.end() &&
-      longitude->second.along == latitude->second.along) {
-    std::vector<std::size_t> two;
-    for (std::size_t a = 0; a < in_space && two.size() < 2; ++a)
-      if ((longitude->second.along >> a & 1u) != 0 && !file.coordinate(variable, grid.dimensions[a])) two.push_back(a);
-    if (two.size() == 2) {
-      add(longitude->second, two[0]);
-      unwrap(result.back().values, axes[two[0]].size());
-      add(latitude->second, two[1]);
-      taken = 1u << two[0] | 1u << two[1];
-    }
+  for (const auto& [first, second] : {std::pair(Coordinate::longitude, Coordinate::latitude),
+                                      std::pair(Coordinate::projected_x, Coordinate::projected_y)}) {
+    const auto x = variables.find(first), y = variables.find(second);
+    if (taken != 0 || x == variables.end() || y == variables.end() || x->second.along != y->second.along) continue;
+    taken = two_free(x->second.along);
+    if (taken == 0) continue;
+    add(*x, static_cast<std::size_t>(std::countr_zero(taken)));
+    add(*y, static_cast<std::size_t>(std::bit_width(taken) - 1));
   }
+  if (taken == 0) remark_on_unused(variables, two_free, remarks);
   if (const auto vertical = variables.find(Coordinate::vertical); vertical != variables.end())
     for (std::size_t a = in_space; a-- > 0;)
       if ((vertical->second.along & ~taken) >> a & 1u) {
-        add(vertical->second, a);
+        add(*vertical, a);
         break;
       }
   return result;
