@@ -223,6 +223,8 @@ class ContourCommand final : public Command {
       remark_if_empty(
           result, [&] { return remark_without_contour(input.image, *result.isovalue, result.isovalue_of_samples); });
       if (given_.one_file) return;
+      if (!given_.no_check && !tiling_.of_cells && placed_.rule != Positions::filtered)
+        result.wording.no_size = reason_of_zero_size(input.image, result.isovalue_of_samples, options.epsilon);
       if (&result == &results.back()) input.image = AnyImage();  // frees the image's memory for the check
       check_and_write(result, bar, written);
     };

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -496,6 +497,25 @@ double require_contour(const ReadImage5dResult& input, double isovalue, bool all
 
 std::string remark_on_missing(double isovalue) {
   return fmt::format("no contour at {}: every active tile has a missing sample", number(isovalue));
+}
+
+std::string reason_of_zero_size(const AnyImage& image, double of_samples, double epsilon) {
+  const std::string ties = Wording().no_size;
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
+    if constexpr (N == 4 && std::is_floating_point_v<T>) {
+      bool any_tie = false, any_missing = false;
+      for (const T value : owned.values) {
+        any_tie = any_tie || static_cast<double>(value) == of_samples;
+        any_missing = any_missing || std::isnan(value);
+      }
+      any_tie = any_tie && epsilon == 0.0;
+      const std::string missing = "regions of missing values meet in an edge of the grid";
+      if (any_tie && any_missing) return "samples equal the isovalue, which --epsilon avoids, or " + missing;
+      if (any_missing) return missing;
+    }
+    return ties;
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
 void check_result(ContourResult& result, unsigned threads, ProgressBar& bar) {

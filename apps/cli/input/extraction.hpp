@@ -180,6 +180,11 @@ std::string remark_without_contour(const Image& image, double isovalue) {
   return remark_without_contour(image, isovalue, isovalue);
 }
 
+/// Why simplices of a contour have zero size, for reports: samples equal the isovalue, unless `epsilon` excludes that,
+/// or, in 4D, missing values. `of_samples`: the result of require_contour. Reads the samples of 4D images of real
+/// numbers.
+std::string reason_of_zero_size(const AnyImage& image, double of_samples, double epsilon);
+
 /// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD, but not auto or none. Throws InvalidArgument
 /// for other names.
 template <int N>
