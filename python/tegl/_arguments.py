@@ -350,14 +350,12 @@ def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
     return values.tolist()
 
 
-def _affine(affine, ndim: int) -> np.ndarray | None:
-    if affine is None:
-        return None
-    matrix = _reals("affine is", affine, f"{ndim} x {ndim + 1} or {ndim + 1} x {ndim + 1} numbers")
+def _affine(affine, ndim: int, name: str = "affine") -> np.ndarray:
+    matrix = _reals(f"{name} is", affine, f"{ndim} x {ndim + 1} or {ndim + 1} x {ndim + 1} numbers")
     if matrix.shape not in ((ndim, ndim + 1), (ndim + 1, ndim + 1)):
-        raise ValueError(f"affine has the shape {matrix.shape}; expected {(ndim, ndim + 1)} or {(ndim + 1, ndim + 1)}")
+        raise ValueError(f"{name} has the shape {matrix.shape}; expected {(ndim, ndim + 1)} or {(ndim + 1, ndim + 1)}")
     if len(matrix) > ndim and not np.array_equal(matrix[ndim], [0.0] * ndim + [1.0]):
-        raise ValueError(f"the last row of affine is {matrix[ndim].tolist()}; expected {[0.0] * ndim + [1.0]}")
+        raise ValueError(f"the last row of {name} is {matrix[ndim].tolist()}; expected {[0.0] * ndim + [1.0]}")
     return matrix[:ndim]
 
 
@@ -397,6 +395,25 @@ def own_lattice(data) -> str | None:
         name = data.attrs.get("sample_lattice")
         return None if name is None else as_text("the attribute 'sample_lattice'", name)
     return data.lattice if hasattr(data, "__tegl_image__") else None
+
+
+def own_affine(data) -> np.ndarray | None:
+    """The affine map that the attribute "affine" of an xarray records, in the order of its axes, or None. The attribute
+    "affine_axes" has the names of the axes that the map is for. Axes of one chosen index may be missing, if the others'
+    coordinates do not depend on them."""
+    affine = data.attrs.get("affine")
+    if affine is None:
+        return None
+    names = [str(dim) for dim in data.dims]
+    axes = data.attrs.get("affine_axes")
+    axes = names if axes is None else [str(axis) for axis in np.atleast_1d(axes)]
+    matrix = _affine(affine, len(axes), "the attribute 'affine'")
+    order = [axes.index(name) for name in names if name in axes]
+    gone = [number for number in range(len(axes)) if number not in order]
+    if len(order) != len(names) or matrix[np.ix_(order, gone)].any():
+        raise ValueError(f"the attribute 'affine' is for the axes {', '.join(axes)}, and the array has {', '.join(names)}; "
+                         "expected the same axes, an argument affine=, or an array without this attribute")
+    return matrix[order][:, [*order, len(axes)]]
 
 
 def own_curved(data) -> dict[int, np.ndarray]:
@@ -492,12 +509,13 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
     labelled = None
     value_unit = ""
     if hasattr(data, "__tegl_image__"):
-        known, names, units, own_affine, own_axis, value_unit, data = data.__tegl_image__()
-        affine = own_affine if affine is None else affine
+        known, names, units, image_affine, own_axis, value_unit, data = data.__tegl_image__()
+        affine = image_affine if affine is None else affine
         time_axis = own_axis if time_axis is None else time_axis
     elif is_xarray(data):
         labelled = data
         known, names, units, found_axis, value_unit = _from_xarray(data)
+        affine = own_affine(data) if affine is None else affine
         if time_axis is None:
             if found_axis not in (None, 0, data.ndim - 1):
                 time = data.dims[found_axis]
@@ -539,7 +557,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
                              "numbers, and a spacing other than 0")
         axes.append(_axis(given, called, size))
     is_reversed = turn_around(0 if time_axis is None else time_axis, ndim)
-    matrix = given_affine = _affine(affine, ndim)
+    matrix = given_affine = None if affine is None else _affine(affine, ndim)
     with np.errstate(over="ignore", invalid="ignore"):
         extent = _extent_of(axes, array.shape, matrix)
     if not is_reversed:

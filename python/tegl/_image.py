@@ -312,10 +312,12 @@ _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_un
 
 def _lattice_of(array, lattice: _kinds.Lattice | typing.Literal["cubic"] | None) -> _kinds.Lattice | None:
     """The argument `lattice`, or the image's own."""
+    name = "lattice"
     if lattice is None:
         lattice = typing.cast("_kinds.Lattice | None", _arguments.own_lattice(array))
+        name = "the attribute 'sample_lattice'"
     if isinstance(lattice, str) and lattice != "cubic" and lattice not in LATTICES:
-        raise ValueError(f"lattice is {lattice!r}; expected one of {', '.join(map(repr, LATTICES))}, or 'cubic'")
+        raise ValueError(f"{name} is {lattice!r}; expected one of {', '.join(map(repr, LATTICES))}, or 'cubic'")
     return None if lattice == "cubic" else typing.cast("_kinds.Lattice | None", lattice)
 
 
@@ -426,8 +428,9 @@ class Image:
 
     def to_xarray(self) -> typing.Any:
         """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map is its
-        attribute "affine", the lattice its attribute "sample_lattice". On a curved grid, the coordinates "lat" and "lon" belong
-        to the dimensions "lat_index" and "lon_index". `tegl.contour` finds lattices and curved coordinates again."""
+        attribute "affine", for the dimensions in "affine_axes", the lattice its attribute "sample_lattice". On a curved grid, the
+        coordinates "lat" and "lon" belong to the dimensions "lat_index" and "lon_index". `tegl.contour` and other functions find
+        these again, also in another order of the dimensions."""
         try:
             import xarray
         except ImportError as error:
@@ -449,6 +452,7 @@ class Image:
             attrs["long_name"] = self.value_name
         if self.affine is not None:
             attrs["affine"] = self.affine
+            attrs["affine_axes"] = dims
         if self.lattice is not None:
             attrs["sample_lattice"] = self.lattice
         return xarray.DataArray(self.array, dims=dims, coords=coords, name=self.variable or None, attrs=attrs)

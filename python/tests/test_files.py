@@ -255,6 +255,37 @@ def test_xarrays_keep_the_lattice(tmp_path):
     assert_same(tegl.contour(data, 0.1, lattice="cubic"), image.contour(0.1, lattice="cubic"))
     with pytest.raises(ValueError, match="on the lattice fcc, which only tegl.contour and tegl.count know"):
         tegl.slice(data, 0.1, at=1.5)
+    data.attrs["sample_lattice"] = "hex"
+    with pytest.raises(ValueError, match="the attribute 'sample_lattice' is 'hex'; expected one of"):
+        tegl.contour(data, 0.1)
+    with pytest.raises(ValueError, match="^lattice is 'hex'; expected one of"):
+        tegl.contour(data, 0.1, lattice="hex")
+
+
+def test_xarrays_keep_the_affine_map():
+    pytest.importorskip("xarray")
+    values = noise((4, 5, 6, 7), 5)
+    affine = np.array([[2.0, 0, 0, 0, 10], [0, 0, 0.5, 3, -1], [0, 1, 0.25, 0, 2], [0, 0.1, -2, 0, 3]])
+    coords = tuple(np.arange(n) * 1.0 for n in values.shape)
+    image = tegl.Image(values, coords, ("t", "z", "y", "x"), ("s", "", "", ""), affine, 0, "", "", "NIfTI", "", (), "RAS",
+                       ("unknown",) * 4, coords)
+    data = image.to_xarray()
+    assert_same(tegl.contour(data, 0.1), image.contour(0.1))
+    assert tegl.slice(data, 0.1, at=11.0).measure().size == tegl.slice(image, 0.1, at=11.0).measure().size
+    # one time, and another order of the axes
+    one = tegl.contour(values[2], 0.1, affine=affine[1:, 1:], axis_names=("z", "y", "x"))
+    assert_same(tegl.contour(data[2], 0.1), one)
+    turned = tegl.contour(data[2].transpose("x", "z", "y"), 0.1, dtype=float)
+    order = [2, 0, 1]
+    assert_same(turned, tegl.contour(values[2].transpose(order), 0.1, affine=affine[1:, 1:][order][:, [*order, 3]],
+                                     axis_names=("x", "z", "y"), dtype=float))
+    # an argument comes first
+    assert_same(tegl.contour(data[2], 0.1, affine=np.eye(4)), tegl.contour(values[2], 0.1, axis_names=("z", "y", "x")))
+    with pytest.raises(ValueError, match="the attribute 'affine' is for the axes t, z, y, x, and the array has t, z, x; expected the"):
+        tegl.contour(data[:, :, 2], 0.1)
+    data.attrs["affine"] = [1, 2]
+    with pytest.raises(ValueError, match=r"the attribute 'affine' has the shape \(2,\); expected \(4, 5\)"):
+        tegl.contour(data, 0.1)
 
 
 def test_xarrays_keep_the_coordinates_of_a_curved_grid():

@@ -573,5 +573,27 @@ TEST_F(MeshAttribute, ColumnsOfATableAreInterpolatedToo) {
   EXPECT_THAT(flat.err, HasSubstr("3 points that lie in a line; expected points in 2 dimensions"));
 }
 
+TEST_F(Contour, NamesTheReasonOfZeroSizes) {
+  const auto index = [](std::size_t x, std::size_t y, std::size_t z, std::size_t t) {
+    return x + 7 * (y + 7 * (z + 7 * t));
+  };
+  Samples samples = noise({7, 7, 7, 7}, 3);
+  samples.values[index(2, 2, 2, 2)] = samples.values[index(4, 4, 4, 2)] = NAN;  // their cells share edges along t
+  const auto text_of = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"contour", write("image.nrrd", nrrd_bytes(samples)), "-o", path("out.vtkhdf")});
+    const RunResult run = run_tegl(options);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.out;
+  };
+  const std::string missing = "regions of missing values meet in an edge of the grid)";
+  EXPECT_THAT(text_of({"--iso", "127.3"}), HasSubstr("of zero size (" + missing));
+  EXPECT_THAT(text_of({"--iso", "127.3", "--epsilon", "0.01"}), HasSubstr("of zero size (" + missing));
+  for (float& value : samples.values) value = std::round(value / 64);
+  EXPECT_THAT(text_of({"--iso", "2"}),
+              HasSubstr("of zero size (samples equal the isovalue, which --epsilon avoids, or " + missing));
+  samples.values[index(2, 2, 2, 2)] = samples.values[index(4, 4, 4, 2)] = 0;
+  EXPECT_THAT(text_of({"--iso", "2"}), HasSubstr("of zero size (samples equal the isovalue; --epsilon avoids them)"));
+}
+
 }  // namespace
 }  // namespace tegl::test

@@ -114,6 +114,40 @@ TEST_F(EmptyResults, OfAnIsovalueWithinValuesThatNeverMeetAreNone) {
   EXPECT_EQ(measured.json()["size"], 0);
 }
 
+TEST_F(EmptyResults, OfMeshesWhoseValuesNeverMeetAreNone) {
+  // The middle points have no values: no triangle has points on both sides of the isovalue.
+  std::string rows;
+  for (int y = 0; y < 3; ++y)
+    for (const char* const of_x : {"0,%,0", "1,%,", "2,%,4"})
+      rows += std::string(of_x).replace(2, 1, std::to_string(y)) + "\n";
+  const std::string missing = write("missing.csv", "x,y,v\n" + rows);
+  // Two triangles without a common point, each with one value.
+  const std::string apart = write(
+      "apart.vtu",
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"6\" NumberOfCells=\"2\"><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 5 0 0 6 0 0 5 1 0"
+      "</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3 4 5"
+      "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 6</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 5</DataArray></Cells><PointData>"
+      "<DataArray type=\"Float32\" Name=\"v\" format=\"ascii\">0 0 0 4 4 4</DataArray></PointData></Piece>"
+      "</UnstructuredGrid></VTKFile>");
+  const std::string of_missing = "no contour at 2: no cell without missing values has values on both sides of it";
+  const std::string of_apart = "no contour at 2: no cell has values on both sides of it";
+  for (const auto& [file, text] : {std::pair(missing, of_missing), std::pair(apart, of_apart)}) {
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"contour", file, "--iso", "2", "-o", path("out.vtkhdf")},
+          std::vector<std::string>{"contour", file, "--iso", "2", "--facets", "-o", path("out.vtu")},
+          std::vector<std::string>{"measure", file, "--iso", "2"}}) {
+      const RunResult run = run_tegl(command);
+      EXPECT_EQ(run.exit, 0) << run.err;
+      EXPECT_THAT(run.err, HasSubstr(text));
+    }
+    expect_empty_mesh("out.vtkhdf", 1);
+    // outside of the values, which is allowed: no remark
+    EXPECT_EQ(run_tegl({"contour", file, "--iso", "9", "--allow-empty", "-o", path("out.vtkhdf")}).err, "");
+  }
+}
+
 TEST_F(EmptyResults, OfCutsOutsideOfTheExtentAreErrorsUnlessAllowed) {
   ASSERT_EQ(run_tegl({"contour", balls_, "--iso", "0", "-o", path("saved.vtkhdf")}).exit, 0);
   const std::string saved = path("saved.vtkhdf");

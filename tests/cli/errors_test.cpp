@@ -101,6 +101,22 @@ TEST_F(Errors, WrongUsageExitsWith2) {
   EXPECT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", out, "--json", "--quiet"}).exit, 2);
 }
 
+TEST_F(Errors, OptionsOfImagesAreRefusedWithMeshes) {
+  const std::string table = write("points.csv", "x,y,v\n0,0,0\n1,0,1\n0,1,2\n");
+  for (const std::vector<std::string>& given : {std::vector<std::string>{"--periodic", "x"},
+                                                {"--lattice", "triangular"},
+                                                {"--division", "kuhn"},
+                                                {"--samples-are", "cells"}}) {
+    for (std::vector<std::string> command : {std::vector<std::string>{"contour", table, "-o", path("out.vtkhdf")},
+                                             std::vector<std::string>{"measure", table}}) {
+      command.insert(command.end(), {"--iso", "1", given[0], given[1]});
+      expect_failure(2, command,
+                     {given[0] + " " + given[1] + " with " + table +
+                      ", which is a mesh; expected an image, or the mesh without this option"});
+    }
+  }
+}
+
 TEST_F(Errors, NumbersThatAreNoneExitWith2) {
   for (const char* iso : {"abc", "nan", "inf", "-inf", "7x", "1e999", ""}) {
     expect_contour_failure(2, ball_file(), iso, path("out.ply"), {iso, "--iso"});

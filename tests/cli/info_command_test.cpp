@@ -45,6 +45,24 @@ TEST_F(Info, ShowsTheSameToPeople) {
   EXPECT_EQ(run.out.find('\x1b'), std::string::npos) << "colours without a terminal";
 }
 
+TEST_F(Info, RemarksOnAnExtensionOfOtherData) {
+  const std::string file = write(
+      "triangle.vts",
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points>"
+      "<Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>"
+      "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5</DataArray></Cells><PointData>"
+      "<DataArray type=\"Float32\" Name=\"v\" format=\"ascii\">0 1 1</DataArray></PointData></Piece>"
+      "</UnstructuredGrid></VTKFile>");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", file}, {"contour", file, "--iso", "0.5", "-o", path("out.vtkhdf")}}) {
+    const RunResult run = run_tegl(command);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("triangle.vts holds UnstructuredGrid, whose extension is .vtu; .vts is for"));
+  }
+}
+
 TEST_F(Info, TellsTheTimeAxisAndTheWorldOfANiftiFile) {
   const std::string file = write("balls.nii", nifti_bytes(merging_balls(9, 4), {2, 2, 3, 1.5f}));
   const RunResult run = run_tegl({"info", file, "--json"});

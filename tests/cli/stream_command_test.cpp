@@ -60,6 +60,29 @@ class Stream : public ProgramTest {
   }
 };
 
+TEST_F(Stream, SmallContoursMakeSmallFiles) {
+  // with missing values, so that corners are replaced before the datasets exist
+  Samples samples = ball({9, 9, 9}, 3);
+  samples.values[4 * 81 + 4 * 9 + 1] = NAN;
+  for (const std::string& file :
+       {write("ball.nrrd", nrrd_bytes(ball({9, 9, 9}, 3))), write("hole.nrrd", nrrd_bytes(samples))}) {
+    const auto [streamed, whole] = contours({file, "--iso", "0", "--normals"});
+    ASSERT_GT(whole.simplices.size(), 300U);
+    EXPECT_EQ(streamed.coordinates, whole.coordinates);
+    EXPECT_EQ(streamed.simplices, whole.simplices);
+    EXPECT_EQ(streamed.normals, whole.normals);
+    EXPECT_LE(std::filesystem::file_size(path("streamed.vtkhdf")),
+              std::filesystem::file_size(path("whole.vtkhdf")) + 4096);
+  }
+  // no contour at all
+  EXPECT_EQ(
+      run_tegl({"contour", path("ball.nrrd"), "--iso", "9", "--allow-empty", "--stream", "-o", path("none.vtkhdf")})
+          .exit,
+      0);
+  EXPECT_LT(std::filesystem::file_size(path("none.vtkhdf")), 16384U);
+  EXPECT_TRUE(read_mesh(path("none.vtkhdf")).simplices.empty());
+}
+
 TEST_F(Stream, OnLatticesGivesTheContourInMemory) {
   const std::string ball = path("ball.nrrd");
   ASSERT_EQ(run_tegl({"sample", "ball", "--lattice", "fcc", "--size", "40", "-o", ball}).exit, 0);

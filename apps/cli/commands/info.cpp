@@ -426,6 +426,7 @@ class InfoCommand final : public Command {
     ProgressBar bar(streams.err, wants_progress());
     const CellMeshInfo info = describe_cell_mesh(file(), images().cell_mesh_options(bar.stage("read")));
     bar.clear();
+    remark(info.remarks);
     streams.out.write(json() ? dump(mesh_json(info, inputs())) : mesh_text(streams.out, info, file()));
     return ExitCode::Ok;
   }

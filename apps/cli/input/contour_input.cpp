@@ -292,6 +292,7 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
         options_.add_shape_normals(extraction.contour);
         return AnyContour(widened(std::move(extraction.contour)));
       });
+  if (result.size().simplices == 0) remark(remark_without_contour(input.mesh, *result.isovalue));
   result.seconds.add(*result.stats);
   return result;
 }

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -204,17 +205,24 @@ void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
                 fmt::format("--periodic {} with {}; expected one of the two", fmt::join(periodic_, ","), other));
 }
 
+std::string ExtractionOptions::given_tiling() const {
+  return periodic().empty() ? given_other_tiling() : fmt::format("--periodic {}", fmt::join(periodic_, ","));
+}
+
+std::string ExtractionOptions::given_other_tiling() const {
+  if (has_lattice()) return "--lattice " + lattice_;
+  if (!division_.empty()) return "--division " + division_;
+  return samples_ == "cells" ? "--samples-are " + samples_ : std::string();
+}
+
 void ExtractionOptions::refuse_tiling(const std::string& with) const {
   refuse_periodic_with(with);
   refuse_other_tiling(with);
 }
 
 void ExtractionOptions::refuse_other_tiling(const std::string& with) const {
-  refuse_lattice_with(with);
-  refuse_division_with(with);
-  if (samples_ == "cells")
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--samples-are {} with {}; expected one of the two", samples_, with));
+  if (const std::string given = given_other_tiling(); !given.empty())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} with {}; expected one of the two", given, with));
 }
 
 void ExtractionOptions::refuse_cells(bool samples_are_cells, const std::string& file, const std::string& with) const {
@@ -489,6 +497,25 @@ double require_contour(const ReadImage5dResult& input, double isovalue, bool all
 
 std::string remark_on_missing(double isovalue) {
   return fmt::format("no contour at {}: every active tile has a missing sample", number(isovalue));
+}
+
+std::string reason_of_zero_size(const AnyImage& image, double of_samples, double epsilon) {
+  const std::string ties = Wording().no_size;
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
+    if constexpr (N == 4 && std::is_floating_point_v<T>) {
+      bool any_tie = false, any_missing = false;
+      for (const T value : owned.values) {
+        any_tie = any_tie || static_cast<double>(value) == of_samples;
+        any_missing = any_missing || std::isnan(value);
+      }
+      any_tie = any_tie && epsilon == 0.0;
+      const std::string missing = "regions of missing values meet in an edge of the grid";
+      if (any_tie && any_missing) return "samples equal the isovalue, which --epsilon avoids, or " + missing;
+      if (any_missing) return missing;
+    }
+    return ties;
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
 void check_result(ContourResult& result, unsigned threads, ProgressBar& bar) {

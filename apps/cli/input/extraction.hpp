@@ -58,6 +58,8 @@ class ExtractionOptions {
   void add_samples_are_to(CLI::App& app);
   /// The values of these options. Throws InvalidArgument if two are given.
   [[nodiscard]] Tiling tiling() const;
+  /// The first of them that is given, with its value, as in "--periodic x"; empty: none.
+  [[nodiscard]] std::string given_tiling() const;
   /// Throws InvalidArgument with one of them. `with`: another option or a command. With --samples-are file it depends
   /// on the file: see refuse_cells.
   void refuse_tiling(const std::string& with) const;
@@ -126,6 +128,8 @@ class ExtractionOptions {
   [[nodiscard]] std::vector<std::string> periodic() const;
   /// Whether --periodic may be given with the other options.
   [[nodiscard]] bool knows_periods(const Tiling& tiling) const;
+  /// As given_tiling, without --periodic.
+  [[nodiscard]] std::string given_other_tiling() const;
   void refuse_lattice_with(const std::string& other) const;
   void refuse_division_with(const std::string& other) const;
 
@@ -175,6 +179,11 @@ template <class Image>
 std::string remark_without_contour(const Image& image, double isovalue) {
   return remark_without_contour(image, isovalue, isovalue);
 }
+
+/// Why simplices of a contour have zero size, for reports: samples equal the isovalue, unless `epsilon` excludes that,
+/// or, in 4D, missing values. `of_samples`: the result of require_contour. Reads the samples of 4D images of real
+/// numbers.
+std::string reason_of_zero_size(const AnyImage& image, double of_samples, double epsilon);
 
 /// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD, but not auto or none. Throws InvalidArgument
 /// for other names.

@@ -11,7 +11,32 @@
 #include <limits>
 #include <utility>
 
+#include "base/numbers.hpp"
+
 namespace tegl::cli {
+
+namespace {
+
+/// The values at the corners of a mesh's cells.
+struct CornerValues {
+  ValueRange range;
+  bool any_missing = false;
+};
+
+CornerValues corner_values(const CellMesh& mesh) {
+  CornerValues result;
+  const std::size_t points = mesh.values.size() / std::max<std::size_t>(1, mesh.times.size());
+  for (std::size_t first = 0; first < mesh.values.size(); first += points)
+    for (const Index p : mesh.corners) {
+      const double value = mesh.values[first + p];
+      result.range.min = std::fmin(result.range.min, value);
+      result.range.max = std::fmax(result.range.max, value);
+      result.any_missing = result.any_missing || std::isnan(value);
+    }
+  return result;
+}
+
+}  // namespace
 
 bool are_cell_meshes(const std::vector<std::string>& files, const ImageOptions& images) {
   return !images.raw() && is_cell_mesh_file(files.front(), images.allow_outside_paths());
@@ -27,12 +52,13 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
   if (!refused.empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected it with an image", refused.front(), file));
-  extraction.refuse_tiling(fmt::format("{}, which is not an image", file));
-  const ExtractOptions options = extraction.library_options(true);
   const auto fail = [&](const std::string& option, const char* expected) {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
   };
+  if (const std::string tiling = extraction.given_tiling(); !tiling.empty())
+    fail(tiling, "an image, or the mesh without this option");
+  const ExtractOptions options = extraction.library_options(true);
   if (options.normals != Normals::none && options.normals != Normals::differences)
     fail("--normals " + extraction.normals(), "--normals gradient, geometric or flat");
   if (extraction.polygon_triangulation())
@@ -100,15 +126,15 @@ void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empt
   if (mesh.types.empty())
     throw EmptyResult(
         fmt::format("{}; expected cells (--allow-empty: an empty result)", fmt::join(mesh.remarks, ", ")));
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  ValueRange range{kNone, kNone};
-  const std::size_t points = mesh.values.size() / std::max<std::size_t>(1, mesh.times.size());
-  for (std::size_t first = 0; first < mesh.values.size(); first += points)
-    for (const Index p : mesh.corners) {
-      range.min = std::fmin(range.min, mesh.values[first + p]);
-      range.max = std::fmax(range.max, mesh.values[first + p]);
-    }
-  if (!(range.min < isovalue && isovalue <= range.max)) throw outside_error(isovalue, range, "");
+  const ValueRange range = corner_values(mesh).range;
+  if (!range.has_both_sides(isovalue)) throw outside_error(isovalue, range, "");
+}
+
+std::string remark_without_contour(const CellMesh& mesh, double isovalue) {
+  const CornerValues values = corner_values(mesh);
+  if (!values.range.has_both_sides(isovalue)) return {};
+  return fmt::format("no contour at {}: no cell {}has values on both sides of it", number(isovalue),
+                     values.any_missing ? "without missing values " : "");
 }
 
 }  // namespace tegl::cli

@@ -37,19 +37,21 @@ enum class TrackEventKind {
 /// An event: parts appear, merge, split or vanish.
 struct TrackEvent {
   TrackEventKind kind = TrackEventKind::birth;  ///< what happens
-  double time = 0;                              ///< last coordinate of `vertex`
-  std::array<double, 4> place{};                ///< other coordinates of `vertex`; space_dim - 1 of them
-  Index vertex = 0;                             ///< vertex of the contour where it happens
-  bool at_border = false;                       ///< whether `vertex` lies in the contour's boundary
-  std::vector<Index> in = {};                   ///< segments that end here, ascending
-  std::vector<Index> out = {};                  ///< segments that start here, ascending
-  std::int64_t euler_change = 0;                ///< change of the Euler characteristic of the cut through these parts
+  /// Last coordinate of `vertex`; if more vertices have one that differs by rounding only, such as that of a layer of
+  /// the image, this one.
+  double time = 0;
+  std::array<double, 4> place{};  ///< other coordinates of `vertex`; space_dim - 1 of them
+  Index vertex = 0;               ///< vertex of the contour where it happens
+  bool at_border = false;         ///< whether `vertex` lies in the contour's boundary
+  std::vector<Index> in = {};     ///< segments that end here, ascending
+  std::vector<Index> out = {};    ///< segments that start here, ascending
+  std::int64_t euler_change = 0;  ///< change of the Euler characteristic of the cut through these parts
 };
 
 /// A change of one part's topology without a change of the number of parts: a handle opens or closes (by -2 or 2, in
 /// 4D), or the part meets the image border.
 struct TrackHandle {
-  double time = 0;                ///< last coordinate of `vertex`
+  double time = 0;                ///< as in TrackEvent
   std::array<double, 4> place{};  ///< other coordinates of `vertex`
   Index vertex = 0;               ///< vertex of the contour where it happens
   bool at_border = false;         ///< whether `vertex` lies in the contour's boundary

@@ -204,51 +204,89 @@ std::vector<std::int64_t> H5File::get_numbers(hid_t object, const char* name) co
 
 H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
                              std::uint64_t expected, Compression compression) const {
-  const int rank = columns == 0 ? 1 : 2;
   // A chunk fits the cache that HDF5 has per dataset (1 MiB), so a partly filled chunk stays in memory.
   constexpr hsize_t kChunkBytes = hsize_t{1} << 19;
-  const std::array<hsize_t, 2> size = {0, columns};
-  const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
   const hsize_t most_rows = kChunkBytes / (H5Tget_size(file_type) * std::max<hsize_t>(1, columns));
-  const std::array<hsize_t, 2> chunk = {std::clamp<hsize_t>(expected, 1, most_rows), columns};  // stored whole
-  const H5Handle space = checked(H5Screate_simple(rank, size.data(), most.data()), H5Sclose, "creating a dataset");
-  const H5Handle options = timeless(H5P_DATASET_CREATE);
-  checked(H5Pset_chunk(options.id(), rank, chunk.data()), "creating a dataset");
-  if (compression == Compression::deflate) {
-    // Shuffle puts bytes of equal significance side by side: the high bytes of adjacent numbers are mostly equal.
-    constexpr unsigned kLevel = 4;
-    checked(H5Pset_shuffle(options.id()), "creating a dataset");
-    checked(H5Pset_deflate(options.id(), kLevel), "creating a dataset");
-  }
-  return {path_, status_,
-          checked(H5Dcreate2(group, name, file_type, space.id(), H5P_DEFAULT, options.id(), H5P_DEFAULT), H5Dclose,
-                  "creating a dataset"),
-          columns};
+  H5Iinc_ref(group);  // the group stays open until the dataset is created
+  const auto parent = std::make_shared<const H5Handle>(group, H5Gclose);
+  const auto create = [this, parent, text = std::string(name), file_type, columns, most_rows,
+                       compression](std::uint64_t rows) {
+    const int rank = columns == 0 ? 1 : 2;
+    const std::array<hsize_t, 2> size = {0, columns};
+    const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
+    const std::array<hsize_t, 2> chunk = {std::clamp<hsize_t>(rows, 1, most_rows), columns};  // stored whole
+    const H5Handle space = checked(H5Screate_simple(rank, size.data(), most.data()), H5Sclose, "creating a dataset");
+    const H5Handle options = timeless(H5P_DATASET_CREATE);
+    checked(H5Pset_chunk(options.id(), rank, chunk.data()), "creating a dataset");
+    if (compression == Compression::deflate) {
+      // Shuffle puts bytes of equal significance side by side: the high bytes of adjacent numbers are mostly equal.
+      constexpr unsigned kLevel = 4;
+      checked(H5Pset_shuffle(options.id()), "creating a dataset");
+      checked(H5Pset_deflate(options.id(), kLevel), "creating a dataset");
+    }
+    return checked(
+        H5Dcreate2(parent->id(), text.c_str(), file_type, space.id(), H5P_DEFAULT, options.id(), H5P_DEFAULT), H5Dclose,
+        "creating a dataset");
+  };
+  H5Table table(path_, status_, create, columns, most_rows);
+  if (expected != kUnknownRows) table.create(expected);
+  return table;
 }
 
 void H5Table::write(hid_t memory_type, const void* values, std::span<const std::uint64_t> start,
                     std::span<const std::uint64_t> count) const {
   const std::array<hsize_t, 2> from = {start[0], start[1]};
   const std::array<hsize_t, 2> size = {count[0], count[1]};
-  const H5Handle file(H5Dget_space(dataset_.id()), H5Sclose);
+  const H5Handle file(H5Dget_space(dataset_->id()), H5Sclose);
   const H5Handle memory(H5Screate_simple(columns_ == 0 ? 1 : 2, size.data(), nullptr), H5Sclose);
   if (file.id() < 0 || memory.id() < 0 ||
       H5Sselect_hyperslab(file.id(), H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr) < 0 ||
-      H5Dwrite(dataset_.id(), memory_type, memory.id(), file.id(), H5P_DEFAULT, values) < 0)
+      H5Dwrite(dataset_->id(), memory_type, memory.id(), file.id(), H5P_DEFAULT, values) < 0)
     fail(ErrorCode::WriteFailed, path_, "writing a dataset failed in HDF5 ({})", innermost_reason());
   require_written(*status_, path_);
 }
 
 void H5Table::append(hid_t memory_type, const void* values, std::uint64_t rows) {
   if (rows == 0) return;
-  const std::array<hsize_t, 2> size = {rows_ + rows, columns_};
-  if (H5Dset_extent(dataset_.id(), size.data()) < 0)
-    fail(ErrorCode::WriteFailed, path_, "growing a dataset failed in HDF5 ({})", innermost_reason());
+  if (!dataset_ && rows_ + rows < rows_of_chunk_ && (kept_.empty() || H5Tequal(kept_type_, memory_type) > 0)) {
+    const auto* const bytes = static_cast<const unsigned char*>(values);
+    kept_type_ = memory_type;
+    kept_.insert(kept_.end(), bytes, bytes + rows * std::max<std::uint64_t>(1, columns_) * H5Tget_size(memory_type));
+    rows_ += rows;
+    return;
+  }
+  if (!dataset_) create(rows_of_chunk_);
+  extend(rows_ + rows);
   write(memory_type, values, std::array{rows_, std::uint64_t{0}}, std::array{rows, columns_});
   rows_ += rows;
 }
 
+void H5Table::extend(std::uint64_t rows) const {
+  const std::array<hsize_t, 2> size = {rows, columns_};
+  if (H5Dset_extent(dataset_->id(), size.data()) < 0)
+    fail(ErrorCode::WriteFailed, path_, "growing a dataset failed in HDF5 ({})", innermost_reason());
+}
+
+void H5Table::create(std::uint64_t rows) {
+  dataset_.emplace(create_(rows));
+  create_ = nullptr;
+  if (rows_ == 0) return;
+  extend(rows_);
+  write(kept_type_, kept_.data(), std::array{std::uint64_t{0}, std::uint64_t{0}}, std::array{rows_, columns_});
+  kept_ = {};
+}
+
+void H5Table::complete() {
+  if (!dataset_) create(rows_);
+}
+
 void H5Table::replace(hid_t memory_type, const void* value, std::uint64_t row, std::uint64_t column) {
+  if (!dataset_ && H5Tequal(kept_type_, memory_type) > 0) {
+    const std::size_t size = H5Tget_size(memory_type);
+    std::memcpy(kept_.data() + (row * std::max<std::uint64_t>(1, columns_) + column) * size, value, size);
+    return;
+  }
+  if (!dataset_) create(rows_of_chunk_);
   write(memory_type, value, std::array{row, column}, std::array{std::uint64_t{1}, std::uint64_t{1}});
 }
 

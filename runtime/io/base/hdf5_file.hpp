@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,29 +21,46 @@
 
 namespace tegl::io_detail {
 
-/// A dataset that rows are appended to: chunked, so memory holds a few chunks for any length.
+/// A dataset that rows are appended to: chunked, so memory holds a few chunks for any length. A file stores chunks
+/// whole. So a dataset of an unknown number of rows is created when the first chunk is full, or by `complete` with a
+/// chunk of as many rows as there are.
 class H5Table {
  public:
   /// Appends `rows` rows of `memory_type`; HDF5 converts them to the file's type.
   void append(hid_t memory_type, const void* values, std::uint64_t rows);
   /// Replaces one value of an existing row.
   void replace(hid_t memory_type, const void* value, std::uint64_t row, std::uint64_t column);
+  /// Creates the dataset unless it exists. To be called before the file is closed, if the number of rows was unknown.
+  void complete();
   [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
-  [[nodiscard]] hid_t id() const noexcept { return dataset_.id(); }
+  /// Of the dataset, whose number of rows was known.
+  [[nodiscard]] hid_t id() const noexcept { return dataset_->id(); }
 
  private:
   friend class H5File;
-  H5Table(std::filesystem::path path, std::shared_ptr<const H5WriteStatus> status, H5Handle dataset,
-          std::uint64_t columns)
-      : path_(std::move(path)), status_(std::move(status)), dataset_(std::move(dataset)), columns_(columns) {}
+  using Create = std::function<H5Handle(std::uint64_t rows)>;
+  H5Table(std::filesystem::path path, std::shared_ptr<const H5WriteStatus> status, Create create, std::uint64_t columns,
+          std::uint64_t rows_of_chunk)
+      : path_(std::move(path)),
+        status_(std::move(status)),
+        create_(std::move(create)),
+        columns_(columns),
+        rows_of_chunk_(rows_of_chunk) {}
+  /// Creates the dataset, for at least `rows` rows, and writes those that were kept.
+  void create(std::uint64_t rows);
+  void extend(std::uint64_t rows) const;
   void write(hid_t memory_type, const void* values, std::span<const std::uint64_t> start,
              std::span<const std::uint64_t> count) const;
 
   std::filesystem::path path_;
   std::shared_ptr<const H5WriteStatus> status_;
-  H5Handle dataset_;
+  Create create_;  ///< empty after it was called
+  std::optional<H5Handle> dataset_;
   std::uint64_t columns_;  ///< 0: one-dimensional
+  std::uint64_t rows_of_chunk_;
   std::uint64_t rows_ = 0;
+  std::vector<unsigned char> kept_;  ///< rows before the dataset is created
+  hid_t kept_type_ = -1;             ///< memory type of these
 };
 
 /// An HDF5 file being written or read; messages name `path`. Errors: WriteFailed or MalformedFile, with the system's
@@ -71,9 +89,10 @@ class H5File {
   [[nodiscard]] std::vector<std::int64_t> get_numbers(hid_t object, const char* name) const;
 
   /// Creates an empty dataset with rows of `columns` values (0: one-dimensional), for appending. `expected` is a hint
-  /// of the number of rows. Must not outlive the file.
+  /// of the number of rows; kUnknownRows: none. Must not outlive the file.
   [[nodiscard]] H5Table create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
                                      std::uint64_t expected, Compression compression = Compression::none) const;
+  static constexpr std::uint64_t kUnknownRows = ~std::uint64_t{0};
 
   /// Number of dimensions of a dataset.
   [[nodiscard]] int rank(hid_t group, const char* name) const;

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads netCDF variables as images: selects the variable, reads coordinate variables as axes, applies packing and
-// missing values.
+// Reads netCDF variables as images: selects the variable, and applies packing and missing values.
 //
-// Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
-// conventions of the NetCDF Users' Guide.
+// Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5 and 8; the attribute conventions
+// of the NetCDF Users' Guide.
 #include "images/netcdf.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <iterator>
-#include <limits>
-#include <map>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -28,6 +18,7 @@
 #include "base/common.hpp"
 #include "base/reading_process.hpp"
 #include "base/stored_integers.hpp"
+#include "images/netcdf_coordinates.hpp"
 #include "images/netcdf_file.hpp"
 #include "images/netcdf_packing.hpp"
 
@@ -143,152 +134,6 @@ NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const 
        listing(candidates));
 }
 
-/// Uniform only if that gives the same coordinates bit by bit.
-Axis make_axis(std::vector<double> coordinates) {
-  const std::size_t size = coordinates.size();
-  if (size >= 2)
-    for (const double step :
-         {coordinates[1] - coordinates[0], (coordinates[size - 1] - coordinates[0]) / static_cast<double>(size - 1)}) {
-      if (step == 0.0 || !std::isfinite(step) || !std::isfinite(coordinates[0])) continue;
-      const Axis uniform = Axis::uniform(size, coordinates[0], step);
-      bool equal = true;
-      for (std::size_t i = 0; i < size && equal; ++i) equal = uniform[i] == coordinates[i];
-      if (equal) return uniform;
-    }
-  return Axis::rectilinear(std::move(coordinates));
-}
-
-/// From the attribute "positive" of a vertical coordinate. Without it, pressures increase downwards (CF conventions,
-/// section 4.3).
-AxisDirection direction_of(const NcFile& file, const NcVariable& coordinate) {
-  static constexpr std::array<std::string_view, 21> kPressures = {
-      "pa",         "pascal",      "pascals", "hpa",  "hectopascal", "hectopascals", "kpa",
-      "kilopascal", "kilopascals", "bar",     "bars", "mb",          "mbar",         "mbars",
-      "millibar",   "millibars",   "db",      "dbar", "dbars",       "decibar",      "decibars"};
-  const std::string positive = lower(file.text(coordinate, "positive"));
-  if (positive == "down") return AxisDirection::down;
-  if (positive == "up") return AxisDirection::up;
-  const std::string unit = lower(file.text(coordinate, "units"));
-  return std::ranges::find(kPressures, unit) != kPressures.end() ? AxisDirection::down : AxisDirection::unknown;
-}
-
-/// Whether a time unit's reference date is before 1582-10-15, when the standard calendar changes from Julian to
-/// Gregorian.
-bool starts_before_the_reform(const std::string& unit) {
-  int year = 0;
-  int month = 1;
-  int day = 1;
-  const std::size_t start = unit.find(" since ");
-  if (start == std::string::npos || std::sscanf(unit.c_str() + start + 7, "%d-%d-%d", &year, &month, &day) < 1)
-    return true;
-  return std::tuple(year, month, day) < std::tuple(1582, 10, 15);
-}
-
-/// The unit, with the calendar appended if it is not the standard one (CF conventions, section 4.4.1): "days since
-/// 2000-01-01 (noleap)" must not be read as a date, nor "days since 0001-01-01 (proleptic_gregorian)" as a Julian one.
-std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
-  const std::string unit = file.text(coordinate, "units");
-  const std::string calendar = file.text(coordinate, "calendar");
-  const std::string known = lower(calendar);
-  const bool is_common = known.empty() || known == "standard" || known == "gregorian" ||
-                         (known == "proleptic_gregorian" && !starts_before_the_reform(unit));
-  return is_common || unit.find(" since ") == std::string::npos ? unit : fmt::format("{} ({})", unit, calendar);
-}
-
-/// An axis with its direction in the file.
-struct AxisOfFile {
-  Axis axis;
-  AxisDirection direction = AxisDirection::unknown;
-  bool is_time = false;
-};
-
-AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimension) {
-  const std::string name = file.dimension_name(variable, dimension);
-  const auto coordinate = file.coordinate(variable, dimension);
-  Axis axis = Axis::uniform(variable.sizes[dimension]);
-  std::string unit;
-  std::string role;
-  AxisDirection direction = AxisDirection::unknown;
-  if (coordinate) {
-    std::vector<double> values =
-        std::visit([](const auto& stored) { return std::vector<double>(stored.begin(), stored.end()); },
-                   unpack(file.values(*coordinate, whole(*coordinate)), read_packing(file, *coordinate)));
-    try {
-      axis = make_axis(std::move(values));
-    } catch (const Error& e) {
-      fail(e.code(), file.path(), "coordinate variable '{}': {}", coordinate->name, e.what());
-    }
-    unit = unit_of(file, *coordinate);
-    direction = direction_of(file, *coordinate);
-    role = file.text(*coordinate, "axis") + " " + file.text(*coordinate, "standard_name") + " ";
-  }
-  axis.name = name;
-  axis.unit = unit;
-  const bool is_time = role.starts_with("T ") || role.ends_with(" time ") ||
-                       unit.find(" since ") != std::string::npos || lower(name) == "t" || lower(name) == "time";
-  return {std::move(axis), direction, is_time};
-}
-
-/// Adds the coordinate of a dimension of which one index is read; times come first. Errors of its coordinate variable
-/// are ignored.
-void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::size_t index,
-                std::vector<SingleAxis>& singles) {
-  try {
-    const AxisOfFile all = read_axis(file, variable, dimension);
-    Axis axis = Axis::uniform(1, all.axis[index]);
-    axis.name = all.axis.name;
-    axis.unit = all.axis.unit;
-    singles.insert(all.is_time ? singles.begin() : singles.end(), SingleAxis{std::move(axis), all.direction});
-  } catch (const Error&) {
-    return;
-  }
-}
-
-/// The grid of a variable, and the dimension that becomes the image's last axis: time, else the slowest one.
-struct VariableGrid {
-  RawGrid grid;
-  std::vector<AxisDirection> directions;  ///< of the grid's axes
-  std::size_t last_dimension = 0;
-  std::size_t time_axis = 0;            ///< index of the last axis in the file, from the fastest
-  bool has_time = false;                ///< whether the last axis is time
-  std::vector<std::size_t> dimensions;  ///< of the variable, by axis
-};
-
-VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
-  VariableGrid result;
-  // axes in the order of the file, from the fastest
-  std::vector<Axis>& axes = result.grid.axes;
-  std::vector<bool> is_time;
-  std::vector<std::size_t> dimension_of;
-  for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // from the fastest dimension
-    if (slab.count[d] == 1) {
-      add_single(file, variable, d, slab.start[d], result.grid.single);
-      continue;
-    }
-    AxisOfFile read = read_axis(file, variable, d);
-    axes.push_back(std::move(read.axis));
-    result.directions.push_back(read.direction);
-    is_time.push_back(read.is_time);
-    dimension_of.push_back(d);
-  }
-  // move time, or else the slowest axis, to the end; the scale of a scale space stays there
-  const bool keeps_last = is_time.back() || axes.back().name == "log2_sigma";
-  const auto found = keeps_last ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
-  const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
-  const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
-  move_last(axes);
-  move_last(result.directions);
-  result.has_time = found != is_time.end();
-  result.time_axis = static_cast<std::size_t>(last);
-  result.last_dimension = dimension_of[result.time_axis];
-  move_last(dimension_of);
-  result.dimensions = std::move(dimension_of);
-  const auto n = static_cast<Eigen::Index>(axes.size());
-  result.grid.linear = Eigen::MatrixXd::Identity(n, n);
-  result.grid.offset = Eigen::VectorXd::Zero(n);
-  return result;
-}
-
 /// Moves the grid's last axis to the end; the values have the file's order and `count` samples along that axis.
 ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t count) {
   const std::vector<Axis>& axes = grid.grid.axes;
@@ -296,166 +141,6 @@ ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t c
   std::size_t outer = 1;
   for (std::size_t a = 0; a + 1 < axes.size(); ++a) (a < grid.time_axis ? inner : outer) *= axes[a].size();
   return outer == 1 || count == 1 ? std::move(values) : with_axis_last(values, inner, count, outer);
-}
-
-// ---- coordinates in arrays of two or more dimensions (CF conventions, section 5.2) ---------------------------------
-
-enum class Coordinate { other, longitude, latitude, vertical };
-
-Coordinate coordinate_of(const NcFile& file, const NcVariable& variable) {
-  const std::string unit = lower(file.text(variable, "units"));
-  const std::string name = lower(file.text(variable, "standard_name"));
-  const auto is_degrees = [&](std::string_view to) {
-    return unit.starts_with("degree") && (unit.ends_with(to) || unit.ends_with(fmt::format("_{}", to.substr(0, 1))));
-  };
-  if (name == "longitude" || is_degrees("_east")) return Coordinate::longitude;
-  if (name == "latitude" || is_degrees("_north")) return Coordinate::latitude;
-  if (lower(file.text(variable, "axis")) == "z" || !file.text(variable, "positive").empty())
-    return Coordinate::vertical;
-  return Coordinate::other;
-}
-
-/// A coordinate variable with the axes of the image that it differs along.
-struct CurvedVariable {
-  NcVariable variable;
-  std::vector<std::size_t> axes;  ///< by dimension, fastest first; only those of which more than one index is read
-  unsigned along = 0;
-};
-
-/// The variables that the attribute "coordinates" names and that differ along two or more axes of the image, by
-/// meaning.
-std::map<Coordinate, CurvedVariable> curved_variables(const NcFile& file, const NcVariable& of,
-                                                      const VariableGrid& grid, std::vector<std::string>& remarks) {
-  std::map<Coordinate, CurvedVariable> result;
-  const std::string names = file.text(of, "coordinates");
-  const std::vector<NcVariable> all = file.variables();
-  for (const std::string_view word : words(names))
-    for (const NcVariable& variable : all) {
-      if (variable.name.substr(variable.name.rfind('/') + 1) != word || !is_numeric(variable.type)) continue;
-      CurvedVariable one{variable, {}, 0};
-      bool is_known = true;
-      for (std::size_t d = variable.dimensions.size(); d-- > 0;) {
-        const auto found = std::ranges::find(of.dimensions, variable.dimensions[d]);
-        is_known = is_known && found != of.dimensions.end();
-        const auto dimension = static_cast<std::size_t>(found - of.dimensions.begin());
-        const auto axis = std::ranges::find(grid.dimensions, dimension);
-        if (!is_known || axis == grid.dimensions.end()) continue;
-        one.axes.push_back(static_cast<std::size_t>(axis - grid.dimensions.begin()));
-        one.along |= 1u << one.axes.back();
-      }
-      if (!is_known || variable.dimensions.size() < 2) continue;
-      const Coordinate meaning = coordinate_of(file, variable);
-      if (one.axes.size() >= 2)
-        result.emplace(meaning, std::move(one));
-      else if (one.axes.size() == 1 && meaning != Coordinate::other)
-        remarks.push_back(
-            fmt::format("the coordinate '{}' is not used: one index is read of its other dimensions; the axis "
-                        "'{}' has indices or its own coordinates",
-                        variable.name, grid.grid.axes[one.axes.front()].name));
-    }
-  result.erase(Coordinate::other);
-  return result;
-}
-
-/// Continues longitudes across 360 degrees, from each value to the next.
-void unwrap(std::vector<double>& longitudes, std::size_t row) {
-  double first = std::numeric_limits<double>::quiet_NaN();
-  double last = first;
-  for (std::size_t i = 0; i < longitudes.size(); ++i) {
-    const double& reference = i % row == 0 && !std::isnan(first) ? first : last;
-    double& value = longitudes[i];
-    if (std::isnan(value)) continue;
-    if (!std::isnan(reference)) value += 360.0 * std::round((reference - value) / 360.0);
-    if (i % row == 0) first = value;
-    last = value;
-  }
-}
-
-/// The values of a coordinate variable, in the order of the image's axes.
-std::vector<double> read_curved(const NcFile& file, const NcVariable& of, const NcSlab& slab, const CurvedVariable& one,
-                                const std::vector<Axis>& axes) {
-  NcSlab part = whole(one.variable);
-  for (std::size_t d = 0; d < one.variable.dimensions.size(); ++d) {
-    const auto j =
-        static_cast<std::size_t>(std::ranges::find(of.dimensions, one.variable.dimensions[d]) - of.dimensions.begin());
-    part.start[d] = slab.start[j];
-    part.count[d] = slab.count[j];
-  }
-  const auto stored = std::visit([](const auto& values) { return std::vector<double>(values.begin(), values.end()); },
-                                 unpack(file.values(one.variable, part), read_packing(file, one.variable)));
-  // strides of the result by the variable's dimensions, fastest first
-  std::vector<std::size_t> strides(one.axes.size(), 1);
-  for (std::size_t i = 0; i < one.axes.size(); ++i)
-    for (const std::size_t other : one.axes)
-      if (other < one.axes[i]) strides[i] *= axes[other].size();
-  std::vector<double> result(stored.size());
-  for (std::size_t s = 0; s < stored.size(); ++s) {
-    std::size_t at = 0;
-    for (std::size_t i = 0, rest = s; i < one.axes.size(); rest /= axes[one.axes[i]].size(), ++i)
-      at += rest % axes[one.axes[i]].size() * strides[i];
-    result[at] = std::isfinite(stored[s]) ? stored[s] : std::numeric_limits<double>::quiet_NaN();
-  }
-  return result;
-}
-
-/// The curved axes of the image; the grid then has indices there. Longitude and latitude are used if their axes have no
-/// coordinate variables of their own.
-std::vector<CurvedAxis> find_curved(const NcFile& file, const NcVariable& variable, const NcSlab& slab,
-                                    VariableGrid& grid, std::vector<std::string>& remarks) {
-  std::vector<Axis>& axes = grid.grid.axes;
-  std::vector<CurvedAxis> result;
-  const auto variables = curved_variables(file, variable, grid, remarks);
-  const auto add = [&](const CurvedVariable& one, std::size_t axis) {
-    Axis indices = Axis::uniform(axes[axis].size());
-    indices.name = axes[axis].name;
-    axes[axis] = std::move(indices);
-    result.push_back({static_cast<int>(axis), one.along, read_curved(file, variable, slab, one, axes),
-                      one.variable.name.substr(one.variable.name.rfind('/') + 1), file.text(one.variable, "units")});
-    grid.directions[axis] = direction_of(file, one.variable);
-  };
-  const std::size_t in_space = axes.size() - (grid.has_time ? 1 : 0);
-  unsigned taken = 0;
-  const auto longitude = variables.find(Coordinate::longitude);
-  const auto latitude = variables.find(Coordinate::latitude);
-  if (longitude != variables.end() && latitude != variables.end() &&
-      longitude->second.along == latitude->second.along) {
-    std::vector<std::size_t> two;
-    for (std::size_t a = 0; a < in_space && two.size() < 2; ++a)
-      if ((longitude->second.along >> a & 1u) != 0 && !file.coordinate(variable, grid.dimensions[a])) two.push_back(a);
-    if (two.size() == 2) {
-      add(longitude->second, two[0]);
-      unwrap(result.back().values, axes[two[0]].size());
-      add(latitude->second, two[1]);
-      taken = 1u << two[0] | 1u << two[1];
-    }
-  }
-  if (const auto vertical = variables.find(Coordinate::vertical); vertical != variables.end())
-    for (std::size_t a = in_space; a-- > 0;)
-      if ((vertical->second.along & ~taken) >> a & 1u) {
-        add(vertical->second, a);
-        break;
-      }
-  return result;
-}
-
-/// Makes samples with unknown coordinates missing, if the values have a missing value.
-void hide_unknown(const std::vector<CurvedAxis>& curved, const std::vector<Axis>& axes, ValueArray& values) {
-  const auto hide = [&]<class T>(ValueVector<T>& all) {
-    if constexpr (std::is_floating_point_v<T>)
-      for (const CurvedAxis& one : curved) {
-        if (std::ranges::none_of(one.values, [](double x) { return std::isnan(x); })) continue;
-        for (std::size_t s = 0; s < all.size(); ++s) {
-          std::size_t at = 0, stride = 1;
-          for (std::size_t a = 0, rest = s; a < axes.size(); rest /= axes[a].size(), ++a) {
-            if ((one.along >> a & 1u) == 0) continue;
-            at += rest % axes[a].size() * stride;
-            stride *= axes[a].size();
-          }
-          if (std::isnan(one.values[at])) all[s] = std::numeric_limits<T>::quiet_NaN();
-        }
-      }
-  };
-  std::visit(hide, values);
 }
 
 struct Found {

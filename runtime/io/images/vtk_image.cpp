@@ -158,6 +158,8 @@ std::unique_ptr<OpenVtkImage> open_vtk(const fs::path& path, const ReadImageOpti
   info.variables = scalar_names(image->all);
   info.stored_type = parse_value_type(image->variable.type);
   info.samples_are_cells = image->variable.on_cells;
+  if (std::string remark = image->file.remark_on_extension(); !remark.empty())
+    info.remarks.push_back(std::move(remark));
   if (info.samples_are_cells)
     info.remarks.push_back(
         fmt::format("'{}' has values of cells: the samples are at the cells' centres", info.variable));

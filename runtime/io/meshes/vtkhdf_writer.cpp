@@ -62,14 +62,21 @@ VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout
     : points(file.create_table(group, "Points", real_type(layout), 3, layout.expected_vertices, layout.compression)),
       connectivity(file.create_table(group, "Connectivity", id_type(layout), 0,
                                      layout.expected_simplices > (1u << 24)
-                                         ? ~std::uint64_t{0}
+                                         ? H5File::kUnknownRows
                                          : layout.expected_simplices * (static_cast<unsigned>(layout.dim) + 1),
                                      layout.compression)),
       offsets(file.create_table(group, "Offsets", id_type(layout), 0,
-                                layout.expected_simplices + (layout.expected_simplices == ~std::uint64_t{0} ? 0 : 1),
+                                layout.expected_simplices + (layout.expected_simplices == H5File::kUnknownRows ? 0 : 1),
                                 layout.compression)),
       types(file.create_table(group, "Types", H5T_STD_U8LE, 0, layout.expected_simplices, layout.compression)) {
   static_cast<void>(file.create_group("VTKHDF/PointData"));
+}
+
+void VtkhdfWriter::Tables::complete() {
+  for (H5Table* const table : {&points, &connectivity, &offsets, &types}) table->complete();
+  for (std::vector<H5Table>* const tables : {&further, &further_normals})
+    for (H5Table& table : *tables) table.complete();
+  if (normals) normals->complete();
 }
 
 std::vector<H5Table> VtkhdfWriter::further_tables(std::span<const char* const> names) const {
@@ -177,6 +184,7 @@ void VtkhdfWriter::close() {
   single("NumberOfPoints", tables_->points.rows());
   single("NumberOfCells", tables_->types.rows());
   single("NumberOfConnectivityIds", tables_->connectivity.rows());
+  tables_->complete();
   tables_.reset();
   group_.reset();
   file_.close();

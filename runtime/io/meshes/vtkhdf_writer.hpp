@@ -24,8 +24,8 @@ struct VtkhdfLayout {
   int space_dim = 3;  ///< 2 to 5; the coordinates after x, y, z go to the point arrays "t" and "u"
   std::vector<std::string> axis_names;
   std::vector<std::string> axis_units;
-  std::uint64_t expected_vertices = ~std::uint64_t{0};
-  std::uint64_t expected_simplices = ~std::uint64_t{0};
+  std::uint64_t expected_vertices = H5File::kUnknownRows;
+  std::uint64_t expected_simplices = H5File::kUnknownRows;
   std::optional<double> isovalue;  ///< written to the field array "isovalue"
   bool single_precision = false;   ///< points, times and normals are float
   bool narrow_ids = false;         ///< vertex numbers and offsets are int32; all must fit
@@ -60,6 +60,8 @@ class VtkhdfWriter {
   /// The datasets; they must be closed before the file.
   struct Tables {
     Tables(const H5File& file, hid_t group, const VtkhdfLayout& layout);
+    /// Creates the datasets whose numbers of rows were unknown until now.
+    void complete();
     H5Table points, connectivity, offsets, types;
     std::vector<H5Table> further;  ///< coordinates after x, y, z
     std::optional<H5Table> normals;

@@ -267,6 +267,7 @@ FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Pr
          variable.name);
   if (!variable.on_cells) refuse_values_of_points(path, variable.name, options);
   std::vector<std::size_t> kept;
+  if (std::string remark = file.remark_on_extension(); !remark.empty()) mesh.remarks.push_back(std::move(remark));
   add_cells(stored, mesh, kept, path);
   const ValueArray values =
       chosen_part(read_cell_values(file, variable.parent(), variable.name, variable.components, progress), variable);
@@ -568,6 +569,7 @@ CellMeshInfo describe_cell_mesh(const fs::path& given, const CellMeshOptions& op
   const VtkFile file(path, options.work.progress);
   const StoredCells stored = read_cells(file, options.work.progress);
   info.type = file.type();
+  if (std::string remark = file.remark_on_extension(); !remark.empty()) info.remarks.push_back(std::move(remark));
   info.points = stored.point_count();
   std::map<std::uint8_t, std::uint64_t> counts;
   for (const std::uint8_t type : stored.types) ++counts[type];

@@ -69,6 +69,24 @@ std::vector<std::size_t> named_axes(const std::vector<std::string>& names) {
   return axes;
 }
 
+/// Throws if another column has the name of this one. `any_case`: also in other letters.
+void require_one_of_name(const std::vector<std::string>& names, std::size_t column, bool any_case,
+                         const fs::path& path) {
+  for (std::size_t c = 0; c < names.size(); ++c)
+    if (c != column && (names[c] == names[column] || (any_case && lower(names[c]) == lower(names[column]))))
+      fail(ErrorCode::MalformedFile, path, "the columns {} and {} have one name, '{}'; expected different names",
+           std::min(c, column) + 1, std::max(c, column) + 1, names[column]);
+}
+
+/// Throws if another column has the name of a coordinate, whose names may have any case, or of the chosen column.
+void require_clear_names(const Columns& columns, const std::vector<std::string>& names, const std::string& variable,
+                         const fs::path& path) {
+  if (names.empty()) return;
+  for (const std::size_t axis : columns.axes) require_one_of_name(names, axis, true, path);
+  const auto chosen = std::find(names.begin(), names.end(), variable);
+  if (chosen != names.end()) require_one_of_name(names, static_cast<std::size_t>(chosen - names.begin()), false, path);
+}
+
 Columns columns_of(const std::vector<std::string>& names, std::size_t count, const std::string& variable,
                    const fs::path& path) {
   Columns columns;
@@ -92,6 +110,7 @@ Columns columns_of(const std::vector<std::string>& names, std::size_t count, con
     fail(ErrorCode::UnsupportedData, path,
          "has {} columns, {} of them coordinates; expected x and y, or also z and t, and a value", count,
          columns.axes.size());
+  require_clear_names(columns, names, variable, path);
   return columns;
 }
 

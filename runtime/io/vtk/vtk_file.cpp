@@ -111,6 +111,19 @@ VtkFile::VtkFile(const fs::path& path, const Progress& progress) : path_(path), 
   }
 }
 
+std::string VtkFile::remark_on_extension() const {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kExtensions = {
+      {{".vti", "ImageData"}, {".vtr", "RectilinearGrid"}, {".vts", "StructuredGrid"}, {".vtu", "UnstructuredGrid"}}};
+  const std::string name = lower_name(path_);
+  const auto own = std::find_if(kExtensions.begin(), kExtensions.end(),
+                                [&](const auto& extension) { return name.ends_with(extension.first); });
+  const auto of_type = std::find_if(kExtensions.begin(), kExtensions.end(),
+                                    [&](const auto& extension) { return extension.second == type_; });
+  if (own == kExtensions.end() || of_type == kExtensions.end() || own == of_type) return {};
+  return fmt::format("{} holds {}, whose extension is {}; {} is for {}", path_.string(), type_, of_type->first,
+                     own->first, own->second);
+}
+
 std::vector<const XmlElement*> VtkFile::pieces() const {
   std::vector<const XmlElement*> found;
   for (const XmlElement& child : data_->children)

@@ -39,6 +39,8 @@ class VtkFile {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   /// The type of the data: "ImageData", "UnstructuredGrid", ...
   [[nodiscard]] const std::string& type() const noexcept { return type_; }
+  /// A remark if the file's extension is for another type of data: empty for others.
+  [[nodiscard]] std::string remark_on_extension() const;
   /// The element of this type in the file.
   [[nodiscard]] const XmlElement& data() const noexcept { return *data_; }
   /// The pieces. Errors: MalformedFile if there is none.

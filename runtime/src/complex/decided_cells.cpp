@@ -27,6 +27,7 @@
 #include "tegl/generated/cells.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/extract_tables.hpp"
+#include "tile/image_tesseract.hpp"
 #include "tile/tesseract_fill.hpp"
 #include "tile/variant_table.hpp"
 
@@ -479,7 +480,7 @@ class DecidedCells::Filler {
       std::vector<std::uint8_t> around;
       for (unsigned i = 0; i < face.corner_count; ++i) around.push_back(facet.of->corners[face.corners[i]]);
       if (face.corner_count == 4) std::swap(around[2], around[3]);
-      add_parts(around, high, sides.parts, sides.triangles);
+      add_parts(around, high, sides);
     }
     for (const Piece& piece : sigma_)
       if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
@@ -495,8 +496,7 @@ class DecidedCells::Filler {
   }
 
   /// The parts of a polygon on one side, with their triangles. `around`: its corners in order.
-  void add_parts(std::span<const std::uint8_t> around, bool high, std::vector<std::vector<Local>>& parts,
-                 std::vector<Triangle>& triangles) const {
+  void add_parts(std::span<const std::uint8_t> around, bool high, RegionSides<Local>& sides) const {
     const std::size_t count = around.size();
     unsigned polygon = 0;
     for (const std::uint8_t v : around) polygon |= 1u << v;
@@ -504,28 +504,13 @@ class DecidedCells::Filler {
     const auto edge = [&](std::size_t i) {
       return Local{edge_between_[16u * around[i % count] + around[(i + 1) % count]]};
     };
-    const auto corner = [&](std::size_t i) { return static_cast<Local>(kCorners + around[i]); };
-    const std::size_t first = parts.size();
-    if (count == 4 && is_in(0) == is_in(2) && is_in(1) == is_in(3) && is_in(0) != is_in(1) &&
-        is_square_joined(polygon) != high) {
-      for (std::size_t i = is_in(0) ? 0 : 1; i < 4; i += 2) parts.push_back({edge(i + 3), corner(i), edge(i)});
-    } else {
-      std::vector<Local> part;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (is_in(i)) part.push_back(corner(i));
-        if (is_in(i) != is_in(i + 1)) part.push_back(edge(i));
-      }
-      if (!part.empty()) parts.push_back(std::move(part));
-    }
-    if (const auto fan = fans_.find(polygon); fan != fans_.end()) {
-      triangles.insert(triangles.end(), fan->second.begin(), fan->second.end());
-      return;
-    }
-    for (std::size_t p = first; p < parts.size(); ++p) {
-      auto& part = parts[p];  // corners have the largest numbers; each triangle has one, so it is moved into the cell
-      std::rotate(part.begin(), std::max_element(part.begin(), part.end()), part.end());
-      for (std::size_t i = 2; i < part.size(); ++i) triangles.push_back({part[0], part[i - 1], part[i]});
-    }
+    const auto corner = [&](std::size_t i) { return static_cast<Local>(kCorners + around[i % count]); };
+    const std::size_t first = sides.parts.size();
+    const bool is_apart = count == 4 && is_square_joined(polygon) != high;
+    add_polygon_parts(count, is_apart, is_in, corner, edge, sides.parts);
+    const auto fan = fans_.find(polygon);
+    if (fan == fans_.end()) return add_part_triangles(first, sides);
+    sides.triangles.insert(sides.triangles.end(), fan->second.begin(), fan->second.end());
   }
 
   /// `square`: its corners.
@@ -562,22 +547,13 @@ class DecidedCells::Filler {
     key.signature = key_->signature;
     key.tile = key_->tile;
     for (std::size_t f = 0; f < 8; ++f) {
-      unsigned all = 15, some = 0;
-      for (const std::uint8_t v : cells_.facets_[f].of->corners) all &= v, some |= v;
-      const auto axis = static_cast<unsigned>(std::countr_zero(15u ^ some ^ all));
-      const unsigned cube = 2 * axis + (all >> axis & 1u);
+      const unsigned cube = cube_with_corners(cells_.facets_[f].of->corners);
       facet_of[cube] = f;
       const auto choice = static_cast<tile::Choice>(key_->cubes >> 2 * f & 3u);
       if (choice == tile::Choice::low) key.low_cubes = static_cast<std::uint8_t>(key.low_cubes | 1u << cube);
       if (choice == tile::Choice::high) key.high_cubes = static_cast<std::uint8_t>(key.high_cubes | 1u << cube);
     }
-    for (unsigned q = 0; q < 24; ++q) {
-      const auto [base, axes] = kTesseractSquares[q];
-      unsigned square = 0;
-      for (unsigned v = 0; v < 16; ++v)
-        if ((v & ~unsigned{axes}) == base) square |= 1u << v;
-      key.squares |= (is_square_joined(square) ? 1u : 0u) << q;
-    }
+    for (unsigned q = 0; q < 24; ++q) key.squares |= (is_square_joined(corners_of_square(q)) ? 1u : 0u) << q;
     return key;
   }
 
@@ -587,10 +563,7 @@ class DecidedCells::Filler {
     const ResolvedCubes::Lists lists = ResolvedTesseract::lists_of(key);
     const ResolvedView& view = tesseract_.find(key, lists);
     std::array<Local, 256> local{};
-    for (unsigned e = 0; e < 32; ++e) {
-      const unsigned base = edge_base(4, e);
-      local[e] = edge_between_[16 * base + (base | 1u << e / 8)];
-    }
+    for (unsigned e = 0; e < 32; ++e) local[e] = on_edge_of_image(e);
     for (unsigned cube = 0; cube < 8; ++cube) add_own_of_cube(cube, facet_of[cube], lists[cube], local);
     // as images: a compact contour that does not depend on the data has plain means
     const bool is_even = cells_.triangulation_ == Triangulation::compact && !ambiguous_signatures<4>()[key_->signature];
@@ -599,12 +572,14 @@ class DecidedCells::Filler {
       Local& to = local[ResolvedTesseract::kFirstOwn + j];
       if ((mask & ResolvedTesseract::kIsBarycentre) != 0) {
         to = static_cast<Local>(kCones + built_.cones.size());
-        built_.cones.push_back(edges_around(view, ResolvedTesseract::kFirstOwn + j));
+        std::uint64_t& cone = built_.cones.emplace_back(0);
+        for (std::uint32_t edges = edges_around(view, ResolvedTesseract::kFirstOwn + j); edges != 0; edges &= edges - 1)
+          cone |= bit_of(on_edge_of_image(static_cast<unsigned>(std::countr_zero(edges))));
         continue;
       }
       to = static_cast<Local>(kSides + built_.sides.size());
       built_.sides.push_back((mask & ResolvedTesseract::kIsDouble) != 0
-                                 ? doubled_mask(lists, static_cast<unsigned>(mask & 0xffu)) |
+                                 ? doubled_mask(cubes_, lists, static_cast<unsigned>(mask & 0xffu), kDoubled) |
                                        (mask & (ResolvedTesseract::kIsDouble | ResolvedTesseract::kRepeats))
                                  : mask | (is_even ? 0 : kIsUneven));
     }
@@ -625,26 +600,10 @@ class DecidedCells::Filler {
     }
   }
 
-  /// A vertex on an edge or a cube's own, as in the mask of its double (kDoubled).
-  [[nodiscard]] std::uint64_t doubled_mask(const ResolvedCubes::Lists& lists, unsigned vertex) const noexcept {
-    if (vertex < ResolvedCubes::kEdges) return std::uint64_t{8} << kDoubled | std::uint64_t{1} << (16 + vertex);
-    const unsigned cube = (vertex - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
-    const std::uint64_t mask = cubes_.mask(lists[cube], (vertex - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn);
-    return std::uint64_t{cube} << kDoubled | mask;
-  }
-
-  /// The edges of the triangles that a vertex is coned to.
-  [[nodiscard]] std::uint64_t edges_around(const ResolvedView& view, unsigned apex) const noexcept {
-    std::uint64_t mask = 0;
-    for (std::uint32_t i = 0; i < view.simplex_count; ++i) {
-      const std::uint8_t* const t = view.simplices + 4 * std::size_t{i};
-      if (t[0] != apex) continue;
-      for (unsigned k = 1; k < 4; ++k) {
-        const unsigned base = edge_base(4, t[k] % 32u);
-        if (t[k] < 32) mask |= bit_of(edge_between_[16 * base + (base | 1u << t[k] / 8)]);
-      }
-    }
-    return mask;
+  /// The cell's vertex on an edge of an image's tesseract.
+  [[nodiscard]] Local on_edge_of_image(unsigned e) const noexcept {
+    const unsigned base = edge_base(4, e);
+    return edge_between_[16 * base + (base | 1u << e / 8)];
   }
 
   const DecidedCells& cells_;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
@@ -26,6 +27,36 @@ struct RegionSides {
   std::vector<std::array<Local, 3>> triangles;  ///< of the parts
   std::vector<std::array<Local, 3>> of_contour;
 };
+
+/// Adds the parts of a polygon on one side, of which all corners are joined, except that two opposite corners of a
+/// quadrilateral are separate parts if they are `is_apart`. By corner: `is_in(i)`, whether it is on the side; its
+/// vertex `corner(i)`; the vertex `edge(i)` on the edge to the next corner.
+template <class Local, class IsIn, class Corner, class Edge>
+void add_polygon_parts(std::size_t count, bool is_apart, const IsIn& is_in, const Corner& corner, const Edge& edge,
+                       std::vector<std::vector<Local>>& parts) {
+  if (is_apart && is_in(0) == is_in(2) && is_in(1) == is_in(3) && is_in(0) != is_in(1)) {
+    for (std::size_t i = is_in(0) ? 0 : 1; i < 4; i += 2) parts.push_back({edge(i + 3), corner(i), edge(i)});
+    return;
+  }
+  std::vector<Local> part;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_in(i)) part.push_back(corner(i));
+    if (is_in(i) != is_in(i + 1)) part.push_back(edge(i));
+  }
+  if (!part.empty()) parts.push_back(std::move(part));
+}
+
+/// Divides the parts from `first` on into triangles, from their corner of the largest number. Each triangle has a
+/// corner then, so that it is moved into the cell.
+template <class Local>
+void add_part_triangles(std::size_t first, RegionSides<Local>& sides) {
+  for (std::size_t p = first; p < sides.parts.size(); ++p) {
+    auto& part = sides.parts[p];
+    std::rotate(part.begin(), std::max_element(part.begin(), part.end()), part.end());
+    for (std::size_t i = 2; i < part.size(); ++i) sides.triangles.push_back({part[0], part[i - 1], part[i]});
+  }
+}
+
 /// Cones each region: from the one corner, if it has only one, else from a centre. Appends tetrahedra to `to`. Numbers
 /// below `first_corner` are on edges, those from there on are corners, all below `end`. `add_centre(vertices)`: numbers
 /// a vertex in the middle of the corners and edges of a region, ascending.

@@ -21,6 +21,7 @@ enum class Flatness : std::uint8_t { none, simplex, border };
 struct SweepNode {
   Index vertex = 0;
   double time = 0;
+  double reported = 0;  ///< `time`, or that of more vertices if it differs by rounding only
   std::int64_t euler_change = 0;
   bool at_border = false;
   Flatness flatness = Flatness::none;
@@ -41,6 +42,7 @@ struct SweepArc {
 struct SweepHandle {
   Index vertex = 0;
   double time = 0;
+  double reported = 0;  ///< as in SweepNode
   Index arc = 0;
   bool at_border = false;
   std::int64_t euler_change = 0;
@@ -57,6 +59,7 @@ struct SweepResult {
   std::vector<SweepHandle> handles;  ///< by time, then vertex
   std::vector<SweepSample> samples;  ///< by time, then arc
   double first = 0.0, last = 0.0;    ///< times of the lowest and the highest vertex of a simplex
+  double tolerance = 0.0;            ///< times that differ by at most this may be equal up to rounding
   std::vector<Index> simplex_arcs;   ///< #S, if requested; kNone for simplices that repeat a vertex
 };
 

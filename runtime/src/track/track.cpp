@@ -57,7 +57,6 @@ void require_sound(const Contour<N, Real>& contour) {
 struct SweptContour {
   std::span<const std::string> axis_names;  ///< one per axis
   std::span<const std::string> axis_units;
-  double epsilon;  ///< of its coordinates' type
   detail::FunctionRef<double(Index vertex, int axis)> coordinate;
 
   [[nodiscard]] int last_axis() const noexcept { return static_cast<int>(axis_names.size()) - 1; }
@@ -71,6 +70,7 @@ class Builder {
         options_(options),
         first_(swept.first),
         last_(swept.last),
+        tolerance_(swept.tolerance),
         samples_(std::move(swept.samples)),
         simplex_arcs_(std::move(swept.simplex_arcs)),
         graph_(std::move(swept.nodes), std::move(swept.arcs), std::move(swept.handles)) {}
@@ -108,7 +108,6 @@ class Builder {
     std::copy(contour_.axis_units.begin(), contour_.axis_units.end(), result_.axis_units.begin());
     result_.first = options_.first.value_or(first_);
     result_.last = options_.last.value_or(last_);
-    tolerance_ = 4 * contour_.epsilon * std::max(std::abs(first_), std::abs(last_));
   }
 
   void add_events() {
@@ -119,7 +118,7 @@ class Builder {
       event_of_node_[i] = static_cast<Index>(result_.events.size());
       node_of_event_.push_back(i);
       TrackEvent& event = result_.events.emplace_back();
-      event.time = node.event.time;
+      event.time = node.event.reported;
       event.vertex = node.event.vertex;
       event.place = place(event.vertex);
       event.at_border = node.event.at_border;
@@ -204,7 +203,7 @@ class Builder {
 
   void add_handles() {
     for (const detail::SweepHandle& handle : graph_.handles())
-      result_.handles.push_back({handle.time, place(handle.vertex), handle.vertex, handle.at_border,
+      result_.handles.push_back({handle.reported, place(handle.vertex), handle.vertex, handle.at_border,
                                  segment_of_arc_[handle.arc], handle.euler_change});
   }
 
@@ -232,10 +231,10 @@ class Builder {
   const SweptContour& contour_;
   const TrackOptions& options_;
   double first_, last_;  ///< times of the contour
+  double tolerance_;     ///< times that differ by at most this may be equal up to rounding
   std::vector<detail::SweepSample> samples_;
   std::vector<Index> simplex_arcs_;
   SweptGraph graph_;
-  double tolerance_ = 0;  ///< times that differ by at most this may be equal up to rounding
   std::vector<Index> event_of_node_;
   std::vector<Index> node_of_event_;
   std::vector<Index> segment_of_arc_;
@@ -289,8 +288,7 @@ TrackGraph track_with(const Contour<N, Real>& contour, const detail::IncidenceDa
   const detail::SimplexView<N> view(contour);
   if (incidence != nullptr) detail::require_incidence<N>(*incidence, view.rows(), view.vertex_count());
   const auto coordinate = [&](Index vertex, int axis) { return view.coordinate(vertex, axis); };
-  const SweptContour swept{contour.axis_names, contour.axis_units,
-                           static_cast<double>(std::numeric_limits<Real>::epsilon()), coordinate};
+  const SweptContour swept{contour.axis_names, contour.axis_units, coordinate};
   return Builder(swept, options, detail::sweep(contour, incidence, options)).build();
 }
 

@@ -103,7 +103,8 @@ Index SweptGraph::splice(Index node) {
   auto& in = nodes_[arc.to].in;
   in.erase(std::find(in.begin(), in.end(), joined));
   in.insert(std::lower_bound(in.begin(), in.end(), kept), kept);
-  handles_.push_back({here.event.vertex, here.event.time, kept, here.event.at_border, here.event.euler_change});
+  handles_.push_back(
+      {here.event.vertex, here.event.time, here.event.reported, kept, here.event.at_border, here.event.euler_change});
   here.passing = kept;
   here.in.clear();
   here.out.clear();

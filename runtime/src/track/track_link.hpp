@@ -65,6 +65,8 @@ class SweptComplex {
   [[nodiscard]] const Simplex& simplex(Index s) const { return simplices_[s]; }
   [[nodiscard]] std::size_t vertex_count() const { return times_.size(); }
   [[nodiscard]] double time(Index v) const { return times_[v]; }
+  /// Of all vertices, ascending.
+  [[nodiscard]] std::span<const double> all_times() const { return times_; }
   /// Times of the lowest and the highest vertex of a simplex; 0 if there are none.
   [[nodiscard]] std::pair<double, double> times() const {
     if (simplices_.empty()) return {0.0, 0.0};

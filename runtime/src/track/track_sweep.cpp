@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -67,6 +68,10 @@ class Sweeper {
                   [&](std::size_t from, std::size_t to) { std::fill(&seen_[from], &seen_[from] + (to - from), 0u); });
     for (const double time : options.times)
       times_.push_back(contour.is_single() ? static_cast<double>(rounded_at<float>(time)) : rounded_at<double>(time));
+    std::tie(result_.first, result_.last) = complex_.times();
+    const double epsilon =
+        contour.is_single() ? double{std::numeric_limits<float>::epsilon()} : std::numeric_limits<double>::epsilon();
+    result_.tolerance = 4 * epsilon * std::max(std::abs(result_.first), std::abs(result_.last));
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
     if (times_.empty() || count == 0) return;
     first_ = complex_.time(0);
@@ -83,7 +88,6 @@ class Sweeper {
       visit(v);
     }
     settle_starts();
-    std::tie(result_.first, result_.last) = complex_.times();
     fraction_ = 1.0;
     tell_all(kTellEvery);
     return std::move(result_);
@@ -103,6 +107,23 @@ class Sweeper {
     if (seen_since_ < kTellEvery) return;
     seen_since_ = 0;
     detail::tell(options_.work.progress, kReady + (kSwept - kReady) * fraction_, "tracking was cancelled");
+  }
+
+  /// The time that is reported for an event at a vertex: of those that differ from its own by rounding only, the one of
+  /// most vertices. Points between two layers of an image lie off both by the smallest step (Placement::inside_slab),
+  /// so an event at a layer may be at such a point.
+  [[nodiscard]] double reported_time(Index v) const {
+    const std::span<const double> times = complex_.all_times();
+    // half of the tolerance, so that two vertices with one reported time count as equal
+    const double from = times[v] - result_.tolerance / 2, to = times[v] + result_.tolerance / 2;
+    double best = times[v];
+    std::ptrdiff_t most = 0;
+    for (auto at = std::lower_bound(times.begin(), times.end(), from); at != times.end() && *at <= to;) {
+      const auto end = std::upper_bound(at, times.end(), *at);
+      if (end - at > most) best = *at, most = end - at;
+      at = end;
+    }
+    return best;
   }
 
   // ---- the sweep ----
@@ -133,8 +154,8 @@ class Sweeper {
     const Index set = sets_.find(is_labelled(passage.below) ? labels_[passage.below] : labels_of_new_[passage.front]);
     pass(v, set, passage.euler);
     if (passage.euler != 0)
-      result_.handles.push_back(
-          {complex_.vertex(v), complex_.time(v), components_[set].arc, true, std::int64_t{passage.euler}});
+      result_.handles.push_back({complex_.vertex(v), complex_.time(v), reported_time(v), components_[set].arc, true,
+                                 std::int64_t{passage.euler}});
   }
 
   /// A member of the set that a cell which exists belongs to.
@@ -189,11 +210,12 @@ class Sweeper {
     if (before.size() == 1 && outgoing.size() == 1) {
       if (euler_change != 0)
         result_.handles.push_back(
-            {complex_.vertex(v), complex_.time(v), before[0].arc, star_.at_border(), euler_change});
+            {complex_.vertex(v), complex_.time(v), reported_time(v), before[0].arc, star_.at_border(), euler_change});
       return;
     }
     const auto node = static_cast<Index>(result_.nodes.size());
-    result_.nodes.push_back({complex_.vertex(v), complex_.time(v), euler_change, star_.at_border(), star_.flatness()});
+    result_.nodes.push_back(
+        {complex_.vertex(v), complex_.time(v), reported_time(v), euler_change, star_.at_border(), star_.flatness()});
     for (const Component& component : before) {
       SweepArc& arc = result_.arcs[component.arc];
       arc.to = node;

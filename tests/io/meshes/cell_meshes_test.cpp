@@ -77,6 +77,26 @@ TEST(CellMesh, CellsOfFewerDimensionsAreLeftOutWithARemark) {
   EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("cells of fewer than 3 dimensions are left out: 1"));
 }
 
+TEST(CellMesh, AnExtensionOfOtherDataIsARemark) {
+  TempDir dir;
+  const std::string bytes = vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4"));
+  write_file(dir / "a.vts", bytes);
+  write_file(dir / "a.vtu", bytes);
+  const std::string expected =
+      (dir / "a.vts").string() + " holds UnstructuredGrid, whose extension is .vtu; .vts is for StructuredGrid";
+  EXPECT_THAT(read(dir / "a.vts").remarks, testing::ElementsAre(expected));
+  EXPECT_EQ(read(dir / "a.vts").values, read(dir / "a.vtu").values);
+  EXPECT_THAT(describe_cell_mesh(dir / "a.vts").remarks, testing::ElementsAre(expected));
+  EXPECT_THAT(read(dir / "a.vtu").remarks, testing::IsEmpty());
+  EXPECT_THAT(describe_cell_mesh(dir / "a.vtu").remarks, testing::IsEmpty());
+  // images
+  write_file(dir / "b.vtr",
+             "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 0\"><Piece Extent=\"0 1 0 1 0 0\">" +
+                 on_points("0 1 2 3") + "</Piece></ImageData></VTKFile>");
+  EXPECT_THAT(read_image(dir / "b.vtr").info.remarks,
+              testing::Contains(testing::HasSubstr("b.vtr holds ImageData, whose extension is .vti")));
+}
+
 struct WrongMesh {
   std::string bytes;
   ErrorCode code;
@@ -556,6 +576,23 @@ TEST(PointTable, ColumnsOfTextAreLeftOut) {
   expect_error(ErrorCode::MalformedFile, {"line 2, column 1", "'A1'"}, [&] { read(dir / "a.csv", options); });
   write_file(dir / "b.csv", "x,y,a,b\n0,0,one,two\n");
   expect_error(ErrorCode::MalformedFile, {"line 2", "a, b"}, [&] { read(dir / "b.csv"); });
+}
+
+TEST(PointTable, ColumnsOfOneNameAreErrorsIfTheyAreRead) {
+  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
+  TempDir dir;
+  CellMeshOptions options;
+  const auto refused = [&](const std::string& names, const std::vector<std::string>& parts) {
+    write_file(dir / "a.csv", names + "\n0,0,1,5\n1,0,2,5\n0,1,3,5\n");
+    expect_error(ErrorCode::MalformedFile, parts, [&] { (void)read(dir / "a.csv", options); });
+  };
+  refused("x,X,y,v", {"a.csv", "columns 1 and 2", "'x'"});
+  refused("lon,lat,lat,v", {"columns 2 and 3", "'lat'"});
+  options.variable = "v";
+  refused("x,y,v,v", {"columns 3 and 4", "'v'", "different names"});
+  // columns that are not read may have any names
+  write_file(dir / "b.csv", "x,y,v,note,note\n0,0,1,a,a\n1,0,2,b,b\n0,1,3,c,c\n");
+  EXPECT_THAT(read(dir / "b.csv", options).values, testing::ElementsAre(1, 2, 3));
 }
 
 TEST(PointTable, WrongRowsAreErrorsWithTheirLine) {

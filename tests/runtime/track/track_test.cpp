@@ -121,6 +121,26 @@ TEST(Track, ABallIsBornAndDies) {
 
 /// Two balls in 4D whose centres approach each other along the first axis: they touch when each is a radius from the
 /// origin, at the parameter 0.5.
+TEST(Track, EventsAtALayerHaveItsTime) {
+  // A diamond that appears at the sample in the middle, at t = 0, and another one that vanishes there at t = 1.
+  for (const bool dies : {false, true}) {
+    const auto field = [&](const Point<4>& p) {
+      return (dies ? 1.0 - p[3] : p[3]) - 4.0 * std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+    };
+    const auto values = test::sample_field<double, 4>(space_time<4>(5, 1.0, 5, -0.5, 1.5), field);
+    const auto check = [&](const TrackGraph& graph) {
+      ASSERT_EQ(graph.events.size(), 2U);
+      const TrackEvent& event = graph.events[dies ? 1 : 0];
+      EXPECT_EQ(event.kind, dies ? Kind::death : Kind::birth);
+      EXPECT_EQ(event.time, dies ? 1.0 : 0.0) << "not a rounding error beside it";
+      EXPECT_EQ(dies ? graph.tracks[0].end : graph.tracks[0].start, event.time);
+      EXPECT_EQ(dies ? graph.segments[0].end : graph.segments[0].start, event.time);
+    };
+    check(track(extract<double>(view_of(values), 0.0)));
+    check(track(extract<float>(view_of(values), 0.0)));
+  }
+}
+
 TEST(Track, BlobsOf4dMergeOverTheFifthAxis) {
   Grid<5> grid;
   grid.axes[0] = Axis::uniform(15, -1.75, 0.25);

@@ -39,7 +39,7 @@ struct CellMesh {
   std::vector<double> values = {};                  ///< max(1, #T) x #P; NaN: missing
   std::string variable = {};                        ///< name of the values
   std::vector<std::string> axis_names = {};         ///< of the coordinates: x, y, z, or as in the table
-  std::vector<std::string> remarks = {};            ///< cells that were left out
+  std::vector<std::string> remarks = {};            ///< cells that were left out; an extension of other data
   std::vector<std::filesystem::path> files = {};    ///< in the order of the times
 };
 
@@ -79,11 +79,10 @@ struct CellMeshOptions {
 /// value that is empty or "nan" is missing.
 ///
 /// Errors, naming the file (and of a table the line): FileNotFound; MalformedFile (damaged, or numbers that contradict
-/// each other; two equal points of a table); UnsupportedFormat (a compressor other than zlib; parallel files, which
-/// name others); UnsupportedData (curved cells and other types; no cells of 2 or 3 dimensions; values of
-/// cells without cells_to_points; files of a series that do not match); VariableNotFound; InvalidArgument (times;
-/// cells_to_points with values of points);
-/// TooLarge; Cancelled.
+/// each other; two equal points of a table, two columns of the name of a coordinate or of the chosen one);
+/// UnsupportedFormat (a compressor other than zlib; parallel files, which name others); UnsupportedData (curved cells
+/// and other types; no cells of 2 or 3 dimensions; values of cells without cells_to_points; files of a series that do
+/// not match); VariableNotFound; InvalidArgument (times; cells_to_points with values of points); TooLarge; Cancelled.
 [[nodiscard]] CellMesh read_cell_mesh(std::span<const std::filesystem::path> files,
                                       const CellMeshOptions& options = {});
 
@@ -113,6 +112,7 @@ struct CellMeshInfo {
   std::vector<std::array<double, 2>> bounds = {};                 ///< of the points, by axis
   std::vector<CellMeshArray> arrays = {};                         ///< of points, then of cells
   std::vector<double> times = {};                                 ///< of a .pvd file
+  std::vector<std::string> remarks = {};                          ///< an extension of other data
 };
 
 /// Describes a file; of a .pvd file, its first one. Reads all its arrays. Errors: those of read_cell_mesh.
